@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 seconds=${1:-10}
-readers=(scene obj gltf room hand track raw hdf5)
+readers=(scene obj gltf room hand track part hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
 cmake --preset fuzz -DCMAKE_UNITY_BUILD=ON >build/configure-fuzz.log 2>&1 || { tail -30 build/configure-fuzz.log; exit 1; }
 cmake --build --preset fuzz -j "$JOBS" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }

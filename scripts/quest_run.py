@@ -195,7 +195,7 @@ def pull(adb, a, source, several=False):
     readings = os.path.join(a.out, "samples.json")
     options = ["--samples", readings] if os.path.exists(readings) else []
     if subprocess.run([a.clothbench, "import", *folders, *options], check=False).returncode != 0:
-        raise Problem(f"clothbench import failed; the raw files are in {fetched}")
+        raise Problem(f"clothbench import failed; the CBOR files are in {fetched}")
 
 
 def run(adb, a):
@@ -225,7 +225,7 @@ def arguments():
     p.add_argument("--clothbench", default=os.path.join(ROOT, "build/release/clothbench"), help="the program that imports the results")
     actions = p.add_subparsers(dest="action", required=True)
     actions.add_parser("install", help="install the app").add_argument("file")
-    actions.add_parser("push", help="copy scenes, or args.txt with one command per line, to the app's folder").add_argument("file", nargs="+")
+    actions.add_parser("push", help="copy scenes, or args.txt with the command, to the app's folder").add_argument("file", nargs="+")
     actions.add_parser("logs", help="print the app's log until Ctrl-C")
     actions.add_parser("restore", help="reset clock levels, refresh rate and proximity sensor to the headset's own")
     for name, what in (("run", "run one command, sample the headset, fetch and import the results"), ("pull", "fetch and import all results on the headset")):

@@ -18,7 +18,7 @@
 #include "android/stdout_tap.hpp"
 #include "cli/command_line.hpp"
 #ifdef CLOTHBENCH_WITH_XR
-#include "xr/android_context.hpp"
+#include "xr/instance.hpp"
 #endif
 
 namespace clothbench::android {
@@ -129,7 +129,6 @@ Command command_of([[maybe_unused]] ANativeActivity* a) {
 void set_callbacks(ANativeActivityCallbacks& c) {
   c.onPause = [](ANativeActivity* a) { instance_of(a)->session->pause(); };
   c.onResume = [](ANativeActivity* a) { instance_of(a)->session->resume(); };
-  c.onLowMemory = [](ANativeActivity* a) { instance_of(a)->session->low_memory(); };
   c.onDestroy = [](ANativeActivity* a) {
     Instance* instance = instance_of(a);
     instance->system->forget();

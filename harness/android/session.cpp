@@ -49,11 +49,6 @@ Turns& turns() {
   return *all;
 }
 
-bool has_option(const std::vector<std::string>& words, const std::string& option) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](const std::string& w) { return w == option || w.rfind(option + "=", 0) == 0; });
-}
-
 std::string option_value(const std::vector<std::string>& words, const std::string& option) {
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (words[k] == option && k + 1 < words.size()) return words[k + 1];
@@ -78,37 +73,6 @@ fs::path fresh_folder(const fs::path& files, const std::vector<std::string>& wor
   for (int k = 2; fs::exists(folder); ++k) folder = first.string() + fmt::format("-{}", k);
   return folder;
 }
-
-/// What stands in session.json: each command with the folder it writes to and how far it is (pending, pass, fail).
-class Ledger {
- public:
-  /// Goes on with the file's list if it is of the same commands and not at its end.
-  Ledger(fs::path file, const std::vector<std::string>& lines) : file_(std::move(file)) {
-    const json before = json::parse(content_of(file_), nullptr, false);
-    const auto state_is = [](const json& c, const char* state) { return c.value("state", "") == state; };
-    if (before.is_object() && before.contains("commands") && before["commands"].is_array() &&
-        before["commands"].size() == lines.size()) {
-      bool same = true, open = false;
-      for (std::size_t k = 0; k < lines.size(); ++k) {
-        const json& c = before["commands"][k];
-        same = same && c.is_object() && c.value("line", "") == lines[k];
-        open = open || !(c.is_object() && (state_is(c, "pass") || state_is(c, "fail")));
-      }
-      if (same && open) {
-        commands_ = before["commands"];
-        return;
-      }
-    }
-    for (const std::string& line : lines) commands_.push_back({{"line", line}, {"state", "pending"}, {"out", ""}});
-  }
-
-  json& operator[](std::size_t k) { return commands_[k]; }
-  void save() const { write_file_atomically(file_, json{{"commands", commands_}}.dump(1) + "\n"); }
-
- private:
-  fs::path file_;
-  json commands_ = json::array();
-};
 
 }  // namespace
 
@@ -144,17 +108,6 @@ std::vector<std::string> split_words(const std::string& line) {
   return words;
 }
 
-std::vector<std::string> command_lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
-    const auto first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    lines.push_back(line.substr(first, line.find_last_not_of(" \t\r") - first + 1));
-  }
-  return lines;
-}
-
 struct Session::Shared {
   Launch launch;
   std::shared_ptr<System> system;
@@ -165,11 +118,15 @@ struct Session::Shared {
   bool running = false;  ///< it is this session's turn
   bool paused = false, destroyed = false, ended = false;
 
-  std::vector<std::string> lines() const {
-    std::vector<std::string> all = command_lines(launch.extra);
-    if (all.empty()) all = command_lines(content_of(launch.files / "args.txt"));
-    if (all.empty()) all = {"study table3"};
-    return all;
+  /// The intent's extra, else the first line of args.txt that is neither empty nor a comment, else the default.
+  std::string line() const {
+    std::istringstream given(launch.extra + "\n" + content_of(launch.files / "args.txt"));
+    for (std::string l; std::getline(given, l);) {
+      const auto first = l.find_first_not_of(" \t\r");
+      if (first != std::string::npos && l[first] != '#')
+        return l.substr(first, l.find_last_not_of(" \t\r") - first + 1);
+    }
+    return "study table3";
   }
 
   bool is_destroyed() {
@@ -177,55 +134,37 @@ struct Session::Shared {
     return destroyed;
   }
 
-  /// One command; where its results lie goes into `where`.
-  bool run(Ledger& ledger, std::size_t k, const std::string& line, fs::path& where) {
-    std::vector<std::string> words = split_words(line);
-    if (!words.empty() && words[0] == "clothbench") words.erase(words.begin());
-    fs::path out;
+  /// Runs the command; true if it passed. `where` receives the folder of its results.
+  bool run(fs::path& where) {
+    const std::string text = line();
+    std::vector<std::string> words = split_words(text);
+    if (words[0] == "clothbench") words.erase(words.begin());
+    const fs::path note = launch.files / "session.json";
+    std::string happens = "running " + text;
     if (writes_results(words)) {
-      // A live session cannot be gone on with: the user was elsewhere.
-      const bool again = words[0] != "xr" && !ledger[k].value("out", "").empty();
-      if (!again) {
-        const std::string given = option_value(words, "--out");
-        ledger[k]["out"] = given.empty() ? fresh_folder(launch.files, words).string() : given;
-      }
-      out = ledger[k].value("out", "");
-      if (!has_option(words, "--out")) words.insert(words.end(), {"--out", out.string()});
-      if (again && !has_option(words, "--resume")) words.push_back("--resume");
-      system->log(fmt::format("{} {}: results in {}", again ? "going on with" : "running", line, out.string()));
-    } else {
-      system->log("running " + line);
+      const json before = json::parse(content_of(note), nullptr, false);
+      // A live session cannot be continued: the user was elsewhere.
+      const bool again = words[0] != "xr" && before.is_object() && before.value("line", json()) == text &&
+                         before.value("out", json()).is_string();
+      const std::string given = option_value(words, "--out");
+      const fs::path out = again           ? fs::path(before["out"].get<std::string>())
+                           : given.empty() ? fresh_folder(launch.files, words)
+                                           : fs::path(given);
+      if (given.empty()) words.insert(words.end(), {"--out", out.string()});
+      if (again) words.push_back("--resume");
+      happens = fmt::format("{} {}: results in {}", again ? "continuing" : "running", text, out.string());
+      write_file_atomically(note, json{{"line", text}, {"out", out.string()}}.dump(1) + "\n");
+      where = out;
     }
-    ledger.save();
-    if (!out.empty()) where = out;
+    system->log(happens);
     const int code = command(words);
     if (code == static_cast<int>(ExitCode::Interrupted)) {
-      system->log("interrupted; a start with the same arguments goes on");
+      system->log("interrupted; a start with the same arguments continues it");
       return false;
     }
-    ledger[k]["state"] = code == 0 ? "pass" : "fail";
-    ledger[k]["exit_code"] = code;
-    ledger.save();
-    if (code != 0) system->log(fmt::format("{}: exit code {}", line, code));
+    fs::remove(note);
+    if (code != 0) system->log(fmt::format("{}: exit code {}", text, code));
     return code == 0;
-  }
-
-  /// All commands; true if every one passed.
-  bool run_all(fs::path& where) {
-    const std::vector<std::string> all = lines();
-    Ledger ledger(launch.files / "session.json", all);
-    bool pass = true;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const std::string state = ledger[k].value("state", "");
-      if (state == "pass" || state == "fail") {
-        system->log(fmt::format("{}: ended before this start ({})", all[k], state));
-        pass = pass && state == "pass";
-        continue;
-      }
-      if (is_destroyed()) return false;
-      pass = run(ledger, k, all[k], where) && pass;
-    }
-    return pass;
   }
 
   void work() {
@@ -240,7 +179,7 @@ struct Session::Shared {
     bool pass = false;
     fs::path where = launch.files;
     try {
-      pass = run_all(where);
+      pass = !is_destroyed() && run(where);
     } catch (const std::exception& e) {
       system->log(std::string("error: ") + e.what());
     }
@@ -276,12 +215,6 @@ void Session::resume() {
   const std::lock_guard lock(shared_->mutex);
   shared_->paused = false;
   if (shared_->running) hold_runs(false);
-}
-
-void Session::low_memory() {
-  const std::lock_guard lock(shared_->mutex);
-  // There is nothing to give back: a run holds what its scene needs and nothing else.
-  if (!shared_->ended) shared_->system->log("the system is low on memory");
 }
 
 void Session::destroy() {

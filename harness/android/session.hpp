@@ -31,18 +31,15 @@ using Command = std::function<int(const std::vector<std::string>& words)>;
 /// Splits a command line at blanks; "…", '…' and \ quote as in a shell. Throws Error on a quote that is not closed.
 std::vector<std::string> split_words(const std::string& line);
 
-/// One command per line, without blank lines and lines that begin with #.
-std::vector<std::string> command_lines(const std::string& text);
-
-/// Life cycle of an activity, independent of the operating system. The commands of the intent extra, else of
-/// `<files>/args.txt`, else `study table3`, run one after another in a separate thread:
+/// Life cycle of an activity, independent of the operating system. The command of the intent extra, else of
+/// `<files>/args.txt`, else `study table3`, runs in a separate thread:
 ///   - `study`, `run` and `xr` without --out write to `<files>/runs/<name>-<UTC>`;
-///   - `<files>/session.json` stores the commands and their folders. A start with the same commands continues a session
-///     that was killed or destroyed (it does not repeat finished commands or trials); after a completed session it
-///     begins anew;
+///   - `<files>/session.json` stores the command and its folder while it runs. A start with the same command continues
+///     one that was killed or destroyed (it does not repeat finished trials);
 ///   - a paused run waits between frames; a destroyed run stops after its frame and keeps all finished trials;
-///   - the last line logged is "RESULT PASS <path>" if every command exited with 0, else "RESULT FAIL <path>"; the path
-///     is the folder of the last command that ran (or `files`).
+///   - the last line logged is "RESULT PASS <path>" if the command exited with 0, else "RESULT FAIL <path>"; the path
+///   is
+///     the folder of its results (or `files`).
 /// Member functions may be called in any order and from any thread. A second session of a process waits for the first.
 class Session {
  public:
@@ -53,7 +50,6 @@ class Session {
 
   void pause();
   void resume();
-  void low_memory();
   /// Stops the run and waits for it, but not longer than the system allows an activity's main thread to wait: a solver
   /// that is still loading then ends later.
   void destroy();

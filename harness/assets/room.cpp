@@ -163,22 +163,6 @@ Room parse_room(const std::string& text, const std::string& source, const std::s
   return room;
 }
 
-std::string room_capture(const RoomScan& scan) {
-  const auto text = [](const auto& items) {
-    return encode_base64(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof(items[0]));
-  };
-  const auto& p = scan.position_m;
-  const auto& q = scan.orientation;
-  const nlohmann::json entity = {
-      {"uuid", scan.uuid},
-      {"semanticLabel_META", "GLOBAL_MESH"},
-      {"locatable_META",
-       {{"position", {{"x", p[0]}, {"y", p[1]}, {"z", p[2]}}},
-        {"orientation", {{"x", q[0]}, {"y", q[1]}, {"z", q[2]}, {"w", q[3]}}}}},
-      {"triangleMesh_META", {{"vertices", text(scan.vertices_m)}, {"indices", text(scan.indices)}}}};
-  return nlohmann::json({{"type", "scene"}, {"version", 1}, {"spatialEntities", {entity}}}).dump(1) + "\n";
-}
-
 Room load_room(const std::filesystem::path& path) {
   return parse_room(read_text(path), path.string(), path.stem().string());
 }

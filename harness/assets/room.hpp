@@ -49,17 +49,6 @@ Room load_room(const std::filesystem::path&);
 /// The same from text; `source` is for messages, `name` for the room.
 Room parse_room(const std::string& text, const std::string& source, const std::string& name);
 
-/// A scanned mesh as a runtime reports it (XR_META_spatial_entity_mesh): the entity's pose, and vertices (xyz) and
-/// triangle indices in the entity's frame. It has no tables. `room_capture` gives the text that `load_room` reads.
-struct RoomScan {
-  std::string uuid;
-  std::array<float, 3> position_m{};
-  std::array<float, 4> orientation{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
-  std::vector<float> vertices_m;
-  std::vector<std::uint32_t> indices;
-};
-std::string room_capture(const RoomScan&);
-
 /// The table whose uuid (or `stands_for`) starts with `prefix`. Throws Error listing the room's tables if none or more
 /// than one does.
 const Table& find_table(const Room&, const std::string& prefix);

@@ -44,7 +44,7 @@ struct Checked {
 std::vector<Finding> motion_findings(const RunRecord&);
 
 /// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
-/// another; and what is wrong with the motion in its file, if it has one (results/trajectory.hpp). If the outcome
+/// another; and what is wrong with the motion in its file, if it has one (results/store.hpp). If the outcome
 /// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 

@@ -9,8 +9,8 @@
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/registry.hpp"
-#include "results/stored_motion.hpp"
-#include "results/trajectory.hpp"
+#include "results/replay.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 /// One folder of results, or the folders in a folder that has no results itself, by name.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
-  if (!fs::is_directory(given) || given.extension() == ".part" || fs::exists(given / "study.json")) return {given};
+  if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};
   for (const auto& entry : fs::directory_iterator(given)) {
-    if (!entry.is_directory() || entry.path().extension() == ".part") return {given};
+    if (!entry.is_directory()) return {given};
     inside.push_back(entry.path());
   }
   std::sort(inside.begin(), inside.end());

@@ -7,9 +7,8 @@ namespace clothbench {
 void add_import(CLI::App& app, Console& console) {
   auto& folders = console.arguments<std::vector<std::string>>();
   auto& samples_file = console.arguments<std::string>();
-  CLI::App* cmd = app.add_subcommand(
-      "import", "Convert raw run files (of a device without HDF5, or of an interrupted run) to HDF5 files");
-  cmd->add_option("folder", folders, "Study folders or part folders")->required();
+  CLI::App* cmd = app.add_subcommand("import", "Convert the CBOR files of a device without HDF5 to HDF5 files");
+  cmd->add_option("folder", folders, "Study folders or .cbor files")->required();
   cmd->add_option("--samples", samples_file,
                   "Readings of the device during the run: samples.json of scripts/quest_run.py");
   cmd->footer(
@@ -20,12 +19,12 @@ void add_import(CLI::App& app, Console& console) {
     if (!samples_file.empty()) samples.emplace(samples_file);
     nlohmann::json rows = nlohmann::json::array();
     for (const std::string& folder : folders)
-      for (const auto& file : import_raw(folder, samples ? &*samples : nullptr)) {
+      for (const auto& file : import_runs(folder, samples ? &*samples : nullptr)) {
         rows.push_back(file.string());
         if (!console.json) fmt::print("{}\n", file.string());
       }
     if (console.json) Console::print(rows);
-    if (rows.empty()) fmt::print(stderr, "nothing to import: these folders have no finished .part folders\n");
+    if (rows.empty()) fmt::print(stderr, "nothing to import: these folders have no .cbor files\n");
   });
 }
 

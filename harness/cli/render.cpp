@@ -2,8 +2,7 @@
 #include <tuple>
 
 #include "cli/command.hpp"
-#include "render/album.hpp"
-#include "render/run_motion.hpp"
+#include "render/pictures.hpp"
 #include "runner/interrupt.hpp"
 
 namespace clothbench {
@@ -13,8 +12,8 @@ namespace fs = std::filesystem;
 
 struct RenderArguments {
   std::vector<std::string> files, views, set;
-  std::string out, frames, colour, size, run, solver;
-  bool plain = false, no_movie = false;
+  std::string out, frames, size, run, solver;
+  bool no_movie = false;
   DeviceFlags device;
 };
 
@@ -35,9 +34,7 @@ void render_all(const RenderArguments& a, const Console& console) {
   render::Shots shots;
   if (!a.views.empty()) shots.views.clear();
   for (const std::string& v : a.views) shots.views.push_back(render::view_from(v));
-  shots.colour = render::colour_from(a.colour);
   std::tie(shots.width, shots.height) = pixels_of("--size", a.size);
-  shots.plain = a.plain;
   shots.movie = !a.no_movie;
   shots.out = a.out;
   nlohmann::json reported = {{"pictures", nlohmann::json::array()}, {"movies", nlohmann::json::array()}};
@@ -68,7 +65,6 @@ void add_render(CLI::App& app, Console& console) {
   RenderArguments& a = console.arguments<RenderArguments>();
   a.out = "pictures";
   a.frames = ":";
-  a.colour = "checker";
   a.size = "1200x900";
   a.solver = "xpbd";
   CLI::App* cmd =
@@ -78,20 +74,14 @@ void add_render(CLI::App& app, Console& console) {
   cmd->add_option("--frames", a.frames,
                   "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
   cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
-  cmd->add_option("--colour,--color", a.colour,
-                  "Colour of the cloth: checker, strain (stretch of the edges), depth (depth inside a collider, or "
-                  "behind the surface of a room)")
-      ->capture_default_str();
-  cmd->add_option("--size", a.size, "Size of a picture with its legend and caption: WIDTHxHEIGHT in pixels")
-      ->capture_default_str();
+  cmd->add_option("--size", a.size, "Size of a picture: WIDTHxHEIGHT in pixels")->capture_default_str();
   cmd->add_option("--run", a.run, "For a folder: draw the runs with this text in their names");
-  cmd->add_flag("--plain", a.plain, "Draw no legend and no caption");
   cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
   cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();
   cmd->add_option("--set", a.set, "For a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);
   cmd->footer(
-      "Examples: clothbench render results/runs/mine --run desk-flat-low__xpbd --view top --colour depth --frames -1\n"
+      "Examples: clothbench render results/runs/mine --run desk-flat-low__xpbd --view top --frames -1\n"
       "          clothbench render paper/hand-push --frames 0:-1:4 -o push");
   cmd->callback([&console, &a] {
     const bool runs = std::any_of(a.files.begin(), a.files.end(),

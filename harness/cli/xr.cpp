@@ -21,8 +21,8 @@ void add_xr(CLI::App& app, Console& console) {
   XrArguments& a = console.arguments<XrArguments>();
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand(
-      "xr", "Run a live session in a headset (OpenXR): the cloth is drawn and touches the user's hands and room");
-  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands and room replace those of the scenario")
+      "xr", "Run a live session in a headset (OpenXR): the cloth is drawn and touches the user's hands");
+  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands replace those of the scenario")
       ->required();
   cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
@@ -34,10 +34,10 @@ void add_xr(CLI::App& app, Console& console) {
       ->capture_default_str();
   cmd->add_option("--place", a.place,
                   "Position of the scene's origin, x y z [m] from the head at the start (default: the middle of the "
-                  "cloth is at 0 -0.1 -0.6), or from the floor with a room (default 0 0 0)")
+                  "cloth is at 0 -0.1 -0.6)")
       ->expected(3);
   cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the camera picture");
-  cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands or picked points [s]")
+  cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cmd->add_option("--runtime", a.runtime,
@@ -45,9 +45,7 @@ void add_xr(CLI::App& app, Console& console) {
   cmd->add_option("--out", a.out,
                   "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
-  cmd->footer(
-      "Example: clothbench xr paper/capsule-sweep --frames 720\nWith a room: press A to show the scan, and "
-      "pick six points of a desk with the trigger. The cloth falls on the desk.");
+  cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720");
   cmd->callback([&console, &a] {
     const Overrides overrides = split_overrides(a.set);
     xr::LoopOptions o;

@@ -14,13 +14,12 @@ constexpr double kFieldOfView = 28;  // degrees of the picture's height: little 
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-void look(Camera& c, View view, double turn_deg) {
+void look(Camera& c, View view) {
   if (view == View::Top) {
     c.back = {0, 1, 0};
     c.right = {1, 0, 0};
   } else {
-    const double azimuth = radians(turn_deg + (view == View::Front ? 0 : 30)),
-                 elevation = radians(view == View::Front ? 0 : 24);
+    const double azimuth = radians(view == View::Front ? 0 : 30), elevation = radians(view == View::Front ? 0 : 24);
     c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
     c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   }
@@ -92,16 +91,10 @@ std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
                                0.5 - 0.5 * dot(d, c.up) / depth / c.tan_half_height};
 }
 
-Vec3 towards_eye(View view, double turn_deg) {
-  Camera c;
-  look(c, view, turn_deg);
-  return c.back;
-}
-
-Camera frame(View view, std::span<const double> points, double aspect, double margin, double turn_deg) {
+Camera frame(View view, std::span<const double> points, double aspect, double margin) {
   if (points.size() < 3) throw Error("camera: expected at least one point to view");
   Camera c;
-  look(c, view, turn_deg);
+  look(c, view);
   c.tan_half_height = std::tan(radians(kFieldOfView / 2));
   c.tan_half_width = c.tan_half_height * aspect;
   const double within = 1 - 2 * margin;
@@ -127,7 +120,7 @@ std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_
   std::array<Camera, 2> both;
   for (std::size_t k = 0; k < 2; ++k) {
     Camera& c = both[k];
-    look(c, View::Front, 0);
+    look(c, View::Front);
     c.eye_m = {middle_m[0] + (k == 0 ? -0.5 : 0.5) * kApart_m, middle_m[1], middle_m[2] + distance_m};
     c.tan_half_width = std::tan(radians(kWidth / 2));
     c.tan_half_height = std::tan(radians(kHeight / 2));

@@ -34,12 +34,8 @@ std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m)
 
 /// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
 /// width and height free on every side. Front looks along -z. Top looks down, with -z upwards in the picture. Corner
-/// looks from the front, 30 degrees to the right and 24 up. Front and corner are turned by `turn_deg` degrees to the
-/// right. `aspect`: width over height. Throws Error without points.
-Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04, double turn_deg = 0);
-
-/// Unit vector from the scene towards the eye of a view.
-Vec3 towards_eye(View, double turn_deg);
+/// looks from the front, 30 degrees to the right and 24 up. `aspect`: width over height. Throws Error without points.
+Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04);
 
 /// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
 /// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.

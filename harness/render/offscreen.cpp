@@ -103,7 +103,7 @@ Picture Offscreen::read(std::size_t k) {
                          VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 1, &copied, 0,
                          nullptr, 1, &back);
   });
-  Picture out(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 0);
+  Picture out(static_cast<int>(extent_.width), static_cast<int>(extent_.height));
   const auto* rgba = static_cast<const std::uint8_t*>(pixels_->mapped());
   for (std::size_t p = 0; p < pixels; ++p)
     for (std::size_t c = 0; c < 3; ++c) out.rgb[3 * p + c] = rgba[4 * p + c];

@@ -1,11 +1,22 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "render/picture.hpp"
 #include "render/scene_renderer.hpp"
 
 namespace clothbench::render {
+
+/// 8 bits a channel, sRGB, rgb interleaved, the top row first.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+
+  Picture(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3) {}
+  const std::uint8_t* at(int x, int y) const {
+    return &rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
+  }
+};
 
 /// Images for offscreen drawing: one for each view (an eye), all of one size.
 class Offscreen {

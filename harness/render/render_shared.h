@@ -9,7 +9,7 @@ using vec4 = std::array<float, 4>;
 // Push constants of every draw; 128 B is what every device has.
 struct Drawn {
   vec4 to_clip[4];  // columns of projection * view, in metres from the picture's origin
-  vec4 eye;         // xyz: of the viewer, from the same origin [m]; w: 1 if the cloth's colours are its values
+  vec4 eye;         // xyz: of the viewer, from the same origin [m]
   vec4 sheet;       // of a grid: columns and rows of vertices, squares of the checker along u and v; of a mesh: its
                     // triangles, 0, its vertices, 0
   vec4 origin;      // xyz: added to the cloth's positions [m]

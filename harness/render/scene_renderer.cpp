@@ -117,11 +117,9 @@ void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
     mesh_triangles_ = static_cast<std::uint32_t>(cloth.mesh->triangles.size());
   }
   own_positions_.reset();
-  values_.reset();
-  colours_.reset();
   positions_ = nullptr;
   follow_vertex_ = -1;
-  by_value_ = bound_ = false;
+  bound_ = false;
 }
 
 void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m) {
@@ -154,17 +152,6 @@ void SceneRenderer::follow(std::uint32_t vertex, const Vec3& start_m) {
   follow_start_m_ = start_m;
 }
 
-void SceneRenderer::write_values(std::span<const float> values, std::span<const vec4> colours) {
-  by_value_ = !values.empty();
-  bound_ = false;
-  if (!by_value_) return;
-  if (values.size() != static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) || colours.size() < 2)
-    throw Error(
-        fmt::format("{} values and {} colours: expected one a vertex, and two colours", values.size(), colours.size()));
-  values_ = filled("values to draw", values.data(), values.size_bytes());
-  colours_ = filled("colours of values", colours.data(), colours.size_bytes());
-}
-
 void SceneRenderer::set_surfaces(const Surfaces& s) {
   std::vector<vec4> vertices;
   vertices.reserve(2 * s.position_m.size());
@@ -188,8 +175,7 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
 void SceneRenderer::bind_buffers() {
   if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
   if (bound_) return;
-  const auto or_any = [&](const std::unique_ptr<vulkan::Buffer>& b) { return b ? b.get() : positions_; };
-  pipelines_.bind({positions_, or_any(values_), vertices_.get(), corners_.get(), or_any(colours_), or_any(mesh_)});
+  pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_ ? mesh_.get() : positions_});
   bound_ = true;
 }
 
@@ -198,7 +184,7 @@ Drawn SceneRenderer::constants(const Drawing& drawing) const {
   const Mat4 to_clip = drawing.projection * drawing.view;
   for (std::size_t c = 0; c < 4; ++c)
     for (std::size_t r = 0; r < 4; ++r) d.to_clip[c][r] = static_cast<float>(to_clip[4 * c + r]);
-  d.eye = as_vec4(eye_of(drawing.view), by_value_ ? 1 : 0);
+  d.eye = as_vec4(eye_of(drawing.view), 0);
   d.sheet = {static_cast<float>(columns_), static_cast<float>(rows_), squares_u_, squares_v_};
   if (mesh_triangles_ > 0) d.sheet = {static_cast<float>(mesh_triangles_), 0, static_cast<float>(columns_), 0};
   d.origin = as_vec4(minus(buffer_origin_m_, origin_m_), 0);

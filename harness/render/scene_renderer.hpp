@@ -8,7 +8,6 @@
 #include "render/pipelines.hpp"
 #include "render/render_shared.h"
 #include "render/surfaces.hpp"
-#include "render/targets.hpp"
 #include "vulkan/buffer.hpp"
 
 namespace clothbench::render {
@@ -27,7 +26,7 @@ struct Drawing {
 /// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the owner of the images (a
 /// picture file, an eye of a headset) passes a command buffer to record into, for the queue of the same device.
 ///
-/// Its memory grows with the scene only. set_cloth, write_values, set_surfaces and a picture of a new size replace
+/// Its memory grows with the scene only. set_cloth, set_surfaces and a picture of a new size replace
 /// objects that commands recorded earlier use, so none of these commands may be in flight then; write_positions
 /// overwrites the positions in place.
 class SceneRenderer {
@@ -53,9 +52,6 @@ class SceneRenderer {
   /// The camera follows a vertex that started at `start_m`.
   void follow(std::uint32_t vertex, const Vec3& start_m);
 
-  /// Colours the cloth by one value per vertex, 0 to 1 along `colours` (linear RGB, at least 2), NaN grey. Without
-  /// values the cloth has a checker pattern.
-  void write_values(std::span<const float> values, std::span<const vec4> colours);
   void set_surfaces(const Surfaces&);
   /// Background colour, linear RGBA; default white. Alpha 0 shows the passthrough image of a headset.
   void set_background(const vec4& rgba) { background_ = rgba; }
@@ -81,8 +77,8 @@ class SceneRenderer {
   Vec3 origin_m_{}, buffer_origin_m_{}, follow_start_m_{};
   int follow_vertex_ = -1;
   vec4 background_{1, 1, 1, 1};
-  bool by_value_ = false, bound_ = false;
-  std::unique_ptr<vulkan::Buffer> own_positions_, values_, colours_, vertices_, corners_, mesh_;
+  bool bound_ = false;
+  std::unique_ptr<vulkan::Buffer> own_positions_, vertices_, corners_, mesh_;
   const vulkan::Buffer* positions_ = nullptr;
   std::uint32_t corner_count_ = 0;
 };

@@ -32,7 +32,7 @@ RunRecord read(const fs::path& path) {
 void collect_files(const fs::path& dir, std::vector<RunRecord>& runs) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(dir))
-    if (entry.path().extension() == ".h5" || fs::exists(entry.path() / "outcome.raw")) files.push_back(entry.path());
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor") files.push_back(entry.path());
   if (files.empty())
     throw Error(dir.string() +
                 ": neither study.json nor a result file is in it; expected a folder that `run` or `study` wrote, or "
@@ -45,13 +45,8 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   const std::size_t first = runs.size();
   const StudyManifest manifest = read_manifest(dir);
   for (const std::string& name : manifest.runs) {
-    const fs::path file = dir / (name + ".h5"), part = dir / (name + ".part");
-    if (fs::exists(file))
-      runs.push_back(read(file));
-    else if (fs::exists(part / "outcome.raw"))
-      runs.push_back(read(part));
-    else
-      runs.push_back(missing_run(name, fs::exists(part)));
+    const fs::path file = finished_file(dir, name);
+    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read(file));
   }
   if (manifest.definition.is_object() && manifest.definition.contains("pairs"))
     for (const nlohmann::json& pair : manifest.definition["pairs"])
@@ -78,9 +73,7 @@ std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
   std::vector<RunRecord> runs;
   for (const fs::path& result : results) {
     if (!fs::exists(result)) throw Error(result.string() + ": no such file or folder");
-    // A path with a trailing slash has an empty last part.
-    const fs::path last = result.has_filename() ? result.filename() : result.parent_path().filename();
-    if (fs::is_directory(result) && last.extension() != ".part")
+    if (fs::is_directory(result))
       fs::exists(result / "study.json") ? collect_folder(result, runs) : collect_files(result, runs);
     else
       runs.push_back(read(result));

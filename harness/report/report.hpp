@@ -14,7 +14,7 @@ struct ReportOptions {
   std::filesystem::path out;
 };
 
-/// All runs of study folders, result files or part folders, without trajectories. Planned runs without a file have the
+/// All runs of study folders, or result files, without trajectories. Planned runs without a file have the
 /// status "missing". Throws Error naming the file that cannot be read.
 std::vector<RunRecord> collect(const std::vector<std::filesystem::path>& results);
 

@@ -1,4 +1,4 @@
-// Layout: results/README.md. VTKHDF: the temporal PolyData of VTK's file format documentation, version 2.0.
+// Layout: results/README.md.
 #include "results/hdf5_file.hpp"
 
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 
 #include "base/files.hpp"
 #include "results/hdf5_handle.hpp"
-#include "results/raw_file.hpp"
-#include "results/trajectory.hpp"
+#include "results/part_file.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {
@@ -159,8 +159,6 @@ class Writer {
     for (const StoredGroup& g : r_.samples) stored(g);
     if (!r_.accuracy.time_s.empty()) {
       metrics();
-      vtkhdf();
-      frames();
       trajectory();
     }
   }
@@ -173,28 +171,15 @@ class Writer {
   }
 
   void root_attributes() {
-    const RunHeader& h = r_.header;
-    const nlohmann::json& e = h.environment;
-    const auto from_environment = [&](const char* key) {
-      const nlohmann::json v = e.value(key, nlohmann::json(""));
-      return v.is_string() ? v.get<std::string>() : v.dump();
-    };
     text_attribute(file_, "format", "clothbench-run");
-    integer_attribute(file_, "format_version", 1);
-    text_attribute(file_, "scene", h.scene);
-    text_attribute(file_, "solver", h.solver);
-    text_attribute(file_, "setting", h.setting);
-    text_attribute(file_, "settings_json", h.settings.dump());
-    text_attribute(file_, "scenario_json", h.scenario_json);
-    text_attribute(file_, "scenario_sha256", h.scenario_sha256);
-    for (const char* key : {"created", "git_commit", "git_dirty", "source_sha256", "build_type", "gpu", "driver",
-                            "gpu_is_software", "cpu", "shader_compiler", "clock_policy", "protocol", "assets", "seed"})
-      text_attribute(file_, key, from_environment(key));
+    integer_attribute(file_, "format_version", 2);
+    text_attribute(file_, "scene", r_.header.scene);
+    text_attribute(file_, "solver", r_.header.solver);
+    text_attribute(file_, "setting", r_.header.setting);
   }
 
   void scalars() {
-    const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome"),
-             environment = make_group(file_, "environment");
+    const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome");
     for (const auto& [key, value] : r_.summary) number_attribute(summary, key, value);
     text_attribute(outcome, "status", r_.outcome.status);
     text_attribute(outcome, "class", r_.outcome.klass);
@@ -202,64 +187,36 @@ class Writer {
     text_attribute(outcome, "message", r_.outcome.message);
     text_attribute(outcome, "expect", r_.outcome.expect);
     text_attribute(outcome, "trajectory_sha256", trajectory_sha256(r_.accuracy));
-    for (const auto& [key, value] : r_.header.environment.items())
-      if (!value.is_structured())
-        text_attribute(environment, key, value.is_string() ? value.get<std::string>() : value.dump());
   }
 
   void timing() {
     std::vector<std::string> names;
     for (const StageRecord& s : r_.header.stages) names.push_back(s.name);
     const std::size_t trials = r_.trials.size(), stages = names.size();
-    for (const bool bandwidth : {false, true}) {
-      const Id g = make_group(file_, bandwidth ? "bandwidth" : "timing");
-      std::vector<std::int64_t> indices;
-      for (const TimedTrial& t : r_.trials) indices.push_back(t.index);
+    std::vector<std::int64_t> indices;
+    for (const TimedTrial& t : r_.trials) indices.push_back(t.index);
+    for (const std::string group : {"timing", "bandwidth"}) {
+      const Id g = make_group(file_, group);
       const Id trial = scale(write_numbers(g, "trial", {trials}, indices, {"1", "trial"}), "trial");
       const Id frame = index_scale(g, "frame", frames_, "frame within the trial");
       const Id stage = scale(write_strings(g, "stage", names, {"1", "stage of a frame"}), "stage");
-      const auto by_frame = [&](const char* name, std::vector<double> TimedTrial::*series, const Label& label) {
-        attach(write_numbers(g, name, {trials, frames_}, padded(r_, frames_, 1, series), label), {trial, frame});
-      };
-      const auto by_stage = [&](const char* name, std::vector<double> TimedTrial::*series, const Label& label) {
-        attach(write_numbers(g, name, {trials, frames_, stages}, padded(r_, frames_, stages, series), label,
-                             {1, frames_, stages}),
-               {trial, frame, stage});
-      };
-      if (bandwidth) {
-        by_stage("read_B", &TimedTrial::stage_read_B,
-                 {"B", "bytes loaded by shaders, computed from the scene and the kernels"});
-        by_stage("write_B", &TimedTrial::stage_write_B,
-                 {"B", "bytes stored by shaders, computed from the scene and the kernels"});
-        for (const StageRecord& s : r_.header.stages) text_attribute(g, "bytes." + s.name, s.bytes);
-      } else {
-        by_frame("frame_wall_s", &TimedTrial::frame_wall_s, {"s", "wall time of a frame"});
-        by_frame("frame_device_s", &TimedTrial::frame_device_s,
-                 {"s", "device time of a frame, first to last timestamp"});
-        const auto by_frame_if_any = [&](const char* name, std::vector<double> TimedTrial::*series,
-                                         const char* long_name) {
-          if (std::any_of(r_.trials.begin(), r_.trials.end(),
-                          [&](const TimedTrial& t) { return !(t.*series).empty(); }))
-            by_frame(name, series, {"s", long_name});
-        };
-        by_frame_if_any("frame_rendered_s", &TimedTrial::frame_rendered_s, "wall time of a frame and its picture");
-        by_frame_if_any("frame_cpu_s", &TimedTrial::frame_cpu_s, "CPU time of a frame, of all threads of the process");
-        const auto by_trial = [&](const char* name, double TimedTrial::*value, const Label& label) {
-          std::vector<double> values;
-          for (const TimedTrial& t : r_.trials) values.push_back(t.*value);
-          attach(write_numbers(g, name, {trials}, values, label), {trial});
-        };
-        by_trial("pipelined_wall_s", &TimedTrial::pipelined_wall_s, {"s", "mean wall time of a frame, two in flight"});
-        by_trial("trial_start_unix_s", &TimedTrial::start_unix_s,
-                 {"s", "when the trial's first timed frame began, since 1970 UTC"});
-        by_trial("trial_end_unix_s", &TimedTrial::end_unix_s,
-                 {"s", "when the trial's last timed frame ended, since 1970 UTC"});
-        by_trial("jobs", &TimedTrial::jobs,
-                 {"1", "clothbench jobs on the machine during the trial, this one included"});
-        by_stage("stage_device_s", &TimedTrial::stage_device_s,
-                 {"s", "device time of a stage, from the profiled twin"});
-        number_attribute(g, "load_s", r_.header.load_s);
-        for (const StageRecord& s : r_.header.stages) integer_attribute(g, "dispatches." + s.name, s.dispatches);
+      for (const TrialSeries& s : kTrialSeries) {
+        const bool missing =
+            std::all_of(r_.trials.begin(), r_.trials.end(), [&](const TimedTrial& t) { return (t.*s.values).empty(); });
+        if (s.group != group || (s.optional && missing)) continue;
+        const std::vector<double> values = padded(r_, frames_, s.by_stage ? stages : 1, s.values);
+        const Label label{s.units, s.long_name};
+        if (s.by_stage)
+          attach(write_numbers(g, s.name, {trials, frames_, stages}, values, label, {1, frames_, stages}),
+                 {trial, frame, stage});
+        else
+          attach(write_numbers(g, s.name, {trials, frames_}, values, label), {trial, frame});
+      }
+      if (group != "timing") continue;
+      for (const TrialNumber& n : kTrialNumbers) {
+        std::vector<double> values;
+        for (const TimedTrial& t : r_.trials) values.push_back(t.*n.value);
+        attach(write_numbers(g, n.name, {trials}, values, {n.units, n.long_name}), {trial});
       }
     }
   }
@@ -293,90 +250,65 @@ class Writer {
     }
   }
 
-  /// One kind of cell of the PolyData; an empty kind has no runs and Offsets = {0}.
-  void runs(hid_t g, const char* name, std::size_t steps, const std::vector<std::int64_t>& connectivity,
-            std::int64_t corners) {
-    const Id c = make_group(g, name);
-    const std::int64_t count = connectivity.empty() ? 0 : static_cast<std::int64_t>(connectivity.size()) / corners;
-    std::vector<std::int64_t> offsets;
-    for (std::int64_t k = 0; k <= count; ++k) offsets.push_back(k * corners);
-    const auto ids = static_cast<std::int64_t>(connectivity.size());
-    write_numbers(c, "NumberOfCells", {steps}, std::vector<std::int64_t>(steps, count), {"1", "cells of each frame"});
-    write_numbers(c, "NumberOfConnectivityIds", {steps}, std::vector<std::int64_t>(steps, ids),
-                  {"1", "corners of all cells of each frame"});
-    write_numbers(c, "Offsets", {offsets.size()}, offsets, {"1", "where each cell begins in Connectivity"});
-    write_numbers(c, "Connectivity", {connectivity.size()}, connectivity, {"1", "points of each cell"});
-  }
-
-  void vtkhdf() {
-    const Id g = make_group(file_, "VTKHDF");
-    const std::size_t steps = r_.accuracy.time_s.size();
-    const std::uint64_t points = r_.header.vertices;
-    number_attribute<std::int64_t>(g, "Version", H5T_STD_I64LE, H5T_NATIVE_INT64, {2, 0}, false);
-    {
-      const Id type(H5Tcopy(H5T_C_S1), H5Tclose, "H5Tcopy"), space = h5::space({});
-      h5::check(H5Tset_size(type, 8), "H5Tset_size");
-      h5::check(H5Tset_strpad(type, H5T_STR_NULLPAD), "H5Tset_strpad");
-      const Id a(H5Acreate2(g, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute Type");
-      h5::check(H5Awrite(a, type, "PolyData"), "attribute Type");
-    }
-    write_numbers(g, "NumberOfPoints", {steps}, std::vector<std::int64_t>(steps, static_cast<std::int64_t>(points)),
-                  {"1", "points of each frame"});
-    write_numbers(g, "Points", {steps * points, 3}, r_.accuracy.position, {"m", "vertex positions, frame after frame"},
-                  {points, 3});
-    for (const char* kind : {"Vertices", "Lines", "Strips"}) runs(g, kind, steps, {}, 1);
-    runs(g, "Polygons", steps, {r_.header.triangles.begin(), r_.header.triangles.end()}, 3);
-    const Id s = make_group(g, "Steps");
-    integer_attribute(s, "NSteps", static_cast<std::int64_t>(steps));
-    std::vector<std::int64_t> part(steps), offset(steps);
-    for (std::size_t k = 0; k < steps; ++k) {
-      part[k] = static_cast<std::int64_t>(k);
-      offset[k] = static_cast<std::int64_t>(k * points);
-    }
-    write_numbers(s, "Values", {steps}, r_.accuracy.time_s, {"s", "time"});
-    write_numbers(s, "PartOffsets", {steps}, part, {"1", "first part of each frame"});
-    write_numbers(s, "NumberOfParts", {steps}, std::vector<std::int64_t>(steps, 1), {"1", "parts of each frame"});
-    write_numbers(s, "PointOffsets", {steps}, offset, {"1", "first point of each frame"});
-    // The topology is stored once: every step starts at run 0.
-    for (const char* name : {"CellOffsets", "ConnectivityIdOffsets"})
-      write_numbers(s, name, {steps, 4}, std::vector<std::int64_t>(4 * steps, 0), {"1", "first of each kind of cell"});
-    make_group(s, "PointDataOffsets");
-  }
-
-  /// A dataset that is a view of `count` rows of /VTKHDF/Points from `first` on.
-  Id view(hid_t at, const std::string& name, const Dims& dims, std::uint64_t first, std::uint64_t count,
-          const Label& label) {
-    const std::uint64_t rows = r_.accuracy.position.size() / 3;
-    const Id properties = creation(H5P_DATASET_CREATE), target = h5::space(dims), source = h5::space({rows, 3});
-    const hsize_t start[2] = {first, 0}, size[2] = {count, 3};
-    h5::check(H5Sselect_hyperslab(source, H5S_SELECT_SET, start, nullptr, size, nullptr), "H5Sselect_hyperslab");
-    h5::check(H5Pset_virtual(properties, target, ".", "/VTKHDF/Points", source), "H5Pset_virtual");
-    return dataset(at, name, H5T_IEEE_F32LE, dims, label, properties);
-  }
-
-  void frames() {
-    const Id g = make_group(file_, "frames");
-    const std::uint64_t points = r_.header.vertices;
-    for (std::size_t k = 0; k < r_.accuracy.time_s.size(); ++k)
-      view(g, fmt::format("{:06}", k), {points, 3}, k * points, points, {"m", "vertex positions of one frame"});
-    std::vector<std::int64_t> triangles(r_.header.triangles.begin(), r_.header.triangles.end());
-    write_numbers(file_, "triangles", {triangles.size() / 3, 3}, triangles, {"1", "vertices of each triangle"});
-  }
-
+  /// The positions, and a view of them a frame for the .xdmf file.
   void trajectory() {
-    const Id g = make_group(file_, "trajectory");
-    const std::size_t steps = r_.accuracy.time_s.size();
-    const std::uint64_t points = r_.header.vertices;
+    const Id g = make_group(file_, "trajectory"), frames = make_group(file_, "frames");
+    const std::uint64_t steps = r_.accuracy.time_s.size(), points = r_.header.vertices;
     const Id time = scale(write_numbers(g, "time_s", {steps}, r_.accuracy.time_s, {"s", "time"}), "time_s");
     const Id vertex = index_scale(g, "vertex", points, "vertex, row after row of the grid");
     const Id xyz = scale(write_strings(g, "xyz", {"x", "y", "z"}, {"1", "axis; y is up"}), "xyz");
-    attach(view(g, "position", {steps, points, 3}, 0, steps * points, {"m", "vertex positions"}), {time, vertex, xyz});
+    attach(write_numbers(g, "position", {steps, points, 3}, r_.accuracy.position, {"m", "vertex positions"},
+                         {1, points, 3}),
+           {time, vertex, xyz});
+    for (std::uint64_t k = 0; k < steps; ++k) {
+      const Id properties = creation(H5P_DATASET_CREATE), target = h5::space({points, 3}),
+               source = h5::space({steps, points, 3});
+      const hsize_t start[3] = {k, 0, 0}, size[3] = {1, points, 3};
+      h5::check(H5Sselect_hyperslab(source, H5S_SELECT_SET, start, nullptr, size, nullptr), "H5Sselect_hyperslab");
+      h5::check(H5Pset_virtual(properties, target, ".", "/trajectory/position", source), "H5Pset_virtual");
+      dataset(frames, fmt::format("{:06}", k), H5T_IEEE_F32LE, {points, 3}, {"m", "vertex positions of one frame"},
+              properties);
+    }
+    const std::vector<std::int64_t> triangles(r_.header.triangles.begin(), r_.header.triangles.end());
+    write_numbers(file_, "triangles", {triangles.size() / 3, 3}, triangles, {"1", "vertices of each triangle"});
   }
 
   hid_t file_;
   const RunRecord& r_;
   std::size_t frames_ = 0;
 };
+
+/// Triangles of the result file: `vertices` of them, in `bytes` a number, at the path `positions`.
+std::string mesh(const std::string& name, const std::string& h5, const std::string& triangles_at, std::size_t triangles,
+                 const std::string& positions_at, std::size_t vertices, int bytes, const std::string& time) {
+  return fmt::format(
+      "   <Grid Name=\"{0}\" GridType=\"Uniform\">\n{7}"
+      "    <Topology TopologyType=\"Triangle\" NumberOfElements=\"{1}\">\n"
+      "     <DataItem Dimensions=\"{1} 3\" NumberType=\"Int\" Precision=\"8\" Format=\"HDF\">{2}:{3}</DataItem>\n"
+      "    </Topology>\n"
+      "    <Geometry GeometryType=\"XYZ\">\n"
+      "     <DataItem Dimensions=\"{4} 3\" NumberType=\"Float\" Precision=\"{5}\" Format=\"HDF\">{2}:{6}</DataItem>\n"
+      "    </Geometry>\n"
+      "   </Grid>\n",
+      name, triangles, h5, triangles_at, vertices, bytes, positions_at, time);
+}
+
+/// Static meshes, such as the desk under the cloth. Dynamic objects are stored as motion, not as meshes.
+std::string still_meshes(const RunRecord& record, const std::string& h5) {
+  std::string out;
+  for (const StoredGroup& g : record.replay) {
+    std::size_t vertices = 0, triangles = 0;
+    bool moves = false;
+    for (const StoredArray& a : g.arrays) {
+      if (a.name == "position_m") vertices = a.shape[0];
+      if (a.name == "triangles") triangles = a.shape[0];
+      moves = moves || a.name == "joint_matrix";
+    }
+    if (vertices > 0 && triangles > 0 && !moves)
+      out += mesh(g.path, h5, "/" + g.path + "/triangles", triangles, "/" + g.path + "/position_m", vertices, 8, "");
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -394,6 +326,28 @@ void write_hdf5(const std::filesystem::path& path, const RunRecord& record) {
     throw Error(path.string() + ": " + e.what(), ExitCode::CheckFailed);
   }
   publish(temporary, path);
+}
+
+void write_xdmf(const std::filesystem::path& path, const std::string& h5_name, const RunRecord& record) {
+  const std::size_t triangles = record.header.triangles.size() / 3;
+  const std::string still = still_meshes(record, h5_name);
+  std::string out =
+      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n <Domain>\n"
+      "  <Grid Name=\"cloth\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t k = 0; k < record.accuracy.time_s.size(); ++k) {
+    const std::string time = fmt::format("    <Time Value=\"{:.9g}\"/>\n", record.accuracy.time_s[k]);
+    const std::string positions = fmt::format("/frames/{:06}", k);
+    // Every reader of ParaView finds the desk only if each frame has it.
+    if (still.empty())
+      out += mesh(fmt::format("frame {}", k), h5_name, "/triangles", triangles, positions, record.header.vertices, 4,
+                  time);
+    else
+      out += fmt::format("   <Grid Name=\"frame {}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n", k) + time +
+             mesh("cloth", h5_name, "/triangles", triangles, positions, record.header.vertices, 4, "") + still +
+             "   </Grid>\n";
+  }
+  out += "  </Grid>\n </Domain>\n</Xdmf>\n";
+  write_file_atomically(path, out);
 }
 
 }  // namespace clothbench

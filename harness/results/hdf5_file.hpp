@@ -1,28 +1,35 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
+#include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 
 #ifdef CLOTHBENCH_HAS_HDF5
 inline constexpr bool kWithHdf5 = true;
-#else
-inline constexpr bool kWithHdf5 = false;  // the functions below then throw
-#endif
 
 /// Writes one result file (layout in results/README.md) by tmp + fsync + rename. Throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const RunRecord&);
 
-/// Reads a result file. Without `with_trajectory`, positions and metric series stay empty. `replay` always stays empty:
-/// see read_hdf5_replay.
-RunRecord read_hdf5(const std::filesystem::path&, bool with_trajectory);
+/// Reads a result file, with positions of every `stride`-th frame and the last. Stride 0: without positions, `replay`
+/// and triangles of a grid.
+RunRecord read_hdf5(const std::filesystem::path&, std::size_t stride);
 
-/// The hash of the motion that the file's outcome is of (results/trajectory.hpp); empty if it stores none.
-std::string read_hdf5_trajectory_sha256(const std::filesystem::path&);
+/// Writes a sidecar with which ParaView opens the trajectory and the static meshes: per frame one grid over
+/// /frames/NNNNNN of `h5_name`, or a collection of the cloth and the static meshes if there are any.
+void write_xdmf(const std::filesystem::path&, const std::string& h5_name, const RunRecord&);
+#else
+inline constexpr bool kWithHdf5 = false;
 
-/// `read_replay` for a finished file.
-Replay read_hdf5_replay(const std::filesystem::path&, std::size_t stride);
+inline void write_hdf5(const std::filesystem::path& path, const RunRecord&) {
+  throw Error(path.string() + ": this build writes no HDF5; convert the run with `clothbench import` elsewhere");
+}
+inline RunRecord read_hdf5(const std::filesystem::path& path, std::size_t) {
+  throw Error(path.string() + ": this build reads no HDF5");
+}
+inline void write_xdmf(const std::filesystem::path&, const std::string&, const RunRecord&) {}
+#endif
 
 }  // namespace clothbench

@@ -1,11 +1,15 @@
 #include "results/replay.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <span>
 
 #include "clothbench/error.hpp"
+#include "results/store.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
+#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {
@@ -210,13 +214,6 @@ const ColliderKind* kind_named(const std::string& name) {
   return nullptr;
 }
 
-[[noreturn]] void refuse_shape(const std::string& name, const std::string& path) {
-  std::string all;
-  for (const ColliderKind& kind : collider_kinds())
-    all += std::string(all.empty() ? "" : &kind == &collider_kinds().back() ? " or " : ", ") + kind.name;
-  throw Error("/" + path + ": shape " + name + ": expected " + all);
-}
-
 void read_collider(const StoredGroup& g, Scene& scene, std::size_t k, std::size_t colliders) {
   Collider& c = scene.colliders[k];
   const json& a = g.attributes;
@@ -226,7 +223,7 @@ void read_collider(const StoredGroup& g, Scene& scene, std::size_t k, std::size_
   c.recorded = a.value("recorded", 0.0) != 0;
   const auto shape = a.at("shape").get<std::string>();
   const ColliderKind* const found = kind_named(shape);
-  if (found == nullptr) refuse_shape(shape, g.path);
+  if (found == nullptr) throw Error("/" + g.path + ": no collider has the shape " + shape);
   const ColliderKind& kind = *found;
   c.shape = kind.shape;
   for (const ColliderNumbers& n : kind.numbers)
@@ -275,6 +272,27 @@ void each_numbered(const std::map<std::string, const StoredGroup*>& groups, cons
     if (found == groups.end()) throw Error("/" + path + "/" + std::to_string(k) + " is missing");
     with(*found->second, k, count);
   }
+}
+
+Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& groups) {
+  Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
+                                 {[&](json&) { return restore_mesh(groups, header.triangles); },
+                                  [&](json&, Scene& s) { restore_replay(groups, s); }});
+  // A study renames scenes; the scenario keeps the name of its file.
+  scene.name = header.scene;
+  scene.json = header.scenario_json;
+  scene.sha256 = header.scenario_sha256;
+  return scene;
+}
+
+std::vector<double> stored_margins(const RunHeader& header, std::size_t colliders) {
+  std::vector<double> out;
+  if (!header.plan.is_object() || !header.plan.contains("contact_margins")) return out;
+  for (const json& m : header.plan["contact_margins"]) out.push_back(m.at("margin_m").get<double>());
+  if (!out.empty() && out.size() != colliders)
+    throw Error(fmt::format("header_json: /plan/contact_margins: expected one for each of {} colliders; found {}",
+                            colliders, out.size()));
+  return out;
 }
 
 }  // namespace
@@ -354,6 +372,26 @@ void show_shape(StoredGroup& g) {
   ColliderSurface surface = kind->surface(c, {}, {c.center_m});
   add_triangles(std::move(surface.positions), surface.triangles, g.arrays);
   g.attributes["convex"] = kind->convex ? 1 : 0;
+}
+
+StoredMotion read_motion(const std::filesystem::path& path) {
+  RunRecord r = read_run(path);
+  StoredMotion m;
+  if (r.accuracy.position.empty()) return m;
+  try {
+    m.scene = stored_scene(r.header, r.replay);
+    m.contact_margins_m = stored_margins(r.header, m.scene.colliders.size());
+    m.time_s = std::move(r.accuracy.time_s);
+    m.position = std::move(r.accuracy.position);
+    if (const std::size_t expected = m.time_s.size() * m.scene.cloth.vertex_count() * 3; m.position.size() != expected)
+      throw Error(fmt::format("expected {} coordinates of {} frames with {} vertices; found {}", expected,
+                              m.time_s.size(), m.scene.cloth.vertex_count(), m.position.size()));
+    return m;
+  } catch (const json::exception& e) {
+    throw Error(path.string() + ": scenario_json, header_json, /cloth or /colliders: " + e.what());
+  } catch (const Error& e) {
+    throw Error(path.string() + ": " + e.what());
+  }
 }
 
 }  // namespace clothbench

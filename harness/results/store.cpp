@@ -4,45 +4,24 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
 #include "base/files.hpp"
 #include "base/json_text.hpp"
+#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "results/device_samples.hpp"
 #include "results/hdf5_file.hpp"
-#include "results/raw_file.hpp"
-#include "results/xdmf.hpp"
+#include "results/part_file.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path part_folder(const fs::path& dir, const std::string& run) { return dir / (run + ".part"); }
-fs::path trial_file(const fs::path& part, int k) { return part / fmt::format("trial-{}.raw", k); }
-
-/// Everything in a part folder. Damaged or foreign trial files count as not there.
-RunRecord read_part(const fs::path& part) {
-  RunRecord record;
-  const fs::path header = part / "header.raw";
-  record.header = read_header(header);
-  for (const auto& entry : fs::directory_iterator(part)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("trial-", 0) != 0 || entry.path().extension() != ".raw") continue;
-    try {
-      record.trials.push_back(read_trial_file(entry.path()));
-    } catch (const Error&) {
-      continue;
-    }
-  }
-  std::sort(record.trials.begin(), record.trials.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
-  if (fs::exists(part / "accuracy.raw")) record.accuracy = read_accuracy_file(part / "accuracy.raw");
-  if (fs::exists(part / "replay.raw")) record.replay = read_replay_file(part / "replay.raw");
-  if (fs::exists(part / "outcome.raw")) outcome_from_json(read_raw(part / "outcome.raw").header, record);
-  return record;
-}
+fs::path part_of(const fs::path& dir, const std::string& run) { return dir / (run + ".part"); }
 
 fs::path write_finished(const fs::path& dir, const RunRecord& record) {
   const std::string run = run_name(record.header);
@@ -50,6 +29,29 @@ fs::path write_finished(const fs::path& dir, const RunRecord& record) {
   write_hdf5(file, record);
   write_xdmf(dir / (run + ".xdmf"), file.filename().string(), record);
   return file;
+}
+
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+/// The first frame and vertex whose position is not finite, or nothing.
+std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
+  for (std::size_t k = 0; k < pass.position.size(); ++k)
+    if (!std::isfinite(pass.position[k]))
+      return fmt::format("the position of vertex {} in frame {} is not finite", k / 3 % vertices, k / 3 / vertices);
+  for (std::size_t f = 0; f < pass.time_s.size(); ++f)
+    if (!std::isfinite(pass.time_s[f]) || (f > 0 && !(pass.time_s[f] > pass.time_s[f - 1])))
+      return fmt::format("the time of frame {} is not after the frame before", f);
+  return "";
+}
+
+/// Results of several scenes (moduli, metamorphic relations) have no vertices, and live sessions store their end alone.
+bool needs_motion(const RunRecord& r) {
+  const nlohmann::json& e = r.header.environment;
+  const bool live = e.is_object() && e.value("protocol", "") == "xr";
+  return r.outcome.status == "ok" && r.header.vertices > 0 && !live;
 }
 
 }  // namespace
@@ -63,74 +65,84 @@ std::string run_name(const std::string& scene, const std::string& solver, const 
   return name;
 }
 
-Finish best_finish() { return kWithHdf5 ? Finish::Hdf5 : Finish::Raw; }
+Finish best_finish() { return kWithHdf5 ? Finish::Hdf5 : Finish::Cbor; }
 
 RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
-    : dir_(std::move(dir)), header_(std::move(header)), finish_(finish) {
-  const fs::path part = part_folder(dir_, run_name(header_)), file = part / "header.raw";
+    : dir_(std::move(dir)), part_(part_of(dir_, run_name(header))), finish_(finish) {
   std::error_code ec;
-  fs::create_directories(part, ec);
-  if (ec) throw Error(part.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
-  if (fs::exists(file)) {
-    const RunHeader before = read_header(file);
-    if (before.scenario_sha256 != header_.scenario_sha256 || before.settings != header_.settings)
-      throw Error(fmt::format(
-          "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
-          part.string(), before.scenario_sha256.substr(0, 12), before.settings.dump(),
-          header_.scenario_sha256.substr(0, 12), header_.settings.dump()));
+  fs::create_directories(dir_, ec);
+  if (ec) throw Error(dir_.string() + ": cannot be created: " + ec.message(), ExitCode::CheckFailed);
+  if (!fs::exists(part_)) {
+    create_part(part_, header);
     return;
   }
-  write_raw(file, {{"kind", "header"}, {"run", header_to_json(header_)}}, {});
+  std::uintmax_t complete_B = 0;
+  const RunRecord before = read_part(part_, &complete_B);
+  const RunHeader& h = before.header;
+  if (h.scenario_sha256 != header.scenario_sha256 || h.settings != header.settings)
+    throw Error(fmt::format(
+        "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
+        part_.string(), h.scenario_sha256.substr(0, 12), h.settings.dump(), header.scenario_sha256.substr(0, 12),
+        header.settings.dump()));
+  has_replay_ = !before.replay.empty();
+  fs::resize_file(part_, complete_B);  // what a kill cut short
 }
 
-void RunWriter::write_trial(const TimedTrial& trial) {
-  write_trial_file(trial_file(part_folder(dir_, run_name(header_)), trial.index), trial, header_.stages.size());
-}
+void RunWriter::write_trial(const TimedTrial& trial) { append_to_part(part_, "trial", to_json(trial)); }
 
-void RunWriter::write_accuracy(const AccuracyPass& pass) {
-  write_accuracy_file(part_folder(dir_, run_name(header_)) / "accuracy.raw", pass, header_.vertices);
-}
+void RunWriter::write_accuracy(const AccuracyPass& pass) { append_to_part(part_, "accuracy", to_json(pass)); }
 
 void RunWriter::write_replay(const std::vector<StoredGroup>& groups) {
-  const fs::path file = part_folder(dir_, run_name(header_)) / "replay.raw";
-  if (!groups.empty() && !fs::exists(file)) write_replay_file(file, groups);
+  if (groups.empty() || has_replay_) return;
+  append_to_part(part_, "replay", to_json(groups));
+  has_replay_ = true;
 }
 
 fs::path RunWriter::finish(const Outcome& outcome, const std::map<std::string, double>& summary) {
-  const fs::path part = part_folder(dir_, run_name(header_));
-  nlohmann::json end = outcome_to_json(outcome, summary);
-  end["kind"] = "outcome";
-  write_raw(part / "outcome.raw", std::move(end), {});
-  if (finish_ == Finish::Raw) return part;
-  const fs::path file = write_finished(dir_, read_part(part));
-  fs::remove_all(part);
+  RunRecord record = read_part(part_);
+  record.outcome = outcome;
+  record.outcome.trajectory_sha256 = trajectory_sha256(record.accuracy);
+  record.summary = summary;
+  fs::path file;
+  if (finish_ == Finish::Hdf5) {
+    file = write_finished(dir_, record);
+    fs::remove(part_);
+  } else {
+    append_to_part(part_, "outcome", outcome_to_json(record.outcome, summary));
+    file = fs::path(part_).replace_extension(".cbor");
+    publish(part_, file);
+  }
   return file;
 }
 
-RunRecord RunWriter::recovered() const { return read_part(part_folder(dir_, run_name(header_))); }
+RunRecord RunWriter::recovered() const { return read_part(part_); }
 
-bool run_finished(const fs::path& dir, const std::string& run) {
-  return fs::exists(dir / (run + ".h5")) || (!kWithHdf5 && fs::exists(part_folder(dir, run) / "outcome.raw"));
+fs::path finished_file(const fs::path& dir, const std::string& run) {
+  for (const char* kind : {".h5", ".cbor"})
+    if (fs::path file = dir / (run + kind); fs::exists(file)) return file;
+  return {};
 }
+
+bool run_finished(const fs::path& dir, const std::string& run) { return !finished_file(dir, run).empty(); }
 
 void remove_leftovers(const fs::path& dir, const std::string& run) {
   std::error_code ec;
-  const fs::path part = part_folder(dir, run);
-  if (kWithHdf5 && fs::exists(dir / (run + ".h5"), ec)) fs::remove_all(part, ec);
+  if (run_finished(dir, run)) fs::remove(part_of(dir, run), ec);
   std::vector<fs::path> stale;
-  for (const auto& entry : fs::directory_iterator(part, ec))
-    if (entry.path().filename().string().find(kTemporaryMark) != std::string::npos) stale.push_back(entry.path());
-  for (const auto& entry : fs::directory_iterator(dir, ec)) {
-    const std::string name = entry.path().filename().string();
-    for (const char* kind : {".h5", ".xdmf"})
-      if (name.starts_with(run + kind + kTemporaryMark)) stale.push_back(entry.path());
-  }
+  for (const auto& entry : fs::directory_iterator(dir, ec))
+    for (const char* kind : {".h5", ".xdmf", ".part"})
+      if (entry.path().filename().string().starts_with(run + kind + kTemporaryMark)) stale.push_back(entry.path());
   for (const fs::path& file : stale) fs::remove(file, ec);
 }
 
-RunRecord read_run(const fs::path& path) { return fs::is_directory(path) ? read_part(path) : read_hdf5(path, true); }
+RunRecord read_run(const fs::path& path) { return path.extension() == ".h5" ? read_hdf5(path, 1) : read_part(path); }
+
 RunRecord read_run_summary(const fs::path& path) {
-  return fs::is_directory(path) ? read_part(path) : read_hdf5(path, false);
+  if (path.extension() == ".h5") return read_hdf5(path, 0);
+  RunRecord r = read_part(path);
+  r.accuracy.position = {};
+  r.replay = {};
+  return r;
 }
 
 std::vector<std::size_t> every(std::size_t count, std::size_t stride) {
@@ -141,43 +153,67 @@ std::vector<std::size_t> every(std::size_t count, std::size_t stride) {
 }
 
 Replay read_replay(const fs::path& path, std::size_t stride) {
-  if (!fs::is_directory(path)) return read_hdf5_replay(path, stride);
-  RunRecord c = read_part(path);
+  const bool is_hdf5 = path.extension() == ".h5";
+  RunRecord run = is_hdf5 ? read_hdf5(path, stride) : read_part(path);
   Replay r;
-  const std::size_t row = 3 * static_cast<std::size_t>(c.header.vertices);
-  if (c.accuracy.position.size() < row * c.accuracy.time_s.size())
-    throw Error(path.string() + ": accuracy.raw: expected one set of positions for each time");
-  r.frames = every(c.accuracy.time_s.size(), stride);
-  for (const std::size_t f : r.frames) {
-    r.time_s.push_back(c.accuracy.time_s[f]);
-    const auto at = c.accuracy.position.begin() + static_cast<std::ptrdiff_t>(f * row);
-    r.position.insert(r.position.end(), at, at + static_cast<std::ptrdiff_t>(row));
+  if (run.accuracy.position.empty()) return r;
+  r.frames = every(run.accuracy.time_s.size(), stride);
+  for (const std::size_t f : r.frames) r.time_s.push_back(run.accuracy.time_s[f]);
+  if (is_hdf5) r.position = std::move(run.accuracy.position);
+  const std::ptrdiff_t row = 3 * static_cast<std::ptrdiff_t>(run.header.vertices);
+  for (std::size_t k = 0; !is_hdf5 && k < r.frames.size(); ++k) {
+    const auto at = run.accuracy.position.begin() + static_cast<std::ptrdiff_t>(r.frames[k]) * row;
+    r.position.insert(r.position.end(), at, at + row);
   }
-  if (!r.frames.empty()) r.groups = std::move(c.replay);
+  r.groups = std::move(run.replay);
   return r;
 }
 
-std::vector<fs::path> import_raw(const fs::path& dir_or_part, const DeviceSamples* samples) {
+std::string trajectory_sha256(const AccuracyPass& pass) {
+  if (pass.time_s.empty()) return "";
+  std::string bytes;
+  append(bytes, pass.time_s);
+  append(bytes, pass.position);
+  return sha256(bytes);
+}
+
+std::string trajectory_fault(const std::filesystem::path& path) {
+  const RunRecord r = read_run(path);
+  const AccuracyPass& pass = r.accuracy;
+  if (pass.time_s.empty() && pass.position.empty()) return needs_motion(r) ? "the file has no positions" : "";
+  const std::size_t expected = pass.time_s.size() * r.header.vertices * 3;
+  if (pass.position.size() != expected)
+    return fmt::format("expected {} coordinates of {} frames with {} vertices; found {}", expected, pass.time_s.size(),
+                       r.header.vertices, pass.position.size());
+  for (const MetricSeries& m : pass.metrics)
+    if (m.values.size() != pass.time_s.size())
+      return fmt::format("{} frames have positions, {} have {}", pass.time_s.size(), m.values.size(), m.name);
+  if (r.outcome.status == "ok")
+    if (std::string fault = fault_of_values(pass, r.header.vertices); !fault.empty()) return fault;
+  const std::string &stored = r.outcome.trajectory_sha256, found = trajectory_sha256(pass);
+  if (stored == found) return "";
+  return fmt::format("its positions are not the motion that its outcome is of (SHA-256 {}, stored {})",
+                     found.substr(0, 12), stored.empty() ? "none" : stored.substr(0, 12));
+}
+
+std::vector<fs::path> import_runs(const fs::path& file_or_folder, const DeviceSamples* samples) {
   if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
-  if (!fs::is_directory(dir_or_part)) throw Error(dir_or_part.string() + ": expected a study folder or a .part folder");
-  std::vector<fs::path> parts, files;
-  // A path with a trailing slash has an empty last part.
-  const fs::path normal = dir_or_part.lexically_normal(), given = normal.has_filename() ? normal : normal.parent_path();
-  if (given.extension() == ".part") {
-    if (!fs::exists(given / "outcome.raw"))
-      throw Error(given.string() +
-                  ": not finished (it has no outcome.raw); `study --resume` or `run --resume` goes on with it");
-    parts.push_back(given);
+  std::vector<fs::path> found, files;
+  if (file_or_folder.extension() == ".part")
+    throw Error(file_or_folder.string() + ": not finished; `study --resume` or `run --resume` continues it");
+  if (fs::is_directory(file_or_folder)) {
+    for (const auto& entry : fs::directory_iterator(file_or_folder))
+      if (entry.path().extension() == ".cbor") found.push_back(entry.path());
+  } else if (file_or_folder.extension() == ".cbor") {
+    found.push_back(file_or_folder);
   } else {
-    for (const auto& entry : fs::directory_iterator(given))
-      if (entry.is_directory() && entry.path().extension() == ".part") parts.push_back(entry.path());
+    throw Error(file_or_folder.string() + ": expected the folder of a study or a .cbor file");
   }
-  std::sort(parts.begin(), parts.end());
-  for (const fs::path& part : parts) {
-    if (!fs::exists(part / "outcome.raw")) continue;  // not finished: `study --resume` goes on with it
-    RunRecord record = read_part(part);
+  std::sort(found.begin(), found.end());
+  for (const fs::path& file : found) {
+    RunRecord record = read_part(file);
     if (samples != nullptr) samples->attach_to(record);
-    files.push_back(write_finished(part.parent_path(), record));
+    files.push_back(write_finished(file.parent_path(), record));
   }
   return files;
 }

@@ -12,45 +12,45 @@ namespace clothbench {
 std::string run_name(const std::string& scene, const std::string& solver, const std::string& setting);
 std::string run_name(const RunHeader&);
 
-/// Final form of a run: one HDF5 file, or the raw files it was first written to (the only form without HDF5).
-enum class Finish { Hdf5, Raw };
+/// Final form of a run: one HDF5 file, or the CBOR file that it was first written to (the only form without HDF5).
+enum class Finish { Hdf5, Cbor };
 Finish best_finish();
 
-/// Writes one run, crash-safe. Every finished trial is a raw file `<dir>/<run>.part/trial-<k>.raw` (written under
-/// another name, fsync, rename); the accuracy pass is `accuracy.raw`. `finish` turns them into
-/// `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and removes the part folder; with Finish::Raw the part
-/// folder stays, with `outcome.raw` beside the trials. SIGKILL at any moment loses at most data not yet passed to
-/// this class.
+/// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item for each finished trial and for the accuracy pass
+/// (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and removes
+/// it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL at any moment loses at
+/// most data not yet passed to this class.
 class RunWriter {
  public:
+  /// Continues a part file of the same run. Throws Error naming both if scenario_sha256 or settings differ.
   RunWriter(std::filesystem::path dir, RunHeader header, Finish finish = best_finish());
   void write_trial(const TimedTrial&);
   void write_accuracy(const AccuracyPass&);
-  /// Writes colliders and grips, `replay.raw`. They are known before the first frame, so a resumed run keeps the file.
+  /// Writes colliders and grips, unless an interrupted attempt has written them.
   void write_replay(const std::vector<StoredGroup>&);
-  /// Returns the path of the finished file (the .h5, or the part folder with Finish::Raw).
+  /// Returns the path of the finished file.
   std::filesystem::path finish(const Outcome&, const std::map<std::string, double>& summary);
-  /// The valid trials and accuracy pass that an interrupted attempt at the same run left here. Throws Error naming both
-  /// if scenario_sha256 or settings differ.
+  /// The complete trials and accuracy pass that an interrupted attempt at the same run left here.
   RunRecord recovered() const;
 
  private:
-  std::filesystem::path dir_;
-  RunHeader header_;
+  std::filesystem::path dir_, part_;
   Finish finish_;
+  bool has_replay_ = false;
 };
 
-/// True if `<dir>/<run>.h5` (or, without HDF5, `outcome.raw` in its part folder) exists.
+/// `<dir>/<run>.h5` or `.cbor`, whichever exists; empty if the run is not finished.
+std::filesystem::path finished_file(const std::filesystem::path& dir, const std::string& run);
 bool run_finished(const std::filesystem::path& dir, const std::string& run);
 
 /// Removes files that a killed attempt at this run left and no reader needs: files with temporary names, and the part
-/// folder of a run whose .h5 exists. Only the process that works on the run may call this.
+/// file of a finished run. Only the process that works on the run may call this.
 void remove_leftovers(const std::filesystem::path& dir, const std::string& run);
 
-/// Reads a finished file (.h5) or a part folder. Throws Error naming the file and what is wrong with it.
+/// Reads a finished file or a part file, whole. Throws Error naming the file and what is wrong with it.
 RunRecord read_run(const std::filesystem::path&);
 
-/// Without positions, nor triangles of a grid, which tables and figures do not need. Fast also for large runs.
+/// Without positions, `replay` and triangles of a grid, which tables and figures do not need. Fast also for large runs.
 RunRecord read_run_summary(const std::filesystem::path&);
 
 /// Data of a run for a viewer: some of its frames, and colliders and grips at every frame of the scene.
@@ -65,17 +65,27 @@ struct Replay {
 /// 0, stride, 2 stride, ... below `count`, and count - 1. `stride` at least 1.
 std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 
-/// Every `stride`-th frame and the last, from a finished file (.h5) or a part folder; no frames if it has no
-/// trajectory. Throws Error naming the file and what is wrong with it.
+/// Every `stride`-th frame and the last; no frames if the file has no trajectory. Throws Error naming the file and what
+/// is wrong with it.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
+
+/// SHA-256 of a motion in lower-case hexadecimal: the times (float64), then the positions (float32), little-endian.
+/// Files store it with the outcome, so that a verdict belongs to one motion. Empty without frames.
+std::string trajectory_sha256(const AccuracyPass&);
+
+/// What is wrong with the motion in a result file, whatever its summary states: positions that are missing, not finite,
+/// not one set for each time, or another motion than the one that the file's outcome is of. Empty if nothing is. A run
+/// that did not end well may lack frames and have values that are not finite. Throws Error naming the file if it cannot
+/// be read.
+std::string trajectory_fault(const std::filesystem::path&);
 
 class DeviceSamples;
 
-/// Converts part folders of runs made without HDF5 to the .h5 files that direct runs give; `samples`: the device's
-/// samples to store with them. Returns the new files. Skips unfinished runs of a study folder; throws Error if
-/// `dir_or_part` is itself an unfinished part folder.
-std::vector<std::filesystem::path> import_raw(const std::filesystem::path& dir_or_part,
-                                              const DeviceSamples* samples = nullptr);
+/// Converts runs finished without HDF5 (.cbor; a file or the folder of a study) to the .h5 files that direct runs give;
+/// `samples`: the device's samples to store with them. Returns the new files. Throws Error if `file_or_folder` is a
+/// part file: it is not finished.
+std::vector<std::filesystem::path> import_runs(const std::filesystem::path& file_or_folder,
+                                               const DeviceSamples* samples = nullptr);
 
 /// `<dir>/study.json`: the study of the folder and its planned runs. Written by tmp + fsync + rename.
 struct StudyManifest {

@@ -7,7 +7,6 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "results/raw_file.hpp"
 #include "results/result_folder.hpp"
 #include "results/store.hpp"
 
@@ -33,14 +32,13 @@ bool same_settings(const PlannedRun& run, const json& stored) {
   }
 }
 
-/// Null if there is none. Another process of a sharded study may be finishing the run: its folder then becomes a file.
+/// Null if there is none. Another process of a sharded study may be finishing the run: its part file then disappears.
 std::optional<RunHeader> stored_header(const fs::path& folder, const std::string& run, fs::path& file) {
   for (int attempt = 0;; ++attempt) {
     file = stored_run(folder, run);
     if (file.empty()) return std::nullopt;
     try {
-      if (!fs::is_directory(file)) return read_run_summary(file).header;
-      return read_header(file / "header.raw");
+      return read_run_summary(file).header;
     } catch (const Error&) {
       if (fs::exists(file) || attempt > 0) throw;
     }
@@ -59,9 +57,9 @@ PlannedRun planned_run(const RunSpec& spec) {
 }
 
 fs::path stored_run(const fs::path& folder, const std::string& run) {
-  const fs::path file = folder / (run + ".h5"), part = folder / (run + ".part");
-  if (fs::exists(file)) return file;
-  return fs::exists(part / "header.raw") ? part : fs::path();
+  if (fs::path file = finished_file(folder, run); !file.empty()) return file;
+  const fs::path part = folder / (run + ".part");
+  return fs::exists(part) ? part : fs::path();
 }
 
 void require_same_run(const fs::path& folder, const PlannedRun& run) {

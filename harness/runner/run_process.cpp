@@ -8,7 +8,7 @@
 
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
-#include "results/raw_file.hpp"
+#include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
@@ -92,7 +92,7 @@ RunRecord answer_from_json(const json& j) {
 void write_failed_run(const fs::path& out, const RunHeader& header, const Outcome& outcome,
                       const std::map<std::string, double>& summary) {
   std::error_code ignored;
-  fs::remove_all(out / (run_name(header) + ".part"), ignored);
+  fs::remove(out / (run_name(header) + ".part"), ignored);
   RunWriter(out, header).finish(outcome, summary);
 }
 

@@ -4,7 +4,6 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "results/raw_file.hpp"
 #include "runner/environment.hpp"
 #include "runner/run_process.hpp"
 
@@ -62,10 +61,10 @@ void StudyRuns::store_crashed(const RunHeader& asked, const Outcome& outcome) co
   if (out_.empty()) return;
   std::vector<RunHeader> begun;
   for (const std::string& run : read_manifest(out_).runs) {
-    const fs::path header = out_ / (run + ".part") / "header.raw";
+    const fs::path part = out_ / (run + ".part");
     if (run_finished(out_, run)) continue;
-    if (fs::exists(header))
-      begun.push_back(header_from_json(read_raw(header).header.at("run")));
+    if (fs::exists(part))
+      begun.push_back(read_run_summary(part).header);
     else if (run == run_name(asked))
       begun.push_back(asked);
   }

@@ -19,17 +19,9 @@ constexpr Column kColumns[] = {
     {"predicted_display_s", "s", "when the frame is shown, by the runtime's clock, from the first frame's on",
      &FrameRow::predicted_display_s},
     {"predicted_period_s", "s", "refresh period of the display, by the runtime", &FrameRow::predicted_period_s},
-    {"wait_s", "s", "wall time in xrWaitFrame, which paces", &FrameRow::wait_s},
-    {"begin_s", "s", "wall time in xrBeginFrame", &FrameRow::begin_s},
-    {"input_s", "s", "wall time of locating hands", &FrameRow::input_s},
-    {"settle_s", "s", "wall time of waiting for the pictures of the frame before", &FrameRow::settle_s},
-    {"step_s", "s", "wall time of the solver's step", &FrameRow::step_s},
-    {"step_device_s", "s", "device time of the solver's step, first to last timestamp", &FrameRow::step_device_s},
-    {"paint_s", "s", "wall time of acquiring, recording and submitting both pictures", &FrameRow::paint_s},
-    {"paint_device_s", "s", "device time of both pictures, first to last timestamp", &FrameRow::paint_device_s},
-    {"end_s", "s", "wall time in xrEndFrame", &FrameRow::end_s},
+    {"paint_device_s", "s", "device time of both pictures of the frame before, first to last timestamp",
+     &FrameRow::paint_device_s},
     {"frame_s", "s", "wall time from xrWaitFrame's return to xrEndFrame's", &FrameRow::frame_s},
-    {"shown", "1", "1 if the runtime asked for pictures", &FrameRow::shown},
     {"left_seen", "1", "1 if the left hand was tracked", &FrameRow::left_seen},
     {"right_seen", "1", "1 if the right hand was tracked", &FrameRow::right_seen},
 };
@@ -43,13 +35,6 @@ double quantile(std::vector<double> v, double q) {
 }
 
 }  // namespace
-
-void FrameLog::add_counter(const std::string& name, const std::string& units, double value) {
-  Counter& c = counters_[name];
-  c.units = units;
-  c.values.resize(rows_.size(), kMissing);  // it may have come later than the first frame
-  c.values.push_back(value);
-}
 
 void FrameLog::add_step(const FrameCost& cost, double step_s) {
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -91,24 +76,16 @@ std::map<std::string, double> FrameLog::summary() const {
   s["xr_share_2_periods"] = share([](double p) { return p == 2; });
   s["xr_share_3_periods"] = share([](double p) { return p == 3; });
   s["xr_share_more_periods"] = share([](double p) { return p > 3; });
-  for (const Column& c : kColumns) {
-    const std::string name = c.name;
-    if (name != "step_s" && name != "step_device_s" && name != "paint_device_s" && name != "frame_s") continue;
-    std::vector<double> values;
-    for (const FrameRow& r : rows_) values.push_back(r.*c.value);
-    const std::string stem = "xr_" + name.substr(0, name.size() - 2);
-    s[stem + "_median_s"] = quantile(values, 0.5);
-    s[stem + "_p99_s"] = quantile(values, 0.99);
-  }
+  std::vector<double> painted;
+  for (const FrameRow& r : rows_) painted.push_back(r.paint_device_s);
+  s["xr_paint_device_median_s"] = quantile(painted, 0.5);
   return s;
 }
 
 StoredGroup FrameLog::group() const {
   StoredGroup g;
   g.path = "xr";
-  const auto add = [&](const std::string& name, const std::string& units, const std::string& long_name,
-                       std::vector<double> values) {
-    values.resize(rows_.size(), kMissing);
+  const auto add = [&](const char* name, const char* units, const char* long_name, std::vector<double> values) {
     g.arrays.push_back({name, units, long_name, {"frame"}, {rows_.size()}, false, std::move(values)});
   };
   for (const Column& c : kColumns) {
@@ -117,11 +94,6 @@ StoredGroup FrameLog::group() const {
     add(c.name, c.units, c.long_name, std::move(values));
   }
   add("periods", "1", "refresh periods since the frame before", periods());
-  for (const auto& [name, counter] : counters_) {
-    std::string plain = name;  // a path is no name of a dataset
-    std::replace(plain.begin(), plain.end(), '/', '.');
-    add("counter" + plain, counter.units, "counter " + name + " of the runtime", counter.values);
-  }
   return g;
 }
 

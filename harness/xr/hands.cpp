@@ -10,6 +10,13 @@ using assets::Side;
 static_assert(assets::kRecordedJointCount == XR_HAND_JOINT_COUNT_EXT);
 static_assert(std::extent_v<decltype(XrHandTrackingCapsulesStateFB::capsules)> == assets::kCapsuleCount);
 
+/// Whether position and orientation are known.
+bool is_known(XrSpaceLocationFlags flags) {
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  return (flags & kKnown) == kKnown;
+}
+
 std::array<float, 3> three(const XrVector3f& v) { return {v.x, v.y, v.z}; }
 
 assets::RecordedJoint joint(const XrPosef& p, float radius) {

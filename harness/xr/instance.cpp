@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "base/json_text.hpp"
-#include "xr/android_context.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -25,11 +24,7 @@ constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
                                  XR_FB_PASSTHROUGH_EXTENSION_NAME,
                                  XR_EXT_HAND_TRACKING_EXTENSION_NAME,
                                  XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME,
-                                 XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME,
-                                 kSpatialEntity,
-                                 kSpatialEntityQuery,
-                                 kSpatialEntityMesh,
-                                 kPerformanceMetrics};
+                                 XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME};
 
 /// Never closed: Vulkan objects that a runtime helped to make outlive its instance.
 void* open_library(const std::string& path) { return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL); }
@@ -88,7 +83,6 @@ class RuntimeMaker : public vulkan::Maker {
 }  // namespace
 
 void set_android_context(const AndroidContext& c) { context() = c; }
-const AndroidContext& android_context() { return context(); }
 
 Instance::Instance(const std::string& runtime) {
   load(runtime);
@@ -212,12 +206,6 @@ void Instance::check(XrResult result, const char* call) const {
   if (functions_.xrResultToString == nullptr || XR_FAILED(functions_.xrResultToString(instance_, result, text)))
     std::snprintf(text, sizeof text, "XrResult %d", static_cast<int>(result));
   throw Error(fmt::format("{} failed: {}", call, text), ExitCode::CheckFailed);
-}
-
-XrPath Instance::path(const std::string& text) const {
-  XrPath p = XR_NULL_PATH;
-  check(functions_.xrStringToPath(instance_, text.c_str(), &p), "xrStringToPath");
-  return p;
 }
 
 std::shared_ptr<vulkan::Device> Instance::make_device(const DeviceOptions& options) const {

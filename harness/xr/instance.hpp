@@ -11,14 +11,11 @@ namespace clothbench::xr {
 #define CLOTHBENCH_XR_FUNCTIONS(X)                                                                                     \
   X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrGetSystem)                    \
   X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession)                  \
-  X(xrEnumerateReferenceSpaces) X(xrCreateReferenceSpace) X(xrCreateActionSpace) X(xrLocateSpace) X(xrDestroySpace)    \
+  X(xrCreateReferenceSpace) X(xrDestroySpace)                                                                            \
   X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain)       \
   X(xrEnumerateSwapchainImages) X(xrAcquireSwapchainImage) X(xrWaitSwapchainImage) X(xrReleaseSwapchainImage)          \
   X(xrBeginSession) X(xrEndSession) X(xrRequestExitSession) X(xrWaitFrame) X(xrBeginFrame) X(xrEndFrame)               \
-  X(xrLocateViews) X(xrStringToPath) X(xrPathToString) X(xrCreateActionSet) X(xrDestroyActionSet) X(xrCreateAction)    \
-  X(xrSuggestInteractionProfileBindings) X(xrAttachSessionActionSets) X(xrGetActionStateBoolean)                       \
-  X(xrGetActionStateFloat) X(xrSyncActions)                                                                            \
-  X(xrGetVulkanGraphicsRequirements2KHR) X(xrCreateVulkanInstanceKHR) X(xrGetVulkanGraphicsDevice2KHR)                 \
+  X(xrLocateViews) X(xrGetVulkanGraphicsRequirements2KHR) X(xrCreateVulkanInstanceKHR) X(xrGetVulkanGraphicsDevice2KHR)                 \
   X(xrCreateVulkanDeviceKHR)
 // clang-format on
 
@@ -27,6 +24,14 @@ struct Functions {
   CLOTHBENCH_XR_FUNCTIONS(CLOTHBENCH_XR_MEMBER)
 #undef CLOTHBENCH_XR_MEMBER
 };
+
+/// Handles that OpenXR runtimes on Android require: Java VM and activity (a global reference). Null elsewhere.
+struct AndroidContext {
+  void* vm = nullptr;
+  void* activity = nullptr;
+};
+/// Sets the context of the process; the owner of the activity does so before a session begins.
+void set_android_context(const AndroidContext&);
 
 /// An OpenXR runtime, its head-mounted system, and those extensions we use that it has.
 class Instance {
@@ -54,8 +59,6 @@ class Instance {
   }
   /// Throws Error naming the call and the runtime's name for the result, unless it is a success.
   void check(XrResult result, const char* call) const;
-
-  XrPath path(const std::string& text) const;
 
   /// The Vulkan device that this system displays from; vulkan::Device::get with these options then returns it.
   std::shared_ptr<vulkan::Device> make_device(const DeviceOptions&) const;

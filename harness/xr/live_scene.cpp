@@ -21,10 +21,6 @@ namespace fs = std::filesystem;
 using assets::Side;
 using nlohmann::json;
 
-constexpr const char* kRoomFile = "room.json";
-/// How far the box round picked points reaches beyond them: a flat desk has no height of its own.
-constexpr double kGrow_m = 0.05;
-
 const std::vector<std::string> kScriptedAlone = {"expect", "truth", "stability", "seed"};
 
 Side side_of_track(const fs::path& file) {
@@ -34,7 +30,8 @@ Side side_of_track(const fs::path& file) {
 
 }  // namespace
 
-LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, fs::path folder, Live live)
+LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, fs::path folder,
+                     bool live_hands)
     : folder_(std::move(folder)) {
   const fs::path source = find_scenario(scenario);
   written_ = load_scene(scenario, overrides);
@@ -45,21 +42,17 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
   document_["name"] = document_["name"].get<std::string>() + "-live";
   document_["why"] = "Recorded from a headset. " + document_["why"].get<std::string>();
   fs::create_directories(folder_);
-  find_live(source.string(), live);
+  if (live_hands) find_live(source.string());
   keep_mesh(source.string());
   keep_tracks(source.string());
 }
 
-void LiveScene::find_live(const std::string& source, Live live) {
+void LiveScene::find_live(const std::string& source) {
   if (!document_.contains("colliders")) return;
   json& list = document_["colliders"];
   for (std::size_t k = 0; k < list.size(); ++k) {
     const auto type = list[k]["type"].get<std::string>();
-    if (type == "room" && live.room) {
-      if (room_) throw Error(fmt::format("{}: /colliders/{}: a second room; a live session has one", source, k));
-      room_ = k;
-    }
-    if ((type != "hand_capsules" && type != "hand_mesh") || !live.hands) continue;
+    if (type != "hand_capsules" && type != "hand_mesh") continue;
     LiveHand hand;
     hand.collider = k;
     const json& track = list[k]["track"];
@@ -105,7 +98,6 @@ bool LiveScene::wants(Side side) const {
 }
 
 Vec3 LiveScene::place_m() const {
-  if (wants_room()) return {};
   const std::vector<double> x = initial_positions(written_);
   render::Bounds cloth = render::Bounds::none();
   for (std::size_t v = 0; v < written_.cloth.vertex_count(); ++v) cloth.add(vertex_at(x, v));
@@ -124,15 +116,6 @@ const Scene& LiveScene::begin(const Begin& b) {
     if (h.as_mesh && !h.recording.mesh) h.stand_in = assets::open_hand(assets::locate_assets(false), h.side);
     write_hand(h);
     document_["colliders"][h.collider]["track"] = h.file;
-  }
-  if (room_) {
-    if (!b.room || b.picked_m.size() != 6) throw Error("a live room needs its mesh and six points");
-    write_file_atomically(folder_ / kRoomFile, assets::room_capture(*b.room));
-    json& collider = document_["colliders"][*room_];
-    for (const char* key : {"table", "below_m", "above_m"}) collider.erase(key);
-    collider["room"] = kRoomFile;
-    collider["points_m"] = b.picked_m;
-    collider["grow_m"] = kGrow_m;
   }
   scene_ = scene_from_json(document_, file());
   frames_ = 0;

@@ -7,37 +7,31 @@
 #include <vector>
 
 #include "assets/hand_recording.hpp"
-#include "assets/room.hpp"
 #include "clothbench/scene.hpp"
 #include "xr/loop.hpp"
 
 namespace clothbench::xr {
 
-/// Parts of a scenario that come from the headset.
-struct Live {
-  bool hands = false, room = false;
-};
-
 /// Left and right hand; empty if not tracked.
 using HandsNow = std::array<std::optional<assets::RecordedHand>, 2>;
 
-/// A scenario whose hands and room come from a headset. The user's hands replace the scripted hands of the same side.
-/// The part of the user's room between six picked points replaces the room. All other motion stays scripted.
+/// A scenario whose hands come from a headset. The user's hands replace the scripted hands of the same side. All other
+/// motion stays scripted.
 ///
-/// Live data are written first and read back: scenario, recordings and room are in `folder` in the formats of ordinary
+/// Live data are written first and read back: scenario and recordings are in `folder` in the formats of ordinary
 /// scenes, so that `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
 class LiveScene {
  public:
-  /// Throws Error like load_scene, and if the scene has two hands of the same side, or two rooms.
+  /// Throws Error like load_scene, and if the scene has two hands of the same side. `live_hands`: the headset tracks
+  /// hands.
   LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, std::filesystem::path folder,
-            Live live);
+            bool live_hands);
 
   /// The scenario as written: cloth and time before the live parts are replaced.
   const Scene& written() const { return written_; }
   bool wants(assets::Side) const;
-  bool wants_room() const { return room_.has_value(); }
-  /// Where the scene's origin is in the user's space [m]: on the floor with a live room; else so that the middle of the
-  /// cloth at its start is 60 cm before the eyes and 10 cm below.
+  /// The scene's origin in the user's space [m], so that the middle of the cloth at its start is 60 cm in front of the
+  /// eyes and 10 cm below.
   Vec3 place_m() const;
 
   struct Begin {
@@ -46,8 +40,6 @@ class LiveScene {
     HandsNow hands;
     bool has_capsules = false;
     std::array<std::optional<assets::RecordedMesh>, 2> meshes;
-    std::optional<assets::RoomScan> room;
-    std::vector<Vec3> picked_m;  ///< six points, if the scene has a live room
   };
   /// Builds the scene from the headset's current state; may be repeated. Throws Error if a required hand is missing.
   const Scene& begin(const Begin&);
@@ -70,7 +62,7 @@ class LiveScene {
     assets::HandRecording recording;
     std::optional<assets::Hand> stand_in;  ///< used if the runtime has no mesh
   };
-  void find_live(const std::string& source, Live live);
+  void find_live(const std::string& source);
   void keep_mesh(const std::string& source);
   void keep_tracks(const std::string& source);
   void write_hand(const LiveHand&) const;
@@ -81,7 +73,6 @@ class LiveScene {
   nlohmann::json document_;
   Scene written_, scene_;
   std::vector<LiveHand> hands_;
-  std::optional<std::size_t> room_;  ///< the collider
   std::vector<FrameMotion> motion_;
   int frames_ = 0;
 };

@@ -14,11 +14,9 @@
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/solver_run.hpp"
-#include "xr/counters.hpp"
 #include "xr/hands.hpp"
 #include "xr/live_scene.hpp"
 #include "xr/painter.hpp"
-#include "xr/picking.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -41,9 +39,8 @@ class Loop {
  public:
   Loop(const LoopOptions& options, const Instance& xr, LiveScene& live, Session& session,
        std::shared_ptr<vulkan::Device> device)
-      : o_(options), live_(live), session_(session), device_(device), painter_(device, session), counters_(session) {
+      : o_(options), live_(live), session_(session), device_(device), painter_(device, session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
-    if (live.wants_room()) picking_.emplace(session);
     const bool through = session.passthrough() != std::string_view("none");
     painter_.renderer().set_background(through ? render::vec4{0, 0, 0, 0} : render::vec4{1, 1, 1, 1});
     show_at_rest();
@@ -108,60 +105,45 @@ class Loop {
 
   std::string waiting_for() const {
     if (!session_.running()) return "the headset does not run it (is it worn?)";
-    if (picking_) return picking_->waiting_for();
     return "no hand was seen";
   }
 
-  /// The cloth before anything is live, so that the user sees where it is; not where a room is to come.
+  /// The cloth before anything is live, so that the user sees where it is.
   void show_at_rest() {
     const Scene& s = live_.written();
     painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
-    std::vector<double> x = initial_positions(s);
-    if (live_.wants_room()) x.assign(x.size(), kMissing);
-    painter_.renderer().write_positions(x);
+    painter_.renderer().write_positions(initial_positions(s));
     shown_.cloth = s.cloth;
   }
 
   void frame() {
-    const auto t0 = Clock::now();
     const XrFrameState state = session_.wait_frame();
-    const auto t1 = Clock::now();
+    const auto start = Clock::now();
     session_.begin_frame();
-    const auto t2 = Clock::now();
     const bool live = run_ != nullptr && !done_;
     FrameRow row;
     row.predicted_display_s = static_cast<double>(state.predictedDisplayTime - first_time(state, live)) * 1e-9;
     row.predicted_period_s = static_cast<double>(state.predictedDisplayPeriod) * 1e-9;
-    row.wait_s = seconds(t0, t1);
-    row.begin_s = seconds(t1, t2);
-    row.shown = state.shouldRender == XR_TRUE ? 1 : 0;
     live ? step(state.predictedDisplayTime, row) : prepare(state);
     try {
-      show(state, row);
+      show(state);
     } catch (...) {
       if (live) log_.add(row);  // it was stepped, and is in the recording
       throw;
     }
-    row.frame_s = seconds(t1, Clock::now());
+    row.frame_s = seconds(start, Clock::now());
     if (!live) return;
     log_.add(row);
-    // Those of the frame before: counters are of what has been shown.
-    counters_.read(
-        [&](const std::string& name, const std::string& units, double v) { log_.add_counter(name, units, v); });
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
   }
 
   /// A device that was lost draws nothing any more.
-  void show(const XrFrameState& state, FrameRow& row) {
+  void show(const XrFrameState& state) {
     std::vector<XrView> views;
-    const auto t0 = Clock::now();
     if (state.shouldRender == XR_TRUE && outcome_.status != "device_lost")
       views = session_.views(state.predictedDisplayTime);
     if (!views.empty()) paint(views);
-    const auto t1 = Clock::now();
     session_.end_frame(state, views);
-    row.paint_s = seconds(t0, t1);
-    row.end_s = seconds(t1, Clock::now());
   }
 
   XrTime first_time(const XrFrameState& state, bool live) {
@@ -177,7 +159,6 @@ class Loop {
     b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
     for (const Side side : {Side::Left, Side::Right})
       if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
-    if (picking_ && !picking_->ready(state.predictedDisplayTime)) return;
     if (!rate_settled()) return;
     b.frame_rate_hz = session_.frame_rate_hz(state);
     b.frames =
@@ -186,10 +167,6 @@ class Loop {
     b.has_capsules = hands_ && hands_->has_capsules();
     for (const Side side : {Side::Left, Side::Right})
       if (hands_ && live_.wants(side)) b.meshes[static_cast<std::size_t>(side)] = hands_->mesh(side);
-    if (picking_) {
-      b.room = picking_->scan();
-      b.picked_m = picking_->picked();
-    }
     painter_.wait();
     run_.reset();
     live_.begin(b);
@@ -228,8 +205,6 @@ class Loop {
     shown_.cloth = s.cloth;
     shown_.colliders = s.colliders;
     if (!live_.motion().empty()) shown_.motion.push_back(live_.motion().front());
-    // A room of the user's own is seen by itself.
-    if (picking_ && session_.passthrough() != std::string_view("none")) shown_.colliders.clear();
     near_ = render::Bounds::none();
     const std::vector<double> x = initial_positions(s);
     for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) near_.add(vertex_at(x, v));
@@ -239,31 +214,22 @@ class Loop {
 
   void step(XrTime time, FrameRow& row) {
     const auto index = static_cast<int>(log_.rows().size());
-    const auto t0 = Clock::now();
     const HandsNow now = hands_at(hands_, live_, time);
     if (live_.wants(Side::Left)) row.left_seen = now[0] ? 1 : 0;
     if (live_.wants(Side::Right)) row.right_seen = now[1] ? 1 : 0;
-    const auto t1 = Clock::now();
     painter_.wait();  // it read the positions that the step writes
     row.paint_device_s = painter_.device_s();
-    const auto t2 = Clock::now();
     // From here on the frame is in the recording, so that nothing below may leave it out of the log.
     FrameInput input = frame_input(live_.scene(), index);
     input.motion = live_.next(index, now);
-    const auto t3 = Clock::now();
+    const auto start = Clock::now();
     StepStatus status = StepStatus::Ok;
     try {
       status = run_->solver()->step(input);
     } catch (const std::exception& e) {
       end_by(e);
     }
-    const auto t4 = Clock::now();
-    row.input_s = seconds(t0, t1) + seconds(t2, t3);
-    row.settle_s = seconds(t1, t2);
-    row.step_s = seconds(t3, t4);
-    const FrameCost cost = run_->solver()->last_cost();
-    row.step_device_s = cost.device_s;
-    log_.add_step(cost, row.step_s);
+    log_.add_step(run_->solver()->last_cost(), seconds(start, Clock::now()));
     if (status != StepStatus::Ok) {
       outcome_ = outcome_of(status, index);
       done_ = true;
@@ -283,8 +249,6 @@ class Loop {
       }
       if (stale_) painter_.renderer().set_surfaces(render::surfaces(shown_, 0, near_));
       stale_ = false;
-    } else if (picking_ && picking_->changed()) {
-      painter_.renderer().set_surfaces(picking_->surfaces());
     }
     painter_.paint(views);
   }
@@ -293,7 +257,6 @@ class Loop {
     StoredGroup g = log_.group();
     g.attributes = {{"runtime", session_.instance().runtime_name()},
                     {"system", session_.instance().system_name()},
-                    {"space", session_.space_name()},
                     {"rate_requested_hz", o_.rate_hz},
                     {"rate_hz", live_.scene().time.frame_rate_hz},
                     {"eye_width", session_.extent().width},
@@ -302,8 +265,7 @@ class Loop {
                     {"performance_level", session_.performance_level()},
                     {"hands", !hands_                  ? "scripted"
                               : hands_->has_capsules() ? "live, capsules of the runtime"
-                                                       : "live, joints and radii"},
-                    {"room", picking_ ? "live" : "of the scenario"}};
+                                                       : "live, joints and radii"}};
     const std::uint64_t n = live_.scene().cloth.vertex_count();
     g.arrays.push_back({"final_position_m",
                         "m",
@@ -360,9 +322,7 @@ class Loop {
   Session& session_;
   std::shared_ptr<vulkan::Device> device_;
   Painter painter_;
-  Counters counters_;
   std::optional<Hands> hands_;
-  std::optional<Picking> picking_;
   std::unique_ptr<SolverRun> run_;
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
@@ -381,16 +341,32 @@ class Loop {
 LoopResult run_loop(const LoopOptions& options) {
   const Instance xr(options.runtime);
   const ResultFolder held(options.out, ResultFolder::Use::Alone, "clothbench xr");
-  LiveScene live(options.scenario, options.overrides, options.out / "scenario",
-                 {xr.tracks_hands(), RoomScanner::offered(xr)});
+  LiveScene live(options.scenario, options.overrides, options.out / "scenario", xr.tracks_hands());
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
-  SessionOptions s;
-  s.rate_hz = options.rate_hz;
-  s.on_floor = live.wants_room();
-  s.origin_m = options.place_m.value_or(live.place_m());
-  s.passthrough = options.passthrough;
-  Session session(xr, device, s);
+  Session session(xr, device, {options.rate_hz, options.place_m.value_or(live.place_m()), options.passthrough});
   return Loop(options, xr, live, session, device).run();
+}
+
+nlohmann::json loop_json(const LoopResult& r) {
+  return {{"file", r.file.string()},
+          {"scenario", r.scenario.string()},
+          {"status", r.outcome.status},
+          {"message", r.outcome.message},
+          {"summary", r.summary}};
+}
+
+std::string loop_text(const LoopResult& r) {
+  const auto of = [&](const char* name) { return r.summary.contains(name) ? r.summary.at(name) : kMissing; };
+  return fmt::format("{:.0f} frames: {}\n", of("xr_frames"), r.outcome.status) +
+         fmt::format("frames a second    median {:.1f}   mean {:.1f}   worst {:.1f}\n", of("xr_fps_median"),
+                     of("xr_fps_mean"), of("xr_fps_worst")) +
+         fmt::format("shown after        1 period {:.1f} %   2 {:.1f} %   3 {:.1f} %   more {:.1f} %\n",
+                     100 * of("xr_share_1_period"), 100 * of("xr_share_2_periods"), 100 * of("xr_share_3_periods"),
+                     100 * of("xr_share_more_periods")) +
+         fmt::format("step               median {:.3f} ms\n", 1e3 * of("frame_wall_median_s")) +
+         fmt::format("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s")) +
+         fmt::format("results in {}; the session replays with: clothbench run {}\n", r.file.string(),
+                     r.scenario.string());
 }
 
 }  // namespace clothbench::xr

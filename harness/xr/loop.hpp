@@ -25,10 +25,10 @@ struct LoopOptions {
   double rate_hz = 72;   ///< requested refresh rate of the display
   int frames = 0;        ///< 0: as many as the scenario lasts
   /// The scene's origin in the user's space. Default: the middle of the cloth at its start is 60 cm in front of the
-  /// eyes and 10 cm below; with a live room the origin is on the floor.
+  /// eyes and 10 cm below.
   std::optional<Vec3> place_m;
   bool passthrough = true;
-  double timeout_s = 120;  ///< for hands to be tracked and points to be picked
+  double timeout_s = 120;  ///< for hands to be tracked
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< receives messages for the user; may be empty
 };
@@ -43,7 +43,7 @@ struct LoopResult {
   int validation_messages = 0;
 };
 
-/// A live session: the user sees a cloth and touches it. Waits until hands are tracked or points are picked. Then steps
+/// A live session: the user sees a cloth and touches it. Waits until hands are tracked. Then steps
 /// the solver once per displayed frame, by the display's refresh period, as the application of the paper does. If
 /// frames are displayed late, the cloth moves slower than in real time, and the log shows it. Ends after `frames`, when
 /// the runtime ends the session, when it is interrupted, or if the device is lost or a call fails after the first step

@@ -1,15 +1,25 @@
 #include "xr/painter.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "clothbench/record.hpp"
 #include "vulkan/make.hpp"
-#include "xr/pose.hpp"
 
 namespace clothbench::xr {
 namespace {
 
 using vulkan::check;
+
+Vec3 vector_of(const XrVector3f& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// The axes x, y, z of an orientation.
+std::array<Vec3, 3> axes_of(const XrQuaternionf& q) {
+  const Eigen::Matrix3d m = Eigen::Quaternionf(q.w, q.x, q.y, q.z).cast<double>().toRotationMatrix();
+  return {{{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}}};
+}
 
 constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand before the face; the far end of a hall
 constexpr std::uint64_t kTimeout_ns = 10'000'000'000;

@@ -9,7 +9,6 @@ namespace clothbench::xr {
 namespace {
 
 constexpr auto kViews = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-constexpr XrPosef kHere{{0, 0, 0, 1}, {0, 0, 0}};
 /// Those the renderer's colours are right in: what it writes is linear.
 constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
 
@@ -19,7 +18,7 @@ Session::Session(const Instance& xr, std::shared_ptr<vulkan::Device> device, con
     : xr_(xr), device_(std::move(device)), rate_hz_(options.rate_hz) {
   try {
     create_session();
-    create_space(options);
+    create_space(options.origin_m);
     create_eyes();
     choose_blend_mode(options.passthrough);
   } catch (...) {  // no destructor runs then
@@ -53,20 +52,12 @@ void Session::create_session() {
   xr_.check(xr_.xr().xrCreateSession(xr_.handle(), &info, &session_), "xrCreateSession");
 }
 
-void Session::create_space(const SessionOptions& options) {
-  std::uint32_t count = 0;
-  xr_.check(xr_.xr().xrEnumerateReferenceSpaces(session_, 0, &count, nullptr), "xrEnumerateReferenceSpaces");
-  std::vector<XrReferenceSpaceType> types(count);
-  xr_.check(xr_.xr().xrEnumerateReferenceSpaces(session_, count, &count, types.data()), "xrEnumerateReferenceSpaces");
-  const bool stage =
-      options.on_floor && std::find(types.begin(), types.end(), XR_REFERENCE_SPACE_TYPE_STAGE) != types.end();
-  space_name_ = stage ? "STAGE" : "LOCAL";
+void Session::create_space(const Vec3& origin_m) {
   auto info = blank<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
-  info.referenceSpaceType = stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
-  info.poseInReferenceSpace = kHere;
-  info.poseInReferenceSpace.position = {static_cast<float>(options.origin_m[0]),
-                                        static_cast<float>(options.origin_m[1]),
-                                        static_cast<float>(options.origin_m[2])};
+  info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+  info.poseInReferenceSpace.orientation.w = 1;
+  info.poseInReferenceSpace.position = {static_cast<float>(origin_m[0]), static_cast<float>(origin_m[1]),
+                                        static_cast<float>(origin_m[2])};
   xr_.check(xr_.xr().xrCreateReferenceSpace(session_, &info, &space_), "xrCreateReferenceSpace");
 }
 
@@ -185,8 +176,6 @@ bool Session::pump() {
       over_ = true;
     else if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)
       change(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
-    else if (on_event)
-      on_event(event);
   }
 }
 
@@ -237,12 +226,6 @@ std::vector<XrView> Session::views(XrTime time) const {
   constexpr XrViewStateFlags kKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
   if ((state.viewStateFlags & kKnown) != kKnown || count != views.size()) views.clear();
   return views;
-}
-
-std::optional<XrPosef> Session::locate(XrSpace space, XrTime time) const {
-  auto where = blank<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
-  xr_.check(xr_.xr().xrLocateSpace(space, space_, time, &where), "xrLocateSpace");
-  return is_known(where.locationFlags) ? std::optional(where.pose) : std::nullopt;
 }
 
 void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& views) {

@@ -1,8 +1,6 @@
 #pragma once
 #include <array>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "clothbench/collider.hpp"
@@ -11,9 +9,8 @@
 namespace clothbench::xr {
 
 struct SessionOptions {
-  double rate_hz = 72;    ///< requested refresh rate of the display, if the runtime allows it
-  bool on_floor = false;  ///< the scene's space is STAGE (the room's), else LOCAL (initial head position)
-  Vec3 origin_m{};        ///< the scene's origin in that space
+  double rate_hz = 72;  ///< requested refresh rate of the display, if the runtime allows it
+  Vec3 origin_m{};      ///< the scene's origin in LOCAL space, which begins at the head
   bool passthrough = true;
 };
 
@@ -33,10 +30,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Processes the runtime's events, and begins and ends the session as they require. Passes other events to
-  /// `on_event`. False once the session is over.
+  /// Processes the runtime's events, and begins and ends the session as they require. False once the session is over.
   bool pump();
-  std::function<void(const XrEventDataBuffer&)> on_event;
   bool running() const { return running_; }
   void request_exit();
   XrFrameState wait_frame();
@@ -45,13 +40,10 @@ class Session {
   void end_frame(const XrFrameState&, const std::vector<XrView>& views);
   /// Both eyes in the scene's space; empty if they are not located.
   std::vector<XrView> views(XrTime) const;
-  /// A space's pose in the scene's; empty unless it is known.
-  std::optional<XrPosef> locate(XrSpace, XrTime) const;
 
   const Instance& instance() const { return xr_; }
   XrSession handle() const { return session_; }
   XrSpace space() const { return space_; }
-  const char* space_name() const { return space_name_; }
   VkFormat format() const { return format_; }
   VkExtent2D extent() const { return extent_; }
   const std::array<Eye, 2>& eyes() const { return eyes_; }
@@ -64,7 +56,7 @@ class Session {
 
  private:
   void create_session();
-  void create_space(const SessionOptions&);
+  void create_space(const Vec3& origin_m);
   void create_eyes();
   void choose_blend_mode(bool passthrough);
   void start_passthrough();
@@ -78,7 +70,6 @@ class Session {
   const double rate_hz_;
   XrSession session_ = XR_NULL_HANDLE;
   XrSpace space_ = XR_NULL_HANDLE;
-  const char* space_name_ = "";
   bool running_ = false, over_ = false;
   VkFormat format_ = VK_FORMAT_UNDEFINED;
   VkExtent2D extent_{};

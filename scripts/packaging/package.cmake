@@ -20,7 +20,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 # Libraries that are linked are found out; these are opened or called when the program runs. Half of the solvers need a Vulkan driver.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "mesa-vulkan-drivers | vulkan-icd, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "mesa-vulkan-drivers | vulkan-icd")
 # A report's figures; its scripts and examples.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nodejs, librsvg2-bin, python3-matplotlib, python3-h5py")
 # Movies; scanned rooms and hands; headsets; plugins; studies on a cluster.

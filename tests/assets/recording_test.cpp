@@ -140,16 +140,6 @@ TEST(Base64, BothWays) {
   EXPECT_EQ(encode_base64(foob, 4), "Zm9vYg==") << "RFC 4648 section 10";
 }
 
-TEST(RoomCapture, IsReadAsItWasTold) {
-  const float h = std::sqrt(0.5f);
-  const RoomScan scan{"00010203-0405", {1, 2, 3}, {0, h, 0, h}, {0, 0, 0, 1, 0, 0, 0, 0, 1}, {0, 1, 2}};
-  const Room room = parse_room(room_capture(scan), "test", "mine");
-  ASSERT_EQ(room.mesh.triangles.size(), 1u);
-  // A quarter turn about y takes x to -z.
-  EXPECT_NEAR((room.mesh.vertex(1) - Vector(1, 2, 2)).norm(), 0, 1e-6);
-  EXPECT_NEAR((room.mesh.vertex(2) - Vector(2, 2, 3)).norm(), 0, 1e-6);
-}
-
 TEST(PickedTable, FillsItsBox) {
   const Box box(Vector(-1, 0.2, -3), Vector(2, 0.7, -1));
   const Table t = table_in(box);

@@ -105,7 +105,7 @@ TEST_F(CheckCommand, ResultFilesOneByOne) {
   ASSERT_EQ(check("--update"), 0);
   std::string files;
   for (const auto& file : fs::directory_iterator(run()))
-    if (const auto kind = file.path().extension(); kind == ".h5" || kind == ".part")
+    if (const auto kind = file.path().extension(); kind == ".h5" || kind == ".cbor")
       files += " " + file.path().string();
   EXPECT_EQ(command("check" + files + " --baseline " + baseline().string()), 0) << text_;
 }

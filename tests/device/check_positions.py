@@ -1,4 +1,6 @@
-"""The same runs on arm64 (under qemu, arm64 lavapipe) and on this machine: same positions; the device's raw files import."""
+"""The same runs on arm64 (under qemu, arm64 lavapipe) and on this machine: same positions; the device's CBOR files import."""
+import json
+
 from device import *
 
 try:
@@ -26,7 +28,8 @@ SCENES = [
 def positions(folder, name):
     with h5py.File(next(folder.glob(f"*__{name}__default.h5"))) as f:
         assert f["outcome"].attrs["status"] == "ok", (folder, name, f["outcome"].attrs["message"])
-        return f["trajectory/position"][:], f.attrs["gpu"], f["environment"].attrs["os"], f.attrs["shader_compiler"]
+        e = json.loads(f["header_json"][0])["environment"]
+        return f["trajectory/position"][:], e["gpu"], e["os"], e["shader_compiler"]
 
 
 failed = False

@@ -30,7 +30,7 @@ def told(folder, **expected):
 
 
 def replays(live, folder):
-    """The session's raw file becomes HDF5 here, and its scenario runs here to the same positions."""
+    """The session's CBOR file becomes HDF5 here, and its scenario runs here to the same positions."""
     must([HOST_COMMAND, "import", live])
     with h5py.File(next(live.glob("*.h5"))) as f:
         end, periods = f["xr/final_position_m"][:], f["xr/periods"][1:]

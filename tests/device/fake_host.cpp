@@ -1,7 +1,7 @@
 // A fake Android around the activity's library: loads it, hands it an ANativeActivity and the few JNI calls it makes,
 // and plays a life given as words.
 //   fake_host LIBRARY FILES INTERNAL ARGS STEP...
-// STEP: create | resume | pause | lowmemory | destroy | finish (wait for the activity to ask for its end) | <number>
+// STEP: create | resume | pause | destroy | finish (wait for the activity to ask for its end) | <number>
 // (ms)
 #include <android/native_activity.h>
 #include <dlfcn.h>
@@ -92,8 +92,6 @@ int main(int argc, char** argv) {
       callbacks.onResume(&activity);
     } else if (step == "pause") {
       callbacks.onPause(&activity);
-    } else if (step == "lowmemory") {
-      callbacks.onLowMemory(&activity);
     } else if (step == "destroy") {
       callbacks.onDestroy(&activity);
     } else if (step == "finish") {

@@ -130,19 +130,41 @@ def tracks():
         b'"position_m":[0,1,0.1],"orientation":[0,0,0,1],"grip":true,"sweep":true},{"time_s":1,"position_m":[1,1,0]}]}')
 
 
-def raw():
-    def log(header, frames):
-        text = json.dumps(header).encode()
-        return b"CBRAW001" + struct.pack("<I", len(text)) + text + b"\0\0\0\0" + b"".join(
-            struct.pack("<I", k) + f + b"\0\0\0\0" for k, f in enumerate(frames))
-    trial = {"kind": "trial", "frame_B": 48, "frames": 2, "stages": 1, "index": 0, "pipelined_wall_s": 0.5}
-    accuracy = {"kind": "accuracy", "frame_B": 48, "frames": 2, "vertices": 2, "metrics": [{"name": "speed_max", "units": "m s-1", "long_name": "x"}]}
-    replay = {"kind": "replay", "frame_B": 24, "groups": [{"path": "colliders", "attributes": {"count": 1}, "arrays": [
-        {"name": "a", "units": "m", "long_name": "x", "dims": ["frame"], "shape": [2], "integer": False, "count": 2}]}]}
-    run = {"frame_B": 8, "scene": "s", "solver": "x", "setting": "d", "settings": {}, "scenario_json": "{}", "scenario_sha256": "0", "plan": {},
-            "stages": [{"name": "a", "serves": ["stretch"], "dispatches": 1}], "environment": {}, "vertices": 1, "triangles": [0, 1, 2], "load_s": None}
-    for kind, name, header, sizes in [(1, "trial", trial, [40, 40]), (2, "accuracy", accuracy, [40, 40]), (3, "replay", replay, [16]), (4, "run", run, [])]:
-        put("raw", name + ".raw", bytes([2 * kind]) + log(header, [struct.pack("<d", 1.5) * (size // 8) for size in sizes]))
+def cbor(value):
+    """A value of JSON with byte strings as CBOR: what the seeds need."""
+    def head(major, n):
+        return bytes([major << 5 | n]) if n < 24 else bytes([major << 5 | 25]) + struct.pack(">H", n)
+    if value is None or isinstance(value, bool):
+        return {None: b"\xf6", False: b"\xf4", True: b"\xf5"}[value]
+    if isinstance(value, float):
+        return b"\xfb" + struct.pack(">d", value)
+    if isinstance(value, int):
+        return head(0, value)
+    if isinstance(value, bytes):
+        return head(2, len(value)) + value
+    if isinstance(value, str):
+        return head(3, len(value.encode())) + value.encode()
+    if isinstance(value, list):
+        return head(4, len(value)) + b"".join(map(cbor, value))
+    return head(5, len(value)) + b"".join(cbor(k) + cbor(v) for k, v in value.items())
+
+
+def part():
+    numbers = lambda n: struct.pack("<d", 1.5) * n
+    header = {"scene": "s", "solver": "x", "setting": "d", "settings": {}, "scenario_json": "{}", "scenario_sha256": "0", "plan": {},
+              "stages": [{"name": "a", "serves": ["stretch"], "dispatches": 1, "bytes": ""}], "environment": {}, "vertices": 1,
+              "triangles": [0, 0, 0], "load_s": None}
+    replay = [{"path": "colliders", "attributes": {"count": 1}, "arrays": [
+        {"name": "a", "units": "m", "long_name": "x", "dims": ["frame"], "shape": [2], "integer": False, "values": numbers(2)}]}]
+    accuracy = {"time_s": numbers(2), "position": struct.pack("<f", 1) * 6, "metrics": [
+        {"name": "speed_max", "units": "m s-1", "long_name": "x", "version": 1, "values": numbers(2)}]}
+    trial = {"index": 0, "pipelined_wall_s": 0.5, "trial_start_unix_s": 1.0, "trial_end_unix_s": 2.0, "jobs": 1.0} | {
+        name: numbers(2) for name in ["frame_wall_s", "frame_device_s", "stage_device_s", "read_B", "write_B"]} | {
+        "frame_rendered_s": b"", "frame_cpu_s": b""}
+    outcome = {"status": "ok", "class": "ok", "failed_frame": 3, "message": "", "expect": "pass", "trajectory_sha256": "", "summary": {"a": 1.5, "b": "inf"}}
+    items = {"header": header, "replay": replay, "accuracy": accuracy, "trial": trial, "outcome": outcome}
+    for n, name in enumerate(items):
+        put("part", name, b"".join(cbor({k: v}) for k, v in list(items.items())[:n + 1]))
 
 
 def hdf5():
@@ -152,5 +174,5 @@ def hdf5():
     put("hdf5", "header", bytes([7, 0, 0, 0, 0]) + b'{"scene":"s","solver":"x","setting":"d","settings":{},"stages":[]}')
 
 
-for write in (scenes, meshes, gltf_meshes, rooms, hands, tracks, raw, hdf5):
+for write in (scenes, meshes, gltf_meshes, rooms, hands, tracks, part, hdf5):
     write()

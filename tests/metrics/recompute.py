@@ -33,10 +33,10 @@ class Run:
         header = f["header_json"][()]
         self.name = f"{path.parent.name}/{path.stem}"
         self.header = json.loads(header[0] if getattr(header, "shape", ()) else header)
-        self.scene = json.loads(f.attrs["scenario_json"])
+        self.scene = json.loads(json.loads(f["header_json"][0])["scenario_json"])
         self.triangles = f["triangles"][:]
         self.time = f["metrics/time_s"][:]
-        self.x = f["VTKHDF/Points"][:].astype(float).reshape(len(self.time), -1, 3)
+        self.x = f["trajectory/position"][:].astype(float)
         self.series = {n: d[:] for n, d in f["metrics"].items() if n not in ("time_s", "frame")}
         self.summary = dict(f["summary"].attrs)
         self.colliders = [self.collider(f[f"colliders/{k}"]) for k in range(int(f["colliders"].attrs["count"]))] if "colliders" in f else []

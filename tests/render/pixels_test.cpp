@@ -212,26 +212,6 @@ TEST_F(Pixels, WhatIsNotFiniteIsLeftOut) {
   EXPECT_TRUE(of(lost).triangles.empty());
 }
 
-TEST_F(Pixels, ValuesHaveTheirColours) {
-  const Cloth cloth = upright(3, 2, 1, 1);
-  renderer_.set_cloth(cloth, {0, 0, 0});
-  renderer_.write_positions(positions_of(cloth));
-  const std::vector<vec4> red_to_blue = {{1, 0, 0, 1}, {0, 0, 1, 1}};
-  const std::vector<float> values = {0, 0, 1, 0, 0, 1};
-  renderer_.write_values(values, red_to_blue);
-  Picture p = shoot();
-  const auto left = pixel(p, {-0.3, 0, 0}), right = pixel(p, {0.48, 0, 0});
-  EXPECT_TRUE(left[0] > 120 && left[1] < 10 && left[2] < 10);
-  EXPECT_TRUE(right[2] > 120 && right[1] < 10 && right[0] < 120);
-  const std::vector<float> none(6, NAN);
-  renderer_.write_values(none, red_to_blue);
-  p = shoot();
-  EXPECT_TRUE(grey(pixel(p, {-0.3, 0, 0})));
-  renderer_.write_values({}, {});
-  p = shoot();
-  EXPECT_TRUE(orange(pixel(p, {-0.3, 0, 0})));
-}
-
 TEST_F(Pixels, FollowsAVertex) {
   const Cloth cloth = upright(3, 3);
   std::vector<double> x = positions_of(cloth);
@@ -247,7 +227,6 @@ TEST_F(Pixels, SaysWhatDoesNotFit) {
   EXPECT_THROW(shoot(), Error) << "nothing to draw yet";
   renderer_.set_cloth(upright(3, 3), {0, 0, 0});
   EXPECT_THROW(renderer_.write_positions(std::vector<double>(26)), Error);
-  EXPECT_THROW(renderer_.write_values(std::vector<float>(8), std::vector<vec4>(2)), Error);
   EXPECT_THROW(renderer_.set_cloth(upright(1, 3), {0, 0, 0}), Error);
   EXPECT_THROW(Offscreen(device_, {0, 10}, 1), Error);
   EXPECT_THROW(Offscreen(device_, {1u << 20, 10}, 1), Error);

@@ -1,11 +1,14 @@
 #pragma once
+#include <png.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "clothbench/error.hpp"
 #include "clothbench/scene.hpp"
+#include "render/offscreen.hpp"
 
 namespace clothbench::render {
 
@@ -25,6 +28,18 @@ inline std::vector<double> positions_of(const Cloth& cloth) {
   Scene s;
   s.cloth = cloth;
   return initial_positions(s);
+}
+
+/// Throws Error naming the file unless it is a whole PNG.
+inline Picture read_png(const std::filesystem::path& path) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) throw Error(path.string() + ": " + image.message);
+  image.format = PNG_FORMAT_RGB;
+  Picture out(static_cast<int>(image.width), static_cast<int>(image.height));
+  if (png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr) == 0)
+    throw Error(path.string() + ": " + image.message);
+  return out;
 }
 
 /// A folder that is gone with the test.

@@ -1,4 +1,5 @@
 """h5py and xarray read what results/README.md promises. usage: check_h5py.py FOLDER"""
+import json
 import pathlib
 import sys
 
@@ -8,16 +9,15 @@ import xarray as xr
 
 path = next(pathlib.Path(sys.argv[1]).glob("*.h5"))
 with h5py.File(path) as f:
-    assert f.attrs["format"] == "clothbench-run" and f.attrs["format_version"] == 1
-    assert f.attrs["driver"] == "µ"
+    assert f.attrs["format"] == "clothbench-run" and f.attrs["format_version"] == 2
+    header = json.loads(f["header_json"][0])
+    assert f.attrs["scene"] == header["scene"] == "sample" and header["environment"]["driver"] == "µ"
     assert f["outcome"].attrs["status"] == "diverged" and f["outcome"].attrs["failed_frame"] == 3
     assert f["summary"].attrs["fps_median"] == 123.4567890123 and np.isnan(f["summary"].attrs["read_B_per_frame"])
-    points = f["VTKHDF/Points"][:]
-    assert points.shape == (30, 3) and points.dtype == np.float32
-    assert np.array_equal(f["frames/000003"][:], points[18:24]), "a frame is a view of the points"
-    assert f["VTKHDF"].attrs["Type"] == b"PolyData" and list(f["VTKHDF"].attrs["Version"]) == [2, 0]
-    assert f["VTKHDF/Steps"].attrs["NSteps"] == 5
-    assert f["VTKHDF/Polygons/NumberOfCells"][0] == 4 and f["VTKHDF/Lines/Offsets"][:].tolist() == [0]
+    points = f["trajectory/position"][:]
+    assert points.shape == (5, 6, 3) and points.dtype == np.float32
+    assert f["frames/000003"].is_virtual and np.array_equal(f["frames/000003"][:], points[3]), "a frame is a view of the points"
+    assert f["triangles"].shape == (4, 3)
     assert f["outcome"].attrs["expect"] == "fail: stretch_max 2 > 1"
     assert f["colliders"].attrs["count"] == 2 and f["colliders/0"].attrs["shape"] == "capsules"
     assert f["colliders/0"].attrs["normal"].tolist() == [0, 1, 0.1]

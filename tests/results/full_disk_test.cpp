@@ -61,7 +61,7 @@ TEST(FullDisk, AWriteThatFailsIsAnErrorAndWhatWasFinishedStays) {
   const RunRecord r = large_run();
   RunWriter writer(dir, r.header);
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
-  EXPECT_EQ(with_little_room("accuracy.raw", [&] { writer.write_accuracy(r.accuracy); }), 0);
+  EXPECT_EQ(with_little_room(".part", [&] { writer.write_accuracy(r.accuracy); }), 0);
   EXPECT_EQ(temporary_files(dir), 0u);
   EXPECT_EQ(writer.recovered().trials.size(), 3u);
   EXPECT_TRUE(writer.recovered().accuracy.time_s.empty());

@@ -6,7 +6,7 @@
 
 #include "clothbench/error.hpp"
 #include "results/hdf5_file.hpp"
-#include "results/raw_file.hpp"
+#include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
 #include "with_folder.hpp"
@@ -24,14 +24,14 @@ class Hdf5 : public WithFolder {
   }
 };
 
-TEST_F(Hdf5, FilesWithoutCpuTimesAreRead) {
+TEST_F(Hdf5, CpuTimesAreStoredOnlyIfThereAreAny) {
   RunRecord r = sample_run();
-  for (TimedTrial& t : r.trials) t.frame_cpu_s.clear();  // GPU solvers, and files of before
+  for (TimedTrial& t : r.trials) t.frame_cpu_s.clear();  // GPU solvers
   write_hdf5(dir_ / "gpu.h5", r);
   write_hdf5(dir_ / "host.h5", sample_run());
   EXPECT_EQ(bytes(dir_ / "gpu.h5").find("frame_cpu_s"), std::string::npos) << "stored only where there are any";
   EXPECT_NE(bytes(dir_ / "host.h5").find("frame_cpu_s"), std::string::npos);
-  for (const TimedTrial& t : read_hdf5(dir_ / "gpu.h5", false).trials) EXPECT_TRUE(t.frame_cpu_s.empty());
+  for (const TimedTrial& t : read_hdf5(dir_ / "gpu.h5", 0).trials) EXPECT_TRUE(t.frame_cpu_s.empty());
 }
 
 TEST_F(Hdf5, RoundTrip) {
@@ -41,7 +41,7 @@ TEST_F(Hdf5, RoundTrip) {
   r.trials[2].frame_device_s.resize(3);
   for (auto* s : {&r.trials[2].stage_device_s, &r.trials[2].stage_read_B, &r.trials[2].stage_write_B}) s->resize(6);
   write_hdf5(dir_ / "x.h5", r);
-  const RunRecord b = read_hdf5(dir_ / "x.h5", true);
+  const RunRecord b = read_hdf5(dir_ / "x.h5", 1);
   EXPECT_EQ(header_to_json(b.header), header_to_json(r.header));
   ASSERT_EQ(b.trials.size(), 3u);
   for (int t = 0; t < 3; ++t) EXPECT_TRUE(same(b.trials[t], r.trials[t])) << t;
@@ -57,7 +57,7 @@ TEST_F(Hdf5, RoundTrip) {
   EXPECT_EQ(b.outcome.expect, r.outcome.expect);
   EXPECT_EQ(b.summary.at("fps_median"), 123.4567890123);
   EXPECT_TRUE(std::isnan(b.summary.at("read_B_per_frame")));
-  EXPECT_TRUE(read_hdf5(dir_ / "x.h5", false).accuracy.position.empty());
+  EXPECT_TRUE(read_hdf5(dir_ / "x.h5", 0).accuracy.position.empty());
 }
 
 TEST_F(Hdf5, ARunWithoutFramesIsAFileToo) {
@@ -66,7 +66,7 @@ TEST_F(Hdf5, ARunWithoutFramesIsAFileToo) {
   r.header.stages.clear();
   r.outcome = {"unsupported", "ok", -1, "has no duplicated_layer"};
   write_hdf5(dir_ / "x.h5", r);
-  EXPECT_EQ(read_hdf5(dir_ / "x.h5", true).outcome.status, "unsupported");
+  EXPECT_EQ(read_hdf5(dir_ / "x.h5", 1).outcome.status, "unsupported");
 }
 
 TEST_F(Hdf5, TrialsOfASolverWithoutStagesAreAFileToo) {
@@ -74,9 +74,27 @@ TEST_F(Hdf5, TrialsOfASolverWithoutStagesAreAFileToo) {
   r.header.stages.clear();
   for (TimedTrial& t : r.trials) t.stage_device_s = t.stage_read_B = t.stage_write_B = {};
   write_hdf5(dir_ / "x.h5", r);
-  const RunRecord b = read_hdf5(dir_ / "x.h5", true);
+  const RunRecord b = read_hdf5(dir_ / "x.h5", 1);
   ASSERT_EQ(b.trials.size(), 3u);
   EXPECT_TRUE(same(b.trials[0], r.trials[0]));
+}
+
+TEST_F(Hdf5, SomeFramesAreThoseOfTheWholeMotion) {
+  const RunRecord r = sample_run();
+  write_hdf5(dir_ / "x.h5", r);
+  const Replay some = read_replay(dir_ / "x.h5", 3);
+  EXPECT_EQ(some.frames, (std::vector<std::size_t>{0, 3, 4}));
+  const std::size_t row = 3 * r.header.vertices;
+  for (std::size_t k = 0; k < some.frames.size(); ++k) {
+    EXPECT_EQ(some.time_s[k], r.accuracy.time_s[some.frames[k]]);
+    for (std::size_t i = 0; i < row; ++i)
+      EXPECT_EQ(some.position[k * row + i], r.accuracy.position[some.frames[k] * row + i]);
+  }
+  EXPECT_EQ(some.groups.size(), r.replay.size());
+  RunWriter writer(dir_, r.header, Finish::Cbor);
+  writer.write_replay(r.replay);
+  writer.write_accuracy(r.accuracy);
+  EXPECT_EQ(read_replay(writer.finish({}, {}), 3).position, some.position);
 }
 
 TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
@@ -84,56 +102,35 @@ TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
   const std::string run = run_name(r.header);
   RunWriter writer(dir_, r.header);
   writer.write_trial(r.trials[0]);
-  const fs::path part = dir_ / (run + ".part");
-  for (const fs::path& litter : {part / "trial-1.raw.tmp.77", dir_ / (run + ".h5.tmp.77"),
+  for (const fs::path& litter : {dir_ / (run + ".part.tmp.77"), dir_ / (run + ".h5.tmp.77"),
                                  dir_ / (run + ".xdmf.tmp.77"), dir_ / "another__run.h5.tmp.77"})
     std::ofstream(litter) << "half";
   remove_leftovers(dir_, run);
-  EXPECT_FALSE(fs::exists(part / "trial-1.raw.tmp.77"));
-  EXPECT_FALSE(fs::exists(dir_ / (run + ".h5.tmp.77")));
-  EXPECT_FALSE(fs::exists(dir_ / (run + ".xdmf.tmp.77")));
+  for (const char* kind : {".part.tmp.77", ".h5.tmp.77", ".xdmf.tmp.77"}) EXPECT_FALSE(fs::exists(dir_ / (run + kind)));
   EXPECT_TRUE(fs::exists(dir_ / "another__run.h5.tmp.77")) << "another run's, maybe of a running process";
-  EXPECT_EQ(writer.recovered().trials.size(), 1u) << "a finished trial is no litter";
-  // Killed between the rename of the file and the removal of its part folder.
+  EXPECT_EQ(writer.recovered().trials.size(), 1u) << "a finished trial stays";
+  // Killed between the rename of the file and the removal of its part file.
   write_hdf5(dir_ / (run + ".h5"), r);
   remove_leftovers(dir_, run);
-  EXPECT_FALSE(fs::exists(part));
+  EXPECT_FALSE(fs::exists(dir_ / (run + ".part")));
   EXPECT_TRUE(fs::exists(dir_ / (run + ".h5")));
 }
 
-TEST_F(Hdf5, SameRunSameBytesAlsoThroughRawFiles) {
+TEST_F(Hdf5, SameRunSameBytesAlsoThroughCbor) {
   const RunRecord r = sample_run();
   write_hdf5(dir_ / "direct.h5", r);
   write_hdf5(dir_ / "again.h5", r);
   EXPECT_EQ(bytes(dir_ / "direct.h5"), bytes(dir_ / "again.h5"));
-  // What a device without HDF5 leaves behind, imported on the host.
-  RunWriter writer(dir_, r.header);
-  for (const TimedTrial& t : r.trials) writer.write_trial(t);
-  writer.write_accuracy(r.accuracy);
-  writer.write_replay(r.replay);
-  const fs::path part = dir_ / (run_name(r.header) + ".part"), copy = dir_ / "phone" / (run_name(r.header) + ".part");
-  const fs::path direct = [&] {
-    // finish() removes the part folder, so keep a copy with the outcome in it.
-    RunWriter other(dir_ / "other", r.header);
-    for (const TimedTrial& t : r.trials) other.write_trial(t);
-    other.write_accuracy(r.accuracy);
-    other.write_replay(r.replay);
-    return other.finish(r.outcome, r.summary);
-  }();
-  fs::create_directories(copy);
-  fs::copy(part, copy, fs::copy_options::recursive);
-  nlohmann::json outcome = {{"kind", "outcome"},
-                            {"status", r.outcome.status},
-                            {"class", r.outcome.klass},
-                            {"failed_frame", r.outcome.failed_frame},
-                            {"message", r.outcome.message},
-                            {"expect", r.outcome.expect},
-                            {"summary", r.summary}};
-  write_raw(copy / "outcome.raw", outcome, {});
-  const auto imported = import_raw(dir_ / "phone");
-  ASSERT_EQ(imported.size(), 1u);
-  EXPECT_EQ(bytes(imported[0]), bytes(direct));
-  EXPECT_EQ(bytes(direct), bytes(dir_ / "direct.h5"));
+  for (const Finish how : {Finish::Hdf5, Finish::Cbor}) {
+    const fs::path dir = dir_ / (how == Finish::Hdf5 ? "host" : "phone");
+    RunWriter writer(dir, r.header, how);
+    for (const TimedTrial& t : r.trials) writer.write_trial(t);
+    writer.write_accuracy(r.accuracy);
+    writer.write_replay(r.replay);
+    fs::path file = writer.finish(r.outcome, r.summary);
+    if (how == Finish::Cbor) file = import_runs(dir).at(0);
+    EXPECT_EQ(bytes(file), bytes(dir_ / "direct.h5"));
+  }
 }
 
 TEST_F(Hdf5, FaultsNameTheFile) {
@@ -162,7 +159,7 @@ TEST_F(Hdf5, LargeTrajectoriesAreWrittenQuickly) {
     r.accuracy.position.insert(r.accuracy.position.end(), frame.begin(), frame.end());
   }
   write_hdf5(dir_ / "x.h5", r);
-  EXPECT_EQ(read_hdf5(dir_ / "x.h5", true).accuracy.position, r.accuracy.position);
+  EXPECT_EQ(read_hdf5(dir_ / "x.h5", 1).accuracy.position, r.accuracy.position);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A run is executed and stored both ways: as a machine with HDF5 does, and as a device without it does, whose raw
-// files are then imported. The two files are the same, byte for byte.
+// A run is executed and stored both ways: as a machine with HDF5 does, and as a device without it does, whose
+// CBOR file is then imported. The two files are the same, byte for byte.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -82,17 +82,17 @@ TEST_P(Import, GivesTheFileOfADirectRun) {
   ASSERT_TRUE(r.outcome.status == "ok" || r.outcome.status == "unsupported") << r.outcome.message;
   EXPECT_EQ(r.replay.empty(), scene.colliders.empty() || r.outcome.status == "unsupported")
       << "the moving hand is stored too";
-  const fs::path direct = store(dir_ / "direct", r, Finish::Hdf5), device = store(dir_ / "device", r, Finish::Raw);
+  const fs::path direct = store(dir_ / "direct", r, Finish::Hdf5), device = store(dir_ / "device", r, Finish::Cbor);
   EXPECT_EQ(direct.extension(), ".h5");
-  EXPECT_EQ(device.extension(), ".part");
+  EXPECT_EQ(device.extension(), ".cbor");
   EXPECT_FALSE(fs::exists(dir_ / "device" / direct.filename())) << "the device wrote no HDF5";
-  const auto imported = import_raw(dir_ / "device");
+  const auto imported = import_runs(dir_ / "device");
   ASSERT_EQ(imported.size(), 1u);
   ASSERT_FALSE(bytes(direct).empty());
   EXPECT_EQ(bytes(imported[0]), bytes(direct));
   EXPECT_EQ(bytes(fs::path(imported[0]).replace_extension(".xdmf")),
             bytes(fs::path(direct).replace_extension(".xdmf")));
-  // Nothing is lost on the way through the raw files either: straight from memory comes the same file.
+  // Nothing is lost on the way through CBOR either: straight from memory comes the same file.
   write_hdf5(dir_ / "memory" / "x.h5", r);
   EXPECT_EQ(bytes(dir_ / "memory" / "x.h5"), bytes(direct));
 }
@@ -104,28 +104,24 @@ std::vector<Case> cases() {
   return all;
 }
 
-TEST(ImportArguments, ATrailingSlashIsTheSameFolder) {
-  const fs::path dir = fs::temp_directory_path() / ("clothbench-import-slash-" + std::to_string(getpid()));
-  fs::create_directories(dir);
+TEST(ImportArguments, AnUnfinishedRunIsRefused) {
+  const fs::path dir = fs::temp_directory_path() / ("clothbench-import-part-" + std::to_string(getpid()));
   RunHeader h;
   h.scene = "s";
   h.solver = "none";
   h.setting = "default";
   h.settings = h.plan = h.environment = nlohmann::json::object();
-  RunWriter writer(dir, h, Finish::Raw);
+  RunWriter writer(dir, h, Finish::Cbor);
+  EXPECT_TRUE(import_runs(dir).empty());
   const std::string part = (dir / "s__none__default.part").string();
   try {
-    import_raw(part);
-    ADD_FAILURE() << "a part folder that is not finished, named by itself, is passed over in silence";
+    import_runs(part);
+    ADD_FAILURE() << "a part file named by itself is passed over in silence";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
   }
-  writer.finish({}, {});
-  for (const char* end : {"", "/", "//", "/."}) {
-    fs::remove(dir / "s__none__default.h5");
-    EXPECT_EQ(import_raw(part + end), std::vector<fs::path>{dir / "s__none__default.h5"}) << "x.part" << end;
-    EXPECT_TRUE(fs::exists(dir / "s__none__default.h5")) << "x.part" << end;
-  }
+  EXPECT_EQ(import_runs(writer.finish({}, {})), std::vector<fs::path>{dir / "s__none__default.h5"});
+  EXPECT_TRUE(fs::exists(dir / "s__none__default.h5"));
   fs::remove_all(dir);
 }
 

@@ -1,4 +1,4 @@
-// usage: make_sample FOLDER [START_UNIX_S]: one finished run for the readers' tests; with a time the raw files that a
+// usage: make_sample FOLDER [START_UNIX_S]: one finished run for the readers' tests; with a time the CBOR file that a
 // device would have left, of three trials of 0.4 s, half a second apart, the first 0.2 s after that time.
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
       t.start_unix_s = std::atof(argv[2]) + 0.2 + 0.5 * t.index;
       t.end_unix_s = t.start_unix_s + 0.4;
     }
-  RunWriter writer(argv[1], r.header, argc == 3 ? Finish::Raw : best_finish());
+  RunWriter writer(argv[1], r.header, argc == 3 ? Finish::Cbor : best_finish());
   for (const TimedTrial& t : r.trials) writer.write_trial(t);
   writer.write_accuracy(r.accuracy);
   writer.write_replay(r.replay);

@@ -1,6 +1,4 @@
 // A file whose positions are not the motion that its outcome is of is found, whatever its summary says.
-#include "results/trajectory.hpp"
-
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -61,7 +59,7 @@ void expect_named(const std::string& fault, const std::string& what) {
 
 TEST_F(Trajectory, AWholeFileHasNoFault) {
   EXPECT_EQ(trajectory_fault(file()), "");
-  EXPECT_EQ(read_hdf5_trajectory_sha256(file()), trajectory_sha256(run_.accuracy));
+  EXPECT_EQ(read_hdf5(file(), 0).outcome.trajectory_sha256, trajectory_sha256(run_.accuracy));
   EXPECT_EQ(trajectory_sha256(run_.accuracy).size(), 64u);
 }
 
@@ -69,7 +67,7 @@ TEST_F(Trajectory, ANumberThatIsNoneIsFound) {
   for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     std::vector<float> x = run_.accuracy.position;
     x[3 * (6 * 2 + 4) + 1] = wrong;
-    overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+    overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
     expect_named(trajectory_fault(file()), "vertex 4 in frame 2 is not finite");
   }
 }
@@ -87,11 +85,11 @@ TEST_F(Trajectory, ANumberThatIsNoneIsFoundAlsoWithItsHash) {
 TEST_F(Trajectory, AnotherMotionIsFound) {
   std::vector<float> x = run_.accuracy.position;
   x[5] += 1e-6f;
-  overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+  overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
   expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
   run_.outcome.status = "diverged";
   write();
-  overwrite("VTKHDF/Points", H5T_NATIVE_FLOAT, x);
+  overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
   expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
 }
 
@@ -106,7 +104,7 @@ TEST_F(Trajectory, OtherTimesAreFound) {
 }
 
 TEST_F(Trajectory, MissingFramesAreFound) {
-  cut("VTKHDF/Points", H5T_IEEE_F32LE, 2 * 6, 3);
+  cut("trajectory/position", H5T_IEEE_F32LE, 2 * 6, 3);
   expect_named(trajectory_fault(file()), "expected 90 coordinates of 5 frames with 6 vertices; found 36");
   cut("metrics/time_s", H5T_IEEE_F64LE, 2, 1);
   expect_named(trajectory_fault(file()), "2 frames have positions, 5 have");
@@ -121,8 +119,8 @@ TEST_F(Trajectory, NoMotionAtAllIsFoundWhereThereMustBeOne) {
   EXPECT_EQ(trajectory_fault(file()), "");
 }
 
-TEST_F(Trajectory, APartFolderIsLookedAtToo) {
-  RunWriter writer(dir_, run_.header, Finish::Raw);
+TEST_F(Trajectory, ACborFileIsLookedAtToo) {
+  RunWriter writer(dir_, run_.header, Finish::Cbor);
   run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
   writer.write_accuracy(run_.accuracy);
   expect_named(trajectory_fault(writer.finish({}, {})), "is not finite");

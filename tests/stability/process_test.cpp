@@ -40,7 +40,7 @@ class Process : public WithFolder {
   }
   RunRecord file(const std::string& solver) const {
     const std::string run = "fall-" + solver + "__" + solver + "__default";
-    return read_run_summary(fs::exists(dir_ / (run + ".h5")) ? dir_ / (run + ".h5") : dir_ / (run + ".part"));
+    return read_run_summary(fs::exists(dir_ / (run + ".h5")) ? dir_ / (run + ".h5") : dir_ / (run + ".cbor"));
   }
 
   std::unique_ptr<RunWorker> worker_;

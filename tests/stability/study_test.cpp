@@ -97,7 +97,7 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   EXPECT_EQ(again.failed, 1);
   std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part")
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor")
       runs.push_back(read_run_summary(entry.path()));
   ASSERT_EQ(runs.size(), 2u);
   for (const RunRecord& c : runs) EXPECT_TRUE(is_stability(c));
@@ -147,7 +147,7 @@ TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
   execute_stability_runs(load_study((dir_ / "maps.json").string()), many);
   std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") {
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor") {
       runs.push_back(read_run_summary(entry.path()));
       runs.back().file = entry.path().string();
     }

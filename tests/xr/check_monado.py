@@ -44,7 +44,7 @@ def check(scene, top, environment):
     assert all("VALID_DEBUG" in m or "VALID_INFO" in m for m in messages), "\n".join(messages)
     with h5py.File(next((top / "live").glob("*.h5"))) as f:
         live = f["xr/final_position_m"][:]
-        assert f["xr/step_s"].shape == (FRAMES,), f["xr/step_s"].shape
+        assert f["timing/frame_wall_s"].shape == (1, FRAMES), f["timing/frame_wall_s"].shape
     subprocess.run([command, "run", str(top / "live/scenario/scenario.json"), "--trials", "0", "--out", str(top / "replay")], check=True,
                    env=environment, stdout=subprocess.DEVNULL)
     with h5py.File(next((top / "replay").glob("*.h5"))) as f:

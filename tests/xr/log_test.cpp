@@ -33,16 +33,6 @@ TEST(FrameLog, RatesAreTheirOwnKindEach) {
   EXPECT_NEAR(s.at("xr_share_more_periods"), 0.1, 1e-12);
 }
 
-TEST(FrameLog, ACounterThatComesLateIsMissingBefore) {
-  FrameLog log = log_of({10, 10});
-  log.add_counter("/a/b", "ms", 3);  // of the third frame
-  const StoredGroup g = log.group();
-  const auto& a = g.arrays.back();
-  EXPECT_EQ(a.name, "counter.a.b");
-  ASSERT_EQ(a.values.size(), 3u);
-  EXPECT_TRUE(std::isnan(a.values[1]));
-}
-
 /// A point seen by an eye lies where the field of view's tangents say.
 TEST(Views, AnEyesClipSpace) {
   using render::operator*;

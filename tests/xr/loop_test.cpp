@@ -32,27 +32,13 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
     }
     EXPECT_NEAR(row.predicted_period_s, 1 / 72.0, 1e-9);
     EXPECT_NEAR(row.predicted_display_s, static_cast<double>(k) * row.predicted_period_s, 1e-9);
-    for (const double s :
-         {row.wait_s, row.begin_s, row.input_s, row.settle_s, row.step_s, row.step_device_s, row.paint_s, row.end_s})
-      EXPECT_GE(s, 0) << k;
-    EXPECT_GE(row.frame_s, row.step_s + row.paint_s);
-    EXPECT_EQ(row.shown, 1);
+    EXPECT_GE(row.frame_s, r.log.trial().frame_wall_s.at(k));
     EXPECT_EQ(row.right_seen, 1);
     EXPECT_TRUE(std::isnan(row.left_seen)) << "the scene has no left hand";
   }
   EXPECT_NEAR(r.summary.at("xr_fps_mean"), 72, 1e-4);
   EXPECT_EQ(r.summary.at("xr_share_1_period"), 1);
-  const StoredGroup g = r.log.group();
-  int counters = 0;
-  for (const StoredArray& a : g.arrays) {
-    EXPECT_EQ(a.values.size(), 30u) << a.name;
-    if (a.name == "counter.perfmetrics_meta.app.gpu_frametime") {
-      ++counters;
-      EXPECT_EQ(a.units, "ms");
-      EXPECT_EQ(a.values.back(), 4.5);
-    }
-  }
-  EXPECT_EQ(counters, 1);
+  for (const StoredArray& a : r.log.group().arrays) EXPECT_EQ(a.values.size(), 30u) << a.name;
 }
 
 TEST_F(Sessions, TheDisplayPacesInRealTime) {
@@ -60,14 +46,11 @@ TEST_F(Sessions, TheDisplayPacesInRealTime) {
   const LoopResult r = run(options("paper/capsule-sweep", 24), "clock=real,blind=1");
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_GE(wall, 23 / 72.0);
-  double waited = 0;
   for (std::size_t k = 1; k < r.log.rows().size(); ++k) {
     const double interval = r.log.rows()[k].predicted_display_s - r.log.rows()[k - 1].predicted_display_s;
     EXPECT_NEAR(interval * 72, r.log.periods()[k], 1e-6) << "whole periods alone, however late a frame is";
     EXPECT_GE(r.log.periods()[k], 1);
-    waited += r.log.rows()[k].wait_s;
   }
-  EXPECT_GT(waited, 0);
 }
 
 /// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
@@ -91,8 +74,7 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   LoopOptions o = options("paper/capsule-sweep", 12);
   o.passthrough = false;
-  const LoopResult r =
-      run(o, "clock=virtual,hands=0,capsules=0,mesh=0,room=0,passthrough=0,rate=0,levels=0,metrics=0,look=10");
+  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,mesh=0,passthrough=0,rate=0,levels=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_EQ(reported_["passthrough_frames"], 0);
@@ -128,6 +110,13 @@ TEST_F(Sessions, AMeshMayBeDrawnByNumber) {
   o.overrides = {R"(cloth.mesh={"drawn":{"seed":3,"size_m":[1,1],"cells":8}})"};
   const LoopResult r = run(o, "clock=virtual,look=6");
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.02);
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
+TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
+  const LoopOptions o = options("paper/desk-flat-low", 8);
+  const LoopResult r = run(o, "clock=virtual,blind=1");
+  EXPECT_EQ(load_scene(r.scenario.string()).assets, "procedural");
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 

@@ -19,6 +19,7 @@ struct Outcome {
   std::string message;
   /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" for a scene without it.
   std::string expect = {};
+  std::string trajectory_sha256 = {};  ///< of the motion that this is the outcome of; set by the store
 };
 
 struct StageRecord {
@@ -29,8 +30,7 @@ struct StageRecord {
   std::string bytes = {};
 };
 
-/// Facts of a run that are known before its first frame. Serialised as JSON (`to_json`) in raw files and as attributes
-/// in HDF5.
+/// Facts of a run that are known before its first frame. Serialised as JSON (results/part_file.hpp).
 struct RunHeader {
   std::string scene, solver, setting;  ///< setting: short name such as "default" or "readback=blocking"
   nlohmann::json settings;             ///< with defaults filled in

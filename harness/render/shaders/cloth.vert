@@ -4,15 +4,13 @@
 // indices, so that every vertex knows its triangle and one with a corner that is not finite can be left out whole.
 layout(push_constant) uniform Constants { Drawn d; };
 layout(std430, set = 0, binding = 0) readonly buffer Positions { vec4 position[]; };
-layout(std430, set = 0, binding = 1) readonly buffer Values { float value[]; };
 // Of a mesh: 3 words a corner, its vertex and its place on the checker (bits of floats). Then for each vertex where its triangles begin,
 // and the end of the last; then these triangles.
-layout(std430, set = 0, binding = 5) readonly buffer Mesh { uint mesh[]; };
+layout(std430, set = 0, binding = 3) readonly buffer Mesh { uint mesh[]; };
 layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec2 out_square;
-layout(location = 3) out float out_value;
-layout(location = 4) flat out int out_look;
+layout(location = 3) flat out int out_look;
 
 // The two triangles of a cell, as clothbench::triangles(const Cloth&) has them.
 const ivec2 kCorner[6] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 0), ivec2(1, 1), ivec2(0, 1));
@@ -52,7 +50,6 @@ void draw_mesh() {
   const int triangle = gl_VertexIndex / 3, corner = gl_VertexIndex % 3, triangles = int(d.sheet.x);
   out_position = out_normal = vec3(0);
   out_square = vec2(0);
-  out_value = 0;
   out_look = LOOK_SMOOTH;
   for (int k = 0; k < 3; ++k)
     if (!finite(at_vertex(vertex_of(triangle, k)))) {
@@ -64,7 +61,6 @@ void draw_mesh() {
   out_normal = normal_of(v, triangles, int(d.sheet.z));
   out_position = at_vertex(v) - followed() + d.origin.xyz;
   out_square = vec2(uintBitsToFloat(mesh[word + 1]), uintBitsToFloat(mesh[word + 2]));
-  if (d.eye.w > 0) out_value = value[v];
   gl_Position = mat4(d.to_clip[0], d.to_clip[1], d.to_clip[2], d.to_clip[3]) * vec4(out_position, 1);
 }
 
@@ -78,7 +74,6 @@ void main() {
   const ivec2 base = ivec2(cell % cells.x, cell / cells.x), g = base + kCorner[corner];
   out_position = out_normal = vec3(0);
   out_square = vec2(0);
-  out_value = 0;
   out_look = LOOK_SMOOTH;
   for (int k = corner / 3 * 3; k < corner / 3 * 3 + 3; ++k)
     if (!finite(at(base + kCorner[k]))) {
@@ -90,6 +85,5 @@ void main() {
   if (finite(normal)) out_normal = normal / max(length(normal), 1e-30);
   out_position = at(g) - followed() + d.origin.xyz;
   out_square = vec2(g) / vec2(cells) * d.sheet.zw;
-  if (d.eye.w > 0) out_value = value[vertex_of(g)];
   gl_Position = mat4(d.to_clip[0], d.to_clip[1], d.to_clip[2], d.to_clip[3]) * vec4(out_position, 1);
 }

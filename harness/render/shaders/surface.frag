@@ -2,18 +2,16 @@
 #include "../render_shared.h"
 layout(constant_id = 0) const bool kCloth = true;
 layout(push_constant) uniform Constants { Drawn d; };
-layout(std430, set = 0, binding = 4) readonly buffer Colours { vec4 colour[]; };  // linear, for values from 0 to 1
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec2 in_square;
-layout(location = 3) in float in_value;
-layout(location = 4) flat in int in_look;
+layout(location = 3) flat in int in_look;
 layout(location = 0) out vec4 out_colour;
 
 // sRGB, as they are to look; orange and blue are distinct for colour-blind readers too.
 const vec3 kFront[2] = vec3[](vec3(0.80, 0.42, 0.13), vec3(0.97, 0.80, 0.58));
 const vec3 kBack[2] = vec3[](vec3(0.16, 0.41, 0.69), vec3(0.64, 0.79, 0.93));
-const vec3 kCollider = vec3(0.72, 0.71, 0.68), kMark = vec3(0.20, 0.20, 0.22), kNoValue = vec3(0.45, 0.45, 0.45);
+const vec3 kCollider = vec3(0.72, 0.71, 0.68), kMark = vec3(0.20, 0.20, 0.22);
 
 vec3 linear(vec3 srgb) { return pow(srgb, vec3(2.2)); }
 
@@ -25,18 +23,9 @@ float checker(vec2 p) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
-vec3 value_colour(float t) {
-  if (!(t >= 0)) return linear(kNoValue);
-  const float at = min(t, 1.0) * float(colour.length() - 1);
-  const int k = min(int(at), colour.length() - 2);
-  return mix(colour[k].rgb, colour[k + 1].rgb, at - float(k));
-}
-
 vec3 surface_colour() {
   if (!kCloth) return linear(in_look == LOOK_MARK ? kMark : kCollider);
   const float odd = checker(in_square);
-  // Faint squares, so that the cloth's shape is seen.
-  if (d.eye.w > 0) return value_colour(in_value) * (1 - 0.07 * odd);
   return gl_FrontFacing ? mix(linear(kFront[0]), linear(kFront[1]), odd) : mix(linear(kBack[0]), linear(kBack[1]), odd);
 }
 
@@ -53,7 +42,5 @@ void main() {
   const vec3 left = normalize(cross(vec3(0, 1, 0), towards) + vec3(1e-6, 0, 0));
   const vec3 light = normalize(0.55 * towards - 0.45 * left + vec3(0, 0.7, 0));
   const float direct = max(dot(n, light), 0), sky = 0.5 + 0.5 * n.y;
-  // Values are read off their colours, so those are shaded less.
-  const float shade = kCloth && d.eye.w > 0 ? 0.76 + 0.20 * direct + 0.04 * sky : 0.22 + 0.66 * direct + 0.14 * sky;
-  out_colour = vec4(surface_colour() * shade, 1);
+  out_colour = vec4(surface_colour() * (0.22 + 0.66 * direct + 0.14 * sky), 1);
 }

@@ -23,13 +23,6 @@ XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType,
   return list<XrEnvironmentBlendMode>({XR_ENVIRONMENT_BLEND_MODE_OPAQUE}, capacity, count, out);
 }
 
-XrResult XRAPI_CALL reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,
-                                     XrReferenceSpaceType* out) {
-  return list<XrReferenceSpaceType>(
-      {XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE}, capacity, count,
-      out);
-}
-
 XrResult XRAPI_CALL configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type, std::uint32_t capacity,
                                         std::uint32_t* count, XrViewConfigurationView* out) {
   if (type != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO) return XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
@@ -164,7 +157,7 @@ XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrView
   if (base == r.spaces.end()) return r.fault("xrLocateViews: no such space", XR_ERROR_HANDLE_INVALID);
   state->viewStateFlags = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
   for (int k = 0; k < 2; ++k) {
-    out[k].pose = as_xr(inverse(r.where(*base->second)) * Pose{{}, {k == 0 ? -0.0315 : 0.0315, 0, 0}});
+    out[k].pose = as_xr(inverse(base->second) * Pose{{}, {k == 0 ? -0.0315 : 0.0315, 0, 0}});
     const float outward = 0.94f, inward = 0.7f;  // rad
     out[k].fov = {k == 0 ? -outward : -inward, k == 0 ? inward : outward, 0.83f, -0.84f};
   }
@@ -207,34 +200,12 @@ XrResult XRAPI_CALL destroy_passthrough_layer(XrPassthroughLayerFB) {
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL counter_paths(XrInstance, std::uint32_t capacity, std::uint32_t* count, XrPath* out) {
-  Runtime& r = *runtime();
-  return list<XrPath>(
-      {r.path("/perfmetrics_meta/app/gpu_frametime"), r.path("/perfmetrics_meta/compositor/dropped_frame_count")},
-      capacity, count, out);
-}
-XrResult XRAPI_CALL set_metrics(XrSession, const clothbench::xr::MetricsState* s) {
-  runtime()->metrics = s->enabled == XR_TRUE;
-  return XR_SUCCESS;
-}
-XrResult XRAPI_CALL query_counter(XrSession, XrPath path, clothbench::xr::MetricsCounter* c) {
-  Runtime& r = *runtime();
-  if (!r.metrics) return r.fault("a counter was asked for while they are off", XR_ERROR_VALIDATION_FAILURE);
-  const bool time = r.paths.at(path).ends_with("gpu_frametime");
-  c->flags = time ? clothbench::xr::kCounterFloatValid : clothbench::xr::kCounterUintValid;
-  c->unit = time ? 2 : 0;
-  c->float_value = 4.5f;
-  c->uint_value = static_cast<std::uint32_t>(r.ended);
-  return XR_SUCCESS;
-}
-
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
 #define NULL_XR(text, function) \
   if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
   NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
-  NULL_XR("xrEnumerateReferenceSpaces", reference_spaces)
   NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
   NULL_XR("xrBeginSession", begin_session)
   NULL_XR("xrRequestExitSession", request_exit)
@@ -250,9 +221,6 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrDestroyPassthroughFB", destroy_passthrough)
   NULL_XR("xrCreatePassthroughLayerFB", create_passthrough_layer)
   NULL_XR("xrDestroyPassthroughLayerFB", destroy_passthrough_layer)
-  NULL_XR("xrEnumeratePerformanceMetricsCounterPathsMETA", counter_paths)
-  NULL_XR("xrSetPerformanceMetricsStateMETA", set_metrics)
-  NULL_XR("xrQueryPerformanceMetricsCounterMETA", query_counter)
   return nullptr;
 }
 

@@ -19,18 +19,11 @@ std::unique_ptr<Runtime>& held() {
 struct Offer {
   const char *extension, *key;
 };
-constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
-                             {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
-                             {XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME, "levels"},
-                             {XR_FB_PASSTHROUGH_EXTENSION_NAME, "passthrough"},
-                             {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},
-                             {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
-                             {XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME, "mesh"},
-                             {cb::kSpatialEntity, "room"},
-                             {cb::kSpatialEntityQuery, "room"},
-                             {cb::kSpatialEntityMesh, "room"},
-                             {cb::kPerformanceMetrics, "metrics"},
-                             {"XR_KHR_android_create_instance", "android"}};
+constexpr Offer kOffers[] = {
+    {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},       {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
+    {XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME, "levels"}, {XR_FB_PASSTHROUGH_EXTENSION_NAME, "passthrough"},
+    {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},         {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
+    {XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME, "mesh"},      {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
                                          XrExtensionProperties* out) {
@@ -124,19 +117,6 @@ XrResult XRAPI_CALL system_properties(XrInstance, XrSystemId, XrSystemProperties
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL string_to_path(XrInstance, const char* text, XrPath* path) {
-  *path = runtime()->path(text);
-  return XR_SUCCESS;
-}
-
-XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t capacity, std::uint32_t* count, char* text) {
-  const auto found = runtime()->paths.find(path);
-  if (found == runtime()->paths.end()) return XR_ERROR_PATH_INVALID;
-  *count = static_cast<std::uint32_t>(found->second.size()) + 1;
-  if (capacity >= *count) std::strcpy(text, found->second.c_str());
-  return XR_SUCCESS;
-}
-
 XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrVoidFunction* out) {
   const std::map<std::string, PFN_xrVoidFunction> own = {
 #define NULL_XR(name, function) {name, reinterpret_cast<PFN_xrVoidFunction>(function)}
@@ -148,9 +128,7 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrV
       NULL_XR("xrPollEvent", poll_event),
       NULL_XR("xrResultToString", result_to_string),
       NULL_XR("xrGetSystem", get_system),
-      NULL_XR("xrGetSystemProperties", system_properties),
-      NULL_XR("xrStringToPath", string_to_path),
-      NULL_XR("xrPathToString", path_to_string)};
+      NULL_XR("xrGetSystemProperties", system_properties)};
   const auto found = own.find(name);
   *out = found != own.end() ? found->second : nullptr;
   for (const auto find : {frame_function, input_function, graphics_function})
@@ -195,21 +173,6 @@ void Runtime::go(XrSessionState to) {
   changed.session = handle<XrSession>(2);
   changed.state = to;
   events.push_back(event);
-}
-
-XrPath Runtime::path(const std::string& text) {
-  for (const auto& [number, known] : paths)
-    if (known == text) return number;
-  const XrPath next = paths.size() + 1;
-  paths[next] = text;
-  return next;
-}
-
-Pose Runtime::where(const Space& s) const {
-  const Pose stage{{}, {0, -kEyeHeight_m, 0}};
-  if (s.kind == Space::Kind::Aim) return stage * aim_at(frames);
-  if (s.kind == Space::Kind::Room) return stage * room_pose();
-  return s.pose;
 }
 
 XrPosef as_xr(const Pose& p) {

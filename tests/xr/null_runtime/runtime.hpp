@@ -15,19 +15,13 @@
 /// what it is asked. $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
 ///   clock=virtual  time is that of the frames alone; else the machine's
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
-///   hands|capsules|mesh|room|passthrough|rate|metrics=0   leaves an extension out
+///   hands|capsules|mesh|passthrough|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
 ///   blind=1        asks for no pictures, which take lavapipe most of the time
 ///   quit=30        the user takes the headset off at that frame
 ///   look=25        the pictures of that frame are read and judged
 ///   log=FILE       what happened, as JSON, when the instance ends
 namespace null_xr {
-
-struct Space {
-  enum class Kind { Reference, Aim, Room } kind = Kind::Reference;
-  Pose pose;           ///< in the world (LOCAL), of a Reference
-  bool right = false;  ///< of an Aim
-};
 
 struct Swapchain {
   VkExtent2D extent{};
@@ -73,18 +67,12 @@ struct Runtime {
   std::set<std::string> levels;
   int passthrough_frames = 0, projection_frames = 0;
   std::array<double, 2> drawn{-1, -1};
-  bool passthrough = false, metrics = false, android = false;
+  bool passthrough = false, android = false;
 
-  std::map<std::uint64_t, std::unique_ptr<Space>> spaces;
+  std::map<std::uint64_t, Pose> spaces;  ///< in LOCAL
   std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;
   std::uint64_t handles = 1000;
-  std::map<XrPath, std::string> paths;
-  std::map<std::uint64_t, std::vector<std::string>> bindings;  ///< of the touch controller, by action
-  int synced_frame = 0;
   int trackers = 0;
-
-  XrPath path(const std::string&);
-  Pose where(const Space&) const;  ///< in the world, now
 };
 
 Runtime* runtime();

@@ -36,8 +36,6 @@ struct Pose {
 inline Pose operator*(const Pose& a, const Pose& b) { return {a.q * b.q, a.p + turned(a.q, b.p)}; }
 inline Pose inverse(const Pose& a) { return {conjugate(a.q), turned(conjugate(a.q), -1 * a.p)}; }
 
-inline constexpr double kEyeHeight_m = 1.6;  ///< of LOCAL's origin over the floor
-
 /// Palm, in LOCAL: from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second,
 /// through a plane 60 cm before the eyes.
 inline V palm_at(bool right, double t) {
@@ -75,8 +73,6 @@ inline std::array<std::array<int, 2>, 19> capsule_joints() {
   return c;
 }
 
-/// A table of 1.2 x 0.75 x 0.7 m and a floor, above the floor's origin (STAGE).
-inline constexpr V kTableLow{-0.6, 0, -1.15}, kTableHigh{0.6, 0.75, -0.45};
 struct Mesh {
   std::vector<V> vertices;
   std::vector<unsigned> indices;
@@ -92,42 +88,4 @@ inline void add_face(Mesh& m, V corner, V along, V up, int n, int rows) {
       for (const unsigned v : {a, b, c + 1, a, c + 1, c}) m.indices.push_back(v);
     }
 }
-inline Mesh room() {
-  Mesh m;
-  const V l = kTableLow, h = kTableHigh, s = h - l;
-  add_face(m, {l.x, h.y, h.z}, {s.x, 0, 0}, {0, 0, -s.z}, 16, 10);  // top, seen from above
-  add_face(m, {l.x, l.y, h.z}, {s.x, 0, 0}, {0, s.y, 0}, 8, 6);     // towards the user
-  add_face(m, {h.x, l.y, h.z}, {0, 0, -s.z}, {0, s.y, 0}, 5, 6);
-  add_face(m, {h.x, l.y, l.z}, {-s.x, 0, 0}, {0, s.y, 0}, 8, 6);
-  add_face(m, {l.x, l.y, l.z}, {0, 0, s.z}, {0, s.y, 0}, 5, 6);
-  add_face(m, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, 12, 12);  // floor
-  return m;
-}
-/// Where the mesh's own frame is, in STAGE.
-inline Pose room_pose() { return {{0, std::sqrt(0.5), 0, std::sqrt(0.5)}, {0.4, 0.1, -0.2}}; }
-
-/// Frames at which A is down, and at which the trigger is.
-inline bool shows_room(int frame) { return frame >= 10 && frame < 13; }
-inline bool pulls(int frame) { return frame >= 20 && frame < 44 && frame % 4 < 2; }
-/// What the right controller points at, in STAGE: corners of the table's top, its middle, and the face towards the
-/// user.
-inline V target(int frame) {
-  const V l = kTableLow, h = kTableHigh;
-  const V points[6] = {{l.x + 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, h.z - 0.05}, {h.x - 0.05, h.y, l.z + 0.05},
-                       {l.x + 0.05, h.y, l.z + 0.05}, {0, h.y, (l.z + h.z) / 2},     {0.1, h.y - 0.1, h.z}};
-  const int k = frame < 20 ? 0 : (frame - 20) / 4;
-  return points[k > 5 ? 5 : k];
-}
-/// The right controller's aim, in STAGE: 1.4 m above the floor.
-inline Pose aim_at(int frame) {
-  const V from{0.2, 1.4, 0.1};
-  V d = target(frame) - from;
-  d = (1 / std::sqrt(dot(d, d))) * d;
-  // The turn that takes -z to d.
-  const V z{0, 0, -1}, axis = cross(z, d);
-  Q q{axis.x, axis.y, axis.z, 1 + dot(z, d)};
-  const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  return {{q.x / n, q.y / n, q.z / n, q.w / n}, from};
-}
-
 }  // namespace null_xr

@@ -1,0 +1,310 @@
+#include "render/pictures.hpp"
+
+#include <fmt/format.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+#include "base/child_process.hpp"
+#include "base/files.hpp"
+#include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
+#include "results/replay.hpp"
+#include "results/store.hpp"
+
+namespace clothbench::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+Motion motion_of(const Scene& scene, const RunHeader& header, const Outcome& outcome) {
+  return {scene, run_name(header), outcome.status == "ok" ? "" : outcome.status, {}, {}};
+}
+
+/// Result files of a folder whose names have `wanted` in them. Throws Error where that leaves it open which are meant.
+std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted) {
+  std::vector<fs::path> all, found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (is_run(entry.path())) all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  for (const fs::path& p : all)
+    if (p.stem().string().find(wanted) != std::string::npos) found.push_back(p);
+  if (!found.empty() && (!wanted.empty() || found.size() == 1)) return found;
+  std::string names;
+  for (const fs::path& p : all) names += "\n  " + p.stem().string();
+  if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .cbor, .part) in it");
+  if (found.empty()) throw Error(folder.string() + ": no run has \"" + wanted + "\" in its name; there are" + names);
+  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; choose one with --run TEXT:" + names);
+}
+
+double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
+
+std::uint32_t middle_vertex(const Cloth& c) {
+  return static_cast<std::uint32_t>((c.rows / 2) * c.columns + c.columns / 2);
+}
+
+bool is_free(const Scene& s) { return s.colliders.empty() && s.grips.vertices.empty() && s.pins.vertices.empty(); }
+
+/// An MP4 of pictures of one size by the program ffmpeg, which reads them from a pipe.
+class Movie {
+ public:
+  static bool possible() {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path != nullptr ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');)
+      if (access((fs::path(folder.empty() ? "." : folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
+    return false;
+  }
+
+  // H.264 with colours of a quarter of the resolution, which every player shows, needs even sizes.
+  Movie(fs::path file, int width, int height, double frames_per_s)
+      : file_(std::move(file)),
+        log_(file_.string() + ".log"),
+        ffmpeg_({"ffmpeg",      "-loglevel",
+                 "error",       "-y",
+                 "-f",          "rawvideo",
+                 "-pix_fmt",    "rgb24",
+                 "-s",          fmt::format("{}x{}", width, height),
+                 "-r",          fmt::format("{:.6g}", frames_per_s),
+                 "-i",          "pipe:0",
+                 "-vf",         "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                 "-c:v",        "libx264",
+                 "-crf",        "18",
+                 "-pix_fmt",    "yuv420p",
+                 "-movflags",   "+faststart",
+                 "-f",          "mp4",
+                 file_.string()},
+                {.socket = true, .out = "/dev/null", .err = log_}) {}
+
+  void add(const Picture& picture) {
+    if (ffmpeg_.write({reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size()})) return;
+    finish();  // throws with what ffmpeg printed, if it printed anything
+    throw Error(file_.string() + ": ffmpeg ended too early");
+  }
+
+  /// Waits until the file is complete.
+  void finish() {
+    ffmpeg_.close_socket();
+    const ChildEnd end = ffmpeg_.wait();
+    const std::string printed = content_of(log_);
+    std::error_code ignored;
+    fs::remove(log_, ignored);
+    if (end.how != ChildEnd::How::Exited || end.code != 0) throw Error(file_.string() + ": ffmpeg failed: " + printed);
+  }
+
+ private:
+  fs::path file_, log_;
+  ChildProcess ffmpeg_;
+};
+
+}  // namespace
+
+std::vector<double> Motion::at(std::size_t frame) const {
+  const std::size_t count = 3 * scene.cloth.vertex_count();
+  const auto from = position.begin() + static_cast<std::ptrdiff_t>(frame * count);
+  return {from, from + static_cast<std::ptrdiff_t>(count)};
+}
+
+bool is_run(const fs::path& p) {
+  return p.extension() == ".h5" || p.extension() == ".cbor" || p.extension() == ".part";
+}
+
+Motion stored_motion(const fs::path& path) {
+  const RunRecord record = read_run_summary(path);
+  StoredMotion stored = read_motion(path);
+  Motion m = motion_of(stored.scene, record.header, record.outcome);
+  m.time_s = std::move(stored.time_s);
+  m.position = std::move(stored.position);
+  return m;
+}
+
+Motion run_motion(const RunSpec& spec, const DeviceOptions& device) {
+  SolverRun run(spec, device, "render");
+  if (!run.alive())
+    throw Error(spec.scene->source + ": " + spec.entry->info.name + ": " + run.outcome().status + ": " +
+                run.outcome().message);
+  TrialRules rules;
+  rules.accuracy_duration_s = spec.scene->time.duration_s;
+  AccuracyPass pass = run.run_accuracy(rules);
+  Motion m = motion_of(*spec.scene, run.header(), run.outcome());
+  m.time_s = std::move(pass.time_s);
+  m.position = std::move(pass.position);
+  return m;
+}
+
+std::vector<Motion> motions_of(const std::string& file, const std::function<Motion(const std::string&)>& run,
+                               const std::string& wanted) {
+  std::vector<Motion> out;
+  const fs::path path = file;
+  if (fs::is_directory(path)) {
+    for (const fs::path& p : runs_in(path, wanted)) out.push_back(stored_motion(p));
+  } else {
+    out.push_back(is_run(path) ? stored_motion(path) : run(file));
+  }
+  for (const Motion& m : out)
+    if (m.frames() == 0)
+      throw Error(file + ": " + m.name + " has no trajectory" + (m.outcome.empty() ? "" : " (" + m.outcome + ")") +
+                  "; a scenario can be run directly: clothbench render SCENE");
+  return out;
+}
+
+Framing framing_of(const Motion& m) {
+  constexpr double kSeenBeside = 0.12;  // of the sheet's size: colliders so near the cloth are in the picture,
+  constexpr double kDrawnBeside = 0.5;  // and so far are drawn
+  constexpr std::size_t kSamples = 48;  // of the frames
+  Framing f;
+  const Cloth& cloth = m.scene.cloth;
+  const double size = std::max({cloth.width_m, cloth.height_m, 1e-9});
+  const std::vector<double> start = m.at(0);
+  Bounds place = Bounds::none();
+  for (std::size_t v = 0; v < cloth.vertex_count(); ++v)
+    if (const Vec3 p = vertex_at(start, v); std::isfinite(p[0] + p[1] + p[2])) place.add(p);
+  if (place.empty()) place.add({0, 0, 0});
+  Bounds zone = place, seen = Bounds::none();
+  zone.grow(size);
+  std::vector<std::size_t> frames;
+  for (std::size_t k = 0; k < std::min(kSamples, m.frames()); ++k)
+    frames.push_back(k * (m.frames() - 1) / std::max<std::size_t>(1, std::min(kSamples, m.frames()) - 1));
+  const std::uint32_t middle = middle_vertex(cloth);
+  if (is_free(m.scene))
+    for (const std::size_t k : frames)
+      f.follows = f.follows || largest(minus(vertex_at(m.at(k), middle), vertex_at(start, middle))) > size;
+  const auto add = [&](const Vec3& p) { f.points.insert(f.points.end(), p.begin(), p.end()); };
+  for (const std::size_t k : frames) {
+    const std::vector<double> x = m.at(k);
+    const Vec3 moved = f.follows ? minus(vertex_at(x, middle), vertex_at(start, middle)) : Vec3{};
+    for (std::size_t v = 0; v < cloth.vertex_count(); ++v)
+      if (const Vec3 p = minus(vertex_at(x, v), moved); zone.holds(p)) {
+        add(p);
+        seen.add(p);
+      }
+  }
+  if (seen.empty()) {
+    seen = place;
+    add(place.low);
+    add(place.high);
+  }
+  f.near = seen;
+  f.near.grow(kDrawnBeside * size);
+  f.origin_m = scaled(0.5, plus(seen.low, seen.high));
+  Bounds beside = seen;
+  beside.grow(kSeenBeside * size);
+  if (m.scene.motion.empty()) frames.resize(1);  // static colliders are the same in every frame
+  for (const std::size_t k : frames)
+    for (const Vec3& p : surfaces(m.scene, static_cast<int>(k), f.near).position_m)
+      if (beside.holds(p)) add(p);
+  return f;
+}
+
+Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
+           const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
+  for (const std::size_t f : shots.frames)
+    if (f >= m.frames()) throw Error(fmt::format("frame {}: {} has {}", f, m.name, m.frames()));
+  Taken taken;
+  if (shots.frames.empty()) return taken;
+  const bool moves = shots.movie && shots.frames.size() > 1;
+  if (moves && !Movie::possible()) taken.no_movie = "no movie: ffmpeg is not on the PATH (Debian: ffmpeg)";
+  fs::create_directories(shots.out);
+  const Framing framing = framing_of(m);
+  const auto device = vulkan::Device::get(options);
+  SceneRenderer renderer(device, Offscreen::kFormat);
+  Offscreen images(device, {static_cast<std::uint32_t>(shots.width), static_cast<std::uint32_t>(shots.height)}, 1);
+  renderer.set_cloth(m.scene.cloth, framing.origin_m);
+  const std::uint32_t middle = middle_vertex(m.scene.cloth);
+  if (framing.follows) renderer.follow(middle, vertex_at(m.at(0), middle));
+  for (const View view : shots.views) {
+    const Camera camera = frame(view, framing.points, static_cast<double>(shots.width) / shots.height);
+    const std::string stem = fmt::format("{}__{}", m.name, name_of(view));
+    std::unique_ptr<Movie> movie;
+    if (moves && taken.no_movie.empty()) {
+      const auto step = static_cast<double>(shots.frames[1] - shots.frames[0]);
+      taken.movies.push_back(shots.out / (stem + ".mp4"));
+      movie =
+          std::make_unique<Movie>(taken.movies.back(), shots.width, shots.height, m.scene.time.frame_rate_hz / step);
+    }
+    for (std::size_t k = 0; k < shots.frames.size(); ++k) {
+      const std::size_t f = shots.frames[k];
+      if (progress) progress(stem, k, shots.frames.size());
+      renderer.write_positions(m.at(f));
+      if (k == 0 || !m.scene.motion.empty())
+        renderer.set_surfaces(surfaces(m.scene, static_cast<int>(f), framing.near));
+      images.draw(renderer, std::span(&camera, 1));
+      const Picture picture = images.read(0);
+      taken.pictures.push_back(shots.out / fmt::format("{}__{:06d}.png", stem, f));
+      write_png(taken.pictures.back(), picture);
+      if (movie) movie->add(picture);
+    }
+    if (movie) movie->finish();
+  }
+  return taken;
+}
+
+std::vector<std::size_t> frames_from(const std::string& text, std::size_t count) {
+  const auto fail = [&](const std::string& why) {
+    return Error("--frames " + text + ": " + why +
+                 "; expected FRAME, FIRST:LAST or FIRST:LAST:STEP, such as 0:71 or -1");
+  };
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == ':')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  if (parts.size() > 3 || text.empty()) throw fail("expected one to three numbers");
+  const auto number = [&](const std::string& part, long otherwise) {
+    if (part.empty()) return otherwise;
+    long value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size()) throw fail("\"" + part + "\": expected a number");
+    return value;
+  };
+  const auto last_there = static_cast<long>(count) - 1;
+  const auto within = [&](long f) {
+    const long k = f < 0 ? f + last_there + 1 : f;
+    if (k < 0 || k > last_there) throw fail(fmt::format("expected frames from 0 to {}", last_there));
+    return k;
+  };
+  const long first = within(number(parts[0], 0));
+  const long last = parts.size() == 1 ? first : within(number(parts[1], -1)),
+             step = parts.size() == 3 ? number(parts[2], 1) : 1;
+  if (step < 1) throw fail("expected a step of at least 1");
+  if (last < first) throw fail("expected the last frame at or after the first");
+  std::vector<std::size_t> frames;
+  for (long f = first; f <= last; f += step) frames.push_back(static_cast<std::size_t>(f));
+  return frames;
+}
+
+std::string taken_text(const Taken& t) {
+  std::string text;
+  if (t.pictures.size() == 1)
+    text = t.pictures[0].string() + "\n";
+  else if (!t.pictures.empty())
+    text = fmt::format("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
+                       t.pictures.back().filename().string());
+  for (const fs::path& m : t.movies) text += m.string() + "\n";
+  return text + (t.no_movie.empty() ? "" : t.no_movie + "\n");
+}
+
+void write_png(const fs::path& path, const Picture& picture) {
+  const fs::path unfinished = path.string() + ".part";
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
+  image.format = PNG_FORMAT_RGB;
+  const bool written = png_image_write_to_file(&image, unfinished.c_str(), 0, picture.rgb.data(), 0, nullptr) != 0;
+  std::error_code error;
+  if (written) fs::rename(unfinished, path, error);
+  if (written && !error) return;
+  const std::string why = written ? error.message() : image.message;
+  fs::remove(unfinished, error);
+  throw Error(path.string() + ": cannot be written: " + why);
+}
+
+}  // namespace clothbench::render

@@ -1,0 +1,80 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/offscreen.hpp"
+#include "runner/solver_run.hpp"
+
+namespace clothbench::render {
+
+/// Input of pictures: the trajectory of a cloth, and the colliders that it touches.
+struct Motion {
+  Scene scene;
+  std::string name;     ///< of the run, for file names
+  std::string outcome;  ///< how the run ended, "" if well
+  std::vector<double> time_s;
+  std::vector<float> position;  ///< (frame, vertex, xyz) [m]
+
+  std::size_t frames() const { return time_s.size(); }
+  /// Positions at one frame, xyz interleaved.
+  std::vector<double> at(std::size_t frame) const;
+};
+
+/// Whether a path is a result file or the part file of an unfinished run.
+bool is_run(const std::filesystem::path&);
+
+/// Reads a result file. No frames if it has no trajectory. Throws Error naming the file and what is wrong with it.
+Motion stored_motion(const std::filesystem::path&);
+
+/// Runs a scene for its positions alone. Throws Error if the solver cannot run it.
+Motion run_motion(const RunSpec&, const DeviceOptions&);
+
+/// The motions that a result file or a folder of them holds; of a folder those with `wanted` in their names. Any other
+/// path is a scenario, whose motion `run` makes. Throws Error if a folder leaves it open which are meant, and for a
+/// motion without frames.
+std::vector<Motion> motions_of(const std::string& file, const std::function<Motion(const std::string& scenario)>& run,
+                               const std::string& wanted);
+
+/// What all pictures of a motion show, from one camera: the cloth of all frames, without vertices that are not finite
+/// or are further from the initial bounds than the cloth's size, and colliders within an eighth of that size.
+struct Framing {
+  Bounds near;                 ///< of the cloth, with a margin; colliders beyond are cut off
+  Vec3 origin_m{};             ///< centre of the cloth's bounds
+  std::vector<double> points;  ///< points that must be in the picture, xyz interleaved [m]
+  bool follows = false;        ///< the camera follows the cloth's middle vertex: nothing holds the cloth
+};
+Framing framing_of(const Motion&);
+
+/// Options of the pictures of a motion.
+struct Shots {
+  std::vector<View> views = {View::Corner};
+  int width = 1200, height = 900;   ///< of a picture [pixels]
+  bool movie = true;                ///< also write an MP4 if there is more than one frame and ffmpeg is installed
+  std::vector<std::size_t> frames;  ///< ascending
+  std::filesystem::path out;        ///< folder
+};
+
+struct Taken {
+  std::vector<std::filesystem::path> pictures, movies;
+  std::string no_movie;  ///< why there is no movie although one was requested
+};
+
+/// Draws the motion at the requested frames, <name>__<view>__<frame>.png. `progress` (may be empty) gets the number of
+/// pictures drawn. Throws Error on a frame that the motion does not have, a file that cannot be written, or a missing
+/// device.
+Taken take(const Motion&, const Shots&, const DeviceOptions&,
+           const std::function<void(const std::string&, std::size_t, std::size_t)>& progress = {});
+
+/// What was written, for the terminal; many pictures are one line.
+std::string taken_text(const Taken&);
+
+/// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an
+/// empty end is the first or the last frame). Throws Error naming --frames and the expected form.
+std::vector<std::size_t> frames_from(const std::string& text, std::size_t count);
+
+/// Writes under a temporary name, then renames. Throws Error naming the file.
+void write_png(const std::filesystem::path&, const Picture&);
+
+}  // namespace clothbench::render
