@@ -30,6 +30,11 @@ std::vector<std::string> by_column(const std::vector<T>& entries, Column column)
 
 }  // namespace
 
+const char* name_of(Better better) {
+  static constexpr const char* kNames[] = {"less", "more", "neither"};
+  return kNames[static_cast<std::size_t>(better)];
+}
+
 const std::vector<Metric>& metrics() {
   static const std::vector<Metric> all = of_all_groups(&MetricGroup::series);
   return all;
@@ -72,12 +77,6 @@ std::map<std::string, double> scalars_of(const RunView& run, const std::string& 
     if (s.name.starts_with(start) && s.from.value && (s.present == nullptr || s.present(run)))
       out[s.name] = s.from.value(run);
   return out;
-}
-
-int metric_version(const std::string& name) {
-  for (const Metric& m : metrics())
-    if (m.name == name) return m.version;
-  return 0;
 }
 
 namespace {

@@ -54,8 +54,8 @@ struct Reduction {
   std::string units = "";  ///< empty: the unit of its one series, and `how` describes the reduction of that series
 };
 
-/// Unit of an absolute slack: 1, the shorter side L of the cloth [m], or its square.
-enum class SlackUnit { One, Length, Area };
+/// Unit of an absolute slack: 1, or the shorter side L of the cloth [m].
+enum class SlackUnit { One, Length };
 
 /// How `check` compares a scalar with its baseline: less is better, and a value above baseline plus slack fails.
 struct Gate {
@@ -71,6 +71,9 @@ struct Gate {
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
                                  "three times the greatest difference seen between devices"};
 
+enum class Better { Less, More, Neither };
+const char* name_of(Better);
+
 enum class Expect { No, Yes };  ///< whether a scene's `expect` may bound a scalar
 
 /// One number per run, a value of its result's summary. Values that depend on the machine have no gate, nor have values
@@ -83,10 +86,11 @@ struct Scalar {
   int column = 0;                             ///< position among the columns of penetration.csv; 0: none
   bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
   std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
+  Better better = Better::Less;
   bool of_machine = false;  ///< a time or what depends on times: the machine's, not the solver's alone
 };
 
-/// The metrics that one file of this folder defines; the file is listed in CMakeLists.txt.
+/// The metrics that one file of measures/ defines.
 struct MetricGroup {
   std::vector<Metric> series;
   std::vector<Scalar> scalars;
@@ -114,9 +118,6 @@ std::map<std::string, double> stage_scalars(const RunView&);
 
 /// All scalars present in the run's summary whose names begin with `start`.
 std::map<std::string, double> scalars_of(const RunView&, const std::string& start = "");
-
-/// Version of the rule of a metric of this program; 0 if it has none of that name.
-int metric_version(const std::string& name);
 
 /// The metrics from which a value of a result's summary is computed; "expect.<value>" depends on the same ones as the
 /// value itself. Empty for values measured otherwise (times, bytes, counts).

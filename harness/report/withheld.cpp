@@ -21,12 +21,11 @@ void take_out(RunRecord& c, const std::string& name, const std::string& why) {
 
 bool was_timed(const RunRecord& c) { return std::isfinite(summary_value(c, "frame_wall_median_s")); }
 
-/// The newest version of each metric among the runs and this program.
+/// The newest version of each metric among the runs.
 std::map<std::string, int> newest_versions(const std::vector<RunRecord>& runs) {
   std::map<std::string, int> out;
   for (const RunRecord& c : runs)
-    for (const MetricSeries& m : c.accuracy.metrics)
-      out[m.name] = std::max({out[m.name], m.version, metric_version(m.name)});
+    for (const MetricSeries& m : c.accuracy.metrics) out[m.name] = std::max(out[m.name], m.version);
   return out;
 }
 

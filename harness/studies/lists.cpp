@@ -73,7 +73,6 @@ nlohmann::json list_metrics() {
       rows.push_back({{"name", m.name},
                       {"units", m.units},
                       {"long_name", m.long_name},
-                      {"version", m.version},
                       {"needs", m.needs.words},
                       {"source", g.source}});
   return rows;
@@ -88,6 +87,7 @@ nlohmann::json list_scalars() {
                       {"units", s->units},
                       {"long_name", s->doc},
                       {"of", s->from.series},
+                      {"better", name_of(s->better)},
                       {"expect", s->expect == Expect::Yes},
                       {"source", g.source}});
       if (s->gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s->gate)}, {"why", s->gate->why}};

@@ -70,11 +70,11 @@ TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
   ASSERT_EQ(check("--update"), 0);
   EXPECT_EQ(content(baseline()), made) << "the same results give the same file";
 
-  write_study({contact_run("desk"), with(contact_run("sweep"), "tunnelled_fraction_max", 0.25)});
+  write_study({contact_run("desk"), with(contact_run("sweep"), "crossings_max", 0.25)});
   EXPECT_EQ(check(), 1) << text_;
-  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("crossings_max"), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0);
-  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("crossings_max"), std::string::npos) << text_;
   EXPECT_EQ(check(), 0) << text_;
 
   write_study({contact_run("desk"), contact_run("sweep")});
@@ -130,7 +130,7 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
 
 TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   const auto write = [&](int version) {
-    RunRecord c = with(contact_run("sweep"), "wrong_side_samples_max", 3);
+    RunRecord c = with(contact_run("sweep"), "contact_length_max_m", 3);
     c.header.vertices = 1;
     const std::string name = run_name(c.header);
     fs::remove(run() / (name + ".h5"));
@@ -138,7 +138,7 @@ TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
     AccuracyPass pass;
     pass.time_s = {0};
     pass.position = {0, 0, 0};
-    pass.metrics = {{"wrong_side_samples", "1", "", {3}, version}};
+    pass.metrics = {{"contact_length_m", "1", "", {3}, version}};
     writer.write_accuracy(pass);
     writer.finish(c.outcome, c.summary);
   };
@@ -149,10 +149,10 @@ TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
   EXPECT_EQ(check(), 0) << text_;
   write(2);
   EXPECT_EQ(check(), 2) << text_;
-  for (const char* part : {"sweep__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
+  for (const char* part : {"sweep__xpbd__default", "contact_length_m", "version 1", "version 2", "--update"})
     EXPECT_NE(text_.find(part), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0) << text_;
-  EXPECT_EQ(json::parse(content(baseline()))["runs"][1]["metric_versions"]["wrong_side_samples"], 2);
+  EXPECT_EQ(json::parse(content(baseline()))["runs"][1]["metric_versions"]["contact_length_m"], 2);
   EXPECT_EQ(check(), 0) << text_;
 }
 
@@ -188,7 +188,7 @@ TEST_F(CheckCommand, PositionsAreLookedAt) {
 
 TEST_F(CheckCommand, JunitGithubAndJson) {
   ASSERT_EQ(check("--update"), 0);
-  write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F2", 3)});
+  write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F1", 3)});
   const fs::path junit = dir_ / "check.xml";
   EXPECT_EQ(check("--github --junit " + junit.string()), 1);
   EXPECT_NE(text_.find("\n::error file=" + baseline().string() + ",title=sweep__xpbd__default::FAILED: outcome"),
