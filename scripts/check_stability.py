@@ -13,7 +13,7 @@ import sys
 
 CELLS = ("case", "scene", "solver", "setting", "status", "grade", "class")
 ACROSS = ("case", "solver", "setting", "figure", "verdict")
-NEVER = {"F0": "not finite", "F1": "speed out of all bounds", "F2": "energy gained"}
+NEVER = {"F0": "not finite or out of all bounds", "F1": "energy gained"}
 GRADES = {"stable", "degraded", "failed"}
 SAME_BITS = ("S24", "S26")  # scaled by powers of two; repeated in other processes
 

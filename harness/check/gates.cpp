@@ -28,12 +28,12 @@ std::vector<std::string> gated_names() {
 
 double slack(const Gate& g, double baseline, double length_m) {
   if (g.zero_stays_zero && baseline == 0) return 0;
-  const double unit = g.unit == SlackUnit::Length ? length_m : g.unit == SlackUnit::Area ? length_m * length_m : 1;
+  const double unit = g.unit == SlackUnit::Length ? length_m : 1;
   return g.absolute * unit + g.relative * std::fabs(baseline);
 }
 
 std::string slack_text(const Gate& g) {
-  const char* unit = g.unit == SlackUnit::Length ? " L" : g.unit == SlackUnit::Area ? " L²" : "";
+  const char* unit = g.unit == SlackUnit::Length ? " L" : "";
   std::string text;
   if (g.absolute > 0) text = fmt::format("{}{}", g.absolute, unit);
   if (g.relative > 0) text += (text.empty() ? "" : " + ") + fmt::format("{} %", 100 * g.relative);

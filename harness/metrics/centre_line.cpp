@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scenario/strict_contact.hpp"
-
 namespace clothbench {
 namespace {
 
@@ -12,6 +10,8 @@ using contact::Point;
 
 /// First and last joints of the fingers, in the order of the WebXR Hand Input module.
 constexpr std::array<std::array<std::size_t, 2>, 5> kFingers = {{{1, 4}, {5, 9}, {10, 14}, {15, 19}, {20, 24}}};
+
+constexpr std::size_t kHandJoints = 25;  // of the WebXR Hand Input module
 
 double weight_of(const ColliderMesh& m, std::size_t vertex, std::size_t joint) {
   double sum = 0;
@@ -57,7 +57,7 @@ Point<3> posed(const MedialPoint& m, const ColliderPose& pose) {
 }  // namespace
 
 CentreLine::CentreLine(const Collider& c) {
-  if (!c.mesh || !has_centre_line(c)) return;
+  if (!c.mesh || !c.mesh->skinned() || c.mesh->joint_count != kHandJoints) return;
   for (const auto& [first, last] : kFingers) {
     const std::vector<MedialPoint> points = medial_points(*c.mesh, first, last);
     for (std::size_t k = 1; k < points.size(); ++k) bones_.push_back({points[k - 1], points[k]});

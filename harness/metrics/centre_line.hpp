@@ -1,9 +1,15 @@
 #pragma once
 #include <vector>
 
-#include "metrics/contact/wrong_side.hpp"
+#include "clothbench/scene.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench {
+
+namespace contact {
+/// A segment of an object's centre line: the axis of a capsule, or a bone of a hand.
+using Bone = std::array<Point<3>, 2>;
+}  // namespace contact
 
 /// A point of a hand's centre line that moves with one joint.
 struct MedialPoint {
@@ -12,7 +18,7 @@ struct MedialPoint {
 };
 
 /// The centre line of one collider in any pose: the axes of its capsules, or in a hand mesh the segments through the
-/// middles of the flesh round each joint of the fingers. Empty for colliders without one (has_centre_line).
+/// middles of the flesh round each joint of the fingers. Empty for other colliders.
 class CentreLine {
  public:
   explicit CentreLine(const Collider& c);

@@ -8,7 +8,6 @@
 #include "metrics/collider_surface.hpp"
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/contour.hpp"
-#include "metrics/contact/half_space.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,34 +21,17 @@ contact::Solid solid_of(const Collider& c) {
   return !c.mesh || c.mesh->closed ? contact::Solid::Auto : contact::Solid::Nearly;
 }
 
-/// One collider and its probe; a half-space needs neither history nor probe.
+/// One collider and its probe; a half-space needs none.
 struct Watched {
   const Collider* collider;
   std::optional<ContactProbe> probe;
 };
-
-void add(SceneContact& all, double& moment, const Collider& c, const ContactSample& s) {
-  all.length_m += s.contour_length_m;
-  all.pairs += s.pairs;
-  all.cloth_fraction = max_or_nan(all.cloth_fraction, s.cloth_fraction);
-  if (counts_crossings(c)) {
-    all.tunnelled_fraction = max_or_nan(all.tunnelled_fraction, s.tunnelled_fraction);
-    all.tunnelled_depth_m = max_or_nan(all.tunnelled_depth_m, s.tunnelled_depth_max_m);
-  }
-  if (!has_inside(c)) return;
-  all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
-  all.depth_vertex_m = max_or_nan(all.depth_vertex_m, s.depth_vertex_max_m);
-  all.depth_p99_m = max_or_nan(all.depth_p99_m, s.depth_p99_m);
-  all.area_m2 += s.area_m2;
-  moment += s.area_m2 * s.depth_mean_m;
-}
 
 }  // namespace
 
 struct ColliderContact::Probes {
   explicit Probes(const Scene& s) : scene(s), rest(initial_positions(s)), triangles(clothbench::triangles(s.cloth)) {
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
-      any_crossings |= counts_crossings(s.colliders[k]);
       any_inside |= has_inside(s.colliders[k]);
       watch(k);
     }
@@ -98,8 +80,7 @@ struct ColliderContact::Probes {
   std::vector<double> rest;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Watched> watched;
-  std::vector<double> contours_m;  ///< of the last probe
-  bool any_crossings = false, any_inside = false;
+  bool any_inside = false;
 };
 
 ColliderContact::ColliderContact(const Scene& scene) : probes_(std::make_unique<Probes>(scene)) {}
@@ -107,21 +88,14 @@ ColliderContact::~ColliderContact() = default;
 
 SceneContact ColliderContact::probe(int frame, const std::vector<double>& positions) {
   Probes& p = *probes_;
-  const double tunnelled = p.any_crossings ? 0 : kMissing, depth = p.any_inside ? 0 : kMissing;
-  SceneContact all{0, 0, 0, tunnelled, tunnelled, depth, depth, depth, depth, depth};
-  double moment = 0;
-  p.contours_m.clear();
+  SceneContact all{0, p.any_inside ? 0 : kMissing};
   for (std::size_t k = 0; k < p.watched.size(); ++k) {
     const ContactSample s = p.sample(k, frame, positions);
-    p.contours_m.push_back(s.contour_length_m);
-    add(all, moment, *p.watched[k].collider, s);
+    all.length_m += s.contour_length_m;
+    if (has_inside(*p.watched[k].collider)) all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
   }
-  // Without penetrating area the mean depth is 0, as the other depths are. NaN stays NaN.
-  all.depth_mean_m = all.area_m2 == 0 ? 0 : moment / all.area_m2;
   return all;
 }
-
-const std::vector<double>& ColliderContact::contours_m() const { return probes_->contours_m; }
 
 SelfContact self_contact(const std::vector<double>& positions,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {

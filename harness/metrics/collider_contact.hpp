@@ -18,11 +18,8 @@ inline constexpr Needs kColliders{"colliders",
 
 /// The contact of one cloth with all colliders of its scene, frame after frame: one contact::ContactProbe per collider,
 /// moved as Scene::motion prescribes. The geometry of the collider kind decides the method
-/// (scenario/collider_kinds.hpp): signed distance for capsules, exact clipping for half-spaces, triangles for the rest,
-/// which for a box is exact.
-///
-/// Results are combined over the colliders. Lengths, pairs and areas are sums (where colliders overlap, both count);
-/// fractions and depths are maxima; the mean depth is taken over the sum of the penetrating areas.
+/// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
+/// overlap, both count), the depth is the largest.
 class ColliderContact {
  public:
   /// `scene` outlives this. Throws Error naming the collider that cannot be probed.
@@ -31,10 +28,8 @@ class ColliderContact {
   ColliderContact(const ColliderContact&) = delete;
   ColliderContact& operator=(const ColliderContact&) = delete;
 
-  /// Positions [m] at the end of frame `frame`, 0 = the initial state; every frame once and in order.
+  /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   SceneContact probe(int frame, const std::vector<double>& positions);
-  /// Length [m] of the contour with each collider at the last probe.
-  const std::vector<double>& contours_m() const;
 
  private:
   struct Probes;

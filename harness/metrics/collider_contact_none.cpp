@@ -1,7 +1,7 @@
-// Replaces collider_contact.cpp and collider_passage.cpp where CGAL's kernel is not available, as on a device.
+// Replaces collider_contact.cpp and collider_touch.cpp where CGAL's kernel is not available, as on a device.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/collider_passage.hpp"
+#include "metrics/collider_touch.hpp"
 
 namespace clothbench {
 
@@ -12,20 +12,17 @@ ColliderContact::~ColliderContact() = default;
 SceneContact ColliderContact::probe(int, const std::vector<double>&) {
   throw Error("this build has no contact metrics");
 }
-const std::vector<double>& ColliderContact::contours_m() const { throw Error("this build has no contact metrics"); }
 
 SelfContact self_contact(const std::vector<double>&, const std::vector<std::array<std::uint32_t, 3>>&) {
   throw Error("this build has no contact metrics");
 }
 
-struct ColliderPassage::Watch {};
+struct ColliderTouch::Watch {};
 
-ColliderPassage::ColliderPassage(const Scene&, const std::vector<double>&) {
+ColliderTouch::ColliderTouch(const Scene&, const std::vector<double>&) {
   throw Error("this build has no contact metrics");
 }
-ColliderPassage::~ColliderPassage() = default;
-ScenePassage ColliderPassage::probe(int, const std::vector<double>&, const std::vector<double>&) {
-  throw Error("this build has no contact metrics");
-}
+ColliderTouch::~ColliderTouch() = default;
+SceneTouch ColliderTouch::probe(int, const std::vector<double>&) { throw Error("this build has no contact metrics"); }
 
 }  // namespace clothbench

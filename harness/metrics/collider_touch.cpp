@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "clothbench/record.hpp"
 #include "metrics/collider_surface.hpp"
-#include "metrics/contact/depth.hpp"
 #include "metrics/contact/touch.hpp"
 #include "metrics/metric.hpp"
 
@@ -121,7 +121,11 @@ ColliderTouch::ColliderTouch(const Scene& scene, const std::vector<double>& held
     : watch_(std::make_unique<Watch>(scene, held_at_m)) {}
 ColliderTouch::~ColliderTouch() = default;
 
-void ColliderTouch::probe(int frame, const std::vector<double>& x, ScenePassage& out) {
+SceneTouch ColliderTouch::probe(int frame, const std::vector<double>& x) {
+  if (!contact::all_finite(x)) {
+    before_.clear();
+    return {kMissing, kMissing};
+  }
   Watch& w = *watch_;
   std::vector<bool> touching(w.triangles.size(), false);
   double slid = 0, kept = 0;
@@ -148,9 +152,8 @@ void ColliderTouch::probe(int frame, const std::vector<double>& x, ScenePassage&
     all += w.area[t];
     if (touching[t]) part += w.area[t];
   }
-  out.touching_fraction = part / all;
-  out.slip_m = kept > 0 ? slid / kept : 0;
   before_ = x;
+  return {part / all, kept > 0 ? slid / kept : 0};
 }
 
 }  // namespace clothbench

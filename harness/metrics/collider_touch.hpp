@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-struct ScenePassage;
+struct SceneTouch;
 
 /// Where the cloth touches the colliders of its scene, and how it slides on them, frame after frame.
 ///
@@ -15,21 +15,21 @@ struct ScenePassage;
 /// points does, edges and face included. Sliding is that of vertices.
 class ColliderTouch {
  public:
-  /// `scene` outlives this. `held_at_m` as for ColliderPassage.
+  /// `scene` outlives this. `held_at_m`: how far off each collider the solver keeps cloth, as in
+  /// Plan::contact_margins_m.
   ColliderTouch(const Scene& scene, const std::vector<double>& held_at_m);
   ~ColliderTouch();
   ColliderTouch(const ColliderTouch&) = delete;
   ColliderTouch& operator=(const ColliderTouch&) = delete;
 
-  /// Fills in touching_fraction and slip_m. Finite positions [m] at the end of frame `frame`, every frame in order.
-  void probe(int frame, const std::vector<double>& positions, ScenePassage& out);
-  /// The state of this frame is not finite: no vertex touched in it.
-  void skip() { before_.clear(); }
+  /// Positions [m] at the end of frame `frame`, every frame in order. In a frame that is not finite no vertex touches.
+  SceneTouch probe(int frame, const std::vector<double>& positions);
 
  private:
   struct Watch;
   std::unique_ptr<Watch> watch_;
-  std::vector<double> before_;  ///< positions at the last frame; empty at the start and after a skip
+  std::vector<double>
+      before_;  ///< positions at the last frame; empty at the start and after a state that is not finite
 };
 
 }  // namespace clothbench

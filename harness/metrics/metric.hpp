@@ -19,23 +19,17 @@ struct MetricContext {
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
-/// Contact of the cloth with all colliders of the scene in one frame; collider_contact.hpp states how they are
-/// combined. All are NaN if the cloth is not finite. A value that no collider of the scene defines is always NaN.
+/// Contact of the cloth with all colliders of the scene in one frame (collider_contact.hpp). NaN if the cloth is not
+/// finite.
 struct SceneContact {
-  double length_m, pairs, cloth_fraction;
-  double tunnelled_fraction, tunnelled_depth_m;
-  double depth_m, depth_vertex_m, depth_p99_m, depth_mean_m, area_m2;
+  double length_m;  ///< of the curves in which cloth and colliders cross
+  double depth_m;   ///< NaN if no collider has an inside
 };
 
-/// Where the cloth passed through the colliders and how it slides on them, in one frame; collider_passage.hpp. All are
-/// NaN if the cloth is not finite. The first four are also NaN if no collider has a centre line, and the first three
-/// after any state that was not finite.
-struct ScenePassage {
-  double wrong_side_fraction;  ///< of the samples' area
-  double wrong_side_samples;   ///< number of vertices and cell centres
-  double laid_over_samples;    ///< the same of those that went round
-  double hooked_axes;          ///< number of axes that cross the cloth
-  double touching_fraction;    ///< of the triangles' rest area
+/// Where the cloth touches the colliders and how it slides on them, in one frame (collider_touch.hpp). NaN if the cloth
+/// is not finite.
+struct SceneTouch {
+  double touching_fraction;  ///< of the triangles' rest area
   double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame
 };
 
@@ -54,7 +48,7 @@ struct MetricFrame {
   int index;  ///< 0 = initial state
   const ClothState& state;
   const SceneContact* contact;                ///< null where the scene has no collider
-  const ScenePassage* passage = nullptr;      ///< the same
+  const SceneTouch* touch = nullptr;          ///< the same
   const TruthErrors* truth = nullptr;         ///< null where the scene states no truth
   const StabilityFrame* stability = nullptr;  ///< null where the scene is not judged
   const SelfContact* self_contact = nullptr;  ///< null where the scene's cloth does not touch itself

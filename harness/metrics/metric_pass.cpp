@@ -1,7 +1,7 @@
 #include "metrics/metric_pass.hpp"
 
 #include "metrics/collider_contact.hpp"
-#include "metrics/collider_passage.hpp"
+#include "metrics/collider_touch.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
@@ -16,12 +16,12 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
   }
   if (kWithContactMetrics && !context.scene.colliders.empty()) {
     contact_ = std::make_unique<ColliderContact>(context.scene);
-    passage_ = std::make_unique<ColliderPassage>(context.scene, context.contact_margins_m);
+    touch_ = std::make_unique<ColliderTouch>(context.scene, context.contact_margins_m);
   }
   if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision))
     triangles_ = triangles(context.scene.cloth);
   if (!context.scene.reference_case.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
-  if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context_);
+  if (!context.scene.stability.name.empty()) stability_ = std::make_unique<StabilityJudge>(context.scene);
 }
 
 MetricPass::~MetricPass() = default;
@@ -29,21 +29,20 @@ MetricPass::~MetricPass() = default;
 void MetricPass::add(const ClothState& state) {
   SceneContact contact{};
   if (contact_) contact = contact_->probe(frame_, state.position);
-  ScenePassage passage{};
-  if (passage_) passage = passage_->probe(frame_, state.position, contact_->contours_m());
+  SceneTouch touch{};
+  if (touch_) touch = touch_->probe(frame_, state.position);
   SelfContact self{};
   if (!triangles_.empty()) self = self_contact(state.position, triangles_);
   TruthErrors truth;
   if (judge_) truth = judge_->judge(frame_, state);
   StabilityFrame stability;
-  if (stability_)
-    stability = stability_->judge(frame_, state, contact_ ? &contact : nullptr, judge_ ? &truth : nullptr);
-  lost_ = lost_ || (stability.classes & 7u) != 0;
+  if (stability_) stability = stability_->judge(frame_, state, judge_ ? &truth : nullptr);
+  lost_ = lost_ || stability.lost();
   const MetricFrame frame{context_,
                           frame_,
                           state,
                           contact_ ? &contact : nullptr,
-                          passage_ ? &passage : nullptr,
+                          touch_ ? &touch : nullptr,
                           judge_ ? &truth : nullptr,
                           stability_ ? &stability : nullptr,
                           triangles_.empty() ? nullptr : &self};

@@ -8,12 +8,12 @@
 namespace clothbench {
 
 class ColliderContact;
-class ColliderPassage;
+class ColliderTouch;
 class StabilityJudge;
 class TruthJudge;
 
 /// The metrics of one accuracy pass over one run: those that apply to its scene, each evaluated once per frame. Keeps
-/// state between frames (such as the positions before a collider passed), so frames must be added in order.
+/// state between frames (such as the vertices that touched), so frames must be added in order.
 class MetricPass {
  public:
   /// The objects that `context` refers to must outlive the pass.
@@ -24,7 +24,7 @@ class MetricPass {
 
   /// State at the end of the next frame; the first call is frame 0, the initial state.
   void add(const ClothState&);
-  /// Whether the run has reached a stability class from which it cannot recover: not finite, speed or energy out of
+  /// Whether the run has reached a stability class from which it cannot recover: not finite, or speed or energy out of
   /// bounds.
   bool lost() const { return lost_; }
 
@@ -36,7 +36,7 @@ class MetricPass {
   std::vector<const Metric*> wanted_;
   std::vector<MetricSeries> series_;
   std::unique_ptr<ColliderContact> contact_;             ///< null if the scene has no collider
-  std::unique_ptr<ColliderPassage> passage_;             ///< the same
+  std::unique_ptr<ColliderTouch> touch_;                 ///< the same
   std::unique_ptr<TruthJudge> judge_;                    ///< null where the scene states no truth
   std::unique_ptr<StabilityJudge> stability_;            ///< null where the scene is not judged
   std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< empty where the cloth does not touch itself

@@ -90,15 +90,6 @@ double greatest_of(const std::vector<double>* values, std::size_t from) {
   return most;
 }
 
-double longest_time(const std::vector<bool>& is, const std::vector<double>& time_s) {
-  double longest = 0, run = 0;
-  for (std::size_t f = 1; f < is.size(); ++f) {
-    run = is[f] ? run + (time_s[f] - time_s[f - 1]) : 0;
-    longest = std::max(longest, run);
-  }
-  return longest;
-}
-
 Reduction greatest(const char* series) { return of(series, "greatest of all frames", from_start, greatest_from); }
 
 Reduction least(const char* series) {
@@ -114,20 +105,6 @@ Reduction last(const char* series) {
 }
 
 Reduction sum(const char* series) { return of(series, "sum over the frames", from_start, sum_from); }
-
-Reduction time_mean(const char* series) {
-  return {{series}, "mean over time", [name = std::string(series)](const RunView& r) {
-            const std::vector<double>*v = r.series(name), &t = r.pass.time_s;
-            return v == nullptr ? kMissing : mean_over_time(*v, t);
-          }};
-}
-
-double mean_over_time(const std::vector<double>& v, const std::vector<double>& time_s) {
-  if (v.size() < 2) return kMissing;
-  double sum = 0;
-  for (std::size_t f = 1; f < v.size(); ++f) sum += (time_s[f] - time_s[f - 1]) * (v[f] + v[f - 1]) / 2;
-  return sum / (time_s.back() - time_s.front());
-}
 
 Reduction greatest_settled(const char* series) {
   return of(series, "greatest of the last 0.5 s", if_settled, greatest_from);

@@ -30,6 +30,11 @@ std::vector<std::string> by_column(const std::vector<T>& entries, Column column)
 
 }  // namespace
 
+const char* name_of(Better better) {
+  static constexpr const char* kNames[] = {"less", "more", "neither"};
+  return kNames[static_cast<std::size_t>(better)];
+}
+
 const std::vector<Metric>& metrics() {
   static const std::vector<Metric> all = of_all_groups(&MetricGroup::series);
   return all;

@@ -54,8 +54,8 @@ struct Reduction {
   std::string units = "";  ///< empty: the unit of its one series, and `how` describes the reduction of that series
 };
 
-/// Unit of an absolute slack: 1, the shorter side L of the cloth [m], or its square.
-enum class SlackUnit { One, Length, Area };
+/// Unit of an absolute slack: 1, or the shorter side L of the cloth [m].
+enum class SlackUnit { One, Length };
 
 /// How `check` compares a scalar with its baseline: less is better, and a value above baseline plus slack fails.
 struct Gate {
@@ -71,6 +71,9 @@ struct Gate {
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
                                  "three times the greatest difference seen between devices"};
 
+enum class Better { Less, More, Neither };
+const char* name_of(Better);
+
 enum class Expect { No, Yes };  ///< whether a scene's `expect` may bound a scalar
 
 /// One number per run, a value of its result's summary. Values that depend on the machine have no gate, nor have values
@@ -83,10 +86,11 @@ struct Scalar {
   int column = 0;                             ///< position among the columns of penetration.csv; 0: none
   bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
   std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
+  Better better = Better::Less;
   bool of_machine = false;  ///< a time or what depends on times: the machine's, not the solver's alone
 };
 
-/// The metrics that one file of this folder defines; the file is listed in CMakeLists.txt.
+/// The metrics that one file of measures/ defines.
 struct MetricGroup {
   std::vector<Metric> series;
   std::vector<Scalar> scalars;

@@ -52,7 +52,6 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   const std::vector<double> vertices = truth::vertex_positions(c, case_, frame);
   const auto here = sampler_.sample(state.position), there = sampler_.sample(vertices);
   out.e2 = lattice_e2(here, there);
-  out.greatest = truth::lattice_greatest_error(lattice_, here, there, lattice_.longer_side_m());
   if (case_.column_speeds && case_.speed_scale_m_per_s > 0)
     out.speed = truth::lattice_rms_error(lattice_, sampler_.sample(state.velocity),
                                          sampler_.sample(truth::vertex_values(c, case_.column_speeds(frame), false)),
@@ -60,7 +59,6 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   out.quantity = case_.quantity(truth::column_means(c, state.position));
   out.quantity_error = truth::quantity_error(out.quantity, case_.quantity(columns), case_.quantity_scale);
   const truth::StretchError stretch = truth::stretch_error(strains(c, state.position), strains(c, vertices));
-  out.stretch_rms = stretch.rms;
   out.stretch_p99 = stretch.p99;
   out.stretch_max = stretch.greatest;
   return out;

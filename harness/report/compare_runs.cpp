@@ -278,7 +278,7 @@ nlohmann::json history_json(const std::vector<RunRecord>& runs) {
                      {"value", 1e3 * middle(t)},
                      {"range", fmt::format("± {:.3g}", 1e3 * (t.back() - t.front()) / 2)},
                      {"extra", extra}});
-    for (const char* error : {"free_fall_error", "truth_error", "tunnelled_fraction_max"})
+    for (const char* error : {"free_fall_error", "truth_error", "crossings_max"})
       if (const double v = summary_value(c, error); std::isfinite(v))
         out.push_back({{"name", name + " " + error}, {"unit", "1"}, {"value", v}, {"extra", extra}});
   }

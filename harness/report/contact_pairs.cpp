@@ -138,8 +138,7 @@ Table turned_table(const std::vector<RunPair>& pairs) {
            "end. Same: both runs fail or both pass, and the distance at contact is at most 0.05. Later, "
            "rounding decides to which side a fold tips. `clothbench metamorphic` (flip) bounds the effect of "
            "turning alone.",
-           runs_of(pairs, &RunPair::run, &RunPair::other),
-           {"tunnelled_fraction_max", "wrong_side_samples_max", "depth_vertex_max_m"}),
+           runs_of(pairs, &RunPair::run, &RunPair::other), {"crossings_max", "depth_max_m"}),
        {}},
       pairs);
 }

@@ -36,7 +36,7 @@ Columns<Exported> table3_columns() {
       .add(grid_columns())
       .add({{"failed_frame", In::Both, failed_frame_of},
             {"engine", In::Both, [](auto& r) { return engine_of(*r.run); }}})
-      .add(summary_columns<Exported>({"fps_at_72", "fps_median", "fps_mean", "fps_spread", "frame_wall_median_s",
+      .add(summary_columns<Exported>({"fps_at_72", "fps_median", "fps_spread", "frame_wall_median_s",
                                       "frame_cpu_median_s", "frame_device_median_s", "free_fall_error"}));
 }
 

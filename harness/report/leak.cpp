@@ -17,9 +17,8 @@ using nlohmann::json;
 constexpr std::size_t kLeastSpeeds = 3;
 
 /// Text for failed bounds, in order of priority; other names are printed as they are.
-constexpr std::pair<const char*, const char*> kWords[] = {{"tunnelled_fraction_max", "tunnelled"},
-                                                          {"wrong_side_samples_max", "wrong side"},
-                                                          {"depth_vertex_max_m", "inside [m]"},
+constexpr std::pair<const char*, const char*> kWords[] = {{"crossings_max", "crossings"},
+                                                          {"depth_max_m", "inside [m]"},
                                                           {"grip_edge_ratio_max", "edge pulled"},
                                                           {"strain_mean_released", "strain left"},
                                                           {"truth_quantity_error", "strain off [v0/c]"},
@@ -50,15 +49,13 @@ std::string broken_bound(const RunRecord& c, std::vector<BoundResult> bounds) {
 
 /// For a scene without bounds: what counts as a failure in a scene of its kind.
 std::string without_bounds(const std::string& kind, const RunRecord& c) {
-  const bool hand = kind == "capsules" || kind == "hand";
   std::vector<std::pair<const char*, double>> most;
   if (kind == "rooms")
-    most = {{"tunnelled_fraction_max", 0}};
+    most = {{"crossings_max", 0}};
   else if (kind == "grip")
     most = {{"grip_edge_ratio_max", 2}};
   else
-    most = {{"depth_vertex_max_m", 1e-3}};
-  if (hand) most.insert(most.begin(), std::pair("wrong_side_samples_max", 0.0));
+    most = {{"crossings_max", 0}, {"depth_max_m", 1e-3}};
   for (const auto& [name, at_most] : most) {
     if (c.withheld.contains(name)) return kNotPrinted;
     if (!(summary_value(c, name) <= at_most)) return failure_text(c, name);
@@ -142,8 +139,8 @@ Table leak_table(const std::vector<SpeedSweep>& sweeps) {
       .table({"Failure speed",
               with_withheld(
                   "Failure speed: the lowest speed at which a solver fails a bound of the scene's `expect`. The table "
-                  "names the first bound that fails: cloth through a mesh; cloth on the wrong side of a hand; cloth "
-                  "more than 1 mm inside a hand; edges longer than the stated multiple of what the hands impose; a "
+                  "names the first bound that fails: crossings; cloth more than 1 mm inside a collider; edges longer "
+                  "than the stated multiple of what the hands impose; a "
                   "mean strain above 1 % one second after release; popping; a greatest strain of "
                   "a pulled strip more than 0.1 v0/c from its exact wave. The verdicts above use the same bounds. "
                   "none: no failure up to the greatest speed that was run. Paths: scenes that were run at each speed. "

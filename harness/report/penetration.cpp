@@ -80,16 +80,13 @@ struct Shown {
 constexpr Unit kPercent{"%", 100};
 
 const std::vector<Shown> kShown = {
-    {"tunnelled, greatest / end", {"tunnelled_fraction_max", "tunnelled_fraction_end"}, share_text, kPercent},
-    {"tunnelled depth", {"tunnelled_depth_max_m"}, mm, kMillimetres},
+    {"crossings", {"crossings_max"}, in_form("{:.0f}")},
     {"contour, greatest / settled", {"contact_length_max_m", "contact_length_settled_m"}, mm, kMillimetres},
-    {"depth, vertex / any", {"depth_vertex_max_m", "depth_max_m"}, mm, kMillimetres},
-    {"wrong side [samples]", {"wrong_side_samples_max"}, in_form("{:.0f}")},
+    {"depth", {"depth_max_m"}, mm, kMillimetres},
     {"self-contact contour, greatest / settled",
      {"self_contact_length_max_m", "self_contact_length_settled_m"},
      mm,
      kMillimetres},
-    {"longest contour [s]", {"contact_violated_longest_s"}, number},
     {"popping", {"pop_max_m"}, mm, kMillimetres},
     {"strain, greatest / end", {"stretch_max", "stretch_max_end"}, share_text, kPercent},
     {"error of greatest strain, greatest / RMS [of v0/c]",
@@ -236,11 +233,10 @@ Table verdict_table(const std::vector<ContactSetUp>& ups) {
                   "Pass: every bound of the scene's `expect` holds over the whole scene. Ignored: the scene passes "
                   "although the solver handles no contact. –: not run, or the scene has no bounds. Holds at: distance "
                   "at which the solver holds the cloth off colliders; compare solvers at equal distances. Columns of "
-                  "the tables below. Tunnelled: share of the cloth that has passed to the other side of a mesh. "
+                  "the tables below. Crossings: points that pass through the cloth or a surface between two frames. "
                   "Contour: length of the curves in which cloth and colliders cross; settled: the greatest value in "
-                  "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Wrong side: "
-                  "vertices and cell centres that a moving hand went through. Longest contour: longest time without a "
-                  "break in which cloth and colliders cross. Popping: greatest displacement of a vertex within "
+                  "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: "
+                  "greatest displacement of a vertex within "
                   "1/36 s beyond twice what its neighbours, colliders and grips move in that time. Strain: strain of "
                   "the structural "
                   "edges. Time: median over the timed frames.",

@@ -36,12 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kBandwidthNames = {"read_B_per_frame",
-                                                  "write_B_per_frame",
-                                                  "bandwidth_read_peak_B_per_s",
-                                                  "bandwidth_read_mean_B_per_s",
-                                                  "bandwidth_write_peak_B_per_s",
-                                                  "bandwidth_write_mean_B_per_s",
+const std::vector<std::string> kBandwidthNames = {"read_B_per_frame", "write_B_per_frame",
+                                                  "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s",
                                                   "bandwidth_window_s"};
 const std::vector<std::string> kMemoryNames = {"device_memory_B", "dispatches", "load_s"};
 

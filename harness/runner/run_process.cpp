@@ -104,7 +104,7 @@ RunRecord run_request(const RunRequest& r, const SolverLookup& lookup) {
                      r.rules);
   } catch (const std::exception& e) {  // what a solver cannot load is a row of the table, whatever it throws
     RunRecord failed;
-    failed.outcome = {"error", "F8", -1, e.what()};
+    failed.outcome = {"error", "F3", -1, e.what()};
     return failed;
   }
 }
@@ -166,7 +166,7 @@ RunRecord RunWorker::run(const RunRequest& r) {
   child_.reset();
   const std::string words = last_words(scratch_ / "output.txt", said_);
   RunRecord out;
-  out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1,
+  out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1,
                  "its process: " + end->text() + (words.empty() ? "" : "; last output: " + words)};
   out.summary = scalars_of({scene_of(r), {}, out.outcome}, "stability_");
   if (!r.rules.out.empty()) write_failure(r, out);

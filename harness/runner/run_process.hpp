@@ -48,7 +48,7 @@ int run_child_main(const std::filesystem::path& folder, const SolverLookup&);
 
 /// Executes runs in a child process, `program run-child …`. One child executes many runs, since creating a Vulkan
 /// device costs as much as a small run; after a fault it is replaced. A child is killed at 1.2 times the run's limit
-/// plus 5 s. If it crashes, hangs or ends without an answer, the outcome is `crashed` or `timed_out` with class F8 and
+/// plus 5 s. If it crashes, hangs or ends without an answer, the outcome is `crashed` or `timed_out` with class F3 and
 /// its last output; where results are kept, such a run gets a result file too. A crash in a child that had executed
 /// other runs only counts if it recurs in a fresh one. Not thread-safe.
 class RunWorker {

@@ -133,7 +133,7 @@ SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::strin
     return;
   } catch (const SolverError& e) {
     solver_.reset();
-    outcome_ = {"error", "F8", -1, e.what()};
+    outcome_ = {"error", "F3", -1, e.what()};
     return;
   }
   header_.environment = describe_environment(solver_->device(), protocol);
@@ -156,11 +156,11 @@ Outcome outcome_of(StepStatus status, int frame) {
     case StepStatus::NotFinite:
       return {"not_finite", "F0", frame, "a position or velocity is not finite"};
     case StepStatus::Diverged:
-      return {"diverged", "F1", frame, "the solver stopped without a solution"};
+      return {"diverged", "F0", frame, "the solver stopped without a solution"};
     case StepStatus::DeviceLost:
-      return {"device_lost", "F8", frame, "the device was lost"};
+      return {"device_lost", "F3", frame, "the device was lost"};
     case StepStatus::TimedOut:
-      return {"timed_out", "F8", frame, "the device did not finish in time"};
+      return {"timed_out", "F3", frame, "the device did not finish in time"};
   }
   return {};
 }
@@ -197,7 +197,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
     try {
       solver_->read_state(state);
     } catch (const Error& e) {  // there is none: the device is gone
-      if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", frame, e.what()};
+      if (outcome_.status == "ok") outcome_ = {"device_lost", "F3", frame, e.what()};
       return;
     }
     if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
@@ -208,11 +208,11 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
     const std::string fault = add_counts(*solver_, pass.time_s.size(), counts);
     if (outcome_.status == "ok" && !fault.empty()) outcome_ = {"error", "ok", frame, fault};
     if (outcome_.status == "ok" && metrics.lost())
-      outcome_ = {"diverged", "F1", frame, "speed or energy exceeds every bound"};
+      outcome_ = {"diverged", "F0", frame, "speed or energy exceeds every bound"};
     // A pass that was held may take any time.
     if (outcome_.status == "ok" && rules.run_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.run_limit_s && frame < frames)
-      outcome_ = {"timed_out", "F8", frame,
+      outcome_ = {"timed_out", "F3", frame,
                   fmt::format("the accuracy pass did not finish within {:g} s", rules.run_limit_s)};
   };
   stop_if_interrupted(kTrialsKept);
@@ -222,7 +222,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
   pass.metrics = metrics.take();
   pass.metrics.insert(pass.metrics.end(), counts.begin(), counts.end());
   const StabilityVerdict verdict = stability_verdict(pass);
-  if (verdict.klass != "ok" && outcome_.klass != "F8") {
+  if (verdict.klass != "ok" && outcome_.klass != "F3") {
     outcome_.klass = verdict.klass;
     outcome_.failed_frame = verdict.frame;
     if (outcome_.message.empty() || outcome_.status == "diverged")
@@ -250,7 +250,7 @@ TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) 
   try {
     measure(trial, rules, frames);
   } catch (const SolverError& e) {  // its costs make no sense, or its twin could not be loaded
-    outcome_ = {"error", "F8", -1, e.what()};
+    outcome_ = {"error", "F3", -1, e.what()};
   }
   return trial;
 }

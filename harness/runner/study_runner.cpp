@@ -179,7 +179,7 @@ class GroupRun {
       result_.validation_messages += messages;
       result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
     }
-    if (outcome.status == "error" && outcome.klass != "F8") result_.faults.push_back(r.name() + ": " + outcome.message);
+    if (outcome.status == "error" && outcome.klass != "F3") result_.faults.push_back(r.name() + ": " + outcome.message);
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);

@@ -86,7 +86,7 @@ std::vector<RunRecord> StudyRuns::ask(Guard& guard, const RunHeader& asked, cons
   if (answer.crash.empty()) return out;
   out.emplace_back();
   out.back().header = asked;
-  out.back().outcome = {"crashed", "F8", -1, "its process: " + answer.crash};
+  out.back().outcome = {"crashed", "F3", -1, "its process: " + answer.crash};
   if (!Guard::in_child()) store_crashed(asked, out.back().outcome);
   return out;
 }

@@ -99,7 +99,7 @@ ExitCode supervise(const RunPlan& plan, const fs::path& out, bool resume, const 
     if (!at) throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);
     const std::string message = fmt::format("its process: {}, at \"{}\"", end.text(), doing);
     fmt::print(stderr, "{}\n", message);
-    write_row(*at, plan, out, {end.how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1, message});
+    write_row(*at, plan, out, {end.how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1, message});
   }
   throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
 }

@@ -29,20 +29,11 @@ double upper_bound(const nlohmann::json& bounds) {
 
 bool has_inside(const Collider& c) { return !c.mesh || c.mesh->closed || c.mesh->skinned(); }
 
-bool counts_crossings(const Collider& c) { return c.mesh != nullptr; }
-
-bool has_centre_line(const Collider& c) {
-  constexpr std::size_t kHandJoints = 25;  // of the WebXR Hand Input module
-  return !c.capsules.empty() || (c.mesh && c.mesh->skinned() && c.mesh->joint_count == kHandJoints);
-}
-
 const std::vector<StrictBound>& strict_contact() {
-  static const std::vector<StrictBound> all = {{"tunnelled_fraction_max", 0, any_collider<counts_crossings>},
+  static const std::vector<StrictBound> all = {{"crossings_max", 0, touches},
                                                {"contact_length_settled_m", 0, touches},
                                                {"contact_length_max_m", 0.005, touches},
                                                {"depth_max_m", 0.001, any_collider<has_inside>},
-                                               {"wrong_side_samples_max", 0, any_collider<has_centre_line>},
-                                               {"hooked_longest_s", 0, any_collider<has_centre_line>},
                                                {"self_contact_length_max_m", 0, meets_itself},
                                                {"pop_max_m", 0.01, lets_go_of_nothing},
                                                {"stretch_max", 0.5, always},

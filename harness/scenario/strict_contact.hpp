@@ -11,13 +11,6 @@ namespace clothbench {
 /// at the wrist. Rooms have no inside.
 bool has_inside(const Collider&);
 
-/// Whether crossings of a collider are counted (tunnelled fraction). True for meshes, open or closed.
-bool counts_crossings(const Collider&);
-
-/// Whether cloth can get to the wrong side of a collider: it must move and have a centre line. These are capsules and
-/// hands with 25 joints.
-bool has_centre_line(const Collider&);
-
 /// One bound of the strict set: contact without any leak, and cloth that stays whole.
 struct StrictBound {
   const char* scalar;

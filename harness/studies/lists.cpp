@@ -87,6 +87,7 @@ nlohmann::json list_scalars() {
                       {"units", s->units},
                       {"long_name", s->doc},
                       {"of", s->from.series},
+                      {"better", name_of(s->better)},
                       {"expect", s->expect == Expect::Yes},
                       {"source", g.source}});
       if (s->gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s->gate)}, {"why", s->gate->why}};

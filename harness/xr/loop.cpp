@@ -96,7 +96,7 @@ class Loop {
     const auto* failure = dynamic_cast<const vulkan::Failure*>(&e);
     const VkResult result = failure != nullptr ? failure->result() : VK_SUCCESS;
     const char* status = result == VK_ERROR_DEVICE_LOST ? "device_lost" : result == VK_TIMEOUT ? "timed_out" : "error";
-    outcome_ = {status, "F8", static_cast<int>(log_.rows().size()), e.what()};
+    outcome_ = {status, "F3", static_cast<int>(log_.rows().size()), e.what()};
   }
 
   void tell(const std::string& text) const {
@@ -283,7 +283,7 @@ class Loop {
     try {
       run_->solver()->read_state(end);
     } catch (const Error& e) {
-      if (outcome_.status == "ok") outcome_ = {"device_lost", "F8", static_cast<int>(log_.rows().size()), e.what()};
+      if (outcome_.status == "ok") outcome_ = {"device_lost", "F3", static_cast<int>(log_.rows().size()), e.what()};
       end.position.assign(3 * live_.scene().cloth.vertex_count(), kMissing);
     }
     return end;

@@ -21,7 +21,7 @@ class BaselineFile : public ::testing::Test {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     file_ =
         fs::temp_directory_path() / ("clothbench-baseline-" + std::to_string(getpid()) + "-" + info->name() + ".json");
-    const std::vector<RunRecord> runs = {contact_run("sweep"), ended(contact_run("desk", "paper"), "diverged", "F2", 7),
+    const std::vector<RunRecord> runs = {contact_run("sweep"), ended(contact_run("desk", "paper"), "diverged", "F1", 7),
                                          with_assets(contact_run("desk"), "npm")};
     made_ =
         update_baseline({}, runs, {"clothbench check x --update", {"clothbench study y"}, {"abc"}, {"µ GPU"}}).baseline;
@@ -53,10 +53,10 @@ TEST_F(BaselineFile, ReadsBackExactly) {
   const Baseline read = written(text);
   EXPECT_EQ(baseline_text(read), text);
   EXPECT_EQ(read.runs[0].scalars.at("depth_max_m"), 0.1 + 0.2);
-  EXPECT_EQ(read.runs[0].scalars.count("depth_mean_m"), 0u) << "not measured";
+  EXPECT_EQ(read.runs[0].scalars.count("slip_m"), 0u) << "not measured";
   nlohmann::json by_hand = json::parse(text);
-  by_hand["runs"][0]["scalars"]["depth_mean_m"] = nullptr;
-  EXPECT_TRUE(std::isnan(written(by_hand.dump()).runs[0].scalars.at("depth_mean_m")));
+  by_hand["runs"][0]["scalars"]["slip_m"] = nullptr;
+  EXPECT_TRUE(std::isnan(written(by_hand.dump()).runs[0].scalars.at("slip_m")));
   EXPECT_EQ(read.origin.devices, made_.origin.devices);
   EXPECT_EQ(read.runs[1].key.assets, "npm");
   EXPECT_EQ(read.runs[0].status, "diverged");

@@ -70,11 +70,11 @@ TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
   ASSERT_EQ(check("--update"), 0);
   EXPECT_EQ(content(baseline()), made) << "the same results give the same file";
 
-  write_study({contact_run("desk"), with(contact_run("sweep"), "tunnelled_fraction_max", 0.25)});
+  write_study({contact_run("desk"), with(contact_run("sweep"), "crossings_max", 0.25)});
   EXPECT_EQ(check(), 1) << text_;
-  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("crossings_max"), std::string::npos) << text_;
   ASSERT_EQ(check("--update"), 0);
-  EXPECT_NE(text_.find("tunnelled_fraction_max"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("crossings_max"), std::string::npos) << text_;
   EXPECT_EQ(check(), 0) << text_;
 
   write_study({contact_run("desk"), contact_run("sweep")});
@@ -160,7 +160,7 @@ TEST_F(CheckCommand, PositionsAreLookedAt) {
 
 TEST_F(CheckCommand, JunitGithubAndJson) {
   ASSERT_EQ(check("--update"), 0);
-  write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F2", 3)});
+  write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F1", 3)});
   const fs::path junit = dir_ / "check.xml";
   EXPECT_EQ(check("--github --junit " + junit.string()), 1);
   EXPECT_NE(text_.find("\n::error file=" + baseline().string() + ",title=sweep__xpbd__default::FAILED: outcome"),

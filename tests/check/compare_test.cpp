@@ -39,25 +39,20 @@ std::string error_of(const auto& call) {
 }
 
 TEST(Gates, EveryPenetrationScalarHasOneAndNoTimeDoes) {
-  for (const char* name : {"contact_length_settled_m", "contact_length_max_m", "tunnelled_fraction_max",
-                           "tunnelled_fraction_end", "tunnelled_depth_max_m", "depth_max_m", "depth_vertex_max_m",
-                           "depth_p99_m", "depth_mean_m", "penetrating_area_max_m2", "stretch_max", "stretch_max_end",
-                           "expect.anything", "free_fall_error", "free_fall_error_rms", "dispatches"})
+  for (const char* name : {"contact_length_settled_m", "contact_length_max_m", "crossings_max", "depth_max_m",
+                           "stretch_max", "stretch_max_end", "expect.anything", "free_fall_error", "dispatches"})
     EXPECT_NE(find_gate(name), nullptr) << name;
-  for (const char* name : {"fps_median", "fps_mean", "fps_spread", "fps_at_72", "frame_wall_median_s",
-                           "frame_wall_iqr_s", "frame_device_median_s", "read_B_per_frame", "write_B_per_frame",
-                           "bandwidth_read_peak_B_per_s", "bandwidth_window_s", "device_memory_B", "load_s", "trials",
-                           "frames_per_trial", "stage_device_median_s.Contact"})
+  for (const char* name : {"fps_median", "fps_spread", "fps_at_72", "frame_wall_median_s", "frame_device_median_s",
+                           "read_B_per_frame", "write_B_per_frame", "bandwidth_read_peak_B_per_s", "bandwidth_window_s",
+                           "device_memory_B", "load_s", "trials", "stage_device_median_s.Contact"})
     EXPECT_EQ(find_gate(name), nullptr) << name;
 }
 
 TEST(Gates, SlackScalesWithTheCloth) {
   const Gate& depth = *find_gate("depth_max_m");
   EXPECT_DOUBLE_EQ(slack(depth, 0, 2), 2 * slack(depth, 0, 1));
-  const Gate& area = *find_gate("penetrating_area_max_m2");
-  EXPECT_DOUBLE_EQ(slack(area, 0, 2), 4 * slack(area, 0, 1));
   EXPECT_GT(slack(depth, 1, 1), slack(depth, 0, 1));
-  EXPECT_EQ(slack(*find_gate("tunnelled_fraction_max"), 0, 1), 0);
+  EXPECT_EQ(slack(*find_gate("crossings_max"), 0, 1), 0);
 }
 
 TEST(Compare, AgreesWithItself) { EXPECT_TRUE(findings(contact_run(), contact_run()).empty()); }
@@ -83,15 +78,14 @@ TEST(Compare, MoreThanSlackFailsLessIsBetter) {
 }
 
 TEST(Compare, NothingTunnelledStaysNothing) {
-  EXPECT_EQ(verdict_of("tunnelled_fraction_max", 0, 1e-12), Verdict::Failed);
+  EXPECT_EQ(verdict_of("crossings_max", 0, 1e-12), Verdict::Failed);
   EXPECT_EQ(verdict_of("contact_length_settled_m", 0, 1e-12), Verdict::Failed);
   EXPECT_EQ(verdict_of("depth_max_m", 0, 1e-12), Verdict::Same);
 }
 
 TEST(Compare, NotANumberFailsWhereTheBaselineHasOne) {
   const double inf = std::numeric_limits<double>::infinity();
-  for (const char* name :
-       {"depth_max_m", "tunnelled_fraction_max", "dispatches", "free_fall_error", "expect.depth_max_m"}) {
+  for (const char* name : {"depth_max_m", "crossings_max", "dispatches", "free_fall_error", "expect.depth_max_m"}) {
     EXPECT_EQ(verdict_of(name, 1, kMissing), Verdict::Failed) << name;
     EXPECT_EQ(verdict_of(name, 0, kMissing), Verdict::Failed) << name;
     EXPECT_EQ(verdict_of(name, 1, inf), Verdict::Failed) << name;
@@ -258,7 +252,7 @@ TEST(Check, TheCompletedSceneMaySayTheAssetsToo) {
 
 TEST(Check, ARunIsAsBadAsItsWorstFinding) {
   const RunRecord was = contact_run();
-  const RunRecord is = with(with(was, "depth_max_m", 0), "tunnelled_fraction_max", 0.5);
+  const RunRecord is = with(with(was, "depth_max_m", 0), "crossings_max", 0.5);
   const Checked checked = check_runs(baseline_of({was}), {is});
   EXPECT_EQ(checked.runs.at(0).findings.size(), 2u);
   EXPECT_EQ(checked.runs.at(0).verdict(), Verdict::Failed);

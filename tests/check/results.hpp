@@ -13,17 +13,12 @@ inline RunRecord contact_run(const std::string& scene = "desk", const std::strin
   c.summary["dispatches"] = 14;
   c.summary["contact_length_settled_m"] = 0;
   c.summary["contact_length_max_m"] = 0.1;
-  c.summary["tunnelled_fraction_max"] = 0;
-  c.summary["tunnelled_fraction_end"] = 0;
-  c.summary["tunnelled_depth_max_m"] = 0;
+  c.summary["crossings_max"] = 0;
   c.summary["depth_max_m"] = 0.003;
-  c.summary["depth_vertex_max_m"] = 0.002;
-  c.summary["depth_p99_m"] = 0.001;
-  c.summary["depth_mean_m"] = kMissing;
-  c.summary["penetrating_area_max_m2"] = 0.01;
+  c.summary["slip_m"] = kMissing;
   c.summary["stretch_max"] = 0.02;
   c.summary["stretch_max_end"] = 0.01;
-  c.summary["expect.tunnelled_fraction_max"] = 1;
+  c.summary["expect.crossings_max"] = 1;
   c.summary["expect.depth_max_m"] = 0;
   return c;
 }

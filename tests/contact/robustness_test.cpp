@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <bit>
-
 #include "clothbench/error.hpp"
 #include "meshes.hpp"
 #include "metrics/contact/contact_probe.hpp"
@@ -16,42 +14,23 @@ Mesh wavy(int cells) {
   });
 }
 
-std::vector<double> fields(const ContactSample& s) {
-  const auto numbers = std::bit_cast<std::array<double, sizeof(ContactSample) / sizeof(double)>>(s);
-  return {numbers.begin(), numbers.end()};
-}
+std::array<double, 2> fields(const ContactSample& s) { return {s.contour_length_m, s.depth_max_m}; }
 
-/// From 0.4 above to where it lies.
-ContactSample dropped(const Mesh& cloth, const Mesh& object, const Point<3>& up) {
-  ContactProbe probe(cloth.view(), object.view());
-  probe.probe(cloth.moved(up).positions);
-  return probe.probe(cloth.positions);
+ContactSample sample(const Mesh& cloth, const Mesh& object) {
+  return ContactProbe(cloth.view(), object.view()).probe(cloth.positions);
 }
 
 TEST(Robustness, CoincidentCopiesStayFinite) {
   const int cells = 8;
   const Mesh flat = patch(cells), bent = wavy(cells);
-  for (const Mesh& mesh : {flat, bent}) {
-    const ContactSample s = ContactProbe(mesh.view(), mesh.view()).probe(mesh.positions);
-    // A triangle touches itself and the twelve around it, so many pairs and not every one with every other.
-    EXPECT_GE(s.pairs, mesh.triangles.size());
-    EXPECT_LE(s.pairs, 13 * mesh.triangles.size());
-    EXPECT_EQ(s.cloth_fraction, 1);
-    EXPECT_EQ(s.tunnelled_fraction, 0);
-  }
-  EXPECT_EQ(ContactProbe(flat.view(), flat.view()).probe(flat.positions).contour_length_m, 0);
+  EXPECT_EQ(sample(flat, flat).contour_length_m, 0);
   // No more than all edges together.
-  const double edges = 3 * 0.6 * (cells + 1) * 1.5;
-  const ContactSample s = ContactProbe(bent.view(), bent.view()).probe(bent.positions);
-  EXPECT_TRUE(s.contour_length_m >= 0 && s.contour_length_m <= edges) << s.contour_length_m;
+  const double edges = 3 * 0.6 * (cells + 1) * 1.5, length = sample(bent, bent).contour_length_m;
+  EXPECT_TRUE(length >= 0 && length <= edges) << length;
 }
 
 TEST(Robustness, ShiftedInItsOwnPlaneHasNoContour) {
-  const Mesh a = patch(8), b = patch(7).moved({0.01, 0, 0.02});
-  const ContactSample s = ContactProbe(a.view(), b.view()).probe(a.positions);
-  EXPECT_EQ(s.contour_length_m, 0);
-  EXPECT_GE(s.pairs, a.triangles.size() / 2);
-  EXPECT_LE(s.pairs, a.triangles.size() * 20);
+  EXPECT_EQ(sample(patch(8), patch(7).moved({0.01, 0, 0.02})).contour_length_m, 0);
 }
 
 TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
@@ -64,7 +43,7 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
     worse.triangles.push_back({a, a, a});
     worse.triangles.push_back({a, b, worse.add(v[0])});
   }
-  const ContactSample plain = dropped(cloth, ball, {0, 0.4, 0}), other = dropped(cloth, worse, {0, 0.4, 0});
+  const ContactSample plain = sample(cloth, ball), other = sample(cloth, worse);
   const auto p = fields(plain), q = fields(other);
   for (std::size_t i = 0; i < p.size(); ++i) {
     EXPECT_GT(p[i], 0) << i;
@@ -73,32 +52,25 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
   // On the cloth's side too: a cell that has fallen together.
   Mesh collapsed = cloth;
   for (int k = 0; k < 3; ++k) collapsed.positions[3 * 200 + k] = collapsed.positions[3 * 201 + k];
-  for (const double x : fields(dropped(collapsed, ball, {0, 0.4, 0}))) EXPECT_TRUE(std::isfinite(x));
+  for (const double x : fields(sample(collapsed, ball))) EXPECT_TRUE(std::isfinite(x));
 }
 
-TEST(Robustness, NotFiniteIsNaNAndLosesTheHistory) {
+TEST(Robustness, NotFiniteIsNaN) {
   const Mesh cloth = wavy(8), ball = bumpy_ball(6, 0.15);
   const Capsule shape = sphere(Point<3>::Zero(), 0.15);
-  for (const double bad : std::initializer_list<double>{std::nan(""), INFINITY, -INFINITY}) {
-    ContactProbe mesh(cloth.view(), ball.view()), shapes(cloth.view(), {&shape, 1});
-    for (ContactProbe* probe : {&mesh, &shapes}) {
-      for (const double x : fields(probe->probe(cloth.positions))) EXPECT_FALSE(std::isnan(x));
+  const ContactProbe mesh(cloth.view(), ball.view()), shapes(cloth.view(), {&shape, 1});
+  for (const double bad : std::initializer_list<double>{std::nan(""), INFINITY, -INFINITY})
+    for (const ContactProbe* probe : {&mesh, &shapes}) {
       std::vector<double> broken = cloth.positions;
       broken[17] = bad;
       for (const double x : fields(probe->probe(broken))) EXPECT_TRUE(std::isnan(x));
-      const ContactSample after = probe->probe(cloth.positions);
-      EXPECT_GT(after.contour_length_m, 0);
-      EXPECT_EQ(std::isnan(after.tunnelled_fraction), probe == &mesh);
-      probe->reset();
-      EXPECT_FALSE(std::isnan(probe->probe(cloth.positions).tunnelled_fraction));
+      EXPECT_GT(probe->probe(cloth.positions).contour_length_m, 0);
     }
-  }
 }
 
 TEST(Robustness, FarTooLargePositionsAreFiniteOrInfiniteButNotNaN) {
   const Mesh cloth = wavy(8), ball = bumpy_ball(6, 0.15);
-  ContactProbe probe(cloth.view(), ball.view());
-  probe.probe(cloth.positions);
+  const ContactProbe probe(cloth.view(), ball.view());
   std::vector<double> burst = cloth.positions;
   for (std::size_t i = 0; i < burst.size(); ++i) burst[i] *= i % 2 ? 1e60 : -1e60;
   for (const double x : fields(probe.probe(burst))) EXPECT_FALSE(std::isnan(x));
@@ -107,21 +79,12 @@ TEST(Robustness, FarTooLargePositionsAreFiniteOrInfiniteButNotNaN) {
 // A power of two changes exponents alone.
 TEST(Robustness, ScaleInvarianceBitForBit) {
   const Mesh cloth = wavy(20), ball = bumpy_ball(10, 0.15);
-  const ContactSample one = dropped(cloth, ball, {0, 0.4, 0});
+  const ContactSample one = sample(cloth, ball);
   for (const double k : {0x1p-20, 0x1p+10}) {
     const auto scaled = [k](const Mesh& m) { return m.mapped([k](const Point<3>& p) { return Point<3>(k * p); }); };
-    const ContactSample s = dropped(scaled(cloth), scaled(ball), {0, 0.4 * k, 0});
+    const ContactSample s = sample(scaled(cloth), scaled(ball));
     EXPECT_EQ(s.contour_length_m, k * one.contour_length_m);
-    EXPECT_EQ(s.pairs, one.pairs);
-    EXPECT_EQ(s.cloth_fraction, one.cloth_fraction);
-    EXPECT_EQ(s.tunnelled_fraction, one.tunnelled_fraction);
-    EXPECT_EQ(s.tunnelled_depth_max_m, k * one.tunnelled_depth_max_m);
     EXPECT_EQ(s.depth_max_m, k * one.depth_max_m);
-    EXPECT_EQ(s.depth_vertex_max_m, k * one.depth_vertex_max_m);
-    EXPECT_EQ(s.depth_p99_m, k * one.depth_p99_m);
-    EXPECT_EQ(s.depth_mean_m, k * one.depth_mean_m);
-    EXPECT_EQ(s.area_m2, k * k * one.area_m2);
-    EXPECT_EQ(s.area_fraction, one.area_fraction);
   }
 }
 
@@ -132,8 +95,8 @@ TEST(Robustness, RotationAndTranslationInvariance) {
   const auto moved = [&](const Mesh& m) {
     return m.mapped([&](const Point<3>& p) { return Point<3>(turn * p + shift); });
   };
-  const auto here = fields(dropped(cloth, ball, {0, 0.4, 0}));
-  const auto there = fields(dropped(moved(cloth), moved(ball), turn * Point<3>(0, 0.4, 0)));
+  const auto here = fields(sample(cloth, ball));
+  const auto there = fields(sample(moved(cloth), moved(ball)));
   for (std::size_t i = 0; i < here.size(); ++i) {
     EXPECT_GT(here[i], 0) << i;
     EXPECT_NEAR(here[i], there[i], 1e-9 * here[i]) << i;
@@ -142,7 +105,9 @@ TEST(Robustness, RotationAndTranslationInvariance) {
   const auto shape = fields(ContactProbe(cloth.view(), {&c, 1}).probe(cloth.positions));
   const Mesh turned = moved(cloth);
   const auto turned_shape = fields(ContactProbe(turned.view(), {&t, 1}).probe(turned.positions));
-  for (std::size_t i = 0; i < shape.size(); ++i) EXPECT_NEAR(shape[i], turned_shape[i], 1e-9 * shape[i]) << i;
+  // The sides of its triangles lie elsewhere.
+  EXPECT_NEAR(shape[0], turned_shape[0], 0.02 * shape[0]);
+  EXPECT_NEAR(shape[1], turned_shape[1], 1e-9 * shape[1]);
 }
 
 TEST(Robustness, EmptyObjects) {
@@ -151,8 +116,6 @@ TEST(Robustness, EmptyObjects) {
   for (ContactProbe* probe : {&mesh, &shapes}) {
     const ContactSample s = probe->probe(cloth.positions);
     EXPECT_EQ(s.contour_length_m, 0);
-    EXPECT_EQ(s.pairs, 0);
-    EXPECT_EQ(s.tunnelled_fraction, 0);
   }
   EXPECT_FALSE(mesh.has_inside());
   Mesh one;

@@ -5,7 +5,8 @@
 #include <random>
 
 #include "meshes.hpp"
-#include "metrics/contact/contact_probe.hpp"
+#include "metrics/contact/contour.hpp"
+#include "metrics/contact/winding.hpp"
 
 namespace clothbench::contact {
 namespace {
@@ -13,71 +14,87 @@ namespace {
 /// Vertical cloth of side 1 in the plane z = `z`, its middle at height `y`.
 Mesh curtain(int cells, double y, double z) { return sheet(cells, cells, {-0.5, y - 0.5, z}, {1, 0, 0}, {0, 1, 0}); }
 
+/// A cloth that moves past a static mesh from pose to pose.
+class Watched {
+ public:
+  Watched(const Mesh& object, const Mesh& cloth)
+      : object_(object),
+        tree_(object_.view()),
+        border_(object_.view(), welded_vertices(object_.view())),
+        history_(cloth.positions.size() / 3, edges_of(cloth.triangles)),
+        cloth_(cloth) {}
+
+  /// Share of the vertices that are on the other side than at the start.
+  double move(const Mesh& to) {
+    const double before = contour_m_;
+    contour_m_ = contour(to.view(), tree_).length_m;
+    history_.advance(cloth_.positions, to.positions, tree_,
+                     {[&] { return before > 0 || contour_m_ > 0; },
+                      [&](const Point<3>& p, const Point<3>& q) {
+                        return border_.out_of_reach(p, q, object_.positions, object_.positions);
+                      }});
+    cloth_ = to;
+    int through = 0;
+    for (const int n : history_.counts()) through += n != 0;
+    return through / static_cast<double>(history_.counts().size());
+  }
+  double contour_m() const { return contour_m_; }
+  std::span<const int> counts() const { return history_.counts(); }
+
+ private:
+  Mesh object_;
+  TriangleTree tree_;
+  Border border_;
+  TunnelHistory history_;
+  Mesh cloth_;
+  double contour_m_ = 0;
+};
+
 // An even number of cells puts a row of vertices into the plane of the patch, and an odd one puts none; z = 0 runs
 // along edges of an even patch.
 TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
   for (const int cells : {31, 32, 33})
     for (const int patch_cells : {1, 2, 5, 8})
       for (const double z : {0.0, 0.013}) {
-        const Mesh object = patch(patch_cells);
-        ContactProbe probe(curtain(cells, 0, z).view(), object.view());
-        const ContactSample above = probe.probe(curtain(cells, 0.7, z).positions);
-        EXPECT_EQ(above.contour_length_m, 0);
-        EXPECT_EQ(above.pairs, 0);
-        EXPECT_EQ(above.tunnelled_fraction, 0);
-        probe.probe(curtain(cells, 0.2, z).positions);
-        const Mesh half = curtain(cells, 0, z);
-        const ContactSample s = probe.probe(half.positions);
-        EXPECT_NEAR(s.contour_length_m, 1, 1e-12) << cells << ' ' << patch_cells << ' ' << z;
-        EXPECT_GT(s.pairs, 0);
-        EXPECT_GT(s.cloth_fraction, 0);
-        EXPECT_TRUE(std::isnan(s.depth_max_m) && std::isnan(s.area_m2));  // no inside
+        Watched w(patch(patch_cells), curtain(cells, 0.7, z));
+        w.move(curtain(cells, 0.2, z));
         // Special positions are those of a cloth moved by (e, e^2, e^3): the row in the plane is still above it, and
-        // the last column passes just beside the patch, both with half a cell of area a vertex.
-        const double rows = 0.5 - (cells % 2 == 0 ? 0.5 / cells : 0), columns = 1 - 0.5 / cells;
-        EXPECT_NEAR(s.tunnelled_fraction, rows * columns, 1.0 / (cells * cells));
-        EXPECT_NEAR(s.tunnelled_depth_max_m, 0.5, 1e-12);
-        const ContactSample back = probe.probe(curtain(cells, 0.7, z).positions);
-        EXPECT_EQ(back.contour_length_m, 0);
-        EXPECT_EQ(back.tunnelled_fraction, 0);
-        EXPECT_EQ(back.tunnelled_depth_max_m, 0);
+        // the last column passes just beside the patch.
+        const double rows = (cells + 1) / 2, columns = cells;
+        EXPECT_NEAR(w.move(curtain(cells, 0, z)), rows * columns / ((cells + 1) * (cells + 1)), 1e-12);
+        EXPECT_NEAR(w.contour_m(), 1, 1e-12) << cells << ' ' << patch_cells << ' ' << z;
+        EXPECT_EQ(w.move(curtain(cells, 0.7, z)), 0);
+        EXPECT_EQ(w.contour_m(), 0);
       }
 }
 
 // A whole number of equal halves: no vertex at the border of the patch, none in its plane.
 TEST(Tunnel, HalfIsExactlyHalf) {
   const auto narrow = [](double y) { return sheet(31, 31, {-0.4, y - 0.5, 0.013}, {0.8, 0, 0}, {0, 1, 0}); };
-  ContactProbe probe(narrow(0).view(), patch(5).view());
-  probe.probe(narrow(0.7).positions);
-  const ContactSample s = probe.probe(narrow(0).positions);
-  EXPECT_NEAR(s.tunnelled_fraction, 0.5, 1e-12);
-  EXPECT_NEAR(s.contour_length_m, 0.8, 1e-12);
-  EXPECT_NEAR(s.tunnelled_depth_max_m, 0.5, 1e-12);
-  for (const int n : probe.crossing_counts()) EXPECT_TRUE(n == 0 || n == -1) << n;  // down, against the normal
+  Watched w(patch(5), narrow(0.7));
+  EXPECT_EQ(w.move(narrow(0)), 0.5);
+  EXPECT_NEAR(w.contour_m(), 0.8, 1e-12);
+  for (const int n : w.counts()) EXPECT_TRUE(n == 0 || n == -1) << n;  // down, against the normal
 }
 
 TEST(Tunnel, LoweredBesideThePatch) {
-  ContactProbe probe(curtain(32, 0, 0.6).view(), patch(8).view());
-  for (const double y : {0.7, 0.3, 0.0, -0.7}) {
-    const ContactSample s = probe.probe(curtain(32, y, 0.6).positions);
-    EXPECT_EQ(s.contour_length_m, 0);
-    EXPECT_EQ(s.tunnelled_fraction, 0);
+  Watched w(patch(8), curtain(32, 0.7, 0.6));
+  for (const double y : {0.3, 0.0, -0.7}) {
+    EXPECT_EQ(w.move(curtain(32, y, 0.6)), 0);
+    EXPECT_EQ(w.contour_m(), 0);
   }
 }
 
 TEST(Tunnel, RoundTheBorderAndBackCountsNothingButThroughAndRoundDoes) {
-  const Mesh object = patch(8), cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0.2, 0, 0}, {0, 0, 0.2});
-  const auto at = [&](double x, double y) { return cloth.moved({x, y, 0}).positions; };
-  ContactProbe probe(cloth.view(), object.view());
-  for (const auto& [x, y] : {std::pair{0.01, 0.2}, {0.9, 0.2}, {0.9, -0.2}, {0.01, -0.2}})
-    EXPECT_EQ(probe.probe(at(x, y)).tunnelled_fraction, 0);
-  EXPECT_NEAR(probe.probe(at(0.01, 0.2)).tunnelled_fraction, 1, 1e-12);  // up through it
-  for (const int n : probe.crossing_counts()) EXPECT_EQ(n, 1);
-  probe.probe(at(0.01, -0.2));
-  probe.probe(at(0.01, -0.3));
-  EXPECT_EQ(probe.probe(at(0.9, -0.3)).tunnelled_fraction, 0);
-  probe.reset();
-  EXPECT_EQ(probe.probe(at(0.01, -0.3)).tunnelled_fraction, 0);  // a start, not a path
+  const Mesh cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0.2, 0, 0}, {0, 0, 0.2});
+  const auto at = [&](double x, double y) { return cloth.moved({x, y, 0}); };
+  Watched w(patch(8), at(0.01, 0.2));
+  for (const auto& [x, y] : {std::pair{0.9, 0.2}, {0.9, -0.2}, {0.01, -0.2}}) EXPECT_EQ(w.move(at(x, y)), 0);
+  EXPECT_EQ(w.move(at(0.01, 0.2)), 1);  // up through it
+  for (const int n : w.counts()) EXPECT_EQ(n, 1);
+  w.move(at(0.01, -0.2));
+  w.move(at(0.01, -0.3));
+  EXPECT_EQ(w.move(at(0.9, -0.3)), 0);
 }
 
 /// A cloth that slides off the patch: level above it, round its rim at x = 0.5 in a quarter circle, down beside it.
@@ -96,14 +113,13 @@ TEST(Tunnel, ClothThatSlidesOffARimHasNotTunnelled) {
   for (const double step : {0.097, 0.08}) {
     const Mesh object = patch(5);
     const TriangleTree tree(object.view());
-    ContactProbe probe(sliding_off(0).view(), object.view());
     Mesh before = sliding_off(0);
+    Watched w(object, before);
     int cuts = 0;
     for (double slid = 0; slid < 1.2; slid += step) {
       const Mesh now = sliding_off(slid);
-      const ContactSample s = probe.probe(now.positions);
-      EXPECT_EQ(s.contour_length_m, 0) << slid;
-      EXPECT_EQ(s.tunnelled_fraction, 0) << slid;
+      EXPECT_EQ(w.move(now), 0) << slid;
+      EXPECT_EQ(w.contour_m(), 0) << slid;
       for (std::size_t v = 0; v < now.positions.size() / 3; ++v)
         cuts += signed_crossings(before.view().vertex(v), now.view().vertex(v), tree) != 0;
       before = now;
@@ -114,28 +130,26 @@ TEST(Tunnel, ClothThatSlidesOffARimHasNotTunnelled) {
 
 // Level all the time, so that there is no contour in any frame, and wider than the patch.
 TEST(Tunnel, ALevelClothThatFallsThroughCounts) {
-  const Mesh object = patch(5), cloth = sheet(12, 12, {-0.8, 0, -0.8}, {0, 0, 1.6}, {1.6, 0, 0});
-  ContactProbe probe(cloth.view(), object.view());
-  ContactSample s{};
-  for (double y = 0.3; y > -0.3; y -= 0.047) {
-    s = probe.probe(cloth.moved({0, y, 0}).positions);
-    EXPECT_EQ(s.contour_length_m, 0);
+  const Mesh cloth = sheet(12, 12, {-0.8, 0, -0.8}, {0, 0, 1.6}, {1.6, 0, 0});
+  Watched w(patch(5), cloth.moved({0, 0.3, 0}));
+  double through = 0;
+  for (double y = 0.3 - 0.047; y > -0.3; y -= 0.047) {
+    through = w.move(cloth.moved({0, y, 0}));
+    EXPECT_EQ(w.contour_m(), 0);
   }
   int inside = 0;
   for (std::size_t v = 0; v < cloth.positions.size() / 3; ++v) {
     const Point<3> p = cloth.view().vertex(v);
     inside += std::abs(p[0]) < 0.5 && std::abs(p[2]) < 0.5;
   }
-  EXPECT_NEAR(s.tunnelled_fraction, inside / 144.0, 1e-12);
+  EXPECT_NEAR(through, inside / 169.0, 1e-12);
 }
 
 // The same way between frames, but through the patch a hand's breadth inside the rim.
 TEST(Tunnel, ClothThatIsPulledThroughCounts) {
-  const Mesh object = patch(5);
-  ContactProbe probe(sliding_off(0).view(), object.view());
+  Watched w(patch(5), sliding_off(0).moved({-0.1, 0, 0}));
   double last = 0;
-  for (double slid = 0; slid < 1.2; slid += 0.097)
-    last = probe.probe(sliding_off(slid).moved({-0.1, 0, 0}).positions).tunnelled_fraction;
+  for (double slid = 0; slid < 1.2; slid += 0.097) last = w.move(sliding_off(slid).moved({-0.1, 0, 0}));
   EXPECT_GT(last, 0.9);
 }
 
@@ -169,52 +183,14 @@ TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
   }
 }
 
-// Motion is relative: a mesh that moves one way is a cloth that moves the other.
-TEST(Tunnel, MovingMeshAgainstRestingCloth) {
-  const Mesh cloth = sheet(16, 16, {-0.5, -0.5, 0.0}, {1, 0, 0}, {0, 1, 0}), ball = bumpy_ball(12, 0.2);
-  ContactProbe probe(cloth.view(), ball.moved({0, 0, 0.5}).view());
-  probe.probe(cloth.positions);
-  ContactProbe relative(cloth.view(), ball.view());
-  relative.probe(cloth.moved({0, 0, -0.5}).positions);
-  for (const double z : {0.31, 0.1, 0.0, -0.15, -0.5, 0.05, 0.6}) {
-    probe.move_object(ball.moved({0, 0, z}).positions);
-    const ContactSample s = probe.probe(cloth.positions);
-    const ContactSample r = relative.probe(cloth.moved({0, 0, -z}).positions);
-    EXPECT_EQ(s.tunnelled_fraction, r.tunnelled_fraction) << z;
-    EXPECT_TRUE(
-        std::equal(probe.crossing_counts().begin(), probe.crossing_counts().end(), relative.crossing_counts().begin()));
-    // A closed mesh: to have tunnelled is to be inside now.
-    EXPECT_EQ(s.tunnelled_fraction > 0, s.depth_vertex_max_m > 0) << z;
-    EXPECT_NEAR(s.tunnelled_depth_max_m, s.depth_vertex_max_m, 1e-12);
-    if (std::abs(z) > 0.3) {
-      EXPECT_EQ(s.tunnelled_fraction, 0);
-    }
-  }
-}
-
-// The path begins where the last probe saw the object, whatever moves were made in between.
-TEST(Tunnel, MovedTwiceBetweenProbes) {
-  const Mesh object = patch(3), cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0, 0, 0.2}, {0.2, 0, 0});
-  ContactProbe probe(cloth.view(), object.moved({0, 0.2, 0}).view());
-  probe.probe(cloth.positions);
-  probe.move_object(object.moved({2, -0.2, 0}).positions);
-  probe.move_object(object.moved({0, -0.2, 0}).positions);
-  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
-  // And round about it takes two probes.
-  probe.move_object(object.moved({2, -0.2, 0}).positions);
-  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
-  probe.move_object(object.moved({0, 0.2, 0}).positions);
-  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 1, 1e-12);
-}
-
 // Turning, shrinking, jerking about: whatever a closed mesh does in between, those inside at the end are those that
 // crossed once more inwards than outwards.
 TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
   const Mesh cloth = sheet(20, 20, {-0.5, -0.5, 0.01}, {1, 0, 0}, {0, 1, 0});
   const Mesh ball = octasphere(8, 0.3);
   for (const Mesh& object : {ball, unshared(ball)}) {
-    ContactProbe probe(cloth.view(), object.moved({0, 0, 1}).view());
-    probe.probe(cloth.positions);
+    Mesh before = object.moved({0, 0, 1});
+    std::vector<int> counts(cloth.positions.size() / 3, 0);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(-1, 1);
     int inside_seen = 0;
@@ -225,14 +201,16 @@ TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
         return Point<3>(centre + Eigen::AngleAxisd(angle, Point<3>(1, 1, 0).normalized()) *
                                      p.cwiseProduct(Point<3>(stretch, 1, 1)));
       });
-      probe.move_object(moved.positions);
-      probe.probe(cloth.positions);
+      const SweptMesh swept(before.view(), moved.view(), welded_vertices(before.view()));
       const TriangleTree tree(moved.view());
-      for (std::size_t i = 0; i < probe.crossing_counts().size(); ++i) {
-        const bool inside = winding_number(cloth.view().vertex(i), tree) > 0.5;
-        ASSERT_EQ(probe.crossing_counts()[i], inside ? -1 : 0) << step << ' ' << i;
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        const Point<3> p = cloth.view().vertex(i);
+        counts[i] += swept.signed_crossings(p, p);
+        const bool inside = winding_number(p, tree) > 0.5;
+        ASSERT_EQ(counts[i], inside ? -1 : 0) << step << ' ' << i;
         inside_seen += inside;
       }
+      before = moved;
     }
     EXPECT_GT(inside_seen, 100);
   }
@@ -254,20 +232,6 @@ TEST(Tunnel, MovingLatticeMeshKeepsTheBalance) {
     // The count goes with the normals, outwards.
     ASSERT_EQ(-swept.signed_crossings(p, q), inside_after - inside_before) << trial;
   }
-}
-
-TEST(Tunnel, ShapesCountTheVerticesInside) {
-  const Mesh cloth = sheet(10, 10, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
-  const Capsule ball = sphere({0, 0, 0}, 0.25), away = sphere({0, 1, 0}, 0.25);
-  ContactProbe probe(cloth.view(), {&ball, 1});
-  // 21 points of a lattice of step 0.1 lie within 0.25 of a lattice point, each with 1/100 of the area.
-  EXPECT_NEAR(probe.probe(cloth.positions).tunnelled_fraction, 0.21, 1e-12);
-  probe.move_shapes({&away, 1});
-  const ContactSample s = probe.probe(cloth.positions);
-  EXPECT_EQ(s.tunnelled_fraction, 0);
-  EXPECT_EQ(s.contour_length_m, 0);
-  EXPECT_EQ(s.depth_max_m, 0);
-  EXPECT_EQ(s.area_m2, 0);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "metrics/contact/shapes.hpp"
+#include "metrics/contact/capsules.hpp"
 #include "scenario/load.hpp"
 
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
@@ -26,23 +26,15 @@ TEST(ColliderContact, APlaneIsAHalfSpace) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
   const SceneContact above = at_height(scene, 0.001), below = at_height(scene, -0.02);
   EXPECT_EQ(above.depth_m, 0);
-  EXPECT_EQ(above.area_m2, 0);
-  EXPECT_EQ(above.depth_mean_m, 0);
-  for (double depth : {below.depth_m, below.depth_vertex_m, below.depth_p99_m, below.depth_mean_m})
-    EXPECT_NEAR(depth, 0.02, 1e-15);
-  EXPECT_NEAR(below.area_m2, 0.36, 1e-14);
+  EXPECT_NEAR(below.depth_m, 0.02, 1e-15);
   EXPECT_EQ(below.length_m, 0) << "nothing crosses the surface";
-  EXPECT_TRUE(std::isnan(below.tunnelled_fraction));
 
   // Tilted about x by y = z/10: cut along z = 0, the half z < 0 behind.
   std::vector<double> x = initial_positions(scene);
   for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] = 0.1 * (x[k + 2] + 0.01);
   const SceneContact tilted = ColliderContact(scene).probe(0, x);
-  const double stretch = std::sqrt(1.01);
   EXPECT_NEAR(tilted.length_m, 0.6, 1e-12);
-  EXPECT_NEAR(tilted.area_m2, 0.6 * 0.29 * stretch, 1e-12);
   EXPECT_NEAR(tilted.depth_m, 0.029, 1e-12);
-  EXPECT_NEAR(tilted.depth_mean_m, 0.0145, 1e-12);
 }
 
 TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
@@ -53,8 +45,7 @@ TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
     const SceneContact s = at_height(scene, 0.14);
     EXPECT_NEAR(s.length_m, 1.2, 1e-9) << turn;
     EXPECT_NEAR(s.depth_m, 0.01, 1e-12) << turn;
-    EXPECT_NEAR(s.area_m2, 0.09, 0.05 * 0.09) << turn << ": edges of the area lie between samples";
-    EXPECT_EQ(at_height(scene, 0.151).area_m2, 0) << turn;
+    EXPECT_EQ(at_height(scene, 0.151).length_m, 0) << turn;
     EXPECT_EQ(at_height(scene, 0.151).depth_m, 0) << turn;
   }
 }
@@ -73,7 +64,8 @@ TEST(ColliderContact, CapsulesAreWhereTheirFrameHasThem) {
                                      c.radius_m};
         deepest = std::max(deepest, -contact::signed_distance(contact::Point<3>::Map(&x[v]), shape));
       }
-    EXPECT_DOUBLE_EQ(s.depth_vertex_m, deepest) << "frame " << frame;
+    EXPECT_GE(s.depth_m, deepest * (1 - 1e-12)) << "frame " << frame << ": no vertex is deeper";
+    EXPECT_LE(s.depth_m, deepest + 0.04) << "frame " << frame << ": half a diagonal of a cell of 1/16 m";
     inside += deepest > 0;
   }
   EXPECT_GT(inside, 10) << "the hand must meet the cloth for this to say anything";
@@ -90,28 +82,19 @@ TEST(ColliderContact, SeveralCollidersAddUp) {
                      right = single("colliders.0.center_m=[0.15,0.02,0]", 0.09);
   const SceneContact both = at_height(two, 0.09);
   EXPECT_NEAR(both.length_m, left.length_m + right.length_m, 1e-12);
-  EXPECT_NEAR(both.area_m2, left.area_m2 + right.area_m2, 1e-15);
   EXPECT_EQ(both.depth_m, right.depth_m);
-  EXPECT_NEAR(both.depth_mean_m * both.area_m2, left.depth_mean_m * left.area_m2 + right.depth_mean_m * right.area_m2,
-              1e-15);
-  EXPECT_GT(left.area_m2, 0);
 }
 
-TEST(ColliderContact, NotFiniteIsNaNAndStaysSoForCrossings) {
-  const Scene scene = load_scene("contact/open-sheet", {"cloth.grid=[9,9]"});
-  std::vector<double> x = initial_positions(scene);
-  ColliderContact contact(scene);
-  EXPECT_EQ(contact.probe(0, x).tunnelled_fraction, 0);
-  x[7] = std::nan("");
-  EXPECT_TRUE(std::isnan(contact.probe(1, x).tunnelled_fraction));
-  EXPECT_TRUE(std::isnan(contact.probe(2, x).length_m));
-  const SceneContact healed = contact.probe(3, initial_positions(scene));
-  EXPECT_EQ(healed.length_m, 0);
-  EXPECT_TRUE(std::isnan(healed.tunnelled_fraction)) << "the side it went to is unknown";
-
-  const Scene plane = load_scene("contact/plane", {"cloth.grid=[9,9]"});
-  const SceneContact s = ColliderContact(plane).probe(0, x);
-  for (double v : {s.length_m, s.depth_m, s.depth_mean_m, s.area_m2}) EXPECT_TRUE(std::isnan(v));
+TEST(ColliderContact, NotFiniteIsNaN) {
+  for (const char* name : {"contact/open-sheet", "contact/plane", "contact/sphere"}) {
+    const Scene scene = load_scene(name, {"cloth.grid=[9,9]"});
+    std::vector<double> x = initial_positions(scene);
+    ColliderContact contact(scene);
+    x[7] = std::nan("");
+    const SceneContact s = contact.probe(0, x);
+    EXPECT_TRUE(std::isnan(s.length_m) && std::isnan(s.depth_m)) << name;
+    EXPECT_EQ(contact.probe(1, initial_positions(scene)).length_m, 0) << name;
+  }
 }
 
 double seconds(const auto& work) {

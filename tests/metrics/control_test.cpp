@@ -87,9 +87,8 @@ TEST(Control, EveryBoundOnContactFailsForClothThatFeelsNothing) {
     all.insert(broken.begin(), broken.end());
   }
   for (const char* bound :
-       {"tunnelled_fraction_max", "contact_length_settled_m", "contact_length_max_m", "depth_max_m",
-        "wrong_side_samples_max", "hooked_longest_s", "self_contact_length_max_m", "self_contact_pairs_max",
-        "touching_fraction_end", "lowest_height_min_m", "grip_error_max_m"})
+       {"crossings_max", "contact_length_settled_m", "contact_length_max_m", "depth_max_m", "self_contact_length_max_m",
+        "self_contact_pairs_max", "touching_fraction_end", "lowest_height_min_m", "grip_error_max_m"})
     EXPECT_TRUE(all.contains(bound)) << bound;
 }
 

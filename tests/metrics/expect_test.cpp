@@ -76,8 +76,7 @@ TEST(Expect, MistakesAreRefusedWithTheNearestName) {
     }
     return std::string();
   };
-  EXPECT_NE(message(R"({"tunneled_fraction_max":{"at_most":0}})").find("nearest known: tunnelled_fraction_max"),
-            std::string::npos);
+  EXPECT_NE(message(R"({"crossing_max":{"at_most":0}})").find("nearest known: crossings_max"), std::string::npos);
   EXPECT_NE(message(R"({"stretch_max":{"atmost":0}})").find("nearest known: at_most"), std::string::npos);
   EXPECT_NE(message(R"({"stretch_max":{}})").find("/expect/stretch_max"), std::string::npos);
   EXPECT_NE(

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "metrics/contact/contact_probe.hpp"
+#include "metrics/motion_check/motion_check.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -67,7 +68,6 @@ class Watch {
       } else if (c.shape == Collider::Shape::Sphere || c.shape == Collider::Shape::Capsules) {
         probe.emplace(cloth, shapes(c, start, k));
       }
-      if (probe) probe->probe(rest);
     }
   }
 
@@ -76,18 +76,16 @@ class Watch {
       const Collider& c = scene_.colliders[k];
       if (!probes_[k]) {
         for (std::size_t i = 0; i < s.position.size(); i += 3)
-          run.vertex_depth_m = std::max(run.vertex_depth_m, depth_in(c, &s.position[i]));
+          run.depth_m = std::max(run.depth_m, depth_in(c, &s.position[i]));
         continue;
       }
       if (c.shape == Collider::Shape::Capsules) probes_[k]->move_shapes(shapes(c, motion, k));
       if (c.shape == Collider::Shape::Mesh && c.moves())
         probes_[k]->move_object(posed_positions(*c.mesh, motion->colliders.at(k)));
       const contact::ContactSample sample = probes_[k]->probe(s.position);
-      run.tunnelled_fraction = std::max(run.tunnelled_fraction, sample.tunnelled_fraction);
-      run.tunnelled_depth_m = std::max(run.tunnelled_depth_m, sample.tunnelled_depth_max_m);
       run.contour_m = std::max(run.contour_m, sample.contour_length_m);
       if (settled) run.settled_contour_m = std::max(run.settled_contour_m, sample.contour_length_m);
-      if (probes_[k]->has_inside()) run.vertex_depth_m = std::max(run.vertex_depth_m, sample.depth_vertex_max_m);
+      if (probes_[k]->has_inside()) run.depth_m = std::max(run.depth_m, sample.depth_max_m);
     }
   }
 
@@ -105,6 +103,9 @@ ContactRun run_contact(ClothSolver& solver, const Scene& scene, int frames) {
   Watch watch(scene);
   const double dt = scene.time.dt();
   ClothState before;
+  std::vector<double> time_s = {0};
+  std::vector<float> position;
+  for (const double x : initial_positions(scene)) position.push_back(static_cast<float>(x));
   double wall_s = 0;
   for (int f = 0; f < frames; ++f) {
     const auto begin = std::chrono::steady_clock::now();
@@ -113,11 +114,17 @@ ContactRun run_contact(ClothSolver& solver, const Scene& scene, int frames) {
     solver.read_state(run.end);
     for (double x : run.end.position) run.finite = run.finite && std::isfinite(x);
     if (!run.finite) return run;
+    time_s.push_back(scene.time.at(f + 1));
+    for (const double x : run.end.position) position.push_back(static_cast<float>(x));
     const bool settled = (frames - f) * dt <= 0.5;
     watch.look(run.end, scene.motion_after(f), settled, run);
     run.stretch = std::max(run.stretch, largest_stretch(scene, run.end));
     if (settled && before.position.empty()) before = run.end;
   }
+  for (const motion_check::Finding& found :
+       motion_check::verify(scene, {time_s, position}, solver.plan().contact_margins_m))
+    if (std::string_view(found.statistic->name) == "crossing")
+      run.crossings = motion_check::kCrossingTolerance * found.ratio;
   run.step_s = wall_s / frames;
   run.stretch_end = largest_stretch(scene, run.end);
   const std::vector<double> mass = vertex_masses(scene);

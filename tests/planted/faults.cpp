@@ -240,29 +240,16 @@ void add_metrics(std::vector<Fault>& f) {
            std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
            v[0] = 0;
          }));
-  metric("depth at vertices given as depth at all points", "rising",
+  metric("depth not measured", "rising",
          series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); }));
   metric("self-contact of the frame before", "crossed", series("self_contact_length_m", [](std::vector<double>& v) {
            std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
            v[0] = 0;
          }));
-  metric("area halved", "pressed", series("penetrating_area_m2", [](std::vector<double>& v) {
-           for (double& x : v) x /= 2;
-         }));
-  metric("tunnelling without memory", "curtain", series("tunnelled_fraction", [](std::vector<double>& v) {
-           std::adjacent_difference(v.begin(), v.end(), v.begin());
-         }));
-  metric("wrong side counted from the last frame alone", "through",
-         series("wrong_side_fraction",
-                [](std::vector<double>& v) { std::adjacent_difference(v.begin(), v.end(), v.begin()); }));
   in_metrics("metric sees the collider a frame late", "rising", [](Scene& s) {
     s.motion.insert(s.motion.begin(), s.motion.front());
     s.motion.pop_back();
   });
-  in_metrics("metric with flipped normals", "rolled", mesh([](ColliderMesh& m) {
-               for (auto& t : m.triangles) std::swap(t[1], t[2]);
-             }));
-  in_metrics("metric ignores every 100th triangle", "rolled", mesh(without_every_100th));
   in_metrics("metric takes the radius for the diameter", "pressed", colliders([](Collider& c) { c.radius_m /= 2; }));
 }
 

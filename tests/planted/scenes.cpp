@@ -41,7 +41,7 @@ Scene over_tiles() {
     "cloth":{{"grid":[31,31],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0,-2,0],"pose":{{"center_m":[0.003,0.05,0.002]}}}},
     "material":{{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1}},
     "colliders":[{{"type":"mesh","positions_m":[{}],"triangles":[{}],"margin_m":0.001,"friction":0.3}}],
-    "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","tunnelled_fraction_max":{{"at_most":0}}}}}})",
+    "time":{{"frame_rate_hz":72,"duration_s":0.4}},"expect":{{"outcome":"ok","crossings_max":{{"at_most":0}}}}}})",
                            positions, corners));
 }
 
@@ -50,7 +50,7 @@ const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hangin
   "material":{"membrane_stiffness_N_per_m":1000,"bending_rigidity_N_m":1e-5,"damping_per_s":0.1},"pins":[{"edge":"v0"}],
   "colliders":[{"type":"capsule","center_m":[0.05,0,0.08],"axis":[0,1,0],"length_m":0.2,"radius_m":0.03,"velocity_m_per_s":[-0.1,0,-0.6],"stop_s":0.3,"friction":0.3}],
   "time":{"frame_rate_hz":72,"duration_s":0.4},
-  "expect":{"outcome":"ok","depth_vertex_max_m":{"at_most":0.001},"wrong_side_samples_max":{"at_most":0}}})";
+  "expect":{"outcome":"ok","depth_max_m":{"at_most":0.001},"crossings_max":{"at_most":0}}})";
 
 // Contact in so few substeps that responses do not suffice and planes have to hold: a corner of a box and a
 // fingertip that comes up through the inside of a cell.
@@ -76,30 +76,14 @@ const char* const kPulled = R"({"name":"pulled","why":"Two bars pull a sheet apa
   "material":{"membrane_stiffness_N_per_m":1000},"gravity_m_per_s2":[0,0,0],
   "grips":[{"edge":"u0","velocity_m_per_s":[-0.5,0,0],"stop_s":0.2},{"edge":"u1","velocity_m_per_s":[0.5,0,0],"stop_s":0.2}],
   "time":{"frame_rate_hz":72,"duration_s":0.4},
-  "expect":{"outcome":"ok","grip_edge_ratio_max":{"at_most":1.25},"grip_edge_ratio_held":{"at_most":1.1},"grip_error_max_m":{"at_most":1e-6}}})";
+  "expect":{"outcome":"ok","grip_edge_ratio_max":{"at_most":1.25},"grip_error_max_m":{"at_most":1e-6}}})";
 
-// R = 0.1 m, d = 0.01 m in the last frame: contour 2 pi sqrt(2Rd - d^2), area pi (2Rd - d^2).
+// R = 0.1 m, d = 0.01 m in the last frame: contour 2 pi sqrt(2Rd - d^2), up to 1 % of R further inside.
 const char* const kPressed = R"({"name":"pressed","why":"A sheet pushed into a sphere.",
   "cloth":{"grid":[65,65],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.2,0]}},
   "material":{"membrane_stiffness_N_per_m":1000},"colliders":[{"type":"sphere","center_m":[0,0,0],"radius_m":0.1}],
   "time":{"frame_rate_hz":20,"duration_s":1},
-  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101},"contact_length_max_m":{"at_least":0.2728,"at_most":0.2748},
-            "penetrating_area_max_m2":{"at_least":0.00594,"at_most":0.0060}}})";
-
-// The same into a prism of 96 sides and radius 0.1 m, as wide as the sheet: two lines across.
-const char* const kRolled = R"({"name":"rolled","why":"A sheet pushed into a cylinder made of triangles.",
-  "cloth":{"grid":[33,33],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.2,0]}},
-  "material":{"membrane_stiffness_N_per_m":1000},"colliders":[{"type":"cylinder","center_m":[0,0,0],"axis":[0,0,1],"radius_m":0.1,"length_m":0.4}],
-  "time":{"frame_rate_hz":20,"duration_s":1},
-  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0098,"at_most":0.0101},"contact_length_max_m":{"at_least":0.4799,"at_most":0.4801}}})";
-
-// Half of a curtain of 0.2 m goes through a patch of 0.3 m.
-const char* const kCurtain = R"({"name":"curtain","why":"A curtain lowered half-way through an open patch.",
-  "cloth":{"grid":[21,21],"size_m":[0.2,0.2],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0.003,0.151,0.004],"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
-  "material":{"membrane_stiffness_N_per_m":1000},
-  "colliders":[{"type":"mesh","positions_m":[[-0.15,0,-0.15],[0.15,0,-0.15],[0.15,0,0.15],[-0.15,0,0.15]],"triangles":[[0,3,2],[0,2,1]]}],
-  "time":{"frame_rate_hz":20,"duration_s":1},
-  "expect":{"outcome":"ok","tunnelled_fraction_end":{"at_least":0.45,"at_most":0.55},"contact_length_max_m":{"at_least":0.1999,"at_most":0.2001}}})";
+  "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101},"contact_length_max_m":{"at_least":0.2615,"at_most":0.2739}}})";
 
 // A capsule comes up into a static sheet: 0.01 m deep in the last frame, 5 mm less the one before.
 const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a static sheet.",
@@ -108,14 +92,6 @@ const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a
   "colliders":[{"type":"capsule","center_m":[0,-0.24,0],"axis":[0,0,1],"length_m":0.1,"radius_m":0.1,"velocity_m_per_s":[0,0.3,0]}],
   "time":{"frame_rate_hz":60,"duration_s":0.5},
   "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101}}})";
-
-// From (0.2, 0.1) to (-0.2, -0.1) through a sheet in z = 0: under 0.2 m x 0.3 m of it.
-const char* const kThrough = R"({"name":"through","why":"A finger goes through a static sheet.",
-  "cloth":{"grid":[41,41],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
-  "material":{"membrane_stiffness_N_per_m":1000},
-  "colliders":[{"type":"capsule","center_m":[0.2013,0.0017,0.1],"axis":[0,1,0],"length_m":0.3,"radius_m":0.01,"velocity_m_per_s":[-0.8,0,-0.4]}],
-  "time":{"frame_rate_hz":20,"duration_s":0.5},
-  "expect":{"outcome":"ok","wrong_side_fraction_max":{"at_least":0.055,"at_most":0.065}}})";
 
 // The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
 const char* const kCrossed = R"({"name":"crossed","why":"A sheet laid over itself and through.",
@@ -161,10 +137,7 @@ std::vector<Stage> stages() {
   out.push_back(solved("pulled", scene(kPulled)));
   out.push_back(stage_of("crossed", kCrossed, lay_over));
   out.push_back(stage_of("pressed", kPressed, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(stage_of("rolled", kRolled, lifted([](int f) { return down(f, 0, 0.11, 20); })));
-  out.push_back(stage_of("curtain", kCurtain, lifted([](int f) { return down(f, 0, 0.15, 20); })));
   out.push_back(stage_of("rising", kRising, [](int, std::vector<double>&) {}));
-  out.push_back(stage_of("through", kThrough, [](int, std::vector<double>&) {}));
   return out;
 }
 

@@ -166,7 +166,7 @@ class Plugin(unittest.TestCase):
         for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
             self.assertEqual(self.both(FAULT=fault), 1, self.text)
             outcome = self.stored("gravity__faulty__default")[0]
-            self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F8"))
+            self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F3"))
             self.assertIn("signal 11", outcome["message"])
             self.assertIn(where, outcome["message"])
             self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")

@@ -29,7 +29,6 @@ inline RunRecord fake_run(const std::string& solver, int n, const std::string& s
                           {"build_type", "Release"},
                           {"created", "2026-01-01T00:00:00Z"}};
   c.summary = {{"fps_median", 1 / frame_s},
-               {"fps_mean", 1 / frame_s},
                {"fps_spread", 0.031},
                {"fps_at_72", 1 / frame_s < 72 ? 1 / frame_s : 72},
                {"frame_wall_median_s", frame_s},
@@ -48,7 +47,7 @@ inline RunRecord fake_run(const std::string& solver, int n, const std::string& s
 }
 
 inline RunRecord with_outcome(RunRecord c, const std::string& status, int frame, const std::string& message) {
-  c.outcome = {status, status == "diverged" ? "F2" : "ok", frame, message};
+  c.outcome = {status, status == "diverged" ? "F1" : "ok", frame, message};
   c.summary.clear();
   return c;
 }

@@ -22,7 +22,7 @@ RunRecord run(const std::string& solver, const std::vector<double>& means_s, con
 }
 
 TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
-  Outcome broken, crashed{"crashed", "F8", 7, "its process"};
+  Outcome broken, crashed{"crashed", "F3", 7, "its process"};
   broken.expect = "fail: depth_max_m 1 > 0";
   const Table t = in_short_table(
       {run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken), run("quick", {2e-3, 1e-3, 3e-3}, {})});

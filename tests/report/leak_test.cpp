@@ -16,8 +16,8 @@ RunRecord sweep_run(const std::string& solver, double speed, double wrong, doubl
       std::string(R"({"name":"sweep","cloth":{"grid":[32,32],"sides":"double"},"colliders":[{"type":")") + type +
       R"("}]})";
   c.summary["imposed_speed_m_per_s"] = speed;
-  c.summary["wrong_side_samples_max"] = wrong;
-  c.summary["depth_vertex_max_m"] = inside_m;
+  c.summary["crossings_max"] = wrong;
+  c.summary["depth_max_m"] = inside_m;
   return c;
 }
 
@@ -49,7 +49,7 @@ TEST(Leak, TheFailureSpeedIsReported) {
   EXPECT_EQ(t.rows[1][2], "1") << "one path a speed";
   EXPECT_TRUE(t.rows[1][3].starts_with("10 m/s: inside")) << t.rows[1][3];
   EXPECT_EQ(t.rows[1][4], "none up to 20 m/s");
-  EXPECT_EQ(t.rows[1][5], "0.8 m/s: wrong side not known");
+  EXPECT_EQ(t.rows[1][5], "0.8 m/s: crossings not known");
   EXPECT_EQ(t.rows[1][6], "20 m/s: not_finite");
   const nlohmann::json j = leak_json(sweeps);
   EXPECT_EQ(j[0]["failure_speed_m_per_s"], 10);
@@ -83,9 +83,9 @@ TEST(Leak, SaysAtWhichDistanceEachSolverHoldsTheCloth) {
 
 TEST(Leak, EachKindHasItsOwn) {
   RunRecord c = fake_run("a", 32, "double", 0.004);
-  c.summary["tunnelled_fraction_max"] = 0;
+  c.summary["crossings_max"] = 0;
   EXPECT_EQ(leak_of("rooms", c), "");
-  c.summary["tunnelled_fraction_max"] = 0.001;
+  c.summary["crossings_max"] = 1;
   EXPECT_NE(leak_of("rooms", c), "");
   c.summary["grip_edge_ratio_max"] = 1.9;
   EXPECT_EQ(leak_of("grip", c), "");

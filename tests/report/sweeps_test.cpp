@@ -74,7 +74,7 @@ TEST(Popping, IsComparedWithTheSameSolverInSmallerSteps) {
       popping_run("b", "x16", 0.002),        popping_run("c", "default", 0), popping_run("c", "x16", 0.02),
       popping_run("d", "default", kMissing), popping_run("d", "x16", 0.01),  popping_run("e", "default", 0.01),
       popping_run("f", "default", 0.01),     popping_run("f", "x16", 0.01)};
-  runs.back().outcome = {"diverged", "F2", 3, "", {}};
+  runs.back().outcome = {"diverged", "F1", 3, "", {}};
   const auto all = popping_pairs(set_ups(runs));
   ASSERT_EQ(all.size(), 5u) << "e has no finer one";
   const Table t = popping_table(all);
@@ -95,8 +95,8 @@ RunRecord lying(const std::string& scene, bool transposed, float off_m) {
   c.header.vertices = 6;
   c.header.scenario_json =
       std::string(R"({"name":"lying","cloth":{"grid":)") + (transposed ? "[3,2]" : "[2,3]") +
-      R"(,"size_m":[1,2],"sides":"double"},"colliders":[{"type":"mesh"}],"expect":{"tunnelled_fraction_max":{"at_most":0}}})";
-  c.summary = {{"tunnelled_fraction_max", 0}, {"expect.tunnelled_fraction_max", 1}};
+      R"(,"size_m":[1,2],"sides":"double"},"colliders":[{"type":"mesh"}],"expect":{"crossings_max":{"at_most":0}}})";
+  c.summary = {{"crossings_max", 0}, {"expect.crossings_max", 1}};
   c.accuracy.time_s = {0, 0.05, 0.1, 0.3};  // touches at 0.05
   c.accuracy.metrics = {{"touching_fraction", "1", "", {0, 0.1, 0.1, 0}}};
   for (int frame = 0; frame < 4; ++frame)
@@ -122,9 +122,9 @@ TEST(Turned, VerticesOfTheSamePlaceAreCompared) {
       << "an RMS distance of 0.12 is over a twentieth of 2";
   runs[1] = lying("drop-turned", true, 0);
   EXPECT_TRUE(same_from_both_sides(turned_pairs(set_ups(runs))[0]));
-  runs[1].summary["expect.tunnelled_fraction_max"] = 0;
+  runs[1].summary["expect.crossings_max"] = 0;
   EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "it leaks from this side alone";
-  runs[0].summary["expect.tunnelled_fraction_max"] = 0;
+  runs[0].summary["expect.crossings_max"] = 0;
   EXPECT_TRUE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "a leak is a leak from either side";
   runs[0].accuracy.metrics[0].values = {0, 0, 0, 0};
   EXPECT_FALSE(same_from_both_sides(turned_pairs(set_ups(runs))[0])) << "it never touched";

@@ -112,15 +112,15 @@ TEST(Tables, RunsThatFailedSayHow) {
 TEST(Tables, BrokenExpectationsAreListedAndTheOthersCounted) {
   std::vector<RunRecord> runs = study();
   EXPECT_EQ(expect_table(runs).rows.size(), 1u) << "nothing expected";
-  runs[0].outcome.expect = "fail: tunnelled_fraction_max 0.2 > 0";
+  runs[0].outcome.expect = "fail: crossings_max 0.2 > 0";
   runs[1].outcome.expect = "pass";
   runs[2].outcome.expect = "not measured";
   for (const auto& [run, passed] : {std::pair{0, 0.0}, {1, 1.0}, {2, kMissing}})
-    runs[static_cast<std::size_t>(run)].summary["expect.tunnelled_fraction_max"] = passed;
+    runs[static_cast<std::size_t>(run)].summary["expect.crossings_max"] = passed;
   const Table t = expect_table(runs);
   ASSERT_EQ(t.rows.size(), 2u);
   EXPECT_EQ(t.rows[1][0], runs[0].header.scene);
-  EXPECT_EQ(t.rows[1][2], "fail: tunnelled_fraction_max 0.2 > 0");
+  EXPECT_EQ(t.rows[1][2], "fail: crossings_max 0.2 > 0");
   EXPECT_EQ(t.note, "1 of 3 runs passed, 1 failed, 1 not measured, of those whose scene has a bound.");
 }
 

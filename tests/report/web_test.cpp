@@ -126,7 +126,7 @@ class WebFiles : public WithFolder {
         c.header.triangles = {0, 1, 2};
         c.accuracy.time_s = motion.time_s;
         c.accuracy.position = motion.position;
-        c.outcome = {"timed_out", "F8", 80, "too slow </script><!-- ü"};
+        c.outcome = {"timed_out", "F3", 80, "too slow </script><!-- ü"};
         RunWriter writer(dir_ / "run", c.header);
         writer.write_accuracy(c.accuracy);
         writer.write_replay({{"colliders", {{"count", 1}, {"frame_rate_hz", 72.0}}, {}},

@@ -49,7 +49,6 @@ TEST_F(Part, IsReadAsItWasWritten) {
   EXPECT_EQ(r.accuracy.time_s, run_.accuracy.time_s);
   ASSERT_EQ(r.accuracy.metrics.size(), 2u);
   EXPECT_TRUE(same(r.accuracy.metrics[0].values, run_.accuracy.metrics[0].values));
-  EXPECT_EQ(r.accuracy.metrics[1].version, 3);
   ASSERT_EQ(r.replay.size(), 3u);
   EXPECT_EQ(r.replay[1].attributes, run_.replay[1].attributes);
   ASSERT_EQ(r.replay[1].arrays.size(), 2u);

@@ -59,7 +59,7 @@ inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertic
       "position_m", "m", "vertices", {"vertex", "xyz"}, {4, 3}, false, {0, -1, 0, 1, -1, 0, 1, -1, 1, 0, -1, 1}};
   r.replay[1].arrays = {capsules, triangles};
   r.replay[2].arrays = {corners, triangles};
-  r.outcome = {"diverged", "F1", 3, "a message with \"quotes\" and µ", "fail: stretch_max 2 > 1"};
+  r.outcome = {"diverged", "F0", 3, "a message with \"quotes\" and µ", "fail: stretch_max 2 > 1"};
   r.summary = {{"fps_median", 123.4567890123}, {"read_B_per_frame", kMissing}};
   return r;
 }

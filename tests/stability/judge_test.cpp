@@ -22,26 +22,19 @@ class Judge : public ::testing::Test {
  protected:
   /// A hanging sheet of 9 x 9 cells of 0.125 m, all classes judged, 60 frames.
   void load(const std::vector<std::string>& set = {}) {
-    std::vector<std::string> all = {
-        R"(stability={"case": "S01", "judged": ["F0", "F1", "F2", "F3", "F4", "F5", "F6", "F7"], "settle_s": 0.5})"};
+    std::vector<std::string> all = {R"(stability={"case": "S01", "judged": ["F0", "F1", "F2"], "settle_s": 0.5})"};
     all.insert(all.end(), set.begin(), set.end());
     scene_ = scene_from_json(
         json::parse(R"({"name": "judged", "why": "frames made by hand", "cloth": {"grid": [9, 9], "size_m": [1, 1],
       "areal_density_kg_per_m2": 0.2, "sides": "single", "pose": {"axis_u": [1, 0, 0], "axis_v": [0, -1, 0]}},
       "material": {"membrane_stiffness_N_per_m": "inextensible"}, "pins": [{"edge": "v0"}], "time": {"frame_rate_hz": 60, "duration_s": 1}})"),
         "test", all);
-    entry_.free_fall_m = [](const Scene& s, const json&, int n) {
-      const double t = n * s.time.dt();
-      return 0.5 * s.gravity_m_per_s2[1] * t * t;
-    };
-    judge_ = std::make_unique<StabilityJudge>(MetricContext{scene_, entry_, settings_});
+    judge_ = std::make_unique<StabilityJudge>(scene_);
     rest_.position = initial_positions(scene_);
     rest_.velocity.assign(rest_.position.size(), 0);
     next_ = 0;
   }
-  StabilityFrame add(const ClothState& s, const SceneContact* contact = nullptr) {
-    return judge_->judge(next_++, s, contact, nullptr);
-  }
+  StabilityFrame add(const ClothState& s) { return judge_->judge(next_++, s, nullptr); }
   /// Rest, up to before frame `frame`.
   void rest_until(int frame) {
     while (next_ < frame) add(rest_);
@@ -54,8 +47,6 @@ class Judge : public ::testing::Test {
   }
 
   Scene scene_;
-  SolverEntry entry_;
-  json settings_ = json::object();
   std::unique_ptr<StabilityJudge> judge_;
   ClothState rest_;
   int next_ = 0;
@@ -78,18 +69,18 @@ TEST_F(Judge, F0NotFinite) {
     }
 }
 
-TEST_F(Judge, F1Speed) {
+TEST_F(Judge, F0Unbounded) {
   load();
   // Twice the diagonal: 7.45 m/s; ten times that is the limit.
   const double most = 10 * std::sqrt(2 * 9.81 * 2 * std::sqrt(2.0));
   ClothState s = rest_;
   s.velocity[40] = 0.99 * most;
-  EXPECT_EQ(add(s).classes & F(1), 0u);
+  EXPECT_EQ(add(s).classes & F(0), 0u);
   s.velocity[40] = 1.01 * most;
-  EXPECT_EQ(add(s).classes & F(1), F(1));
+  EXPECT_EQ(add(s).classes & F(0), F(0));
 }
 
-TEST_F(Judge, F2EnergyGain) {
+TEST_F(Judge, F1EnergyGain) {
   load();
   ClothState s = rest_;
   const double M = 0.2, gL = 9.81;
@@ -99,11 +90,11 @@ TEST_F(Judge, F2EnergyGain) {
     for (std::size_t k = 0; k < s.velocity.size(); k += 3) s.velocity[k] = std::sqrt(2 * gain * gL);
     const StabilityFrame f = add(s);
     EXPECT_NEAR(f.energy_gain, gain, 1e-9 * M);
-    EXPECT_EQ((f.classes & F(2)) != 0, gain > 0.1);
+    EXPECT_EQ((f.classes & F(1)) != 0, gain > 0.1);
   }
 }
 
-TEST_F(Judge, F2FallingIsNoGain) {
+TEST_F(Judge, F1FallingIsNoGain) {
   load();
   ClothState s = rest_;
   add(s);
@@ -114,104 +105,37 @@ TEST_F(Judge, F2FallingIsNoGain) {
   EXPECT_NEAR(add(s).energy_gain, 0, 1e-12);
 }
 
-TEST_F(Judge, F3OneEdgeFourFramesInARow) {
+TEST_F(Judge, F2OneEdgeFourFramesInARow) {
   load();
   ClothState s = rest_;
   s.position[3 * 80 + 1] -= 0.125 * 0.2;  // the last vertex: one edge in 144, below the 99th percentile
-  for (int f = 0; f < 3; ++f) EXPECT_EQ(add(s).classes & F(3), 0u) << f;
-  EXPECT_EQ(add(s).classes & F(3), F(3));
-  EXPECT_EQ(add(rest_).classes & F(3), 0u);
-  for (int f = 0; f < 3; ++f) EXPECT_EQ(add(s).classes & F(3), 0u) << "counts anew";
+  for (int f = 0; f < 3; ++f) EXPECT_EQ(add(s).classes & F(2), 0u) << f;
+  EXPECT_EQ(add(s).classes & F(2), F(2));
+  EXPECT_EQ(add(rest_).classes & F(2), 0u);
+  for (int f = 0; f < 3; ++f) EXPECT_EQ(add(s).classes & F(2), 0u) << "counts anew";
 }
 
-TEST_F(Judge, F3ManyEdgesAtOnce) {
+TEST_F(Judge, F2ManyEdgesAtOnce) {
   load();
-  EXPECT_EQ(add(stretched(1.049)).classes & F(3), 0u);
-  EXPECT_EQ(add(stretched(1.051)).classes & F(3), F(3));
+  EXPECT_EQ(add(stretched(1.049)).classes & F(2), 0u);
+  EXPECT_EQ(add(stretched(1.051)).classes & F(2), F(2));
 }
 
-TEST_F(Judge, F3Torn) {
+TEST_F(Judge, F2Torn) {
   load();
   ClothState s = rest_;
   s.position[3 * 80 + 1] -= 0.125 * 1.01;
-  EXPECT_EQ(add(s).classes & F(3), F(3));
+  EXPECT_EQ(add(s).classes & F(2), F(2));
 }
 
-TEST_F(Judge, F3AllowsWhatTheLoadsDo) {
+TEST_F(Judge, F2AllowsWhatTheLoadsDo) {
   load({"material.membrane_stiffness_N_per_m=10"});
   // M g / (Y w) = 0.196, twice that when it comes suddenly.
-  EXPECT_EQ(add(stretched(1.39)).classes & F(3), 0u);
-}
-
-TEST_F(Judge, F4FoldedAndSquashed) {
-  load();
-  EXPECT_EQ(add(rest_).bad_geometry, 0);
-  ClothState folded = rest_;  // the lower half folded up over the upper one, exactly
-  for (std::size_t v = 45; v < 81; ++v) folded.position[3 * v + 1] = -rest_.position[3 * v + 1];
-  EXPECT_EQ(add(folded).classes & F(4), F(4));
-  EXPECT_EQ(add(stretched(0.04)).classes & F(4), F(4));
-  EXPECT_EQ(add(stretched(0.06)).classes & F(4), 0u);
-}
-
-TEST_F(Judge, F5DepthAfterItsGrace) {
-  load({R"(colliders=[{"type": "sphere", "center_m": [0, 0, 5], "radius_m": 0.5, "margin_m": 0.004}])"});
-  SceneContact deep{};
-  deep.depth_m = 0.25 * 0.125 * 1.01;
-  for (int f = 0; f <= 15; ++f) EXPECT_EQ(add(rest_, &deep).classes & F(5), 0u) << f;
-  EXPECT_EQ(add(rest_, &deep).classes & F(5), F(5));
-  deep.depth_m = 0.25 * 0.125 * 0.99;
-  EXPECT_EQ(add(rest_, &deep).classes & F(5), 0u);
-}
-
-TEST_F(Judge, F5TunnelledAndLodged) {
-  load({R"(colliders=[{"type": "sphere", "center_m": [0, 0, 5], "radius_m": 0.5}])"});
-  SceneContact c{};
-  c.tunnelled_fraction = 0.01;
-  EXPECT_EQ(add(rest_, &c).classes & F(5), F(5));
-  c = {};
-  c.length_m = 0.01;
-  rest_until(29);
-  EXPECT_EQ(add(rest_, &c).classes & F(5), 0u);
-  EXPECT_EQ(add(rest_, &c).classes & F(5), F(5)) << "settled";
-}
-
-TEST_F(Judge, F6UnrestOnceSettled) {
-  load();
-  ClothState s = rest_;
-  for (std::size_t k = 0; k < s.velocity.size(); k += 3) s.velocity[k] = 1.01e-3 * std::sqrt(9.81);
-  rest_until(29);
-  EXPECT_EQ(add(s).classes & F(6), 0u);
-  EXPECT_EQ(add(s).classes & F(6), F(6));
-  EXPECT_EQ(add(rest_).classes & F(6), 0u);
-}
-
-TEST_F(Judge, F6Drift) {
-  load({"time.duration_s=20"});
-  rest_until(30);
-  add(rest_);
-  ClothState s = rest_;
-  for (double& x : s.position) x += 1e-3 / std::sqrt(3.0) * 0.25;  // 0.25e-3 L in 12 s: more than 1e-3 a minute
-  rest_until(30 + 12 * 60);
-  EXPECT_EQ(add(s).classes & F(6), F(6));
-}
-
-TEST_F(Judge, F7AgainstTheFallOfTheSolversOwn) {
-  load({"pins=[]"});
-  const auto fallen = [&](int frame, double share) {
-    ClothState s = rest_;
-    const double t = frame / 60.0;
-    for (std::size_t k = 1; k < s.position.size(); k += 3) s.position[k] -= share * 0.5 * 9.81 * t * t;
-    for (std::size_t k = 1; k < s.velocity.size(); k += 3) s.velocity[k] = -share * 9.81 * t;
-    return s;
-  };
-  for (int f = 0; f < 10; ++f) EXPECT_EQ(add(fallen(f, 1)).classes, 0u) << f;
-  EXPECT_EQ(add(fallen(10, 0.995)).classes & F(7), 0u);
-  EXPECT_EQ(add(fallen(11, 0.98)).classes & F(7), F(7));
-  EXPECT_EQ(add(rest_).classes & F(7), F(7)) << "frozen";
+  EXPECT_EQ(add(stretched(1.39)).classes & F(2), 0u);
 }
 
 TEST_F(Judge, WaitsForTheClothToRelax) {
-  load({R"(stability={"case": "S15", "judged": ["F0", "F1", "F2", "F3"], "from": "relaxed", "relax_s": 0.2})",
+  load({R"(stability={"case": "S15", "judged": ["F0", "F1", "F2"], "from": "relaxed", "relax_s": 0.2})",
         R"(cloth.start={"shape": "sphere", "radius_m": 3})"});
   ClothState ball;
   ball.position = rest_.position;
@@ -223,28 +147,29 @@ TEST_F(Judge, WaitsForTheClothToRelax) {
       for (std::size_t k = 0; k < 3; ++k) rest_.position[3 * static_cast<std::size_t>(9 * j + i) + k] = x[k];
     }
   for (int f = 0; f <= 12; ++f) EXPECT_EQ(add(ball).classes, 0u) << f;
-  EXPECT_EQ(add(ball).classes, F(3)) << "not relaxed in time";
+  EXPECT_EQ(add(ball).classes, F(2)) << "not relaxed in time";
   EXPECT_EQ(add(rest_).classes, 0u);
-  EXPECT_EQ(add(stretched(1.1)).classes & F(3), F(3)) << "judged from now on";
+  EXPECT_EQ(add(stretched(1.1)).classes & F(2), F(2)) << "judged from now on";
 }
 
 TEST_F(Judge, AJumpStartsTheWaitAnew) {
-  load({R"(stability={"case": "S08", "judged": ["F0", "F1", "F2", "F3"], "from": "relaxed"})", "pins=[]",
+  load({R"(stability={"case": "S08", "judged": ["F0", "F1", "F2"], "from": "relaxed"})", "pins=[]",
         R"(grips=[{"edge": "v0", "velocity_m_per_s": [0, 0, 0], "jumps": [{"time_s": 0.1, "by_m": [0.5, 0, 0]}]}])"});
   rest_until(7);
   ClothState fast = stretched(1.5);
   fast.velocity[100] = 9 * 0.5 * 60;  // under 10 times the jump's speed
   EXPECT_EQ(add(fast).classes, 0u);
   fast.velocity[100] = 11 * 0.5 * 60;
-  EXPECT_EQ(add(fast).classes, F(1));
+  EXPECT_EQ(add(fast).classes, F(0));
   EXPECT_EQ(add(rest_).classes, 0u);
 }
 
 TEST_F(Judge, OnlyWhatTheSceneJudgesCounts) {
   load({R"(stability={"case": "S10", "judged": ["F0"]})"});
   ClothState s = stretched(3);
-  s.velocity[10] = 1e6;
   EXPECT_EQ(add(s).classes, 0u);
+  s.velocity[10] = 1e6;
+  EXPECT_EQ(add(s).classes, F(0));
   s.velocity[10] = std::nan("");
   EXPECT_EQ(add(s).classes, F(0));
 }
@@ -263,27 +188,25 @@ AccuracyPass pass_of(const std::vector<unsigned>& classes) {
 TEST(Verdict, WorstGradeFirstFrame) {
   using Grade = StabilityVerdict::Grade;
   EXPECT_EQ(stability_verdict(pass_of({0, 0})).grade, Grade::Stable);
-  const StabilityVerdict degraded = stability_verdict(pass_of({0, F(6), F(3)}));
+  const StabilityVerdict degraded = stability_verdict(pass_of({0, F(2), 0}));
   EXPECT_EQ(degraded.grade, Grade::Degraded);
-  EXPECT_EQ(degraded.klass, "F6");
+  EXPECT_EQ(degraded.klass, "F2");
   EXPECT_EQ(degraded.frame, 1);
-  const StabilityVerdict failed = stability_verdict(pass_of({0, F(3), F(2) | F(3), F(0)}));
+  const StabilityVerdict failed = stability_verdict(pass_of({0, F(2), F(1) | F(2), F(0)}));
   EXPECT_EQ(failed.grade, Grade::Failed);
-  EXPECT_EQ(failed.klass, "F2");
+  EXPECT_EQ(failed.klass, "F1");
   EXPECT_EQ(failed.frame, 2);
 }
 
-TEST(Verdict, F8ComesFromTheRunner) {
+TEST(Verdict, F3ComesFromTheRunner) {
   Scene judged;
   judged.stability.name = "S01";
   Outcome lost;
   lost.status = "device_lost";
-  lost.klass = "F8";
+  lost.klass = "F3";
   lost.failed_frame = 5;
-  const auto s = scalars_of({judged, pass_of({0, F(3)}), lost});
+  const auto s = scalars_of({judged, pass_of({0, F(2)}), lost});
   EXPECT_EQ(s.at("stability_grade"), 2);
-  EXPECT_EQ(s.at("stability_class"), 8);
-  EXPECT_EQ(s.at("stability_frame"), 5);
   Outcome absent;
   absent.status = "unsupported";
   EXPECT_TRUE(std::isnan(scalars_of({judged, AccuracyPass(), absent}).at("stability_grade")));

@@ -70,7 +70,7 @@ class Loss : public Sessions {
     ASSERT_LT(r.log.rows().size(), 60u);
     const RunRecord stored = read_run(r.file);
     EXPECT_EQ(stored.outcome.status, "device_lost");
-    EXPECT_EQ(stored.outcome.klass, "F8");
+    EXPECT_EQ(stored.outcome.klass, "F3");
     ASSERT_EQ(stored.trials.size(), 1u);
     EXPECT_EQ(stored.trials[0].frame_wall_s.size(), r.log.rows().size());
     EXPECT_EQ(stored.summary.at("xr_frames"), static_cast<double>(r.log.rows().size()));

@@ -14,7 +14,7 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 /// over_budget (not run: settings with less work had used up the solver's time).
 struct Outcome {
   std::string status = "ok";
-  std::string klass = "ok";  ///< failure class F0..F8, or ok
+  std::string klass = "ok";  ///< failure class F0 to F3, or ok
   int failed_frame = -1;
   std::string message;
   /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" for a scene without it.

@@ -144,13 +144,13 @@ struct Jump {
   double distance_m = 0;
 };
 
-/// How a run of the scene is judged frame by frame, by the classes F0 to F8 of metrics/stability.
+/// How a run of the scene is judged frame by frame, by the outcome classes of metrics/stability.
 struct StabilityRules {
   std::string name;           ///< name of the case, such as "S01"; empty = not judged
   std::uint32_t judged = 0;   ///< bit k: class Fk counts
-  bool when_relaxed = false;  ///< F1 to F3 count from the first frame on whose mean |strain| is below 1 %
-  double relax_s = 0;         ///< time [s] by which that frame must come, else F3; 0 = no limit
-  double settle_s = 0;        ///< F6 counts from this time [s] on
+  bool when_relaxed = false;  ///< F1 and F2 count from the first frame on whose mean |strain| is below 1 %
+  double relax_s = 0;         ///< time [s] by which that frame must come, otherwise F2; 0 = no limit
+  double settle_s = 0;        ///< a shape at rest is judged from this time [s] on
 };
 
 /// A criterion for a correct result: bounds on a scalar of the summary.

@@ -8,25 +8,17 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/contact/contour.hpp"
-#include "metrics/contact/tunnel.hpp"
+#include "metrics/contact/touch.hpp"
+#include "metrics/contact/winding.hpp"
 
 namespace clothbench::contact {
 namespace {
-
-constexpr ContactSample kUnknown{kMissing, kMissing, kMissing, kMissing, kMissing, kMissing,
-                                 kMissing, kMissing, kMissing, kMissing, kMissing};
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 Triangles copy(std::span<const std::array<std::uint32_t, 3>> t) { return {t.begin(), t.end()}; }
 
-std::vector<double> areas_of(const TriangleMeshView& cloth) {
-  validate(cloth, "contact cloth");
-  std::vector<double> areas = vertex_areas(cloth);
-  if (!std::any_of(areas.begin(), areas.end(), [](double a) { return a > 0; }))
-    throw Error("contact cloth: expected at least one triangle with area");
-  return areas;
-}
+Box box_of(const Simplex<3>& t) { return Box(t[0]).extend(t[1]).extend(t[2]); }
 
 void validate(std::span<const Capsule> shapes) {
   for (std::size_t k = 0; k < shapes.size(); ++k)
@@ -35,106 +27,96 @@ void validate(std::span<const Capsule> shapes) {
       throw Error("contact capsule " + std::to_string(k) + ": expected finite ends and a positive radius");
 }
 
-/// An object made of triangles, with its current positions and those at the last probe.
+/// An object made of triangles.
 struct MeshObject {
   MeshObject(const TriangleMeshView& mesh, Solid solid)
       : triangles(copy(mesh.triangles)),
-        positions(mesh.positions.begin(), mesh.positions.end()),
+        vertices(mesh.vertex_count()),
         tree(mesh),
-        welded(welded_vertices(mesh)),
-        border(mesh, welded),
-        closed(is_closed(mesh, welded)),
+        closed(is_closed(mesh, welded_vertices(mesh))),
         has_inside(solid == Solid::Nearly || (solid == Solid::Auto && closed)) {}
 
-  TriangleMeshView view(const std::vector<double>& at) const { return {at, triangles}; }
-
   Triangles triangles;
-  std::vector<double> positions, positions_before;  ///< the latter empty if it hasn't moved
+  std::size_t vertices;
   TriangleTree tree;
-  std::vector<std::uint32_t> welded;
-  Border border;
   bool closed, has_inside;
 };
+
+/// Depth [m] of a triangle in a capsule; 0 or less if it is outside.
+double depth_in(const Simplex<3>& triangle, const Capsule& c) {
+  // Most capsules are far away, which the boxes tell at less cost; the factor covers rounding.
+  const double apart = box_of(triangle).squaredExteriorDistance(Box(c.a).extend(c.b));
+  if (apart > c.radius_m * c.radius_m * (1 + 1e-12)) return 0;
+  return c.radius_m - std::sqrt(squared_distance(c.a, c.b, triangle));
+}
+
+/// Whether a point of the surface of capsule `own` lies inside another. Capsules that share a joint share its surface,
+/// which counts for the first of them.
+bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own) {
+  for (std::size_t k = 0; k < shapes.size(); ++k)
+    if (k != own && signed_distance(p, shapes[k]) < (k < own ? 0 : -kCapsuleError * shapes[k].radius_m)) return true;
+  return false;
+}
 
 }  // namespace
 
 struct ContactProbe::State {
   explicit State(const TriangleMeshView& cloth)
-      : triangles(copy(cloth.triangles)),
-        areas(areas_of(cloth)),
-        mesh_depth(cloth),
-        links(edges_of(cloth.triangles)),
-        history(cloth.vertex_count(), links) {}
+      : triangles(copy(cloth.triangles)), vertices(cloth.vertex_count()), links(edges_of(cloth.triangles)) {
+    validate(cloth, "contact cloth");
+    const auto has_area = [&](std::size_t t) { return area(cloth.triangle(t)) > 0; };
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (has_area(t)) return;
+    throw Error("contact cloth: expected at least one triangle with area");
+  }
 
-  void advance(std::span<const double> positions, bool contour);
-  void probe_mesh(const TriangleMeshView& cloth, ContactSample&);
-  void probe_shapes(const TriangleMeshView& cloth, ContactSample&) const;
-  void set(const Contour& c, ContactSample& s) const {
-    s.contour_length_m = c.length_m;
-    s.pairs = static_cast<double>(c.pairs);
-    s.cloth_fraction = static_cast<double>(c.cloth_triangles) / static_cast<double>(triangles.size());
-  }
-  static void set(const Depth& d, ContactSample& s) {
-    s.depth_max_m = d.max_m;
-    s.depth_vertex_max_m = d.vertex_max_m;
-    s.depth_p99_m = d.p99_m;
-    s.depth_mean_m = d.mean_m;
-    s.area_m2 = d.area_m2;
-    s.area_fraction = d.area_fraction;
-  }
+  double depth_in_mesh(const TriangleMeshView& cloth) const;
+  ContactSample in_shapes(const TriangleMeshView& cloth) const;
 
   Triangles triangles;
-  std::vector<double> areas;
-  MeshDepth mesh_depth;
+  std::size_t vertices;
   std::vector<Link> links;
-  TunnelHistory history;
-  std::vector<double> cloth_before;  ///< empty before the first probe
-  bool history_lost = false, contour_before = false;
   std::optional<MeshObject> mesh;
   std::vector<Capsule> shapes;
 };
 
-void ContactProbe::State::advance(std::span<const double> positions, bool contour) {
-  const std::vector<double>& from = mesh->positions_before.empty() ? mesh->positions : mesh->positions_before;
-  const StepEvidence evidence{
-      [either = contour || contour_before] { return either; },
-      [&](const Point<3>& p, const Point<3>& q) { return mesh->border.out_of_reach(p, q, from, mesh->positions); }};
-  contour_before = contour;
-  if (!cloth_before.empty()) {
-    if (mesh->positions_before.empty())
-      history.advance(cloth_before, positions, mesh->tree, evidence);
-    else
-      history.advance(cloth_before, positions,
-                      SweptMesh(mesh->view(mesh->positions_before), mesh->view(mesh->positions), mesh->welded),
-                      evidence);
+double ContactProbe::State::depth_in_mesh(const TriangleMeshView& cloth) const {
+  const InsideTest inside(mesh->tree, mesh->closed);
+  const Box& box = mesh->tree.tree().box();
+  double most = 0;
+  const auto at = [&](const Point<3>& p) {
+    if (box.contains(p) && inside(p)) most = std::max(most, mesh->tree.distance(p));
+  };
+  for (std::size_t v = 0; v < cloth.vertex_count(); ++v) at(cloth.vertex(v));
+  for (const auto& [a, b] : links) at(0.5 * (cloth.vertex(a) + cloth.vertex(b)));
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Simplex<3> v = cloth.triangle(t);
+    at((v[0] + v[1] + v[2]) / 3);
   }
-  cloth_before.assign(positions.begin(), positions.end());
+  return most;
 }
 
-void ContactProbe::State::probe_mesh(const TriangleMeshView& cloth, ContactSample& s) {
-  set(contour(cloth, mesh->tree), s);
-  if (!history_lost) {
-    advance(cloth.positions, s.contour_length_m > 0);
-    s.tunnelled_fraction = history.fraction(areas);
-    s.tunnelled_depth_max_m = 0;
-    for (std::size_t i = 0; i < cloth.vertex_count(); ++i)
-      if (history.counts()[i] != 0)
-        s.tunnelled_depth_max_m = std::max(s.tunnelled_depth_max_m, mesh->tree.distance(cloth.vertex(i)));
+ContactSample ContactProbe::State::in_shapes(const TriangleMeshView& cloth) const {
+  ContactSample out{0, 0};
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    std::vector<Simplex<3>> within;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const Simplex<3> triangle = cloth.triangle(t);
+      const double depth = depth_in(triangle, shapes[k]);
+      if (!(depth > 0)) continue;
+      out.depth_max_m = std::max(out.depth_max_m, depth);
+      if (!is_degenerate(triangle)) within.push_back(triangle);
+    }
+    if (within.empty()) continue;
+    const TriangleTree surface(capsule_mesh(shapes[k]).view());
+    for (const Simplex<3>& triangle : within)
+      surface.tree().for_each_overlapping(box_of(triangle), [&](int facet) {
+        const auto cut = intersection(triangle, surface.triangles()[static_cast<std::size_t>(facet)]);
+        if (cut && !hidden(0.5 * ((*cut)[0] + (*cut)[1]), shapes, k))
+          out.contour_length_m += ((*cut)[1] - (*cut)[0]).norm();
+      });
   }
-  if (mesh->has_inside) set(mesh_depth(cloth, mesh->tree, InsideTest(mesh->tree, mesh->closed)), s);
-}
-
-void ContactProbe::State::probe_shapes(const TriangleMeshView& cloth, ContactSample& s) const {
-  const ShapesResult result = shapes_contact(cloth, shapes);
-  set(result.contour, s);
-  set(result.depth, s);
-  double inside = 0, all = 0;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    all += areas[i];
-    if (result.inside[i]) inside += areas[i];
-  }
-  s.tunnelled_fraction = inside / all;
-  s.tunnelled_depth_max_m = result.depth.vertex_max_m;
+  return out;
 }
 
 ContactProbe::ContactProbe(const TriangleMeshView& cloth_at_rest, const TriangleMeshView& object, Solid solid)
@@ -155,14 +137,10 @@ ContactProbe& ContactProbe::operator=(ContactProbe&&) noexcept = default;
 void ContactProbe::move_object(std::span<const double> positions) {
   if (!state_->mesh) throw Error("move_object: expected a probe of a mesh, this one has capsules");
   MeshObject& mesh = *state_->mesh;
-  if (positions.size() != mesh.positions.size())
-    throw Error("move_object: expected " + std::to_string(mesh.positions.size() / 3) + " vertices, got " +
+  if (positions.size() != 3 * mesh.vertices)
+    throw Error("move_object: expected " + std::to_string(mesh.vertices) + " vertices, got " +
                 std::to_string(positions.size() / 3));
-  std::vector<double> moved(positions.begin(), positions.end());
-  mesh.tree = TriangleTree(mesh.view(moved));
-  // If the object moves twice between two probes, its path still begins at the positions of the last probe.
-  if (mesh.positions_before.empty()) mesh.positions_before = std::move(mesh.positions);
-  mesh.positions = std::move(moved);
+  mesh.tree = TriangleTree({positions, mesh.triangles});
 }
 
 void ContactProbe::move_shapes(std::span<const Capsule> shapes) {
@@ -174,32 +152,36 @@ void ContactProbe::move_shapes(std::span<const Capsule> shapes) {
   state_->shapes.assign(shapes.begin(), shapes.end());
 }
 
-ContactSample ContactProbe::probe(std::span<const double> cloth_positions) {
-  State& state = *state_;
-  if (cloth_positions.size() != 3 * state.areas.size())
-    throw Error("contact probe: expected " + std::to_string(state.areas.size()) + " vertices, got " +
+ContactSample ContactProbe::probe(std::span<const double> cloth_positions) const {
+  const State& state = *state_;
+  if (cloth_positions.size() != 3 * state.vertices)
+    throw Error("contact probe: expected " + std::to_string(state.vertices) + " vertices, got " +
                 std::to_string(cloth_positions.size() / 3));
-  ContactSample sample = kUnknown;
-  if (all_finite(cloth_positions)) {
-    const TriangleMeshView cloth{cloth_positions, state.triangles};
-    state.mesh ? state.probe_mesh(cloth, sample) : state.probe_shapes(cloth, sample);
-  } else {
-    state.history_lost = true;
-  }
-  if (state.mesh) state.mesh->positions_before.clear();
-  return sample;
-}
-
-void ContactProbe::reset() {
-  state_->history = TunnelHistory(state_->areas.size(), state_->links);
-  state_->cloth_before.clear();
-  state_->history_lost = false;
-}
-
-std::span<const int> ContactProbe::crossing_counts() const {
-  return state_->mesh ? state_->history.counts() : std::span<const int>();
+  if (!all_finite(cloth_positions)) return {kMissing, kMissing};
+  const TriangleMeshView cloth{cloth_positions, state.triangles};
+  if (!state.mesh) return state.in_shapes(cloth);
+  return {contour(cloth, state.mesh->tree).length_m, has_inside() ? state.depth_in_mesh(cloth) : kMissing};
 }
 
 bool ContactProbe::has_inside() const { return !state_->mesh || state_->mesh->has_inside; }
+
+ContactSample half_space_contact(const TriangleMeshView& cloth, const Point<3>& on_plane, const Point<3>& normal) {
+  if (!all_finite(cloth.positions)) return {kMissing, kMissing};
+  ContactSample out{0, 0};
+  const auto depth_of = [&](const Point<3>& p) { return normal.dot(on_plane - p); };
+  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+    const Simplex<3> v = cloth.triangle(t);
+    const std::array<double, 3> f{depth_of(v[0]), depth_of(v[1]), depth_of(v[2])};
+    for (const double d : f) out.depth_max_m = std::max(out.depth_max_m, d);
+    const auto behind = std::count_if(f.begin(), f.end(), [](double d) { return d > 0; });
+    if (behind == 0 || behind == 3) continue;
+    // `lone` is the corner alone on its side.
+    std::size_t lone = 0;
+    while ((f[lone] > 0) != (behind == 1)) ++lone;
+    const auto cut = [&](std::size_t k) { return Point<3>(v[lone] + f[lone] / (f[lone] - f[k]) * (v[k] - v[lone])); };
+    out.contour_length_m += (cut((lone + 2) % 3) - cut((lone + 1) % 3)).norm();
+  }
+  return out;
+}
 
 }  // namespace clothbench::contact

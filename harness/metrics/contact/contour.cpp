@@ -23,9 +23,15 @@ Point<3> point_of_crossing(const Point<3>& p, const Point<3>& q, const Simplex<3
   return p + share * (q - p);
 }
 
-/// The intersection of two triangles in general position is empty, or a segment. Each end of the segment is a crossing
-/// of an edge of one triangle with the other.
 double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
+  const auto cut = intersection(cloth, object);
+  return cut ? ((*cut)[1] - (*cut)[0]).norm() : 0;
+}
+
+}  // namespace
+
+// Each end of the segment is a crossing of an edge of one triangle with the other.
+std::optional<std::array<Point<3>, 2>> intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
   std::array<Point<3>, 6> ends;
   int count = 0;
   const auto collect = [&](const Simplex<3>& edges, const Simplex<3>& face, int shift) {
@@ -37,10 +43,9 @@ double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object)
   collect(cloth, object, 1);
   // Translating the cloth is equivalent to translating the object in the opposite direction.
   collect(object, cloth, -1);
-  return count == 2 ? (ends[1] - ends[0]).norm() : 0;
+  if (count != 2) return std::nullopt;
+  return std::array{ends[0], ends[1]};
 }
-
-}  // namespace
 
 Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
   Contour result;
@@ -49,14 +54,12 @@ Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
     const Box box = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
     if (!box.intersects(object.tree().box()) || is_degenerate(triangle)) continue;
     const Kernel::Triangle_3 exact = to_cgal(triangle);
-    const long pairs_before = result.pairs;
     object.tree().for_each_overlapping(box, [&](int other) {
       const Simplex<3>& facet = object.triangles()[other];
       if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
       ++result.pairs;
       result.length_m += length_of_intersection(triangle, facet);
     });
-    if (result.pairs > pairs_before) ++result.cloth_triangles;
   }
   return result;
 }
@@ -71,7 +74,6 @@ Contour self_contour(const TriangleMeshView& cloth) {
     numbers.push_back(static_cast<std::uint32_t>(t));
   }
   const BoxTree tree(std::move(boxes));
-  std::vector<std::uint8_t> meets(numbers.size(), 0);
   Contour result;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const auto& corners = cloth.triangles[numbers[k]];
@@ -87,11 +89,9 @@ Contour self_contour(const TriangleMeshView& cloth) {
       const Simplex<3> facet = cloth.triangle(numbers[o]);
       if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
       ++result.pairs;
-      meets[k] = meets[o] = 1;
       result.length_m += length_of_intersection(triangle, facet);
     });
   }
-  result.cloth_triangles = std::count(meets.begin(), meets.end(), 1);
   return result;
 }
 

@@ -1,14 +1,18 @@
 #pragma once
+#include <optional>
+
 #include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {
 
 /// How much of a cloth intersects an object at one instant. Needs no history or orientation, so open meshes work too.
 struct Contour {
-  double length_m = 0;       ///< of the curve in which the two surfaces cross
-  long pairs = 0;            ///< (cloth triangle, object triangle) with a point in common, exactly
-  long cloth_triangles = 0;  ///< cloth triangles in at least one pair
+  double length_m = 0;  ///< of the curve in which the two surfaces cross
+  long pairs = 0;       ///< (cloth triangle, object triangle) with a point in common, exactly
 };
+
+/// The segment in which two triangles in general position cross; none if they do not.
+std::optional<std::array<Point<3>, 2>> intersection(const Simplex<3>& cloth, const Simplex<3>& object);
 
 /// Where a cloth crosses an object.
 ///

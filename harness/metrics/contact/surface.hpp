@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "metrics/contact/shapes.hpp"
+#include "metrics/contact/capsules.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {

@@ -1,5 +1,5 @@
 #pragma once
-#include "metrics/contact/section.hpp"
+#include "metrics/contact/capsules.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {

@@ -86,13 +86,6 @@ std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangl
 
 double area(const Simplex<3>& v) { return 0.5 * (v[1] - v[0]).cross(v[2] - v[0]).norm(); }
 
-std::vector<double> vertex_areas(const TriangleMeshView& mesh) {
-  std::vector<double> areas(mesh.vertex_count(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) areas[v] += area(mesh.triangle(t)) / 3;
-  return areas;
-}
-
 BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   std::vector<int> items(boxes_.size());
   std::iota(items.begin(), items.end(), 0);

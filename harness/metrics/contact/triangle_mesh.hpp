@@ -42,9 +42,6 @@ using Link = std::array<std::uint32_t, 2>;
 /// The edges of triangles, each once, the lower vertex first, in order.
 std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// Rest area [m2] of each vertex: a third of the area of each of its triangles.
-std::vector<double> vertex_areas(const TriangleMeshView& at_rest);
-
 double area(const Simplex<3>& triangle);
 
 using Box = Eigen::AlignedBox3d;

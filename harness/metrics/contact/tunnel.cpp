@@ -105,25 +105,12 @@ bool Border::out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const 
   return distance(p, from) + distance(q, to) > 2 * ((q - p).norm() + moved);
 }
 
-template <class Count>
-void TunnelHistory::add(std::span<const double> from, std::span<const double> to, Count count,
-                        const StepEvidence& evidence) {
-  std::vector<int> step(counts_.size());
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = count(vertex_of(from, i), vertex_of(to, i));
-  drop_unproven(step, from, to, evidence);
-  for (std::size_t i = 0; i < step.size(); ++i) counts_[i] += step[i];
-}
-
 void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh,
                             const StepEvidence& evidence) {
-  add(
-      from, to, [&](const Point<3>& p, const Point<3>& q) { return contact::signed_crossings(p, q, mesh); }, evidence);
-}
-
-void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh,
-                            const StepEvidence& evidence) {
-  add(
-      from, to, [&](const Point<3>& p, const Point<3>& q) { return mesh.signed_crossings(p, q); }, evidence);
+  std::vector<int> step(counts_.size());
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(vertex_of(from, i), vertex_of(to, i), mesh);
+  drop_unproven(step, from, to, evidence);
+  for (std::size_t i = 0; i < step.size(); ++i) counts_[i] += step[i];
 }
 
 void TunnelHistory::drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
@@ -147,15 +134,6 @@ void TunnelHistory::drop_unproven(std::vector<int>& step, std::span<const double
         if (!proven[i] && step[i] != 0) step[i] = 0, changed = true;
     }
   }
-}
-
-double TunnelHistory::fraction(std::span<const double> weights) const {
-  double through = 0, all = 0;
-  for (std::size_t i = 0; i < counts_.size(); ++i) {
-    all += weights[i];
-    if (counts_[i] != 0) through += weights[i];
-  }
-  return through / all;
 }
 
 }  // namespace clothbench::contact

@@ -74,15 +74,10 @@ class TunnelHistory {
 
   /// One step; both position arrays xyz interleaved and finite.
   void advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh, const StepEvidence&);
-  void advance(std::span<const double> from, std::span<const double> to, const SweptMesh& mesh, const StepEvidence&);
 
   std::span<const int> counts() const { return counts_; }
-  /// Share of the total weight (rest area) of the vertices whose count isn't 0.
-  double fraction(std::span<const double> weights) const;
 
  private:
-  template <class Count>
-  void add(std::span<const double> from, std::span<const double> to, Count count, const StepEvidence&);
   void drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
                      const StepEvidence&) const;
 

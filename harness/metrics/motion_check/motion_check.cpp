@@ -127,7 +127,7 @@ void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
   found.define("depth");
   for (std::size_t k = 0; k < m.frames; ++k) {
     found.add("depth", bodies.depth_ratio(k), k);
-    if (k > 0) found.add("crossing", 2.0 * bodies.passages(k), k);
+    if (k > 0) found.add("crossing", bodies.passages(k) / kCrossingTolerance, k);
   }
 }
 

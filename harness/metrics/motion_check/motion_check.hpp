@@ -27,6 +27,9 @@ inline constexpr std::size_t kStatistics = 23;
 std::span<const Statistic> statistics();
 const char* name_of(Check);
 
+/// Passing points in a frame: none are allowed.
+inline constexpr double kCrossingTolerance = 0.5;
+
 /// The outcome of one statistic: its largest value over the frames, divided by its tolerance. The check fails unless
 /// ratio <= 1.
 struct Finding {

@@ -12,6 +12,14 @@ namespace {
 
 double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
 
+/// Rest length of the straight line between two vertices [m].
+double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
+  if (c.mesh) return distance(c.mesh->vertices[a], c.mesh->vertices[b]);
+  const int ia = static_cast<int>(a) % c.columns, ib = static_cast<int>(b) % c.columns;
+  const int ja = static_cast<int>(a) / c.columns, jb = static_cast<int>(b) / c.columns;
+  return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
+}
+
 /// Held vertices, frame by frame.
 class Holders {
  public:
@@ -82,13 +90,6 @@ std::pair<double, double> start_of(const Scene& s) {
 
 }  // namespace
 
-double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
-  if (c.mesh) return distance(c.mesh->vertices[a], c.mesh->vertices[b]);
-  const int ia = static_cast<int>(a) % c.columns, ib = static_cast<int>(b) % c.columns;
-  const int ja = static_cast<int>(a) / c.columns, jb = static_cast<int>(b) / c.columns;
-  return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
-}
-
 double greatest_stiffness(const Scene& s) {
   double most = s.material.membrane_stiffness_N_per_m.value_or(0);
   for (const StiffnessRegion& r : s.material.regions) most = std::max(most, r.membrane_stiffness_N_per_m.value_or(0));
@@ -137,8 +138,7 @@ std::vector<Bounds> envelope(const Scene& s) {
         v_collider = std::max(v_collider, collider / dt);
       }
     }
-    b.imposed_strain = holders.imposed(now);
-    imposed = std::max(imposed, b.imposed_strain);
+    imposed = std::max(imposed, holders.imposed(now));
     const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
                  fall = std::sqrt(2 * g * H);
     b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));

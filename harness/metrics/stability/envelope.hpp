@@ -10,11 +10,10 @@ namespace clothbench::stability {
 struct Bounds {
   double speed_m_per_s = 0;  ///< v_char: max of free fall, hands, colliders, the start, and strain times wave speed
   double jump_speed_m_per_s =
-      0;              ///< of the last jump (a teleport, a start that is not at rest), over its frame; 0 = none yet
-  double strain = 0;  ///< greatest strain that loads, hands and colliders can cause (not a prediction)
-  double imposed_strain = 0;  ///< greatest strain between two held vertices, taken straight
-  double work_J = 0;          ///< most work that hands and colliders can have done so far
-  bool jumped = false;        ///< something jumped in this frame
+      0;                ///< of the last jump (a teleport, a start that is not at rest), over its frame; 0 = none yet
+  double strain = 0;    ///< greatest strain that loads, hands and colliders can cause (not a prediction)
+  double work_J = 0;    ///< most work that hands and colliders can have done so far
+  bool jumped = false;  ///< something jumped in this frame
 };
 
 /// The bounds of every frame, 0 = the start.
@@ -24,9 +23,6 @@ struct Bounds {
 /// twice that for sudden loads. Added to it are 3 v/c for hands (the wave and its first reflections), 2 v/c for
 /// colliders, and v/c for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene&);
-
-/// Rest length of the straight line between two vertices [m].
-double rest_distance(const Cloth&, std::uint32_t a, std::uint32_t b);
 
 /// Greatest membrane stiffness of the scene [N/m]; 0 = inextensible.
 double greatest_stiffness(const Scene&);

@@ -124,7 +124,7 @@ class Packer {
     };
     json time_s = json::array(), metrics = json::object();
     for (std::size_t f = 0; f < motion.frames.size(); ++f) time_s.push_back(replay.time_s[f]);
-    for (const char* name : {"stretch_max", "tunnelled_fraction", "contact_length_m", "depth_m"})
+    for (const char* name : {"stretch_max", "contact_length_m", "depth_m"})
       for (const MetricSeries& m : c.accuracy.metrics)
         if (m.name == name) {
           json values = json::array();

@@ -3,17 +3,14 @@ import {across_of, beside, colour, dashes, fade, kCross, kFailed, picked, still_
 
 /// Title of the axis, and the factor from SI to its unit.
 const kMetrics = {
-  tunnelled_fraction: ['tunnelled [%]', 100],
   contact_length_m: ['contour [mm]', 1e3],
-  tunnelled_depth_m: ['tunnelled [mm]', 1e3],
   depth_m: ['depth [mm]', 1e3],
-  depth_vertex_m: ['depth at vertices [mm]', 1e3],
   stretch_max: ['greatest strain [%]', 100]
 };
 /// The metrics that distinguish solvers, by set-up. A metric that no run has is not drawn.
 const kShown = {
-  rooms: ['contact_length_m', 'tunnelled_fraction', 'tunnelled_depth_m'],
-  hand: ['contact_length_m', 'tunnelled_fraction', 'depth_m'],
+  rooms: ['contact_length_m', 'depth_m'],
+  hand: ['contact_length_m', 'depth_m'],
   capsules: ['contact_length_m', 'depth_m'],
   shapes: ['contact_length_m', 'depth_m'],
   grip: ['stretch_max'],

@@ -14,15 +14,10 @@ const slanted = polygon(4, 0.4, 1.2);  // half of an upright cross that stands o
 /// Okabe & Ito's palette; `dark` where a colour would not be seen on black.
 const kClasses = [
   {id: 'ok', words: 'stable', light: '#009E73', shape: 'circle'},
-  {id: 'F0', words: 'F0 not finite', light: '#000000', dark: '#FFFFFF', shape: slanted},
-  {id: 'F1', words: 'F1 speed', light: '#D55E00', shape: 'triangle-up'},
-  {id: 'F2', words: 'F2 energy gain', light: '#CC79A7', shape: 'triangle-down'},
-  {id: 'F3', words: 'F3 strain', light: '#E69F00', shape: 'square'},
-  {id: 'F4', words: 'F4 geometry', light: '#56B4E9', shape: 'diamond'},
-  {id: 'F5', words: 'F5 contact', light: '#0072B2', shape: 'cross'},
-  {id: 'F6', words: 'F6 unrest', light: '#F0E442', shape: polygon(6, 1)},
-  {id: 'F7', words: 'F7 stagnation', light: '#777777', shape: 'triangle-left'},
-  {id: 'F8', words: 'F8 budget, crash or device', light: '#444444', dark: '#C0C0C0', shape: polygon(5, 1.2, 0.5)},
+  {id: 'F0', words: 'F0 not finite or unbounded', light: '#000000', dark: '#FFFFFF', shape: slanted},
+  {id: 'F1', words: 'F1 energy gained', light: '#CC79A7', shape: 'triangle-down'},
+  {id: 'F2', words: 'F2 strain beyond the load', light: '#E69F00', shape: 'square'},
+  {id: 'F3', words: 'F3 budget, crash or device', light: '#444444', dark: '#C0C0C0', shape: polygon(5, 1.2, 0.5)},
 ];
 const kDashes = [[6, 4], [2, 3], [8, 3, 2, 3]];
 

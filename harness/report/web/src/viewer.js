@@ -21,7 +21,6 @@ const number = (v, unit) => v === 0 ? '0' : v < 1e-3 ? `<0.001 ${unit}` : `${v.t
 const percent = v => number(100 * v, '%'), millimetres = v => number(1e3 * v, 'mm');
 const kWords = {
   stretch_max: ['strain', percent],
-  tunnelled_fraction: ['tunnelled', percent],
   contact_length_m: ['contour', millimetres],
   depth_m: ['depth', millimetres]
 };

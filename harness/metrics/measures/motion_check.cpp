@@ -46,6 +46,7 @@ MetricGroup motion_check_metrics() {
                                              return f == nullptr ? kMissing : f->frame;
                                            },
                                            "1")};
+  frame.better = Better::Neither;
   frame.present = [](const RunView& r) { return !r.findings().empty(); };
   all.push_back(std::move(frame));
   return {{}, std::move(all)};

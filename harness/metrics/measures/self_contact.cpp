@@ -29,7 +29,6 @@ MetricGroup self_contact_metrics() {
        {"self_contact_pairs", "1", "pairs of triangles of the cloth that meet and share no vertex", kSelf,
         [](const MetricFrame& f) { return f.self_contact->pairs; }}},
       {{"self_contact_pairs_max", beyond_start(greatest("self_contact_pairs")), Yes, &kPairs, 140},
-       {"self_contact_pairs_end", beyond_start(last("self_contact_pairs")), Yes, &kPairs, 150},
        {"self_contact_length_max_m", beyond_start(greatest("self_contact_length_m")), Yes, &kLength, 160},
        {"self_contact_length_settled_m", beyond_start(greatest_settled("self_contact_length_m")), Yes, &kLength, 170}}};
 }

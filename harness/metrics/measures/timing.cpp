@@ -22,10 +22,6 @@ double quantile(std::vector<double> v, double q) {
 }
 
 double median(const std::vector<double>& v) { return quantile(v, 0.5); }
-double mean(const std::vector<double>& v) {
-  return v.empty() ? kMissing : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-}
-
 using Values = std::vector<double>;
 
 /// One number of each trial that has frames.
@@ -63,13 +59,8 @@ double capped_rate(const TimedTrial& t) {
   return cap / t.frames();
 }
 
-double wall_iqr(const RunView& r) {
-  const Values wall = of_frames(r, &TimedTrial::frame_wall_s);
-  return quantile(wall, 0.75) - quantile(wall, 0.25);
-}
-
 struct Bandwidth {
-  double peak = kMissing, mean = kMissing, window_s = kMissing;
+  double peak = kMissing, window_s = kMissing;
 };
 
 /// Bytes per second of one trial in windows of 5 s (of the whole trial where that is shorter).
@@ -80,19 +71,17 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   const double total_s = std::accumulate(trial.frame_wall_s.begin(), trial.frame_wall_s.end(), 0.0);
   Bandwidth out;
   out.window_s = std::min(kBandwidthWindow_s, total_s);
-  double window_B = 0, window_s = 0, total_B = 0, peak = -1;
+  double window_B = 0, window_s = 0, peak = -1;
   for (std::size_t f = 0; f < frames; ++f) {
     for (std::size_t s = 0; s < stages; ++s) window_B += stage_bytes[f * stages + s];
     window_s += trial.frame_wall_s[f];
     const bool full = window_s >= out.window_s || f + 1 == frames;
     if (!full) continue;
-    total_B += window_B;
     // A short remainder at the end of the trial is not a separate window.
     if (window_s >= 0.5 * out.window_s && !(window_B / window_s <= peak)) peak = window_B / window_s;
     window_B = window_s = 0;
   }
   out.peak = peak;
-  out.mean = total_B / total_s;
   return out;
 }
 
@@ -163,7 +152,11 @@ void add_readings(std::vector<Scalar>& scalars) {
       {"sampled_*", own({}, "what another program read from the device during the trials", nullptr, "1")},
   };
   scalars.insert(scalars.end(), readings.begin(), readings.end());
+  static const std::set<std::string> kFacts = {"jobs", "trials", "fps_spread", "bandwidth_window_s"};
   for (Scalar& s : scalars) {
+    if (s.name.starts_with("fps_")) s.better = Better::More;
+    if (kFacts.contains(s.name) || s.name.ends_with('*') || s.name.starts_with("bandwidth_"))
+      s.better = Better::Neither;
     s.of_machine = !kOfSolver.contains(s.name);
     if (s.name == "dispatches") s.gate = &kCount;
     if (s.name.find("rendered") != std::string::npos) s.present = rendered;
@@ -194,25 +187,18 @@ MetricGroup timing_metrics() {
                jobs_beside),
       reported("trials", "1", "timed trials",
                [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
-      reported("frames_per_trial", "1", "frames of a timed trial",
-               [](const RunView& r) { return r.run->trials.empty() ? kMissing : r.run->trials.front().frames(); }),
       reported("fps_median", "s-1", "frames per second, median of the trials",
                [](const RunView& r) { return median(rates(r)); }),
-      reported("fps_mean", "s-1", "frames per second, mean of the trials",
-               [](const RunView& r) { return mean(rates(r)); }),
       reported("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
       reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
                [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
       median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s, 410),
       median_frame("frame_cpu_median_s", "CPU time of a frame of a solver on the host, summed over its threads, median",
                    &T::frame_cpu_s, 415),
-      reported("frame_wall_iqr_s", "s", "wall time of a frame, interquartile range", wall_iqr),
       reported("frame_pipelined_median_s", "s",
                "wall time of a frame that is not waited for, median of the trials' means",
                [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
       median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s, 0),
-      reported("fps_rendered_median", "s-1", "frames and their pictures per second, by the median",
-               [](const RunView& r) { return 1 / median(of_frames(r, &T::frame_rendered_s)); }),
       median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s, 420),
       reported("read_B_per_frame", "B", "bytes that a frame's shaders read",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
@@ -220,11 +206,8 @@ MetricGroup timing_metrics() {
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
       bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read over wall time, greatest of the windows",
                        &T::stage_read_B, &B::peak),
-      bandwidth_scalar("bandwidth_read_mean_B_per_s", "bytes read over wall time, mean", &T::stage_read_B, &B::mean),
       bandwidth_scalar("bandwidth_write_peak_B_per_s", "bytes written over wall time, greatest of the windows",
                        &T::stage_write_B, &B::peak),
-      bandwidth_scalar("bandwidth_write_mean_B_per_s", "bytes written over wall time, mean", &T::stage_write_B,
-                       &B::mean),
       reported("bandwidth_window_s", "s", "length of those windows",
                [](const RunView& r) {
                  return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));

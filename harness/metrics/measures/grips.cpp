@@ -39,21 +39,6 @@ double pulled(const Scene& scene, const std::vector<double>& start, std::size_t 
   return most;
 }
 
-/// Whether any holding hand moves between the previous frame and this one.
-bool pulls(const Scene& scene, std::size_t frame) {
-  if (frame == 0) return false;
-  const FrameMotion &was = scene.motion[frame - 1], &is = scene.motion[frame];
-  for (std::size_t g = 0; g < is.grip_held.size(); ++g)
-    if (is.grip_held[g] != 0 && was.grip_position_m[g] != is.grip_position_m[g]) return true;
-  return false;
-}
-
-/// The greatest ratio of an edge to its rest length, over the stretch that the hands impose: while they hold (`all`),
-/// and from three frames after their motion has ended (`held`). NaN if it is not known, or if the motion never ends.
-struct EdgeRatio {
-  double all = kMissing, held = kMissing;
-};
-
 /// Number of frames from the start during which any hand holds.
 std::size_t held_frames(const RunView& r) {
   std::size_t f = 0;
@@ -68,25 +53,15 @@ bool has_grips(const RunView& r) {
   return !r.scene.grips.vertices.empty() && r.pass.time_s.size() <= r.scene.motion.size();
 }
 
-EdgeRatio edge_ratio(const RunView& r) {
-  constexpr std::size_t kSettling = 3;  // frames
+/// The greatest ratio of an edge to its rest length, over the stretch that the hands impose, while they hold.
+double edge_ratio(const RunView& r) {
   const std::vector<double>* most = r.series("stretch_max");
-  if (!has_grips(r) || most == nullptr) return {};
+  if (!has_grips(r) || most == nullptr) return kMissing;
   const std::vector<double> start = initial_positions(r.scene);
-  double all = -1, held = -1;
-  std::size_t moved_at = 0;
+  double all = -1;
   const std::size_t let_go = held_frames(r);
-  for (std::size_t f = 0; f < let_go; ++f) {
-    if (pulls(r.scene, f)) moved_at = f;
-    const double ratio = (1 + (*most)[f]) / pulled(r.scene, start, f);
-    all = max_or_nan(all, ratio);
-    // Static hands before the first pull are not a pull that has ended.
-    if (moved_at == f)
-      held = -1;
-    else if (moved_at > 0 && f >= moved_at + kSettling)
-      held = max_or_nan(held, ratio);
-  }
-  return {all == -1 ? kMissing : all, held == -1 ? kMissing : held};
+  for (std::size_t f = 0; f < let_go; ++f) all = max_or_nan(all, (1 + (*most)[f]) / pulled(r.scene, start, f));
+  return all == -1 ? kMissing : all;
 }
 
 /// Residual strain one second after the hands let go (the failure of the paper's Fig. 13).
@@ -127,17 +102,11 @@ MetricGroup grips_metrics() {
       {{"grip_error_m", "m", "greatest distance of a held vertex from where it is held", kHold, grip_error}},
       {{"grip_error_max_m", greatest("grip_error_m"), Yes, &kErrorGate, 310},
        {"grip_edge_ratio_max",
-        own(
-            {"stretch_max"},
+        own({"stretch_max"},
             "longest structural edge over its rest length, over what the hands pull apart over their distance at the "
             "start, while they hold",
-            [](const RunView& r) { return edge_ratio(r).all; }, "1"),
+            edge_ratio, "1"),
         Yes, &kEdge, 320},
-       {"grip_edge_ratio_held",
-        own(
-            {"stretch_max"}, "the ratio of grip_edge_ratio_max from three frames after the hands stand still",
-            [](const RunView& r) { return edge_ratio(r).held; }, "1"),
-        Yes, &kEdge, 330},
        {"strain_mean_released",
         own({"stretch_mean_positive"},
             "mean strain of the structural edges, those that are short counted as 0, 1 s after the last hand let go",
@@ -148,7 +117,7 @@ MetricGroup grips_metrics() {
             "speed that the scene gives to hands or colliders, else the greatest of theirs, else the cloth's at the "
             "start",
             imposed_speed, "m s-1"),
-        No, nullptr, 350}}};
+        No, nullptr, 350, nullptr, "", "", Better::Neither}}};
 }
 
 }  // namespace clothbench

@@ -95,12 +95,15 @@ Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
           Expect::No,
           nullptr,
           0,
-          with_truth};
+          with_truth,
+          "",
+          "",
+          Better::Neither};
 }
 
 /// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.
 Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullptr) {
-  return {name, own({}, doc, nullptr, "1"), Expect::No, gate};
+  return {.name = name, .from = own({}, doc, nullptr, "1"), .gate = gate, .better = Better::Neither};
 }
 
 bool with_energy(const RunView& r) { return truth_keeps_energy(r.scene); }
@@ -112,16 +115,11 @@ std::vector<Metric> truth_series() {
   return {
       {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", kTruth,
        truth_field(&T::e2)},
-      {"truth_error_max", "1", "greatest distance from the truth on the material lattice, over the longer side", kTruth,
-       truth_field(&T::greatest)},
       {"truth_speed_error", "1", "RMS error of speed on the material lattice, over the reference case's scale", kTruth,
        truth_field(&T::speed)},
       {"truth_quantity", "1", "the reference case's quantity, in SI units", kTruth, truth_field(&T::quantity)},
       {"truth_quantity_error", "1", "error of the reference case's quantity, over its scale", kTruth,
        truth_field(&T::quantity_error)},
-      {"truth_stretch_rms", "1", "RMS of strain less true strain, edges along u", kTruth, truth_field(&T::stretch_rms)},
-      {"truth_stretch_p99", "1", "99th percentile of strain less true strain", kTruth, truth_field(&T::stretch_p99)},
-      {"truth_stretch_max", "1", "greatest strain less true strain", kTruth, truth_field(&T::stretch_max)},
       {"energy_rise", "1", "energy less that at the start, over M g L", kEnergy, energy_rise},
   };
 }
@@ -137,12 +135,8 @@ MetricGroup truth_metrics() {
        {"truth_e2", over_time("truth_error_e2"), No, nullptr, 380, with_truth},
        bound_on("truth_e2", &ExactBound::e2),
        bound_on("truth_quantity_error", &ExactBound::quantity_error),
-       {"truth_max", worst("truth_error_max"), No, nullptr, 0, with_truth},
        {"truth_speed_error", over_time("truth_speed_error"), No, &kErrorGate, 0, with_truth},
-       {"truth_quantity", at_the_end("truth_quantity"), No, nullptr, 0, with_truth},
-       {"truth_stretch_rms", worst("truth_stretch_rms"), No, nullptr, 0, with_truth},
-       {"truth_stretch_p99", worst("truth_stretch_p99"), No, nullptr, 0, with_truth},
-       {"truth_stretch_max", worst("truth_stretch_max"), No, nullptr, 0, with_truth},
+       {"truth_quantity", at_the_end("truth_quantity"), No, nullptr, 0, with_truth, "", "", Better::Neither},
        {"truth_error",
         own({"truth_error_e2", "truth_quantity_error"},
             "what runs are ranked by: the error of the reference case's quantity, or of positions", truth_error, "1"),
@@ -151,11 +145,6 @@ MetricGroup truth_metrics() {
         own(
             {"energy_rise"}, "greatest energy above that at the start, over M g L",
             [](const RunView& r) { return max_or_nan(0, greatest_of(whole_series(r, "energy_rise"))); }, "1"),
-        No, nullptr, 0, with_energy},
-       {"energy_drift",
-        own(
-            {"energy_rise"}, "greatest difference of energy from that at the start, over M g L",
-            [](const RunView& r) { return greatest_amount(whole_series(r, "energy_rise")); }, "1"),
         No, nullptr, 0, with_energy},
        of_the_study("truth_value", "the reference case's quantity itself, in SI units"),
        of_the_study("truth_space_error", "what ranks runs, of the mesh's own truth against the continuum", &kErrorGate),

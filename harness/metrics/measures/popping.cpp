@@ -1,4 +1,4 @@
-// Displacements that nothing explains: popping, jitter and creep at rest.
+// Displacements that nothing explains.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,11 +10,6 @@
 
 namespace clothbench {
 namespace {
-
-/// Distance [m] of vertex v between two stored frames.
-double moved(const AccuracyPass& pass, std::size_t vertices, std::size_t v, std::size_t from, std::size_t to) {
-  return length(minus(vertex_at(pass.position, to * vertices + v), vertex_at(pass.position, from * vertices + v)));
-}
 
 /// Within some 30 ms the eye sums what it sees (Barlow 1958, by daylight): a viewer sees a jump there, not a motion.
 double window_s(const Scene& scene) { return std::max(1.0 / 36, scene.time.dt()); }
@@ -124,58 +119,17 @@ double pop(const RunView& r) {
   return most;
 }
 
-/// Whether the last half second has at least three frames, for a cloth that may rest on a collider.
-bool rests_long_enough(const RunView& r) {
-  return !r.scene.colliders.empty() && r.whole() && r.pass.time_s.size() - r.settled_from() >= 3;
-}
-
-/// Second differences of positions: a steady drift does not contribute.
-double rest_jitter(const RunView& r) {
-  if (!rests_long_enough(r)) return kMissing;
-  const std::size_t vertices = r.scene.cloth.vertex_count(), frames = r.pass.time_s.size(), from = r.settled_from();
-  double jitter = 0;
-  for (std::size_t v = 0; v < vertices; ++v)
-    for (std::size_t f = from + 1; f + 1 < frames; ++f)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto at = [&](std::size_t frame) {
-          return static_cast<double>(r.pass.position[3 * (frame * vertices + v) + k]);
-        };
-        const double bend = (at(f + 1) - 2 * at(f) + at(f - 1)) / 2;
-        jitter += bend * bend;
-      }
-  return std::sqrt(jitter / (static_cast<double>(vertices) * static_cast<double>(frames - from - 2)));
-}
-
-double rest_drift(const RunView& r) {
-  if (!rests_long_enough(r)) return kMissing;
-  const std::size_t vertices = r.scene.cloth.vertex_count(), end = r.pass.time_s.size() - 1, from = r.settled_from();
-  double drift = 0;
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const double way = moved(r.pass, vertices, v, from, end);
-    drift += way * way;
-  }
-  return std::sqrt(drift / static_cast<double>(vertices)) / (r.pass.time_s.back() - r.pass.time_s[from]);
-}
-
 }  // namespace
 
 MetricGroup popping_metrics() {
-  using enum Expect;
   static constexpr Gate kHalf{0.005, SlackUnit::Length, 0.25, false, "half of the strict bound on a cloth of 1 m"};
   return {{},
           {{"pop_max_m",
             own({},
                 "greatest displacement of a vertex within 1/36 s beyond twice what its neighbours, colliders and grips "
-                "move "
-                "in that time",
+                "move in that time",
                 pop, "m"),
-            Yes, &kHalf, 220},
-           {"rest_jitter_m",
-            own({}, "root mean square of half the second differences of the positions over the last 0.5 s", rest_jitter,
-                "m"),
-            Yes, nullptr, 270},
-           {"rest_drift_m_per_s", own({}, "root mean square speed of creep over the last 0.5 s", rest_drift, "m s-1"),
-            Yes, nullptr, 280}}};
+            Expect::Yes, &kHalf, 220}}};
 }
 
 }  // namespace clothbench

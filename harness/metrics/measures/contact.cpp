@@ -1,0 +1,46 @@
+// How the cloth intersects the colliders of its scene: contour, depth, and what passes through between two frames.
+#include <algorithm>
+
+#include "metrics/collider_contact.hpp"
+#include "metrics/reduction.hpp"
+
+namespace clothbench {
+namespace {
+
+bool has_depth(const Scene& s) {
+  return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), has_inside);
+}
+
+/// The continuous check counts them (metrics/motion_check).
+double crossings(const RunView& r) {
+  for (const motion_check::Finding& f : r.findings())
+    if (std::string_view(f.statistic->name) == "crossing") return motion_check::kCrossingTolerance * f.ratio;
+  return kMissing;
+}
+
+}  // namespace
+
+// Slack. Contact amplifies rounding until a fold lies elsewhere, so differences appear as whole edges and percents. The
+// slack of contour lengths is a third of an edge of a 32 x 32 cloth, and the slack of depths half of the millimetre
+// that the scenes' own verdicts allow. Those verdicts hold without any additional slack.
+MetricGroup contact_metrics() {
+  using enum SlackUnit;
+  using enum Expect;
+  static constexpr Gate kAtRest{1e-2, Length, 0.1, true, "a third of an edge of a 32 × 32 cloth"},
+      kImpact{0.1, Length, 0.5, false, "one moment of an impact, three edges"},
+      kDepth{5e-4, Length, 0.1, false, "half a millimetre on a cloth of 1 m"}, kPoints{0, One, 0, true, "none"};
+  constexpr Needs kInside{"colliders with an inside", has_depth};
+  return {{{"contact_length_m", "m", "length of the curves in which cloth and colliders cross", kColliders,
+            [](const MetricFrame& f) { return f.contact->length_m; }, plotted("contour [m]", 1, 1)},
+           {"depth_m", "m", "greatest depth in a collider, between the vertices too", kInside,
+            [](const MetricFrame& f) { return f.contact->depth_m; }, plotted("depth [m]", 2, 2)}},
+          {{"contact_length_max_m", greatest("contact_length_m"), Yes, &kImpact, 40},
+           {"contact_length_settled_m", greatest_settled("contact_length_m"), Yes, &kAtRest, 50},
+           {"depth_max_m", greatest("depth_m"), Yes, &kDepth, 60},
+           {"crossings_max",
+            own({}, "points that pass through the cloth or a surface between two frames; greatest of all frames",
+                crossings, "1"),
+            Yes, &kPoints, 70}}};
+}
+
+}  // namespace clothbench
