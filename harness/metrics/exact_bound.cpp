@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "truth/tolerance.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {

@@ -15,7 +15,7 @@ struct ExactBound {
 };
 
 /// The judge's scene is the one that was run, with drawn and overridden parameters. Throws Error if its reference case
-/// has no tolerance (truth/tolerance.hpp).
+/// has no tolerance (truth/reference_case.hpp).
 ExactBound exact_bound(const TruthJudge&);
 
 }  // namespace clothbench

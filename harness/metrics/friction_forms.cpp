@@ -6,7 +6,6 @@
 
 #include "clothbench/error.hpp"
 #include "truth/norms.hpp"
-#include "truth/tolerance.hpp"
 
 namespace clothbench {
 namespace {
@@ -33,8 +32,7 @@ const std::vector<FrictionForm>& friction_forms() {
         share("incline-stop", "stopping distance [%]", slope.of_motion),
         {"capstan-hold", fmt::format("overhang held [%], ≤ {:g}", 100 * cylinder.of_motion), true, 100,
          100 * cylinder.of_motion},
-        share("capstan-slip", "slip round the capstan [%]", cylinder.of_motion),
-        share("atwood", "displacement of Atwood's strip [%]", truth::tolerance_of("atwood").of_motion)};
+        share("capstan-slip", "slip round the capstan [%]", cylinder.of_motion)};
   }();
   return all;
 }

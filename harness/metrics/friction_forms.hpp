@@ -16,8 +16,8 @@ struct FrictionForm {
   double scale;    ///< to the head's unit
   double at_most;  ///< in the head's unit
 };
-/// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon, Lagrange's strip over a
-/// cylinder. Except for thresholds, the bounds are the tolerances of the reference cases (truth/tolerance.hpp).
+/// Coulomb's cone on a slope, uniform deceleration, Euler and Eytelwein's belt on a polygon. Except for thresholds, the
+/// bounds are the tolerances of the reference cases (truth/reference_case.hpp).
 const std::vector<FrictionForm>& friction_forms();
 
 /// Protocols under which runs are stored: the runs of a search, and the runs judged only by their end state.

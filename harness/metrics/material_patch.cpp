@@ -5,7 +5,7 @@
 #include "clothbench/record.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/mesh_patch.hpp"
-#include "truth/elastica.hpp"
+#include "truth/solutions.hpp"
 
 namespace clothbench {
 namespace {
@@ -76,11 +76,7 @@ double shear_modulus(const Sheet& p) {
 /// Gamma whose elastica drops by `drop` of its length; infinity above `most`.
 double own_weight_of(double drop) {
   constexpr double kLeast = 1e-3, kMost = 100;
-  const auto drops = [](double gamma) {
-    truth::ElasticaLoad load;
-    load.own_weight = gamma;
-    return truth::Elastica(load).position(1)[1];
-  };
+  const auto drops = [](double gamma) { return truth::cantilever_nodes(512, gamma).back()[1]; };
   if (!(drop < drops(kMost))) return INFINITY;
   double low = std::log(kLeast), high = std::log(kMost);
   if (!(drop > drops(kLeast))) return kMissing;

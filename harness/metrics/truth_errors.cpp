@@ -3,7 +3,6 @@
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
-#include "truth/mesh_case.hpp"
 
 namespace clothbench {
 namespace {

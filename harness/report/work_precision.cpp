@@ -200,7 +200,7 @@ std::vector<WorkDiagram> work_diagrams(const std::vector<RunRecord>& runs,
     if (known.empty()) continue;
     auto at = std::find_if(out.begin(), out.end(), [&](const WorkDiagram& d) { return d.scene == c.header.scene; });
     if (at == out.end()) {
-      out.push_back({c.header.scene, known, truth::ranking_of(known), {}});
+      out.push_back({c.header.scene, known, truth::tolerance_of(known).ranking, {}});
       at = out.end() - 1;
       at->grid_scene = grid_scene_of(c.header.scene, scenario);
     }

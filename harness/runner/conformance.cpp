@@ -195,9 +195,8 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   // Four vertices have none near a hand.
   if (c.grid == "[2,2]" && is("stretch"))
     for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
-  if (c.grid == "[2,2]" && is("catenary")) overrides.back() = "cloth.grid=[3,2]";  // 2 columns cannot bend
   // A strip that starts over a cylinder needs runs shorter than it is thick.
-  if (c.grid != "[17,33]" && (is("capstan") || is("atwood") || is("self-fold")))
+  if (c.grid != "[17,33]" && (is("capstan") || is("self-fold")))
     overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
   if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size,
   if (is("garments/"))                                       // but of garments there is a small one

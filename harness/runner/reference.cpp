@@ -31,9 +31,9 @@ using nlohmann::json;
 constexpr double kOrder = 2;         // of both integrators
 constexpr double kRounding = 1e-10;  // of the scale: differences below it have no order
 
-/// The scene with two rows: all move alike. A mesh has none.
+/// The scene with two rows, where all move alike: not those of a sheet that shears. A mesh has none.
 Scene two_rows(const Scene& s) {
-  if (s.cloth.mesh) return s;
+  if (s.cloth.mesh || s.needs.has(Feature::Shear)) return s;
   Scene out = scene_from_json(json::parse(s.json), s.source, {fmt::format("cloth.grid=[{},2]", s.cloth.columns)});
   out.name = s.name;
   return out;

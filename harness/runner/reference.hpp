@@ -40,9 +40,10 @@ struct ReferenceRules {
 ///   U = max(Fs |f1 - f2|/(2^p - 1), |f*_A - f*_B|, |f(tol) - f(tol/10)|),
 /// where f1 is the finest, and Fs = 1.25, or Fs = 3 with p = 2 if the observed p is off by more than 0.5. A shape at
 /// rest does not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|, tolerance, change of f1 in the last
-/// tenth of the run), and no order is observed. The rows of a grid move alike, so only two of them are run. A triangle
-/// mesh has no truth of its own. Its space_error is that of the finest runs, the greater of both integrators. Throws
-/// Error if the scene has no reference case, if the build has no solver `reference`, or if a run of it fails.
+/// tenth of the run), and no order is observed. Rows of a grid that do not shear move alike, so only two of them are
+/// run. A triangle mesh has no truth of its own. Its space_error is that of the finest runs, the greater of both
+/// integrators. Throws Error if the scene has no reference case, if the build has no solver `reference`, or if a run of
+/// it fails.
 ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 
 /// Results for these scenes by their SHA-256. Those missing from `cache` are computed on all cores and added to it (one

@@ -3,11 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "truth/atwood.hpp"
-#include "truth/capstan.hpp"
-#include "truth/case_strip.hpp"
-#include "truth/incline.hpp"
 #include "truth/root.hpp"
+#include "truth/solutions.hpp"
+#include "truth/strip.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -100,7 +98,7 @@ Draped draped(const Strip& s) {
 }
 
 /// How far the strip has run towards u1: by what of it is on top.
-std::function<double(const Columns&)> way_over(const Strip& s) {
+std::function<double(const Columns&)> displacement_over(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   const double start = s.links / 2.0 - c.drape_offset_m / c.du();
   return [s, start, center = c.center_m, cell = c.du()](const Columns& x) {
@@ -122,18 +120,6 @@ Columns draped_columns(const Strip& s, double displacement) {
   for (int i = 0; i <= s.links; ++i)
     out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + displacement));
   return out;
-}
-
-/// The common part of both reference cases: the displacement over the cylinder is the only unknown.
-ReferenceCase over_cylinder(const Strip& s, const std::function<double(int)>& displacement, bool moves) {
-  ReferenceCase known = s.reference_case();
-  known.by_quantity = true;
-  known.quantity_name = "displacement over the cylinder";
-  known.quantity = way_over(s);
-  if (moves) known.quantity_scale = displacement(s.scene.time.frames());
-  // At rest exactly where the scene puts it.
-  known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
-  return known;
 }
 
 }  // namespace
@@ -168,7 +154,7 @@ ReferenceCase incline(const Strip& s) {
   s.need(slope.angle_rad < std::numbers::pi / 2, "a face that looks up");
   s.need(slope.speed_m_per_s >= 0 && length(v0 - slope.speed_m_per_s * d) <= Strip::kLevel * (length(v0) + 1),
          "an initial velocity straight downhill, or none");
-  const double whole = slide_distance_m(slope, most);
+  const double whole = slide_down(slope, most).distance_m;
   face = face_of(s, collider, whole * d);
   s.need(std::isfinite(face.gap_m), "a box that is under the whole path of the sheet");
   ReferenceCase known = s.reference_case();
@@ -180,9 +166,9 @@ ReferenceCase incline(const Strip& s) {
     for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + displacement * d);
     return out;
   };
-  known.columns = [s, slope, at](int frame) { return at(slide_distance_m(slope, s.time_s(frame))); };
+  known.columns = [s, slope, at](int frame) { return at(slide_down(slope, s.time_s(frame)).distance_m); };
   known.column_speeds = [s, slope, d](int frame) {
-    return Columns(static_cast<std::size_t>(s.links) + 1, slide_speed_m_per_s(slope, s.time_s(frame)) * d);
+    return Columns(static_cast<std::size_t>(s.links) + 1, slide_down(slope, s.time_s(frame)).speed_m_per_s * d);
   };
   known.quantity = [s, d](const Columns& x) {
     double sum = 0;  // ends carry half a cell
@@ -205,22 +191,30 @@ ReferenceCase incline(const Strip& s) {
 ReferenceCase capstan(const Strip& s) {
   const Draped strip = draped(s);
   s.need(strip.friction > 0, "friction");
-  const HeavyCapstan cylinder{strip.friction, strip.radius_m, s.scene.cloth.areal_density_kg_per_m2, s.g};
-  using States = std::vector<SlidState>;
-  const auto states = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, strip.turns, s.times_s()));
-  const auto smooth = std::make_shared<States>(slide(cylinder, strip.light_m, strip.heavy_m, 0, s.times_s()));
-  const bool moves = states->back().way_m > 0;
-  ReferenceCase known = over_cylinder(
-      s, [states](int frame) { return states->at(static_cast<std::size_t>(frame)).way_m; }, moves);
-  known.smooth_law = true;
-  known.continuum = [s, smooth](double share, int frame) {
-    return draped_columns(s, smooth->at(static_cast<std::size_t>(frame)).way_m)
-        .at(static_cast<std::size_t>(std::lround(share * s.links)));
+  const Capstan polygon{strip.friction, strip.radius_m, s.scene.cloth.areal_density_kg_per_m2, s.g, strip.turns};
+  const auto moved = [&](int turns) {
+    Capstan cylinder = polygon;
+    cylinder.turns = turns;
+    return [states = slide_over(cylinder, strip.light_m, strip.heavy_m, s.times_s())](int frame) {
+      return states.at(static_cast<std::size_t>(frame)).displacement_m;
+    };
   };
-  const auto greatest = [cylinder, strip](double friction) {
-    HeavyCapstan other = cylinder;
+  const auto displacement = moved(strip.turns), smooth = moved(0);
+  const double end = displacement(s.scene.time.frames());
+  ReferenceCase known = s.reference_case();
+  known.by_quantity = known.smooth_law = true;
+  known.quantity_name = "displacement over the cylinder";
+  known.quantity = displacement_over(s);
+  if (end > 0) known.quantity_scale = end;
+  // At rest exactly where the scene puts it.
+  known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
+  known.continuum = [s, smooth](double share, int frame) {
+    return draped_columns(s, smooth(frame)).at(static_cast<std::size_t>(std::lround(share * s.links)));
+  };
+  const auto greatest = [polygon, light = strip.light_m](double friction) {
+    Capstan other = polygon;
     other.friction = friction;
-    return polygonal_greatest_overhang_m(other, strip.light_m, strip.turns);
+    return greatest_overhang_m(other, light);
   };
   // Where a turn alone would hold there is no threshold below.
   const double locks = 1 / std::tan(std::numbers::pi / (2 * strip.turns));
@@ -237,18 +231,6 @@ ReferenceCase capstan(const Strip& s) {
                                 [greatest, heavy = strip.heavy_m](double found) { return heavy / greatest(found) - 1; }};
   }
   return known;
-}
-
-/// The rows form a polygon on the cylinder, whose energy equals that of the smooth strip after every whole cell.
-ReferenceCase atwood(const Strip& s) {
-  const Draped strip = draped(s);
-  s.need(strip.friction == 0, "no friction");
-  s.need(strip.heavy_m > strip.light_m, "an offset towards u1");
-  const Atwood weights{s.length_m, strip.radius_m, s.scene.cloth.drape_offset_m, s.g};
-  const double end = atwood_end_s(weights), whole = s.time_s(s.scene.time.frames());
-  s.need(whole <= end, "a duration of at most " + std::to_string(end) + " s: then the strip leaves the cylinder");
-  return over_cylinder(
-      s, [s, weights](int frame) { return atwood_offset_m(weights, s.time_s(frame)) - weights.offset_m; }, true);
 }
 
 }  // namespace clothbench::truth

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clothbench/scene.hpp"
+#include "truth/norms.hpp"
 
 namespace clothbench::truth {
 
@@ -18,18 +19,18 @@ struct Threshold {
   std::function<double(double found)> error;
 };
 
-/// The exact solution of one scene with a `truth` block; all parameters are the scene's. Most reference cases are
-/// strips along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the
-/// middle line of the sheet; a vertex lies at its column's position plus its offset along axis_v. Sheets that shear
-/// have a position for each vertex, and `columns` are the means over the rows. A triangle mesh has the continuum's
-/// (mesh_case.hpp).
+/// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
+/// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
+/// line of the sheet; a vertex lies at its column's position plus its offset along axis_v. A triangle mesh has no exact
+/// solution of its own: it has the continuum's at its vertices, and its columns are those of the material lattice.
 ///
 /// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
-/// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh.
+/// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh, or of a
+/// mesh so fine that its own error does not matter.
 struct ReferenceCase {
   std::string name;
   bool settles = false;      ///< the solution is the shape at rest: only a run's end is compared
-  bool by_quantity = false;  ///< runs are ranked by the quantity's error; otherwise by that of the positions
+  bool by_quantity = false;  ///< runs are ranked by the quantity's error; otherwise by the distance of the positions
   bool smooth_law = false;   ///< `columns` move by the continuum's law, so their own mesh adds an error
   std::string quantity_name;
   double quantity_scale = 1;       ///< divisor of errors of the quantity, same unit
@@ -47,8 +48,23 @@ struct ReferenceCase {
 /// reference case's requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
-/// Definition of the error that ranks the runs of a reference case of this name, as text.
-std::string ranking_of(const std::string& reference_case);
+/// What is stated of every scene with a reference case, whatever its parameters: how far a run may be from the exact
+/// solution and still be right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
+/// and the error by which runs are ranked.
+struct Tolerance {
+  std::string reference_case;
+  /// Share of the exact motion: a cloth that keeps its start has the error 1. It holds for every parameter, and a
+  /// motion that is too small fails by the same amount as one that is too large.
+  double of_motion = 0;
+  double at_rest = 0;  ///< share of the longer side, for cloth that the exact solution does not move; 0: always moves
+  std::string why, ranking;
+};
+
+/// One entry per reference case.
+const std::vector<Tolerance>& tolerances();
+
+/// Throws Error if there is none of that name.
+const Tolerance& tolerance_of(const std::string& reference_case);
 
 /// Means over the rows of `values` (3 per vertex), one per column. Of a mesh: over the rows of the material lattice.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);
@@ -59,5 +75,8 @@ std::vector<double> vertex_positions(const Cloth&, const ReferenceCase&, int fra
 /// Vertex values (3 per vertex) from columns; `offset`: adds each row's position along axis_v (for positions, not
 /// speeds).
 std::vector<double> vertex_values(const Cloth&, const std::vector<Vec3>& columns, bool offset);
+
+/// From a cloth's vertices to the material lattice. Throws Error if its triangles do not cover the rectangle.
+LatticeSampler sampler_of(const Cloth&);
 
 }  // namespace clothbench::truth

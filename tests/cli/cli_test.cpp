@@ -292,7 +292,7 @@ TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
   for (const auto& p : properties) EXPECT_TRUE(p["status"] == "pass") << p.dump();
   const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
   EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
-  EXPECT_EQ(command("threshold validation/atwood --solver ballistic").code, 2);
+  EXPECT_EQ(command("threshold validation/incline-stop --solver ballistic").code, 2);
   EXPECT_EQ(command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
   const nlohmann::json friction = json_of("friction ballistic --substeps 64");
   ASSERT_EQ(friction.size(), 1u) << "it has no substeps";

@@ -55,7 +55,7 @@ const std::vector<Pair> kPairs = {
     {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
      {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
     {{"metamorphic", "ballistic", "--set", "cloth.grid=[3,3]"}, {"--json", "metamorphic", "ballistic"}},
-    {{"threshold", "--solver", "ballistic", "validation/atwood"},
+    {{"threshold", "--solver", "ballistic", "validation/incline-stop"},
      {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
     {{"friction", "ballistic", "--substeps", "64"}, {"--json", "friction", "ballistic"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},

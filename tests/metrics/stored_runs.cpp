@@ -1,4 +1,4 @@
-// Short runs for recompute.py: solvers of the CPU and prescribed motions, in files like any other. Positions are
+// Short runs for strict.py: solvers of the CPU and prescribed motions, in files like any other. Positions are
 // rounded to the precision of the files before anything is measured, so that a reader has what the metrics had.
 //
 // usage: stored_runs FOLDER

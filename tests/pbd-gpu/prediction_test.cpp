@@ -185,7 +185,7 @@ TEST_F(Predicted, IsOffWhereItIsNotSafeAndSaysWhy) {
   const std::string pull = "paper/two-hand-stretch-";
   EXPECT_EQ(why_not(load_scene(pull + "2mps")), "");
   EXPECT_NE(why_not(load_scene(pull + "10mps")).find("half of their distance"), std::string::npos);
-  EXPECT_NEAR(grip_strain(load_scene("validation/pulled-sheet")), 0.3, 0.1);
+  EXPECT_NEAR(grip_strain(load_scene("validation/two-hand-pull")), 0.3, 0.1);
   EXPECT_NE(why_not(with_collider(with_pins(sheet(9, 9)), sphere({4, 0, 0}, 1))).find("touches"), std::string::npos);
   // What is off has no buffers.
   for (const bool off : {true, false}) {

@@ -21,7 +21,7 @@ hash(now)
 if(NOT now STREQUAL last)
   message(FATAL_ERROR "the hash depends on harness/runner/run.cpp")
 endif()
-foreach(file solvers/reference/integrator.cpp solvers/reference/model.hpp harness/truth/pendulum.cpp harness/truth/norms.hpp
+foreach(file solvers/reference/integrator.cpp solvers/reference/model.hpp harness/truth/solutions.cpp harness/truth/norms.hpp
     harness/runner/reference.cpp harness/runner/frame_loop.cpp harness/scenario/geometry.cpp harness/metrics/truth_errors.cpp)
   if(NOT EXISTS ${copy}/${file})
     message(FATAL_ERROR "${file} is not there")

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "clothbench/error.hpp"
-#include "truth/swinging_chain.hpp"
+#include "truth/solutions.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -155,7 +155,7 @@ TEST(Norms, ChainsOfTwoResolutionsOnTheLattice) {
     const Mesh m = mesh(8, links, 0.25, 1);
     const ChainState state = swing({links, 1, 9.81, 0.5, 0}, times)[0];
     const auto values = m.values([&](double u, double v) {
-      const auto p = chain_position_m(state, v);
+      const auto p = node_position(state.position_m, v);
       return std::array<double, 3>{p[0], p[1], u};
     });
     return LatticeSampler(lattice, m.rest, m.triangles).sample(values);

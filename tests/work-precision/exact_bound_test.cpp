@@ -10,7 +10,6 @@
 #include "runner/expect.hpp"
 #include "scenario/load.hpp"
 #include "truth/draw.hpp"
-#include "truth/tolerance.hpp"
 
 namespace clothbench {
 namespace {
@@ -131,11 +130,11 @@ TEST_P(ExactBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) { expect_two_
 
 TEST_P(DrawnBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) {
   const Scene s = load_scene(GetParam());
-  const bool slow = s.reference_case.find("sheet") != std::string::npos || s.cloth.mesh;
+  if (s.reference_case == "cantilever" || s.reference_case == "two-hand-pull") GTEST_SKIP() << "not drawn";
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     SCOPED_TRACE(seed);
     expect_two_sided(truth::draw(s, seed).scene);
-    if (slow && seed == 2) break;
+    if (s.cloth.mesh && seed == 2) break;
   }
 }
 

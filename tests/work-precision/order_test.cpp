@@ -37,9 +37,9 @@ INSTANTIATE_TEST_SUITE_P(Every, Order, ::testing::ValuesIn(names()), [](const au
   return name;
 });
 
-double truth_error(const Scene& s, const SolverEntry& entry, int substeps, int iterations = kIterations) {
+double truth_error(const Scene& s, const SolverEntry& entry, int substeps) {
   nlohmann::json given = {{"substeps", substeps}};
-  if (has(entry.info, "iterations")) given["iterations"] = iterations;
+  if (has(entry.info, "iterations")) given["iterations"] = kIterations;
   if (has(entry.info, "implicit")) given["implicit"] = true;
   const nlohmann::json settings = complete_settings(entry.info, given);
   const auto solver = entry.make(settings, {});
@@ -70,31 +70,6 @@ TEST_P(Order, IsAsDeclared) {
     EXPECT_NEAR(std::log2(e1 / e2), entry.info.time_order, 0.25) << e1 << " " << e2 << " " << e3;
     EXPECT_NEAR(std::log2(e2 / e3), entry.info.time_order, 0.25) << e1 << " " << e2 << " " << e3;
     EXPECT_LT(e3, 0.01);
-  } catch (const Error& e) {
-    const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
-    if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
-    FAIL() << e.what();
-  }
-}
-
-/// Sheets that shear, with one pass over the lines a substep. What one family of lines leaves to the next makes the
-/// swung sheet's order 1.5 at these substeps; in the pulled one the families are nearly independent.
-TEST(SheetOrder, OfLineSolvesOverTheirTruth) {
-  struct {
-    const char* scene;
-    double least_order, most_error;  // at 8 substeps
-  } const bounds[] = {{"validation/swing-sheet", 1.45, 1.5e-4}, {"validation/pulled-sheet", 1.85, 2e-5}};
-  const SolverEntry* entry = nullptr;
-  for (const SolverEntry& e : solvers())
-    if (e.info.name == "xpbd") entry = &e;
-  if (entry == nullptr) GTEST_SKIP() << "xpbd is not in this build";
-  try {
-    for (const auto& b : bounds) {
-      const Scene s = load_scene(b.scene);
-      const double e1 = truth_error(s, *entry, 4, 1), e2 = truth_error(s, *entry, 8, 1);
-      EXPECT_GE(std::log2(e1 / e2), b.least_order) << b.scene << " " << e1 << " " << e2;
-      EXPECT_LE(e2, b.most_error) << b.scene;
-    }
   } catch (const Error& e) {
     const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
     if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();

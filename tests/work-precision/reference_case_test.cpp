@@ -10,21 +10,15 @@
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
-#include "truth/atwood.hpp"
-#include "truth/capstan.hpp"
 #include "truth/draw.hpp"
-#include "truth/free_fall.hpp"
-#include "truth/pull_chain.hpp"
-#include "truth/pull_wave.hpp"
 
 namespace clothbench {
 namespace {
 
 const char* const kScenes[] = {"free-fall",     "pendulum",         "swing-strip",      "heavy-strip",
-                               "catenary",      "cantilever-1",     "cantilever-10",    "cantilever-100",
-                               "two-hand-pull", "incline-stick",    "incline-slip",     "incline-stop",
-                               "capstan-hold",  "capstan-slip",     "atwood",           "swing-sheet",
-                               "pulled-sheet",  "swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};
+                               "cantilever-1",  "cantilever-10",    "cantilever-100",   "two-hand-pull",
+                               "incline-stick", "incline-slip",     "incline-stop",     "capstan-hold",
+                               "capstan-slip",  "swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};
 
 Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
   return load_scene("validation/" + name, set);
@@ -83,12 +77,10 @@ TEST_P(ReferenceCases, AgreeWithTheScene) {
 /// Order 2 in the run's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse
 /// error.
 TEST(SpaceError, FallsWithTheRun) {
-  for (const char* name : {"catenary", "swing-strip"}) {
-    const Scene coarse = scene(name, {"cloth.grid=[17,3]"}), fine = scene(name);
-    const double ratio = TruthJudge(coarse).space_error() / TruthJudge(fine).space_error();
-    EXPECT_GT(ratio, 2.5) << name;
-    EXPECT_LT(ratio, 8) << name;
-  }
+  const double coarse = TruthJudge(scene("swing-strip", {"cloth.grid=[17,3]"})).space_error(),
+               fine = TruthJudge(scene("swing-strip")).space_error();
+  EXPECT_GT(coarse / fine, 2.5);
+  EXPECT_LT(coarse / fine, 8);
   const Scene heavy = scene("heavy-strip"), fall = scene("free-fall");
   EXPECT_LT(TruthJudge(heavy).space_error(), 1e-12) << "rows of springs are exact at the rows";
   EXPECT_EQ(TruthJudge(fall).space_error(), 0);
@@ -108,29 +100,6 @@ TEST(MeshCases, DoNotDependOnTheTriangles) {
     EXPECT_NEAR(a->quantity(a->columns(last)), b->quantity(b->columns(last)), 0.02 * b->quantity_scale) << name;
     EXPECT_TRUE(std::isnan(TruthJudge(coarse).space_error())) << "a mesh has no truth of its own";
   }
-}
-
-TEST(PulledChain, FollowsTheWaveWithinAHundredth) {
-  const truth::TwoHandPull hands{1, 0.2, 1000, 10, 1 / std::sqrt(5000.0)};
-  std::vector<double> times, first, last;
-  for (int k = 0; k <= 400; ++k) {
-    times.push_back(k * 0.02 / 400);
-    last.push_back(truth::hand_way_m(hands, times.back()));
-    first.push_back(-last.back());
-  }
-  double worst[2] = {};
-  for (int level = 0; level < 2; ++level) {
-    const int links = 32 << level;
-    const auto states = truth::pull({links, 1, 0.2, 1000}, times, first, last);
-    for (int i = 0; i <= links; ++i) {
-      const double x = static_cast<double>(i) / links - 0.5;
-      const double off = states.back().displacement_m[static_cast<std::size_t>(i)] -
-                         truth::pull_displacement_m(hands, x, times.back());
-      worst[level] = std::max(worst[level], std::abs(off) / last.back());
-    }
-  }
-  EXPECT_LT(worst[0], 0.01);
-  EXPECT_LT(worst[1], 0.5 * worst[0]);
 }
 
 /// Semi-implicit Euler of one step a frame is g t dt/2 behind free fall: what the ballistic solver's error must be.
@@ -168,6 +137,19 @@ TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
   EXPECT_TRUE(std::isnan(scalars_of({s, pass}).at("truth_error"))) << "a pass that broke off has no error";
 }
 
+/// A sheet that shears hangs as a strip does: half as far from the pinned edge, which keeps its width, as it is long.
+TEST(ReferenceCases, ASheetThatShearsNarrowsAsItStretches) {
+  const Scene s = scene("heavy-strip", {"material.shear=true"}), rows = scene("heavy-strip");
+  const auto sheet = truth::reference_case_of(s), strip = truth::reference_case_of(rows);
+  const int last = s.time.frames();
+  EXPECT_EQ(sheet->columns(last), strip->columns(last));
+  EXPECT_NEAR(sheet->quantity_scale, 0.2 * 9.81 / (8 * 1000), 1e-15);
+  const auto x = truth::vertex_positions(s.cloth, *sheet, last), y = truth::vertex_positions(rows.cloth, *strip, last);
+  const std::size_t middle = 3 * 16;  // of the first row: half of the sheet hangs below it
+  EXPECT_NEAR(x[middle + 2] - y[middle + 2], 0.2 * 9.81 * 0.5 / 1000 / 3 * 0.0625, 1e-15);
+  EXPECT_EQ(x[0], y[0]);
+}
+
 TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   const auto message = [](const std::string& name, const std::vector<std::string>& set) -> std::string {
     try {
@@ -186,7 +168,8 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   EXPECT_NE(message("two-hand-pull", {"grips.0.ramp_s=0.01"}).find("one ramp_s"), std::string::npos);
   EXPECT_NE(message("free-fall", {"pins=[{\"edge\":\"u0\"}]"}).find("nothing that is held"), std::string::npos);
   EXPECT_NE(message("swing-strip-mesh", {"material.membrane_stiffness_N_per_m=1000"}).find("1e-3"), std::string::npos);
-  EXPECT_NE(message("swing-strip-mesh", {"truth.case=catenary"}).find("a cloth that is a grid"), std::string::npos);
+  EXPECT_NE(message("swing-strip-mesh", {"truth.case=two-hand-pull"}).find("a cloth that is a grid"),
+            std::string::npos);
   EXPECT_NE(message("swing-strip-mesh", {"cloth.mesh.drawn.size_m=[0.125,1]"}).find("longer side along x"),
             std::string::npos);
   EXPECT_NE(message("swing-strip-mesh", {"pins=[{\"group\":\"v0\"}]"}).find("edge u0 pinned"), std::string::npos);
@@ -216,8 +199,6 @@ TEST(ReferenceCases, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
   refused("capstan-hold", {"material.membrane_stiffness_N_per_m=1000"}, "inextensible");
   refused("capstan-hold", {"colliders.0.radius_m=0.09"}, "drape radius");
   refused("capstan-hold", {"colliders.0.friction=0"}, "friction");
-  refused("atwood", {"colliders.0.friction=0.1"}, "no friction");
-  refused("atwood", {"time.duration_s=1"}, "leaves the cylinder");
   EXPECT_EQ(truth::reference_case_of(scene("incline-stick", {"gravity_m_per_s2=[0,-1.6,0]"}))->quantity_scale, 0.25)
       << "any parameter will do";
 }
@@ -235,34 +216,15 @@ TEST(ReferenceCases, ThresholdsAreWhereTheClosedFormsTurn) {
     EXPECT_EQ(known->quantity(known->columns(s.time.frames())) == 0, side > 0);
   }
   EXPECT_FALSE(truth::reference_case_of(scene("incline-stop"))->threshold);
-  EXPECT_FALSE(truth::reference_case_of(scene("atwood"))->threshold);
-}
-
-TEST(SlidingCapstan, IsAtwoodsWithoutFrictionAndStartsAtTheThreshold) {
-  const truth::HeavyCapstan free{0, 0.05, 0.2, 9.81};
-  const truth::Atwood atwood{0.8 + 0.05 * 3.14159265358979, 0.05, 0.1, 9.81};
-  const std::vector<double> times = {0, 0.1, 0.2, 0.3};
-  const auto states = truth::slide(free, 0.3, 0.5, 0, times);
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    EXPECT_NEAR(states[k].way_m, truth::atwood_offset_m(atwood, times[k]) - 0.1, 1e-10);
-    EXPECT_NEAR(states[k].speed_m_per_s, truth::atwood_speed_m_per_s(atwood, times[k]), 1e-9);
-  }
-  const truth::HeavyCapstan rough{0.3, 0.05, 0.2, 9.81};
-  for (const int turns : {0, 12}) {
-    const double most =
-        turns == 0 ? truth::greatest_overhang_m(rough, 0.2) : truth::polygonal_greatest_overhang_m(rough, 0.2, turns);
-    EXPECT_EQ(truth::slide(rough, 0.2, 0.999 * most, turns, times).back().way_m, 0);
-    EXPECT_GT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 0);
-    EXPECT_LT(truth::slide(rough, 0.2, 1.001 * most, turns, times).back().way_m, 1e-3);
-  }
-  EXPECT_THROW(truth::slide(rough, 0.2, 5, 0, std::vector<double>{0, 3}), Error) << "the light end is over";
-  EXPECT_THROW(truth::slide(rough, 2, 0.1, 0, times), Error) << "it would slip to the other side";
 }
 
 TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
   for (const char* name : kScenes) {
     const Scene s = scene(name);
-    const bool is_sheet = s.reference_case.find("sheet") != std::string::npos;  // takes longer to integrate
+    if (s.reference_case == "cantilever" || s.reference_case == "two-hand-pull") {
+      EXPECT_THROW(truth::draw(s, 1), Error) << name;
+      continue;
+    }
     for (const std::uint64_t seed : {0ull, 1ull, 2ull, 3ull, 7ull, 123456789012345ull}) {
       const auto one = truth::draw(s, seed), two = truth::draw(s, seed);
       EXPECT_EQ(one.scene.json, two.scene.json);
@@ -279,7 +241,6 @@ TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
         return std::abs(c.quantity(c.columns(of.time.frames()))) > 1e-9;
       };
       EXPECT_EQ(moves(*before, s), moves(*after, one.scene)) << name << ": what holds still holds, what slips slips";
-      if (is_sheet) break;
     }
   }
   // Recorded: the same numbers on every machine.
@@ -290,7 +251,8 @@ TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
 }
 
 TEST(Span, TheArcHangsAndItsRunsKeepTheirLengths) {
-  const Scene s = scene("catenary");
+  const std::string name = "stability/s16-gravity";
+  const Scene s = load_scene(name);
   const std::vector<double> x = initial_positions(s);
   const Cloth& c = s.cloth;
   double lowest = 0;
@@ -302,8 +264,8 @@ TEST(Span, TheArcHangsAndItsRunsKeepTheirLengths) {
   EXPECT_NEAR(x[static_cast<std::size_t>(3 * (c.columns - 1))] - x[0], 0.8, 1e-12);
   EXPECT_NEAR(x[1], 0, 1e-12);
   EXPECT_LT(lowest, -0.2);
-  EXPECT_THROW(scene("catenary", {"cloth.pose.span_m=1.0"}), Error);
-  EXPECT_THROW(scene("catenary", {"cloth.grid=[2,2]"}), Error);
+  EXPECT_THROW(load_scene(name, {"cloth.pose.span_m=1.0"}), Error);
+  EXPECT_THROW(load_scene(name, {"cloth.grid=[2,2]"}), Error);
 }
 
 }  // namespace

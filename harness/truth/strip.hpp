@@ -6,9 +6,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "truth/lattice.hpp"
-#include "truth/mesh_case.hpp"
-#include "truth/pull_wave.hpp"
 #include "truth/reference_case.hpp"
 
 // Only for the reference cases: their requirements on a scene.
@@ -40,10 +37,11 @@ struct Strip {
     if (g > 0) up = (-1 / g) * s.gravity_m_per_s2;
   }
 
-  void need_rows() const {
+  void need_rows(bool may_shear) const {
     need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
          "even cells and no spin");
-    need(!scene.needs.has(Feature::Shear), "\"shear\": false in its material: rows that do not feel one another");
+    need(may_shear || !scene.needs.has(Feature::Shear),
+         "\"shear\": false in its material: rows that do not feel one another");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 
@@ -88,8 +86,15 @@ struct Strip {
     need(scene.needs.has(Feature::Damping) == damped, damped ? "damping, to come to rest" : "no damping");
   }
   bool mesh() const { return scene.cloth.mesh != nullptr; }
+  /// Vertices of a mesh at most `u_m` from edge u0.
+  std::vector<std::uint32_t> up_to(double u_m) const {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t v = 0; v < scene.cloth.vertex_count(); ++v)
+      if (scene.cloth.mesh->vertices[v][0] + length_m / 2 <= u_m + kFlat * length_m) out.push_back(v);
+    return out;
+  }
   std::vector<std::uint32_t> edge(const char* name) const {
-    return mesh() ? vertices_up_to(scene.cloth, 0) : edge_vertices(scene.cloth, name);
+    return mesh() ? up_to(0) : edge_vertices(scene.cloth, name);
   }
   Vec3 at(double x, double z) const { return start + x * along + z * up; }
   double time_s(int frame) const { return scene.time.at(frame); }
@@ -106,19 +111,19 @@ struct Strip {
     return c;
   }
 
-  static constexpr double kLevel = 1e-9;
+  static constexpr double kLevel = 1e-9, kFlat = 1e-9;  ///< directions; positions, of the length
 };
 
-/// Speed and ramp of the two hands, from the scene's file; that they are alike and opposite.
-TwoHandPull bars_of(const Strip&);
+// strip_cases.cpp
+ReferenceCase free_fall(const Strip&);
+ReferenceCase pendulum(const Strip&);
+ReferenceCase swing_strip(const Strip&);
+ReferenceCase heavy_strip(const Strip&);
+ReferenceCase cantilever(const Strip&);
+ReferenceCase two_hand_pull(const Strip&);
 
-// Reference cases of sheets that shear, sheet_cases.cpp.
-ReferenceCase swing_sheet(const Strip&);
-ReferenceCase pulled_sheet(const Strip&);
-
-// ReferenceCases of contact, contact_cases.cpp.
+// contact_cases.cpp
 ReferenceCase incline(const Strip&);
 ReferenceCase capstan(const Strip&);
-ReferenceCase atwood(const Strip&);
 
 }  // namespace clothbench::truth

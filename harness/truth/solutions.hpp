@@ -1,0 +1,176 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+// Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
+// All values are in SI units; tensions and loads are per width. A value outside its range throws an Error that names
+// the argument.
+namespace clothbench::truth {
+
+/// Points of a strip in its plane, from the held end on; x horizontal.
+using Nodes = std::vector<std::array<double, 2>>;
+
+/// Point at a share 0 .. 1 of the strip's length, linear between the nodes.
+std::array<double, 2> node_position(const Nodes&, double share);
+
+/// A free body in uniform gravity with damping proportional to its mass: dv/dt = -g - c v (upwards is positive). Every
+/// point of a cloth without internal motion follows it, whatever its stiffness.
+///   v = v0 e^{-ct} - g (1 - e^{-ct})/c,   z = z0 + v0 t p1(ct) - g t^2 p2(ct),
+///   p1(x) = (1 - e^{-x})/x,  p2(x) = (x - 1 + e^{-x})/x^2  (1 and 1/2 at x = 0).
+/// Source: Newton's second law. Errors of rounding only.
+struct FreeFall {
+  double height_m = 0;
+  double speed_m_per_s = 0;  ///< upwards
+  double gravity_m_per_s2 = 9.81;
+  double damping_per_s = 0;
+};
+double fall_height_m(const FreeFall&, double time_s);
+double fall_speed_m_per_s(const FreeFall&, double time_s);  ///< upwards
+
+/// Plane pendulum released at rest: theta'' = -(g/l) sin theta, theta from the vertical.
+///   T = 4 sqrt(l/g) K(k),  sin(theta/2) = k cd(sqrt(g/l) t, k),  k = sin(amplitude/2)
+/// with Jacobi's elliptic function cd. Source: Abramowitz & Stegun 16 and 17. Valid for 0 < amplitude < pi; the
+/// rounding error grows with the number of periods.
+struct Pendulum {
+  double length_m = 1;
+  double gravity_m_per_s2 = 9.81;
+  double amplitude_rad = 0;
+};
+double pendulum_period_s(const Pendulum&);
+double pendulum_angle_rad(const Pendulum&, double time_s);
+double pendulum_angular_speed_rad_per_s(const Pendulum&, double time_s);
+
+/// A straight strip of inextensible links without bending stiffness, held at one end and released at rest: the motion
+/// of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles. Tensions T_j follow
+/// from |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
+///   T_j (1/m_j + 1/m_{j-1}) - T_{j+1} c_j/m_j - T_{j-1} c_{j-1}/m_{j-1} = a theta_j'^2,
+///   a theta_j'' = T_{j+1} sin(theta_{j+1} - theta_j)/m_j + T_{j-1} sin(theta_{j-1} - theta_j)/m_{j-1},
+/// where for j = 1 the terms with m_0 are instead + g sin(theta_1) and + g cos(theta_1) on the right.
+/// Source: Newton's second law with Lagrange multipliers. Integrated by Boost.Odeint (Runge-Kutta-Fehlberg 7(8)).
+///
+/// A strip released from the horizontal is chaotic after 0.5 s * sqrt(L/1 m * 9.81/g): compare positions only up to
+/// then. Until then the error of the positions is below 1e-10 L at the default tolerance.
+struct SwingingChain {
+  int links = 32;
+  double length_m = 1;
+  double gravity_m_per_s2 = 9.81;
+  double end_mass_ratio = 0.5;  ///< mass of the free end row over the mass of an inner row: 1/2 for lumped masses
+  double start_angle_rad = 0;   ///< below the horizontal
+};
+struct ChainState {
+  Nodes position_m, speed_m_per_s;  ///< links + 1; second coordinate upwards
+};
+/// States at `times_s` (ascending, 0 or more). `tolerance`: error per step of angles, and of angular speeds in units of
+/// sqrt(g/L).
+std::vector<ChainState> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
+
+/// A strip of springs, T = Y (lambda - 1) per unit rest width, that hangs at rest from its upper edge (s = 0), under
+/// its weight and a load F on its lower edge: T(s) = rho g (L - s) + F, displacement u = (rho g/Y)(L s - s^2/2) + F
+/// s/Y. Source: equilibrium of a heavy bar. Errors of rounding only.
+struct HeavyStrip {
+  double length_m = 1;
+  double areal_density_kg_per_m2 = 0.2;
+  double membrane_stiffness_N_per_m = 1000;
+  double gravity_m_per_s2 = 9.81;
+  double end_load_N_per_m = 0;
+};
+double hang_displacement_m(const HeavyStrip&, double rest_m);
+
+/// Displacement of row `row` (0 = held .. cells) of `cells` springs. Either row of a cell has half of its mass, so rows
+/// lie exactly on the curve above.
+double hang_row_displacement_m(const HeavyStrip&, int cells, int row);
+
+/// Shape at rest of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum
+/// of potential and bending energy, (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 per link (quadratic isometric bending, Bergou
+/// et al. 2006), with lumped row masses. The clamp acts on half a cell, so its hinge is twice as stiff. Newton's method
+/// along the branch from no load; angles to 1e-13. Converges with order 2 in 1/links to Euler's elastica,
+/// theta'' = -Gamma (1 - s) cos(theta). Returns links + 1 nodes over the length; second coordinate downwards. Valid for
+/// 0 <= Gamma <= 1e4 while no hinge turns by 90 degrees.
+Nodes cantilever_nodes(int links, double own_weight);
+
+/// A straight chain of equal springs with lumped masses (half a cell's at the ends), without gravity, whose two ends
+/// are moved along it: the motion of a strip pulled by hands on the same mesh, with engineering strain
+///   x_i'' = (c/a)^2 (x_{i+1} - 2 x_i + x_{i-1}),  c = sqrt(Y/rho),  a = L/n.
+/// Source: Newton's second law. Integrated as the swinging chain is; errors below 1e-10 L at the default tolerance.
+struct PulledChain {
+  int links = 32;
+  double length_m = 1;
+  double areal_density_kg_per_m2 = 0.2;
+  double membrane_stiffness_N_per_m = 1000;
+};
+/// Of all links + 1 nodes; the speed of an end is that of its last leg.
+struct PulledState {
+  std::vector<double> displacement_m, speed_m_per_s;
+};
+/// States at `times_s` (ascending from 0), from rest. The ends have the given displacements at these times and move
+/// linearly between them.
+std::vector<PulledState> pull(const PulledChain&, std::span<const double> times_s, std::span<const double> first_m,
+                              std::span<const double> last_m, double tolerance = 1e-13);
+
+/// The same pull without a mesh, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
+/// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after; the wave from each end adds a strain of v0/c.
+/// A ramp of L/c or longer is needed: a lattice overshoots a step in velocity by a quarter at any resolution. Errors of
+/// rounding only.
+struct PullWave {
+  double length_m, wave_speed_m_per_s, hand_speed_m_per_s, ramp_s;
+
+  double hand_displacement_m(double t) const {
+    if (t <= 0) return 0;
+    if (t >= ramp_s) return hand_speed_m_per_s * (t - 0.5 * ramp_s);
+    return 0.5 * hand_speed_m_per_s * (t - ramp_s / std::numbers::pi * std::sin(std::numbers::pi * t / ramp_s));
+  }
+  double displacement_m(double x, double t) const {
+    const double half = length_m / 2, c = wave_speed_m_per_s;
+    double sum = 0;
+    for (double path = half; path - half <= c * t; path += length_m)
+      sum += hand_displacement_m(t - (path - x) / c) - hand_displacement_m(t - (path + x) / c);
+    return sum;
+  }
+};
+
+/// A cloth that lies flat on a plane at `angle` from the horizontal and starts downhill at `speed`, with Coulomb
+/// friction: acceleration g (sin - mu cos) until it stops, then rest; from rest it sticks if tan(angle) <= mu.
+/// Source: Coulomb 1781. Valid for 0 <= angle < pi/2. Errors of rounding only.
+struct Incline {
+  double angle_rad = 0;
+  double friction = 0;
+  double speed_m_per_s = 0;
+  double gravity_m_per_s2 = 9.81;
+};
+struct SlideState {
+  double distance_m, speed_m_per_s;  ///< downhill
+};
+SlideState slide_down(const Incline&, double time_s);
+
+/// An inextensible strip without bending stiffness over a fixed horizontal cylinder with Coulomb friction and its own
+/// weight, both ends hanging straight down:
+///   dT/dphi = mu (T + rho g R sin phi) + rho g R cos phi,  phi = 0 .. pi from the light side.
+/// With `turns` = m > 0 the strip has lumped rows, of which m are in contact, at phi = (j - 1/2) pi/m (edges 2 R
+/// sin(pi/2m)). Friction cone at each row, with d = pi/m and q = rho g * edge:
+///   T+ (cos(d/2) - mu sin(d/2)) = T (cos(d/2) + mu sin(d/2)) + q (cos phi + mu sin phi).
+/// It converges to the smooth strip with order 2 in 1/m. Without weight both are Euler's and Eytelwein's T2/T1 =
+/// e^{mu pi}. Source: balance of one element. Errors of rounding only.
+struct Capstan {
+  double friction = 0.3;
+  double radius_m = 0.05;
+  double areal_density_kg_per_m2 = 0.2;
+  double gravity_m_per_s2 = 9.81;
+  int turns = 0;
+};
+/// Longest overhang below the axis that `light_overhang_m` on the other side can hold.
+double greatest_overhang_m(const Capstan&, double light_overhang_m);
+
+/// The strip sliding from rest: at speed v, pressure times R is T + rho g R sin phi - rho v^2 and
+///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = overhangs now,
+/// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that holds stays static. Throws Error
+/// for a time at which the light end has reached the axis. Integrated as above, tolerance 1e-12.
+struct SlidState {
+  double displacement_m, speed_m_per_s;
+};
+std::vector<SlidState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
+                                  std::span<const double> times_s);
+
+}  // namespace clothbench::truth
