@@ -18,7 +18,7 @@ struct StudyArguments {
   std::optional<std::uint64_t> seed;
   std::string eye = "2064x2208", runs;
   bool with_rendering = false, list_runs = false;
-  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false, no_moduli = false;
+  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false;
   RunFlags run;
 };
 
@@ -47,7 +47,7 @@ void run_untimed(Study study, const StudyArguments& a, Console& console) {
                 "cores of a machine");
   const StudyManifest manifest = {study.name, "", "", study.definition, {}};
   a.run.tell(console, [&](const StudyCall& call) {
-    return execute_apart(std::move(study), manifest, call, a.only, std::max(1, a.jobs));
+    return execute_apart(std::move(study), manifest, call, std::max(1, a.jobs));
   });
 }
 
@@ -84,7 +84,6 @@ void run_study(StudyArguments& a, Console& console) {
   if (study.protocol == "stability-map") return run_untimed(std::move(study), a, console);
   RunPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
-  if (a.no_moduli) plan.measure_moduli = false;
   if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
   const std::vector<std::string> names = run_names(plan);
   if (a.list_runs) return print_runs(names, console);
@@ -97,7 +96,6 @@ void run_study(StudyArguments& a, Console& console) {
     require_same_runs(a.run.out, plan, true);  // also what other processes have made of it
     plan = only_runs(std::move(plan), chosen);
     manifest.runs = names;
-    plan.measure_moduli = false;  // of fronts, which need all runs
     a.run.resume = a.run.part = true;
   }
   a.run.tell(console, [&](const StudyCall& call) { return execute_study(std::move(plan), manifest, call); });
@@ -128,9 +126,6 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--run", a.runs,
                   "Only these runs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
-  cmd->add_flag("--no-moduli", a.no_moduli,
-                "Do not measure effective moduli after a work-precision study; then stiffness excludes no solver "
-                "from the ranks");
   cmd->add_option("--jobs", a.jobs,
                   "Number of processes at a time, for a study that runs each run in its own process (default 1)")
       ->check(CLI::Range(1, 256));

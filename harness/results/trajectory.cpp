@@ -27,7 +27,7 @@ std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
   return "";
 }
 
-/// Results of several scenes (moduli, metamorphic relations) have no vertices, and live sessions store their end alone.
+/// A run without vertices has no positions, and live sessions store only their end.
 bool needs_motion(const RunRecord& r) {
   const nlohmann::json& e = r.header.environment;
   const bool live = e.is_object() && e.value("protocol", "") == "xr";

@@ -76,16 +76,11 @@ RunRequest request_from_json(const json& j) {
   return r;
 }
 
-json answer_to_json(const RunRecord& c, bool with_header) {
-  json j = outcome_to_json(c.outcome, c.summary);
-  if (with_header) j["header"] = header_to_json(c.header);
-  return j;
-}
+json answer_to_json(const RunRecord& c) { return outcome_to_json(c.outcome, c.summary); }
 
 RunRecord answer_from_json(const json& j) {
   RunRecord c;
   outcome_from_json(j, c);
-  if (j.contains("header")) c.header = header_from_json(j.at("header"));
   return c;
 }
 

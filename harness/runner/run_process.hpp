@@ -22,14 +22,14 @@ struct RunRequest {
   std::string name;              ///< of this variant of the scene
   std::string solver, setting;
   nlohmann::json settings = nlohmann::json::object();
-  RunRules rules = {};  ///< `by` stays in this process
+  RunRules rules = {};
 };
 
 nlohmann::json to_json(const RunRequest&);
 RunRequest request_from_json(const nlohmann::json&);
 
-/// What a process tells of its run: outcome and summary, and the header if it is asked for.
-nlohmann::json answer_to_json(const RunRecord&, bool with_header = false);
+/// What a process reports of its run: outcome and summary.
+nlohmann::json answer_to_json(const RunRecord&);
 RunRecord answer_from_json(const nlohmann::json&);
 
 /// Writes the file of a run whose process could not write it. A file that the process left incomplete is removed: it is

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/sha256.hpp"
 #include "results/store.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/resume.hpp"
-#include "runner/stability_map.hpp"
 #include "runner/study_plan.hpp"
 #include "runner/worker_pool.hpp"
 
@@ -46,11 +44,6 @@ void require_same_runs(const Study& study, const StabilityOptions& o) {
   require_same_runs(o.out, runs, o.resume);
 }
 
-void require_same_study(const Study& study, const StabilityOptions& o) {
-  require_same_runs(study, o);
-  require_same_maps(study, o);
-}
-
 double grade_of(const RunRecord& a) {
   const auto at = a.summary.find("stability_grade");
   return at != a.summary.end() && std::isfinite(at->second) ? at->second
@@ -69,14 +62,6 @@ void StabilityCounts::add(const RunRecord& a) {
   else
     ++failed;
   if (a.outcome.status == "crashed" || a.outcome.message.starts_with("its process")) ++crashed;
-}
-
-void StabilityCounts::add(const StabilityCounts& more) {
-  stable += more.stable;
-  degraded += more.degraded;
-  failed += more.failed;
-  unsupported += more.unsupported;
-  crashed += more.crashed;
 }
 
 StabilityCounts execute_stability_runs(const Study& study, const StabilityOptions& o) {

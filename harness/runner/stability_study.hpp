@@ -1,9 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "clothbench/solver.hpp"
 #include "runner/run_process.hpp"
@@ -13,33 +11,27 @@
 namespace clothbench {
 
 struct StabilityOptions {
-  std::filesystem::path out;      ///< of the runs' files, stability.json and stability-probes.jsonl
+  std::filesystem::path out;      ///< of the runs' files
   std::filesystem::path program;  ///< executable of the child processes
   DeviceOptions device;
   bool resume = false;
-  int jobs = 1;                           ///< concurrent processes; no run here is timed
-  nlohmann::json environment = {};        ///< stored with the maps
-  std::vector<std::string> solvers = {};  ///< only these solvers in the maps; empty: all
+  int jobs = 1;  ///< concurrent processes; no run here is timed
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress = nullptr;
 };
 
 /// 0 stable, 1 degraded, 2 failed; NaN: unsupported.
 double grade_of(const RunRecord&);
 
-/// Number of runs of each grade, including probes of the maps.
+/// Number of runs of each grade.
 struct StabilityCounts {
   int stable = 0, degraded = 0, failed = 0, unsupported = 0;
   int crashed = 0;  ///< of the failed ones: processes that crashed or hung
-  SolverEnds ends;  ///< of the study's runs, without the probes
+  SolverEnds ends;
   void add(const RunRecord&);
-  void add(const StabilityCounts&);
 };
 
-/// Call before anything is written. Throws Error naming the file if runs or probes in the folder are of other scenes,
-/// settings or solver versions, or are finished and `resume` is off.
-void require_same_study(const Study&, const StabilityOptions&);
-
-/// The same for the runs alone, of a study without maps.
+/// Call before anything is written. Throws Error naming the file if runs in the folder are of other scenes, settings or
+/// solver versions, or are finished and `resume` is off.
 void require_same_runs(const Study&, const StabilityOptions&);
 
 /// Executes every run of the study's scenes, untimed, in processes that are replaced after a fault, with one result

@@ -56,7 +56,7 @@ RunPlan plan_study(const Study& study) {
                 rules.agree,
                 study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = plan.measure_moduli = study.protocol == "work-precision";
+  plan.references = study.protocol == "work-precision";
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers)
     entries.push_back(s.joined ? &find_solver(s.solver) : known_solver(s.solver));

@@ -18,8 +18,6 @@ struct RunPlan {
   /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
   bool references = false;  ///< store the reference solution of each scene's truth with its runs
-  bool measure_moduli =
-      false;  ///< measure every solver's effective moduli at its default setting and those of its fronts
 
   std::size_t size() const;
 };
@@ -38,8 +36,7 @@ struct RunResult {
   /// Of all runs of the plan, also those that an earlier session stored.
   int runs_ok = 0, runs_unsupported = 0, runs_over_budget = 0, runs_failed = 0;
   /// Wall time by solver for loads, passes, trials and files; "reference solutions" is another entry.
-  std::map<std::string, double> seconds, moduli_seconds;  ///< moduli_seconds: of effective moduli
-  int moduli = 0, moduli_left_out = 0;
+  std::map<std::string, double> seconds;
   int validation_messages = 0;
   /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
   std::vector<std::string> faults;

@@ -10,7 +10,6 @@
 #include "base/files.hpp"
 #include "base/plugin_environment.hpp"
 #include "runner/again.hpp"
-#include "runner/effective_moduli.hpp"
 #include "runner/run_process.hpp"
 
 namespace clothbench {
@@ -22,23 +21,13 @@ constexpr char kVariable[] = "CLOTHBENCH_SUPERVISED";  // "new:<folder>" or "aga
 
 fs::path note_file(const fs::path& out) { return out / "running.txt"; }
 
-/// What a child was at: a run of the plan, or effective moduli of one of its solvers.
-struct Doing {
-  const SolverEntry* entry;
-  const RunSpec* run;  ///< null: a measurement
-  std::string setting;
-};
-
-/// "<run>: trial 2 of 5" or "<measured>" -> what that is, if it is the plan's.
-std::optional<Doing> doing_of(const RunPlan& plan, const std::string& note) {
+/// "<run>: trial 2 of 5" -> that run; null if it is not the plan's.
+const RunSpec* run_of(const RunPlan& plan, const std::string& note) {
   const std::string name = note.substr(0, note.find(": "));
   for (const auto& group : plan.groups)
-    for (const RunSpec& c : group) {
-      if (run_name(c) == name) return Doing{c.entry, &c, c.setting};
-      const std::string measured = fmt::format("{}__{}__", kModuliScene, c.entry->info.name);
-      if (name.starts_with(measured)) return Doing{c.entry, nullptr, name.substr(measured.size())};
-    }
-  return std::nullopt;
+    for (const RunSpec& c : group)
+      if (run_name(c) == name) return &c;
+  return nullptr;
 }
 
 /// This command in a child process, which is killed if a plugin's run makes no progress.
@@ -53,19 +42,13 @@ ChildEnd run_watched(const std::vector<std::string>& words, const std::string& v
       doing = std::move(now);
       since = Clock::now();
     }
-    const std::optional<Doing> at = doing_of(plan, doing);
-    return at && is_external(at->entry->info) &&
+    const RunSpec* at = run_of(plan, doing);
+    return at != nullptr && is_external(at->entry->info) &&
            std::chrono::duration<double>(Clock::now() - since).count() > plugin_limit_s();
   });
 }
 
-void write_row(const Doing& at, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
-  if (at.run == nullptr) {
-    const RunRecord measured = failed_material(*at.entry, at.setting, outcome, plan.protocol);
-    RunWriter(out, measured.header).finish(measured.outcome, measured.summary);
-    return;
-  }
-  const RunSpec& c = *at.run;
+void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
   RunRecord r;
   r.header = header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol);
   r.outcome = outcome;
@@ -86,17 +69,17 @@ ExitCode supervise(const RunPlan& plan, const fs::path& out, bool resume, const 
   const fs::path note = note_file(out);
   std::error_code ignored;
   fs::remove(note, ignored);
-  // A row a child at least, of a run or of a measurement at its setting.
-  for (std::size_t children = 0; children <= 2 * plan.size(); ++children) {
+  for (std::size_t children = 0; children <= plan.size(); ++children) {  // one row per child at least
     const bool again = resume || children > 0;
     const ChildEnd end =
         run_watched(words, fmt::format("{}={}:{}", kVariable, again ? "again" : "new", out.string()), plan, note);
     if (!fs::exists(note, ignored))  // it came to its end, good or bad
       return static_cast<ExitCode>(end.how == ChildEnd::How::Exited ? end.code : 1);
     const std::string doing = content_of(note);
-    const std::optional<Doing> at = doing_of(plan, doing);
+    const RunSpec* at = run_of(plan, doing);
     fs::remove(note, ignored);
-    if (!at) throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);
+    if (at == nullptr)
+      throw Error(fmt::format("{}: the study's process: {}", doing, end.text()), ExitCode::CheckFailed);
     const std::string message = fmt::format("its process: {}, at \"{}\"", end.text(), doing);
     fmt::print(stderr, "{}\n", message);
     write_row(*at, plan, out, {end.how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1, message});

@@ -14,7 +14,6 @@
 #include "runner/environment.hpp"
 #include "runner/run_choice.hpp"
 #include "runner/supervise.hpp"
-#include "studies/front_moduli.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,7 +21,6 @@ namespace {
 nlohmann::json seconds_json(const RunResult& r) {
   nlohmann::json j = nlohmann::json::object();
   for (const auto& [name, s] : r.seconds) j[name] = {{"runs", s}};
-  for (const auto& [name, s] : r.moduli_seconds) j[name]["moduli"] = s;
   return j;
 }
 
@@ -52,8 +50,6 @@ nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs
           {"over_budget", r.runs_over_budget},
           {"failed", r.runs_failed},
           {"seconds", seconds_json(r)},
-          {"moduli", r.moduli},
-          {"moduli_left_out", r.moduli_left_out},
           {"faults", r.faults},
           {"with_bound", count_verdicts(runs).runs},
           {"expect_passed", count_verdicts(runs).passed},
@@ -66,10 +62,8 @@ std::string spent(const RunResult& r) {
   std::string text;
   double all = 0;
   for (const auto& [name, s] : r.seconds) {
-    const auto moduli = r.moduli_seconds.find(name);
     text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
-    if (moduli != r.moduli_seconds.end()) text += fmt::format(" + {:.1f} on moduli", moduli->second);
-    all += s + (moduli == r.moduli_seconds.end() ? 0 : moduli->second);
+    all += s;
   }
   text = fmt::format("seconds: {}; together {:.0f}\n", text, all);
   if (r.runs_over_budget > 0)
@@ -77,11 +71,6 @@ std::string spent(const RunResult& r) {
         "not run: {} settings, because their solvers had used all of their time on the scene "
         "(over_budget)\n",
         r.runs_over_budget);
-  if (r.moduli_left_out > 0)
-    text += fmt::format(
-        "not run: effective moduli of {} settings on fronts, which could change no verdict; a full "
-        "study measures all\n",
-        r.moduli_left_out);
   return text;
 }
 
@@ -139,8 +128,7 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
                              call.progress(what, done, total);
                              note.write(what);
                            }};
-  RunResult result = execute_runs(plan, options);
-  if (plan.measure_moduli) add_moduli_runs(plan, options, manifest, result);
+  const RunResult result = execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
   end.json = [=, out = end.out, part = call.part] {

@@ -36,12 +36,11 @@ struct StudyEnd {
 /// results/runs/<study>-<UTC>, and a number where two began in the same second.
 std::filesystem::path default_folder(const std::string& study);
 
-/// Executes a plan with timed trials; measures effective moduli after it where the plan says so. A plan with a plugin
-/// runs in a child of this command.
+/// Executes a plan with timed trials. A plan with a plugin runs in a child of this command.
 StudyEnd execute_study(RunPlan, StudyManifest, const StudyCall&);
 
 /// A study of protocol contact or stability-map, whose runs are untimed and in processes of their own, `jobs` at a
-/// time. `only`: solvers of its maps; empty: all.
-StudyEnd execute_apart(Study, StudyManifest, const StudyCall&, std::vector<std::string> only, int jobs);
+/// time.
+StudyEnd execute_apart(Study, StudyManifest, const StudyCall&, int jobs);
 
 }  // namespace clothbench

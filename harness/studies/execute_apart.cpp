@@ -8,23 +8,21 @@
 #include "results/result_folder.hpp"
 #include "runner/child.hpp"
 #include "runner/environment.hpp"
-#include "runner/stability_map.hpp"
+#include "runner/stability_study.hpp"
 #include "studies/execute.hpp"
 
 namespace clothbench {
 namespace {
 
 /// Where and how its processes run; the manifest is completed.
-StabilityOptions options_apart(Study& study, StudyManifest& manifest, const StudyCall& call,
-                               std::vector<std::string> only, int jobs) {
+StabilityOptions options_apart(Study& study, StudyManifest& manifest, const StudyCall& call, int jobs) {
+  settle_device(study, call.device);
   StabilityOptions options;
-  options.environment = settle_device(study, call.device, only);
   options.out = call.out.empty() ? default_folder(manifest.study) : call.out;
   options.program = own_program();
   options.device = call.device.options;
   options.resume = call.resume;
   options.jobs = jobs;
-  options.solvers = std::move(only);
   options.progress = call.progress;
   manifest.created = utc_now();
   manifest.command_line = call.command_line;
@@ -74,10 +72,9 @@ StudyEnd execute_drawn(const Study& study, const StudyManifest& manifest, const 
 }
 
 StudyEnd execute_stability(const Study& study, const StudyManifest& manifest, const StabilityOptions& options) {
-  require_same_study(study, options);
+  require_same_runs(study, options);
   write_manifest(options.out, manifest);
-  StabilityCounts n = execute_stability_runs(study, options);
-  n.add(run_stability_maps(study, options));
+  const StabilityCounts n = execute_stability_runs(study, options);
   const std::string out = options.out.string();
   return {.out = options.out,
           .exit_code = exit_code_of(n.ends),
@@ -98,9 +95,8 @@ StudyEnd execute_stability(const Study& study, const StudyManifest& manifest, co
 
 }  // namespace
 
-StudyEnd execute_apart(Study study, StudyManifest manifest, const StudyCall& call, std::vector<std::string> only,
-                       int jobs) {
-  const StabilityOptions options = options_apart(study, manifest, call, std::move(only), jobs);
+StudyEnd execute_apart(Study study, StudyManifest manifest, const StudyCall& call, int jobs) {
+  const StabilityOptions options = options_apart(study, manifest, call, jobs);
   const ResultFolder held(options.out, ResultFolder::Use::Alone, call.command_line);
   return is_drawn(study) ? execute_drawn(study, manifest, options, call) : execute_stability(study, manifest, options);
 }
