@@ -24,9 +24,14 @@ void RunFlags::tell(Console& console, const std::function<StudyEnd(const StudyCa
   StudyEnd end;
   {
     StatusLine line(console.shows_status());
-    StudyCall call{out, resume, part, device, console.command_line, console.words, {}};
+    StudyCall call;
+    call.out = out;
+    call.resume = resume;
+    call.part = part;
+    call.device = device;
+    call.command_line = console.command_line;
+    call.words = console.words;
     call.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
-    if (!console.json) call.tell = [](const std::string& text) { fmt::print("{}\n", text); };
     end = execute(call);
   }
   if (end.exit_code != ExitCode::Ok || end.told) console.exit_code = end.exit_code;

@@ -12,11 +12,11 @@
 
 #include "base/status_line.hpp"
 #include "base/summary_output.hpp"
+#include "cli/execute.hpp"
 #include "clothbench/error.hpp"
 #include "runner/again.hpp"
 #include "runner/solver_choice.hpp"
 #include "scenario/load.hpp"
-#include "studies/execute.hpp"
 
 namespace clothbench {
 
@@ -63,6 +63,9 @@ inline std::string message_of(const std::string& text) {
 using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
     add_compare, add_completion, add_manual, add_render, add_xr, add_conformance;
+
+/// What `clothbench list` can list: solvers, features, scenarios, studies, devices, metrics, scalars, assets.
+std::vector<std::string> list_names();
 
 /// Options of every command that runs a solver: --device, --validate, --allow-no-device.
 struct DeviceFlags : DeviceChoice {

@@ -5,7 +5,6 @@
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "cli/texts.hpp"
-#include "studies/lists.hpp"
 
 namespace clothbench {
 namespace {

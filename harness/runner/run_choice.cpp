@@ -20,7 +20,7 @@ std::vector<std::string> run_names(const RunPlan& plan) {
 
 std::vector<std::size_t> parse_runs(const std::string& text, std::size_t count) {
   const auto fail = [&] {
-    throw Error(fmt::format("--run {}: expected numbers from 0 to {}, such as 7 or 0,3-5", text, count - 1));
+    throw Error(fmt::format("--job {}: expected numbers from 0 to {}, such as 7 or 0,3-5", text, count - 1));
   };
   const auto number = [&](const std::string& word) {
     std::size_t n = 0;

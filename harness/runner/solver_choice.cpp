@@ -12,8 +12,6 @@
 namespace clothbench {
 namespace {
 
-bool on_gpu(const SolverInfo& info) { return info.on_gpu; }
-
 /// Whether GPU solvers have a device; a notice if there is none and that is allowed.
 bool check_device(const SolverEntry& gpu, const DeviceChoice& choice) {
   const std::vector<DeviceInfo> devices = gpu.devices();
@@ -98,16 +96,6 @@ void settle_device(RunPlan& plan, const DeviceChoice& choice) {
       if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
   if (gpu == nullptr || check_device(*gpu, choice)) return;
   for (auto& group : plan.groups) std::erase_if(group, [](const RunSpec& c) { return c.entry->info.on_gpu; });
-}
-
-void settle_device(Study& study, const DeviceChoice& choice) {
-  const SolverEntry* gpu = nullptr;
-  for (const SolverEntry& e : solvers())
-    if (e.devices && e.info.on_gpu) gpu = &e;
-  if (gpu == nullptr || check_device(*gpu, choice)) return;
-  const std::vector<std::string> gone = solver_names(on_gpu);
-  for (Study::Item& item : study.scenes)
-    std::erase_if(item.solvers, [&](std::size_t k) { return contains(gone, study.solvers[k].solver); });
 }
 
 }  // namespace clothbench

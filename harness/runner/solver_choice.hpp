@@ -46,7 +46,4 @@ struct DeviceChoice {
 /// that is allowed. Throws Error if it is not, and if the chosen device is missing.
 void settle_device(RunPlan&, const DeviceChoice&);
 
-/// The same for a study whose runs are in processes of their own.
-void settle_device(Study&, const DeviceChoice&);
-
 }  // namespace clothbench

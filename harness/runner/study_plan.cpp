@@ -40,7 +40,7 @@ std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vect
   return out;
 }
 
-RunPlan plan_study(const Study& study) {
+RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(const std::string&)>& lookup) {
   const StudyRules& rules = study.rules;
   RunPlan plan;
   plan.protocol = protocol_name(study.length);
@@ -57,9 +57,9 @@ RunPlan plan_study(const Study& study) {
                 study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = study.protocol == "work-precision";
+  plan.apart = study.protocol == "contact" || study.protocol == "stability-map";
   std::vector<const SolverEntry*> entries;
-  for (const StudySolver& s : study.solvers)
-    entries.push_back(s.joined ? &find_solver(s.solver) : known_solver(s.solver));
+  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : lookup(s.solver));
   for (const Study::Item& item : study.scenes) {
     if (plan.groups.size() <= static_cast<std::size_t>(item.group))
       plan.groups.resize(static_cast<std::size_t>(item.group) + 1);

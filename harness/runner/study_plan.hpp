@@ -18,6 +18,6 @@ std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vect
 
 /// A study's runs. The study must outlive the plan. Solvers named by the study but missing from this build become
 /// `unsupported` runs. Throws Error for a solver that neither names, and for an unknown setting.
-RunPlan plan_study(const Study&);
+RunPlan plan_study(const Study&, const std::function<const SolverEntry*(const std::string&)>& lookup = known_solver);
 
 }  // namespace clothbench

@@ -17,6 +17,7 @@ struct RunPlan {
   std::string protocol;  ///< "short", "full" or "quick", stored with every run
   /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
+  bool apart = false;       ///< one untimed run of each whole scene, in worker processes, instead of trials
   bool references = false;  ///< store the reference solution of each scene's truth with its runs
 
   std::size_t size() const;
@@ -25,10 +26,19 @@ struct RunPlan {
 struct RunOptions {
   std::filesystem::path out;
   bool resume = false;
+  int jobs = 1;                        ///< worker processes at a time, for a plan whose runs are apart
+  std::filesystem::path program = {};  ///< executable of the workers; empty: this one
   DeviceOptions device;
   /// Called before each task with its description and the numbers of finished and of all tasks.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
   std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
+};
+
+/// Number of runs of each stability grade.
+struct Grades {
+  int stable = 0, degraded = 0, failed = 0, unsupported = 0;
+  int crashed = 0;  ///< runs among the failed ones whose process crashed or hung
+  void add(const RunRecord&);
 };
 
 struct RunResult {
@@ -41,6 +51,7 @@ struct RunResult {
   /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
   std::vector<std::string> faults;
   SolverEnds ends;  ///< of all runs of the plan
+  Grades grades;    ///< of a plan whose runs are apart
 };
 
 /// Call before anything is written into a study's folder. Throws Error naming the file if a stored run of the plan,
@@ -50,7 +61,8 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 
 /// Executes every run and writes one file each. With `resume`, finished runs are skipped and finished trials reused,
 /// and a run stored for another scene, other settings or another version is an Error. Without it, a run that is already
-/// stored is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
+/// stored is an Error. Runs that are apart go to `jobs` RunWorkers, the longest first. Throws Error with
+/// ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
 }  // namespace clothbench

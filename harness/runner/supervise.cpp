@@ -58,7 +58,7 @@ void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const
 }  // namespace
 
 bool needs_supervision(const RunPlan& plan) {
-  if (supervised() || plugins_in_process()) return false;
+  if (plan.apart || supervised() || plugins_in_process()) return false;
   for (const auto& group : plan.groups)
     for (const RunSpec& c : group)
       if (is_external(c.entry->info)) return true;

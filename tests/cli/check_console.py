@@ -101,7 +101,7 @@ class Console(unittest.TestCase):
             "validate": ["tiny.json"],
             "plan": ["paper/gravity", "--solver", "ballistic"],
             "run": RUN[1:] + ["--out", self.out + "-2"],
-            "study": ["table3", "--quick", "--list-runs"],
+            "study": ["table3", "--quick", "--list-jobs"],
             "report": [self.out, "-o", self.out + "-report"],
             "import": [self.out],
             "check": [self.out, "--baseline", baseline],

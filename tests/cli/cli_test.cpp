@@ -219,13 +219,13 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),
                     some = "study " + study.string() + " --out " + out.string();
-  ASSERT_EQ(command(some + " --run 0").code, 0);
+  ASSERT_EQ(command(some + " --job 0").code, 0);
   ASSERT_EQ(command(run).code, 0);
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
   // SolverRun 1 has not been run: it would join one of another scene.
-  for (const std::string& words : {some + " --resume", some + " --run 0", some + " --run 1", run + " --resume"}) {
+  for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
     const Answer a = command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;

@@ -56,7 +56,7 @@ const std::vector<Pair> kPairs = {
     {{"conformance", "ballistic", "--set", "cloth.grid=[3,3]"},
      {"--json", "conformance", "ballistic", "--scene", "conformance/sheet", "--no-whole"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
-    {{"study", "table3", "--quick", "--only", "nothing", "--run", "0"}, {"--json", "study", "table3", "--list-runs"}},
+    {{"study", "table3", "--quick", "--only", "nothing", "--job", "0"}, {"--json", "study", "table3", "--list-jobs"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "base/json_text.hpp"
@@ -12,7 +13,7 @@
 #include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
-#include "runner/stability_study.hpp"
+#include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
 #include "with_folder.hpp"
 
@@ -50,9 +51,20 @@ class StabilityStudy : public WithFolder {
                    {"full", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}};
     write("thrown-study.json", study_json_);
   }
+  /// The plan of a study whose solvers only the child has.
+  static RunPlan plan_of(const Study& study) {
+    static std::map<std::string, SolverEntry> entries;
+    return plan_study(study, [](const std::string& name) -> const SolverEntry* {
+      SolverEntry& e = entries[name];
+      e.info.name = name;
+      e.make = [](const json&, const DeviceOptions&) -> std::unique_ptr<ClothSolver> { return nullptr; };
+      return &e;
+    });
+  }
+  Grades execute(const Study& study, const RunOptions& o) const { return execute_runs(plan_of(study), o).grades; }
   void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
-  StabilityOptions options(bool resume) const {
-    StabilityOptions o;
+  RunOptions options(bool resume) const {
+    RunOptions o;
     o.out = dir_ / "out";
     o.program = FAULTY_CHILD;
     o.resume = resume;
@@ -64,12 +76,12 @@ class StabilityStudy : public WithFolder {
 
 TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   const Study study = load_study((dir_ / "thrown-study.json").string());
-  const StabilityCounts counts = execute_stability_runs(study, options(false));
+  const Grades counts = execute(study, options(false));
   EXPECT_EQ(counts.stable, 1);
   EXPECT_EQ(counts.failed, 1);
   EXPECT_EQ(counts.crashed, 1);
-  EXPECT_THROW(execute_stability_runs(study, options(false)), Error);
-  const StabilityCounts again = execute_stability_runs(study, options(true));
+  EXPECT_THROW(execute(study, options(false)), Error);
+  const Grades again = execute(study, options(true));
   EXPECT_EQ(again.stable, 1);
   EXPECT_EQ(again.failed, 1);
   std::vector<RunRecord> runs;
@@ -106,9 +118,10 @@ TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
            {{"key", "gravity_m_per_s2"}, {"values", {{0, -scale, 0}}}, {"labels", {scale == 1 ? "g1" : "g1024"}}},
            {{"key", "cloth.size_m"}, {"values", {{scale, scale}}}, {"labels", {scale == 1 ? "m" : "km"}}}}}});
   write("thrown-study.json", study_json_);
-  StabilityOptions many = options(false);
+  RunOptions many = options(false);
   many.jobs = 3;
-  execute_stability_runs(load_study((dir_ / "thrown-study.json").string()), many);
+  const Study study = load_study((dir_ / "thrown-study.json").string());
+  execute(study, many);
   std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") {
@@ -141,8 +154,8 @@ std::string refusal(const std::function<void()>& what) {
 
 TEST_F(StabilityStudy, AnotherSceneIsNotResumed) {
   const Study study = load_study((dir_ / "thrown-study.json").string());
-  execute_stability_runs(study, options(false));
-  require_same_runs(study, options(true));
+  execute(study, options(false));
+  require_same_runs(dir_ / "out", plan_of(study), true);
 
   json scene;
   std::ifstream(dir_ / "thrown.json") >> scene;
@@ -152,14 +165,15 @@ TEST_F(StabilityStudy, AnotherSceneIsNotResumed) {
   const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12),
                     now = edited.scenes.at(0).scene.sha256.substr(0, 12);
   ASSERT_NE(before, now);
-  for (const std::string& text : {refusal([&] { execute_stability_runs(edited, options(true)); }),
-                                  refusal([&] { require_same_runs(edited, options(true)); })})
+  for (const std::string& text : {refusal([&] { execute(edited, options(true)); }),
+                                  refusal([&] { require_same_runs(dir_ / "out", plan_of(edited), true); })})
     for (const std::string& word : {before, now, std::string("--out"), std::string("thrown__")})
       EXPECT_NE(text.find(word), std::string::npos) << text;
 
   scene["gravity_m_per_s2"] = {0, -1, 0};
   write("thrown.json", scene);
-  require_same_runs(load_study((dir_ / "thrown-study.json").string()), options(true));
+  const Study restored = load_study((dir_ / "thrown-study.json").string());
+  require_same_runs(dir_ / "out", plan_of(restored), true);
 }
 
 TEST(StabilityCases, AreAllThereAndLoad) {

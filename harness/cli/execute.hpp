@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/solver_choice.hpp"
-#include "runner/stability_study.hpp"
+#include "runner/study_runner.hpp"
 
 namespace clothbench {
 
@@ -14,12 +14,14 @@ namespace clothbench {
 struct StudyCall {
   std::filesystem::path out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
-  bool part = false;  ///< only some of the manifest's runs: no figures of the folder at the end
+  int jobs = 1;
+  bool drawn = false;  ///< runs of generated contact scenes, which the summary counts by their verdicts
+  bool part = false;   ///< only some of the manifest's runs: no figures of the folder at the end
   DeviceChoice device;
-  std::string command_line;                                           ///< stored with the study
-  std::vector<std::string> words;                                     ///< the same, for children of the command
-  decltype(RunOptions::progress) progress;                            ///< before each task
-  std::function<void(const std::string&)> tell = [](const auto&) {};  ///< receives lines for the user, before runs
+  std::string command_line;                 ///< stored with the study
+  std::vector<std::string> words;           ///< the same, for children of the command
+  decltype(RunOptions::progress) progress;  ///< before each task
+  std::function<void()> before_runs = {};   ///< once the folder is known to be usable
 };
 
 /// An executed study. Its folder has one file a run and study.json.
@@ -36,11 +38,7 @@ struct StudyEnd {
 /// results/runs/<study>-<UTC>, and a number where two began in the same second.
 std::filesystem::path default_folder(const std::string& study);
 
-/// Executes a plan with timed trials. A plan with a plugin runs in a child of this command.
+/// Executes a plan and makes its folder. A timed plan with a plugin runs in a child of this command.
 StudyEnd execute_study(RunPlan, StudyManifest, const StudyCall&);
-
-/// A study of protocol contact or stability-map, whose runs are untimed and in processes of their own, `jobs` at a
-/// time.
-StudyEnd execute_apart(Study, StudyManifest, const StudyCall&, int jobs);
 
 }  // namespace clothbench

@@ -1,4 +1,4 @@
-#include "studies/execute.hpp"
+#include "cli/execute.hpp"
 
 #include <fmt/format.h>
 
@@ -90,6 +90,35 @@ std::string text_of(const RunResult& r, const std::vector<std::string>& names, c
          spent(r);
 }
 
+VerdictCounts verdicts_in(const std::filesystem::path& out) {
+  std::vector<RunRecord> runs = collect({out});
+  withhold_times(runs);
+  return count_verdicts(runs);
+}
+
+/// Summaries of a study whose runs are apart: verdicts of drawn scenes, else stability grades.
+void summarise_apart(const RunResult& r, bool drawn, StudyEnd& end) {
+  const Grades n = r.grades;
+  const std::filesystem::path out = end.out;
+  if (drawn) {
+    end.json = [=] {
+      const VerdictCounts counts = verdicts_in(out);
+      return nlohmann::json{{"out", out.string()}, {"passed", counts.passed}, {"runs", counts.runs}};
+    };
+    end.text = [=] { return fmt::format("\n{}; results in {}\n", verdicts_in(out).text(), out.string()); };
+    return;
+  }
+  end.json = [=] {
+    return nlohmann::json{{"out", out.string()}, {"stable", n.stable},           {"degraded", n.degraded},
+                          {"failed", n.failed},  {"unsupported", n.unsupported}, {"crashed", n.crashed}};
+  };
+  end.text = [=] {
+    return fmt::format(
+        "\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
+        n.stable, n.degraded, n.failed, n.crashed, n.unsupported, out.string());
+  };
+}
+
 }  // namespace
 
 std::filesystem::path default_folder(const std::string& study) {
@@ -122,15 +151,24 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   if (manifest.runs.empty()) manifest.runs = names;
   write_manifest(end.out, manifest);
 
+  if (call.before_runs) call.before_runs();
   const RunningNote note(parent);
-  const RunOptions options{end.out, resume, call.device.options,
-                           [&](const std::string& what, std::size_t done, std::size_t total) {
-                             call.progress(what, done, total);
-                             note.write(what);
-                           }};
+  RunOptions options;
+  options.out = end.out;
+  options.resume = resume;
+  options.jobs = call.jobs;
+  options.device = call.device.options;
+  options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+    call.progress(what, done, total);
+    note.write(what);
+  };
   const RunResult result = execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
+  if (plan.apart) {
+    summarise_apart(result, call.drawn, end);
+    return end;
+  }
   end.json = [=, out = end.out, part = call.part] {
     const std::vector<RunRecord> runs = stored_runs(names, out);
     return summary_of(result, runs, out, part ? nlohmann::json::array() : figures_of(runs));
