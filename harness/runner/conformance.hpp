@@ -55,6 +55,12 @@ struct ConformanceResult {
 ConformanceResult run_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                   const Scene&, const ConformanceCase&, double limit_s = 0);
 
+/// Relations that a scene is made for, what each changes in the scene, and its check (relations.cpp).
+std::vector<std::string> relations_of(const std::string& scene);
+std::vector<std::string> relation_overrides(const std::string& relation);
+ConformanceResult run_relation(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+                               const Scene& related, const ConformanceCase&);
+
 /// One line of the command's answer: all cases of a scene.
 struct ConformanceRow {
   std::string scene, status;  ///< status: "pass", "FAIL", "skipped" (no case is one for the solver)
