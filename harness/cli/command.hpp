@@ -14,7 +14,6 @@
 #include "base/summary_output.hpp"
 #include "cli/execute.hpp"
 #include "clothbench/error.hpp"
-#include "runner/again.hpp"
 #include "runner/solver_choice.hpp"
 #include "scenario/load.hpp"
 
@@ -24,7 +23,6 @@ namespace clothbench {
 struct Console {
   bool json = false;  ///< print a machine-readable summary instead of tables
   std::string command_line;
-  std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
   std::set<std::string> reported_scenes = {};  ///< scenes whose drawn parameters (--seed) have been printed
 
@@ -46,8 +44,6 @@ struct Console {
   void print(Json&& as_json, Text&& as_text) const {
     json ? print(as_json()) : fmt::print("{}", as_text());
   }
-  /// Of the current task: nothing with --json and in the child of a plugin's call, whose parent has one.
-  bool shows_status() const { return !json && !Guard::in_child(); }
 
  private:
   std::vector<std::shared_ptr<void>> kept_;
@@ -66,6 +62,13 @@ AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, 
 
 /// What `clothbench list` can list: solvers, features, scenarios, studies, devices, metrics, scalars, assets.
 std::vector<std::string> list_names();
+
+/// What a solver would run for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
+/// contact_margins; the worker's side of `clothbench plan`.
+nlohmann::json plan_answer(const nlohmann::json& request);
+
+/// The rendering that --with-rendering times, from the size of a picture.
+Rendering rendering_of(const std::string& eye);
 
 /// Options of every command that runs a solver: --device, --validate, --allow-no-device.
 struct DeviceFlags : DeviceChoice {

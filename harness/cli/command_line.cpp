@@ -63,7 +63,6 @@ int run_command_line(const std::vector<std::string>& given) {
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));
   console.command_line = "clothbench " + joined(words, " ");
-  console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run plugins in this process, for a debugger; a crash of a plugin then ends the program");

@@ -12,8 +12,8 @@
 #include "report/withheld.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
-#include "runner/run_choice.hpp"
-#include "runner/supervise.hpp"
+#include "runner/plan_process.hpp"
+#include "runner/study_plan.hpp"
 
 namespace clothbench {
 namespace {
@@ -132,19 +132,10 @@ std::filesystem::path default_folder(const std::string& study) {
 
 StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& call) {
   settle_device(plan, call.device);
-  const std::optional<Supervised> parent = supervised();
   StudyEnd end;
-  end.out = parent ? parent->out : call.out.empty() ? default_folder(manifest.study) : call.out;
-  const bool resume = parent ? parent->resume : call.resume;
-  std::optional<ResultFolder> held;
-  if (!parent)
-    held.emplace(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
-  require_same_runs(end.out, plan, resume);
-  if (needs_supervision(plan)) {
-    end.exit_code = supervise(plan, end.out, call.resume, call.words);
-    end.told = true;
-    return end;
-  }
+  end.out = call.out.empty() ? default_folder(manifest.study) : call.out;
+  const ResultFolder held(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
+  require_same_runs(end.out, plan, call.resume);
   const std::vector<std::string> names = run_names(plan);
   manifest.created = utc_now();
   manifest.command_line = call.command_line;
@@ -152,17 +143,14 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   write_manifest(end.out, manifest);
 
   if (call.before_runs) call.before_runs();
-  const RunningNote note(parent);
   RunOptions options;
   options.out = end.out;
-  options.resume = resume;
+  options.resume = call.resume;
   options.jobs = call.jobs;
   options.device = call.device.options;
-  options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
-    call.progress(what, done, total);
-    note.write(what);
-  };
-  const RunResult result = execute_runs(plan, options);
+  options.progress = call.progress;
+  const RunResult result =
+      needs_process(plan) ? execute_in_process(plan, options, call.eye) : execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
   if (plan.apart) {

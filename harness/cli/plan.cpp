@@ -4,32 +4,33 @@
 #include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
-#include "runner/solver_run.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
 
-nlohmann::json names_of(FeatureSet features) {
-  nlohmann::json names = nlohmann::json::array();
+using nlohmann::json;
+
+json names_of(FeatureSet features) {
+  json names = json::array();
   features.for_each([&](Feature f) { names.push_back(name_of(f)); });
   return names;
 }
 
 /// A plan without stages.
-nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const std::string& status,
-                       const std::string& message) {
-  nlohmann::json j = {{"scene", scene.name},
-                      {"solver", entry.info.name},
-                      {"needs", names_of(scene.needs)},
-                      {"status", status},
-                      {"message", message}};
-  for (const char* list : {"stages", "buffers", "left_out", "contact_margins"}) j[list] = nlohmann::json::array();
+json plan_of(const Scene& scene, const SolverEntry& entry, const std::string& status, const std::string& message) {
+  json j = {{"scene", scene.name},
+            {"solver", entry.info.name},
+            {"needs", names_of(scene.needs)},
+            {"status", status},
+            {"message", message}};
+  for (const char* list : {"stages", "buffers", "left_out", "contact_margins"}) j[list] = json::array();
   return j;
 }
 
-nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const SolverRun& run) {
-  nlohmann::json j = plan_of(scene, entry, run.outcome().status, run.outcome().message);
-  j.update(run.header().plan.is_null() ? nlohmann::json::object() : run.header().plan);
+json plan_of(const Scene& scene, const SolverEntry& entry, const SolverRun& run) {
+  json j = plan_of(scene, entry, run.outcome().status, run.outcome().message);
+  j.update(run.header().plan.is_null() ? json::object() : run.header().plan);
   for (const StagePlan& s : run.plan().stages)
     j["stages"].push_back({{"name", s.name},
                            {"serves", names_of(s.serves)},
@@ -39,21 +40,23 @@ nlohmann::json plan_of(const Scene& scene, const SolverEntry& entry, const Solve
   return j;
 }
 
-std::vector<std::string> words(const nlohmann::json& list) { return list; }
+std::vector<std::string> words(const json& list) { return list; }
 
-std::string bytes(const nlohmann::json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
+std::string bytes(const json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
 
-/// What a solver would run for a scene, in a child for a plugin. Without stages if the solver cannot run the scene or
-/// its process crashed.
-nlohmann::json ask_plan(Guard& guard, const Scene& scene, const ChosenSolver& s, const DeviceOptions& device) {
-  const Guard::Answer answer = guard.run(*s.entry, [&] {
-    return plan_of(scene, *s.entry, SolverRun({&scene, s.entry, s.settings, s.setting}, device, "plan"));
-  });
-  return answer.crash.empty() ? answer.value : plan_of(scene, *s.entry, "crashed", "its process: " + answer.crash);
+}  // namespace
+
+json plan_answer(const json& request) {
+  const SolverEntry& entry = find_solver(request.at("solver"));
+  const Scene scene = load_scene(request.at("scene"), request.at("set").get<std::vector<std::string>>());
+  const RunSpec spec{&scene, &entry, request.at("settings"), request.at("setting")};
+  return plan_of(scene, entry, SolverRun(spec, device_from_json(request.at("device")), "plan"));
 }
 
-std::string plan_text(const nlohmann::json& p) {
-  const auto text = [](const nlohmann::json& j) { return j.get<std::string>(); };
+namespace {
+
+std::string plan_text(const json& p) {
+  const auto text = [](const json& j) { return j.get<std::string>(); };
   std::string out =
       fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(words(p["needs"])));
   if (p["status"] != "ok")
@@ -96,14 +99,20 @@ void add_plan(CLI::App& app, Console& console) {
       "Examples: clothbench plan paper/gravity --solver paper\n"
       "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
   cmd->callback([&console, &a] {
-    nlohmann::json all = nlohmann::json::array();
-    Guard guard(console.words);
+    json all = json::array();
     for (const std::string& file : a.scenes) {
-      const Scene scene = load_scene(file, split_overrides(a.with.set).scene);
+      const std::vector<std::string> set = split_overrides(a.with.set).scene;
+      const Scene scene = load_scene(file, set);
       for (const ChosenSolver& s : a.with.chosen(solver_names())) {
-        all.push_back(ask_plan(guard, scene, s, a.with.device.options));
+        const json request = {
+            {"scene", file},          {"set", set},           {"solver", s.entry->info.name},
+            {"settings", s.settings}, {"setting", s.setting}, {"device", device_to_json(a.with.device.options)}};
+        const WorkerAnswer answer = guarded(*s.entry, "plan-of-solver", request, plan_answer);
+        all.push_back(answer.end ? plan_of(scene, *s.entry, "crashed", "its process: " + answer.end->text())
+                                 : answer.value);
         if (!console.json) fmt::print("{}", plan_text(all.back()));
-        if (all.back()["status"] == "error" || guard.crashed()) console.exit_code = ExitCode::CheckFailed;
+        if (all.back()["status"] == "error" || all.back()["status"] == "crashed")
+          console.exit_code = ExitCode::CheckFailed;
       }
     }
     if (console.json) console.print(all);

@@ -3,13 +3,21 @@
 
 #include "assets/assets.hpp"
 #include "cli/command.hpp"
-#include "runner/run_choice.hpp"
 #include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW
 #include "render/stereo.hpp"
 #endif
 
 namespace clothbench {
+Rendering rendering_of([[maybe_unused]] const std::string& eye) {
+#ifdef CLOTHBENCH_WITH_DRAW
+  const auto [width, height] = pixels_of("--eye", eye);
+  return render::stereo_rendering(width, height);
+#else
+  return {};
+#endif
+}
+
 namespace {
 
 struct StudyArguments {
@@ -26,15 +34,6 @@ struct StudyArguments {
 void print_jobs(const std::vector<std::string>& names, const Console& console) {
   if (console.json) return Console::print(names);
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
-}
-
-Rendering rendering_of([[maybe_unused]] const std::string& eye) {
-#ifdef CLOTHBENCH_WITH_DRAW
-  const auto [width, height] = pixels_of("--eye", eye);
-  return render::stereo_rendering(width, height);
-#else
-  return {};
-#endif
 }
 
 /// What the seeds drew, one line per scene; many scenes are what the result files are for.
@@ -109,6 +108,7 @@ void run_study(StudyArguments& a, Console& console) {
   a.run.tell(console, [&](StudyCall call) {
     call.jobs = std::max(1, a.jobs);
     call.drawn = drawn;
+    if (a.with_rendering) call.eye = a.eye;
     if (drawn && !console.json) call.before_runs = [&] { print_drawn(study); };
     return execute_study(std::move(plan), manifest, call);
   });

@@ -274,17 +274,28 @@ std::string conformance_text(const std::string& solver, const ConformanceRow& r)
   return text;
 }
 
-ConformanceRow ask_conformance(Guard& guard, const SolverEntry& entry, const json& settings,
-                               const DeviceOptions& device, const std::string& scene, bool whole, double limit_s) {
-  const Guard::Answer answer = guard.run(entry, [&] {
-    ConformanceRow row;
-    row.scene = scene;
-    row.status = "skipped";
-    for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
-      if (whole || !c.whole) add_case(entry, settings, device, c, limit_s, row);
-    return conformance_json(row);
-  });
-  if (!answer.crash.empty()) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.crash}};
+json conformance_answer(const json& request) {
+  const SolverEntry& entry = find_solver(request.at("solver"));
+  const std::string scene = request.at("scene");
+  ConformanceRow row;
+  row.scene = scene;
+  row.status = "skipped";
+  for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
+    if (request.at("whole").get<bool>() || !c.whole)
+      add_case(entry, request.at("settings"), device_from_json(request.at("device")), c, request.at("limit_s"), row);
+  return conformance_json(row);
+}
+
+ConformanceRow ask_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                               const std::string& scene, bool whole, double limit_s) {
+  const json request = {{"solver", entry.info.name},
+                        {"settings", settings},
+                        {"device", device_to_json(device)},
+                        {"scene", scene},
+                        {"whole", whole},
+                        {"limit_s", limit_s}};
+  const WorkerAnswer answer = guarded(entry, "conformance", request, conformance_answer);
+  if (answer.end) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.end->text()}};
   const json& j = answer.value;
   return {j["scene"], j["status"], j["cases"], j["skipped"], j["frames_whole"], j["frames_of_scene"], j["faults"]};
 }

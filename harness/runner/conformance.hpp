@@ -4,7 +4,7 @@
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/again.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 
@@ -68,9 +68,11 @@ struct ConformanceRow {
   std::vector<std::string> faults;  ///< with the case before each; of a skipped row the reason
 };
 
-/// All cases of a scene, in a child for a plugin; a crash is a fault.
-ConformanceRow ask_conformance(Guard&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+/// All cases of a scene, in a worker for a plugin; a crash is a fault.
+ConformanceRow ask_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const std::string& scene, bool whole, double limit_s);
+/// The worker's side.
+nlohmann::json conformance_answer(const nlohmann::json& request);
 
 nlohmann::json conformance_json(const ConformanceRow&);
 /// The same for the terminal.

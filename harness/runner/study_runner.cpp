@@ -246,19 +246,6 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const std::filesystem::
   if (first) std::rethrow_exception(first);
 }
 
-/// The request of a run in a worker process.
-RunRequest request_of(const RunSpec& spec, const RunPlan& plan, const RunOptions& options) {
-  RunRequest r;
-  r.scenario = nlohmann::json::parse(spec.scene->json);
-  r.source = spec.scene->source;
-  r.name = spec.scene->name;
-  r.solver = spec.entry->info.name;
-  r.setting = spec.setting;
-  r.settings = spec.settings;
-  r.rules = {options.device, plan.protocol, options.out, plan.rules.run_limit_s};
-  return r;
-}
-
 void execute_apart(const RunPlan& plan, const RunOptions& options, RunResult& result) {
   std::size_t done = 0;
   const auto ended = [&](const RunSpec& spec, const RunRecord& r) {
@@ -291,7 +278,8 @@ void execute_apart(const RunPlan& plan, const RunOptions& options, RunResult& re
   for (const RunSpec* spec : todo)
     tasks.push_back([&, spec](RunWorker& worker) {
       stop_if_interrupted(kRunsKept);
-      const RunRecord r = worker.run(request_of(*spec, plan, options));
+      const RunRecord r =
+          worker.run(request_of(*spec, {options.device, plan.protocol, options.out, plan.rules.run_limit_s}));
       const std::lock_guard lock(mutex);
       ended(*spec, r);
     });
@@ -319,6 +307,25 @@ std::size_t RunPlan::size() const {
   std::size_t n = 0;
   for (const auto& g : groups) n += g.size();
   return n;
+}
+
+void SolverEnds::add(const std::string& solver, const Outcome& outcome) {
+  if (outcome.status == "unsupported" || outcome.status == "over_budget") return;
+  Ends& e = ends_[solver];
+  if (outcome.status == "ok" || outcome.expect == "pass") {
+    ++e.finished;
+    return;
+  }
+  ++e.failed;
+  e.last = outcome.message.empty() ? outcome.status : outcome.status + ": " + outcome.message;
+}
+
+std::vector<std::string> SolverEnds::faults() const {
+  std::vector<std::string> out;
+  for (const auto& [solver, e] : ends_)
+    if (e.finished == 0)
+      out.push_back(fmt::format("{}: finished none of {} runs; the last: {}", solver, e.failed, e.last));
+  return out;
 }
 
 void Grades::add(const RunRecord& r) {

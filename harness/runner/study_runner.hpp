@@ -1,10 +1,11 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "results/store.hpp"
-#include "runner/solver_ends.hpp"
 #include "runner/solver_run.hpp"
 
 namespace clothbench {
@@ -32,6 +33,23 @@ struct RunOptions {
   /// Called before each task with its description and the numbers of finished and of all tasks.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
   std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
+};
+
+/// The rule of exit codes for every command that runs solvers: 1 if a solver finished none of its runs, whether they
+/// crashed, hung, diverged, lost the device or could not be made. Runs that the solver does not support, or that were
+/// left out for time, do not count; a run that ends as its scene expects does.
+class SolverEnds {
+ public:
+  void add(const std::string& solver, const Outcome&);
+  /// One sentence per solver that finished none of its runs.
+  std::vector<std::string> faults() const;
+
+ private:
+  struct Ends {
+    int finished = 0, failed = 0;
+    std::string last;  ///< how the last one failed
+  };
+  std::map<std::string, Ends> ends_;
 };
 
 /// Number of runs of each stability grade.
