@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory() as home:
             or wrong == ""
         ), wrong
     assert "--out" in command(*STUDY, "--job", "0", code=2)
-    apart = ["study", "stability", "--quick", "--solver", "ballistic", "--set", "time.duration_s=0.1"]
+    apart = ["study", "stability", "--quick", "--solver", "ballistic"]
     jobs = json.loads(command(*apart, "--list-jobs", "--json"))
     out_apart = os.path.join(home, "apart")
     parts = [subprocess.Popen([CLOTHBENCH, *apart, "--out", out_apart, "--job", k]) for k in ("0", "1-2")]
