@@ -22,6 +22,7 @@ class Spy final : public ClothSolver {
   const SolverInfo& info() const override { return info_; }
   DeviceInfo device() const override { return {}; }
   void load(const Scene& s) override {
+    scene_ = &s;
     state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)};
   }
   void reset() override {}
@@ -32,11 +33,12 @@ class Spy final : public ClothSolver {
   }
   void read_state(ClothState& out) const override { out = state_; }
   FrameCost last_cost() const override { return {}; }
-  Plan plan() const override { return {}; }
+  Plan plan() const override { return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {}}; }
 
  private:
   SolverInfo info_;
   std::vector<FrameInput>& seen_;
+  const Scene* scene_ = nullptr;
   ClothState state_;
 };
 
@@ -47,6 +49,7 @@ SolverEntry spy(std::vector<FrameInput>& seen) {
   e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) {
     return std::make_unique<Spy>(info, seen);
   };
+  e.free_fall_m = [](const Scene&, const nlohmann::json&, int) { return 0.0; };
   return e;
 }
 
