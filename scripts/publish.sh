@@ -16,17 +16,16 @@ studies() {
   cat <<'END'
 gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic
 gpu       hang              study hang --trials 3
-gpu       work-precision    study work-precision --trials 1 --no-moduli
+gpu       work-precision    study work-precision --trials 1
 gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic
 gpu       contact           study contact --seed 1 --count 200 --solver xpbd --jobs JOBS
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
-software  friction          friction xpbd paper bullet-soft NAMES
-software  moduli            moduli xpbd paper bullet-soft bullet-deformable NAMES --no-sweep
-software  metamorphic       metamorphic xpbd paper
+software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS
+software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS
 software  contact+others    study contact --seed 1 --count 27 --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  stability         study stability --solver xpbd --solver paper --jobs JOBS
 peers     table3+peers      study table3 --trials 5 PEERS
-peers     work-precision+peers study work-precision --trials 1 --no-moduli PEERS
+peers     work-precision+peers study work-precision --trials 1 PEERS
 peers     penetration+peers study penetration --trials 1 --require-assets PEERS
 peers     peers-hang        study solvers/plugin/studies/peers-hang.json
 peers     peers-margins     study solvers/plugin/studies/peers-margins.json
@@ -35,7 +34,7 @@ quick     table3            study table3 --quick --trials 2
 quick     hang              study hang --quick --trials 1
 quick     penetration       study penetration --quick --trials 1 --solver xpbd --solver ballistic
 quick     contact           study contact --quick --procedural --seed 1 --count 2 --jobs JOBS
-quick     friction          friction xpbd
+quick     friction          study friction --quick --trials 1 --solver xpbd
 END
 }
 

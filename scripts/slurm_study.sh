@@ -10,11 +10,11 @@ shift 2
 here=$(cd "$(dirname "$0")/.." && pwd)
 program=${CLOTHBENCH:-$(command -v clothbench || echo "$here/build/release/clothbench")}
 mkdir -p "$out/log"
-runs=$("$program" study "$study" "$@" --list-runs | wc -l)
+runs=$("$program" study "$study" "$@" --list-jobs | wc -l)
 words=$(for word in "$@"; do printf " '%s'" "$(printf %s "$word" | sed "s/'/'\\\\''/g")"; done)
 # Alone on its node: what else ran there would be timed too.
 array=$(sbatch --parsable --exclusive --requeue --array="0-$((runs - 1))" --job-name="clothbench-$study" --output="$out/log/run-%a.txt" \
-  --wrap="'$program' study '$study'$words --out '$out' --run \$SLURM_ARRAY_TASK_ID")
+  --wrap="'$program' study '$study'$words --out '$out' --job \$SLURM_ARRAY_TASK_ID")
 after=$(sbatch --parsable --dependency="afterany:$array" --job-name="clothbench-report" --output="$out/log/report.txt" \
   --wrap="'$program' study '$study'$words --out '$out' --resume; '$program' report '$out' -o '$out/report'")
 echo "$array $after"

@@ -37,19 +37,14 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
     posix_spawn_file_actions_addopen(&files, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
   };
   if (input >= 0) posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-  if (setup.output >= 0) posix_spawn_file_actions_adddup2(&files, setup.output, STDOUT_FILENO);
   if (!setup.out.empty()) open(STDOUT_FILENO, setup.out);
   if (!setup.err.empty() && setup.err == setup.out)
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   else if (!setup.err.empty())
     open(STDERR_FILENO, setup.err);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  if (setup.own_group) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   // Of two of one name in an environment the first counts.
-  const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, &attributes, pointers(argv, nullptr).data(),
+  const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, nullptr, pointers(argv, nullptr).data(),
                                   pointers(setup.environment, environ).data());
-  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   return failed;
 }
@@ -110,10 +105,6 @@ void ChildProcess::close_socket() {
   socket_ = -1;
 }
 
-void ChildProcess::signal(int number) {
-  if (!end_) ::kill(pid_, number);
-}
-
 /// Whether it has ended; waits for that without WNOHANG.
 bool ChildProcess::ended(int options) {
   if (end_) return true;
@@ -129,7 +120,7 @@ bool ChildProcess::ended(int options) {
 }
 
 ChildEnd ChildProcess::kill() {
-  signal(SIGKILL);
+  if (!end_) ::kill(pid_, SIGKILL);
   ended(0);
   end_->how = ChildEnd::How::TimedOut;
   end_->code = 0;

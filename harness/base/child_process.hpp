@@ -24,8 +24,6 @@ struct ChildEnd {
 struct ChildSetup {
   bool socket = false;                        ///< standard input is a socket, connected to this process
   std::string out = {}, err = {};             ///< files for stdout and stderr, truncated; empty: those of this process
-  int output = -1;                            ///< descriptor for stdout in place of a file; -1: that of this process
-  bool own_group = false;                     ///< Ctrl-C on the terminal does not reach the child
   std::vector<std::string> environment = {};  ///< "NAME=value": added to or replacing this process's variables
 };
 
@@ -46,7 +44,6 @@ class ChildProcess {
   Heard read(char& byte, std::chrono::milliseconds timeout);
   void close_socket();
 
-  void signal(int number);
   ChildEnd kill();  ///< returns TimedOut
   ChildEnd wait();
   /// Calls `give_up` at intervals of `look`, and kills the program once it returns true.

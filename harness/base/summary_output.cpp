@@ -30,13 +30,11 @@ SummaryOutput::~SummaryOutput() {
 void SummaryOutput::write(const std::string& text) {
   std::fflush(stdout);
   for (std::size_t at = 0; at < text.size();) {
-    const ssize_t n = ::write(descriptor(), text.data() + at, text.size() - at);
+    const ssize_t n = ::write(kept < 0 ? STDOUT_FILENO : kept, text.data() + at, text.size() - at);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return;  // its reader has gone
     at += static_cast<std::size_t>(n);
   }
 }
-
-int SummaryOutput::descriptor() { return kept < 0 ? STDOUT_FILENO : kept; }
 
 }  // namespace clothbench

@@ -14,8 +14,6 @@ class SummaryOutput {
 
   /// Writes to the standard output that this process was started with.
   static void write(const std::string& text);
-  /// The descriptor of that output, for a child that prints the summary in place of this process.
-  static int descriptor();
 };
 
 }  // namespace clothbench

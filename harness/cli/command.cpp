@@ -23,14 +23,17 @@ std::vector<ChosenSolver> SolverFlags::chosen(const std::vector<std::string>& by
 void RunFlags::tell(Console& console, const std::function<StudyEnd(const StudyCall&)>& execute) const {
   StudyEnd end;
   {
-    StatusLine line(console.shows_status());
-    StudyCall call{out, resume, part, device, console.command_line, console.words, {}};
+    StatusLine line(!console.json);
+    StudyCall call;
+    call.out = out;
+    call.resume = resume;
+    call.part = part;
+    call.device = device;
+    call.command_line = console.command_line;
     call.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
-    if (!console.json) call.tell = [](const std::string& text) { fmt::print("{}\n", text); };
     end = execute(call);
   }
-  if (end.exit_code != ExitCode::Ok || end.told) console.exit_code = end.exit_code;
-  if (end.told) return;
+  if (end.exit_code != ExitCode::Ok) console.exit_code = end.exit_code;
   for (const std::string& fault : end.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!console.json && !part) print_console_report({end.out});
   console.print(end.json, end.text);

@@ -12,12 +12,10 @@
 
 #include "base/status_line.hpp"
 #include "base/summary_output.hpp"
+#include "cli/execute.hpp"
 #include "clothbench/error.hpp"
-#include "runner/again.hpp"
 #include "runner/solver_choice.hpp"
 #include "scenario/load.hpp"
-#include "studies/execute.hpp"
-#include "studies/searches.hpp"
 
 namespace clothbench {
 
@@ -25,7 +23,6 @@ namespace clothbench {
 struct Console {
   bool json = false;  ///< print a machine-readable summary instead of tables
   std::string command_line;
-  std::vector<std::string> words;  ///< the same, after the program's name
   ExitCode exit_code = ExitCode::Ok;
   std::set<std::string> reported_scenes = {};  ///< scenes whose drawn parameters (--seed) have been printed
 
@@ -47,8 +44,6 @@ struct Console {
   void print(Json&& as_json, Text&& as_text) const {
     json ? print(as_json()) : fmt::print("{}", as_text());
   }
-  /// Of the current task: nothing with --json and in the child of a plugin's call, whose parent has one.
-  bool shows_status() const { return !json && !Guard::in_child(); }
 
  private:
   std::vector<std::shared_ptr<void>> kept_;
@@ -62,9 +57,18 @@ inline std::string message_of(const std::string& text) {
 
 /// Declares the command and its options.
 using AddCommand = void(CLI::App&, Console&);
-AddCommand add_list, add_validate, add_plan, add_moduli, add_run, add_run_child, add_study, add_report, add_import,
-    add_check, add_compare, add_history, add_completion, add_manual, add_bench, add_render, add_xr, add_metamorphic,
-    add_threshold, add_friction, add_conformance;
+AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
+    add_compare, add_completion, add_manual, add_render, add_xr, add_conformance;
+
+/// What `clothbench list` can list: solvers, features, scenarios, studies, devices, metrics, scalars, assets.
+std::vector<std::string> list_names();
+
+/// What a solver would run for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
+/// contact_margins; the worker's side of `clothbench plan`.
+nlohmann::json plan_answer(const nlohmann::json& request);
+
+/// The rendering that --with-rendering times, from the size of a picture.
+Rendering rendering_of(const std::string& eye);
 
 /// Options of every command that runs a solver: --device, --validate, --allow-no-device.
 struct DeviceFlags : DeviceChoice {

@@ -23,20 +23,15 @@ int report_error(const Console& console, const std::string& message, ExitCode co
 }
 
 /// In the order of the help.
-constexpr AddCommand* kCommands[] = {add_list,        add_validate,  add_plan,     add_moduli,
-                                     add_run,         add_run_child, add_study,    add_report,
-                                     add_import,      add_check,     add_compare,  add_history,
-                                     add_metamorphic, add_threshold, add_friction, add_conformance,
-#ifdef CLOTHBENCH_WITH_BENCH
-                                     add_bench,
-#endif
+constexpr AddCommand* kCommands[] = {add_list,       add_validate, add_plan,  add_run,     add_run_child,   add_study,
+                                     add_report,     add_import,   add_check, add_compare, add_conformance,
 #ifdef CLOTHBENCH_WITH_RENDER
                                      add_render,
 #endif
 #ifdef CLOTHBENCH_WITH_XR
                                      add_xr,
 #endif
-                                     add_completion,  add_manual};
+                                     add_completion, add_manual};
 
 /// Of a first word that is no command.
 void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
@@ -66,15 +61,13 @@ int run_command_line(const std::vector<std::string>& words) {
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));
   console.command_line = "clothbench " + joined(words, " ");
-  console.words = words;
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run plugins in this process, for a debugger; a crash of a plugin then ends the program");
   // Before the words are read: plugins are loaded on the way.
   if (contains(words, "--in-process")) run_plugins_in_process();
   std::optional<SummaryOutput> summary_alone;
-  // Google Benchmark prints its own JSON.
-  if (contains(words, "--json") && !contains(words, "bench")) summary_alone.emplace();
+  if (contains(words, "--json")) summary_alone.emplace();
   app.fallthrough();
 
   for (AddCommand* add : kCommands) add(app, console);

@@ -79,18 +79,4 @@ void add_compare(CLI::App& app, Console& console) {
   cmd->callback([&console, &given] { compare(given, console); });
 }
 
-void add_history(CLI::App& app, Console& console) {
-  auto& folders = console.arguments<std::vector<std::string>>();
-  CLI::App* cmd = app.add_subcommand("history",
-                                     "Print times and errors as JSON for charts over commits (github-action-benchmark: "
-                                     "customSmallerIsBetter)");
-  cmd->add_option("runs", folders, "Study folders or result files")->required();
-  cmd->footer("Example: clothbench history results/runs/mine > benchmark.json");
-  cmd->callback([&folders] {
-    std::vector<RunRecord> runs = collect({folders.begin(), folders.end()});
-    withhold_times(runs);
-    Console::print(history_json(runs));
-  });
-}
-
 }  // namespace clothbench

@@ -5,7 +5,6 @@
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "cli/texts.hpp"
-#include "studies/lists.hpp"
 
 namespace clothbench {
 namespace {
@@ -41,14 +40,14 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
     return names;
   }
   const std::string& name = command->get_name();
-  if (name == "study" || name == "bench") {
+  if (name == "study") {
     for (const std::string& study : scene_names({"studies"})) names.push_back(study.substr(study.find('/') + 1));
     return names;
   }
-  if (name == "moduli" || name == "metamorphic" || name == "friction" || name == "conformance") return solver_names();
+  if (name == "conformance") return solver_names();
   if (name == "list") return list_names();
-  if (name == "run" || name == "plan" || name == "validate" || name == "render" || name == "threshold" || name == "xr")
-    return scene_names({"paper", "contact", "validation", "stability", "metamorphic"});
+  if (name == "run" || name == "plan" || name == "validate" || name == "render" || name == "xr")
+    return scene_names({"paper", "contact", "validation", "stability", "conformance"});
   return names;
 }
 

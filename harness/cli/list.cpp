@@ -1,9 +1,154 @@
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "assets/assets.hpp"
+#include "base/json_text.hpp"
+#include "check/gates.hpp"
 #include "cli/command.hpp"
-#include "studies/lists.hpp"
+#include "metrics/registry.hpp"
+#include "report/features.hpp"
+#include "runner/solver_choice.hpp"
+#include "scenario/load.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
+namespace {
+
+nlohmann::json list_solvers() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const SolverEntry* at : all_solvers()) {
+    const SolverEntry& e = *at;
+    nlohmann::json settings = nlohmann::json::array(), features = nlohmann::json::array();
+    for (const SettingSpec& s : e.info.settings)
+      settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
+    e.info.supports.for_each([&](Feature f) { features.push_back(name_of(f)); });
+    rows.push_back({{"name", e.info.name},
+                    {"folder", e.info.folder},
+                    {"summary", e.info.summary},
+                    {"version", e.info.version},
+                    {"precision", e.info.precision},
+                    {"gpu", e.info.on_gpu},
+                    {"plugin", is_external(e.info)},
+                    {"supports", features},
+                    {"settings", settings}});
+  }
+  return rows;
+}
+
+nlohmann::json list_scenarios() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::string& name : scene_names({"paper", "contact", "validation", "stability"}))
+    rows.push_back({{"name", name}, {"why", load_scene(name).why}});
+  return rows;
+}
+
+nlohmann::json list_studies() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::string& name : scene_names({"studies"})) {
+    const std::string file = (scenario_root() / (name + ".json")).string();
+    rows.push_back({{"name", name.substr(name.find('/') + 1)},  // as `study` takes it
+                    {"why", parse_json(read_text(file), file).value("why", "")}});
+  }
+  return rows;
+}
+
+nlohmann::json list_devices() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const SolverEntry& e : solvers()) {
+    if (!e.devices) continue;
+    for (const DeviceInfo& d : e.devices())
+      rows.push_back({{"name", d.name}, {"driver", d.driver}, {"api", d.api}, {"software", d.is_software}});
+    break;  // all GPU backends here see the same Vulkan devices
+  }
+  return rows;
+}
+
+nlohmann::json list_metrics() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const MetricGroup& g : metric_groups())
+    for (const Metric& m : g.series)
+      rows.push_back({{"name", m.name},
+                      {"units", m.units},
+                      {"long_name", m.long_name},
+                      {"version", m.version},
+                      {"needs", m.needs.words},
+                      {"source", g.source}});
+  return rows;
+}
+
+nlohmann::json list_scalars() {
+  nlohmann::json rows = nlohmann::json::array();
+  auto s = scalars().begin();  // in the order of the groups, with what they are made from in their doc
+  for (const MetricGroup& g : metric_groups())
+    for (std::size_t k = 0; k < g.scalars.size(); ++k, ++s) {
+      rows.push_back({{"name", s->name},
+                      {"units", s->units},
+                      {"long_name", s->doc},
+                      {"of", s->from.series},
+                      {"expect", s->expect == Expect::Yes},
+                      {"source", g.source}});
+      if (s->gate != nullptr) rows.back()["check"] = {{"slack", slack_text(*s->gate)}, {"why", s->gate->why}};
+    }
+  return rows;
+}
+
+nlohmann::json list_assets() {
+  const assets::AssetSource source = assets::locate_assets(false);
+  return {{{"name", source.kind()}, {"summary", source.reason}, {"folder", source.root.string()}}};
+}
+
+std::vector<SolverFeatures> features() {
+  std::vector<SolverFeatures> out;
+  for (const SolverEntry* e : all_solvers()) out.push_back(declared_features(e->info));
+  return out;
+}
+
+nlohmann::json list_features() { return feature_json(features(), false); }
+
+const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
+    {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios}, {"studies", list_studies},
+    {"devices", list_devices}, {"metrics", list_metrics},   {"scalars", list_scalars},     {"assets", list_assets}};
+
+std::string rows_text(const nlohmann::json& rows) {
+  std::string out;
+  for (const auto& r : rows) {
+    std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
+    if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
+    if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
+    if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
+    out += fmt::format("{:<24} {}\n", r["name"].get<std::string>(), text);
+    if (r.contains("settings"))
+      for (const auto& s : r["settings"])
+        out += fmt::format("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(),
+                           s["doc"].get<std::string>());
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> list_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : kLists) names.emplace_back(name);
+  return names;
+}
+
+namespace {
+
+nlohmann::json list_of(const std::string& what) {
+  const auto list = std::find_if(std::begin(kLists), std::end(kLists), [&](auto& l) { return l.first == what; });
+  return list->second();
+}
+
+std::string list_text(const std::string& what) {
+  if (what == "features") return feature_table(features(), false).console();
+  const nlohmann::json rows = list_of(what);
+  return rows.empty() ? "no " + what + "\n" : rows_text(rows);
+}
+
+}  // namespace
 
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();

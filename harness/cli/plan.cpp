@@ -1,8 +1,85 @@
+#include <fmt/format.h>
+
+#include "base/json_number.hpp"
+#include "base/tint.hpp"
+#include "base/words.hpp"
 #include "cli/command.hpp"
-#include "studies/plans.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
+
+using nlohmann::json;
+
+json names_of(FeatureSet features) {
+  json names = json::array();
+  features.for_each([&](Feature f) { names.push_back(name_of(f)); });
+  return names;
+}
+
+/// A plan without stages.
+json plan_of(const Scene& scene, const SolverEntry& entry, const std::string& status, const std::string& message) {
+  json j = {{"scene", scene.name},
+            {"solver", entry.info.name},
+            {"needs", names_of(scene.needs)},
+            {"status", status},
+            {"message", message}};
+  for (const char* list : {"stages", "buffers", "left_out", "contact_margins"}) j[list] = json::array();
+  return j;
+}
+
+json plan_of(const Scene& scene, const SolverEntry& entry, const SolverRun& run) {
+  json j = plan_of(scene, entry, run.outcome().status, run.outcome().message);
+  j.update(run.header().plan.is_null() ? json::object() : run.header().plan);
+  for (const StagePlan& s : run.plan().stages)
+    j["stages"].push_back({{"name", s.name},
+                           {"serves", names_of(s.serves)},
+                           {"dispatches", s.dispatches},
+                           {"read_B", finite_or_null(s.read_B)},
+                           {"write_B", finite_or_null(s.write_B)}});
+  return j;
+}
+
+std::vector<std::string> words(const json& list) { return list; }
+
+std::string bytes(const json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
+
+}  // namespace
+
+json plan_answer(const json& request) {
+  const SolverEntry& entry = find_solver(request.at("solver"));
+  const Scene scene = load_scene(request.at("scene"), request.at("set").get<std::vector<std::string>>());
+  const RunSpec spec{&scene, &entry, request.at("settings"), request.at("setting")};
+  return plan_of(scene, entry, SolverRun(spec, device_from_json(request.at("device")), "plan"));
+}
+
+namespace {
+
+std::string plan_text(const json& p) {
+  const auto text = [](const json& j) { return j.get<std::string>(); };
+  std::string out =
+      fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(words(p["needs"])));
+  if (p["status"] != "ok")
+    out += fmt::format("  {}: {}\n", tinted(tone_of(text(p["status"])), text(p["status"])), text(p["message"]));
+  if (!p["stages"].empty())
+    out += fmt::format("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B",
+                       "written B", "serves");
+  for (const auto& s : p["stages"])
+    out += fmt::format("  {:<28} {:>10} {:>14} {:>14}  {}\n", text(s["name"]), s["dispatches"].get<int>(),
+                       bytes(s["read_B"]), bytes(s["write_B"]), joined(words(s["serves"])));
+  if (!p["buffers"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "buffer", "bytes");
+  for (const auto& b : p["buffers"])
+    out += fmt::format("  {:<28} {:>14}  {}\n", text(b["name"]), b["bytes"].get<std::uint64_t>(),
+                       b["device_local"].get<bool>() ? "device" : "host");
+  if (!p["contact_margins"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "cloth is held off", "by [m]");
+  for (const auto& m : p["contact_margins"])
+    out += fmt::format("  {:<28} {:>14g}\n", text(m["collider"]), m["margin_m"].get<double>());
+  if (!p["left_out"].empty()) out += "\n  left out\n";
+  for (const auto& l : p["left_out"])
+    out += fmt::format("  {:<28} {}{}\n", text(l["what"]), text(l["why"]),
+                       l.contains("no_parameter") ? "; no parameter: " + text(l["no_parameter"]) : "");
+  return out + "\n";
+}
 
 struct PlanArguments {
   std::vector<std::string> scenes;
@@ -22,14 +99,20 @@ void add_plan(CLI::App& app, Console& console) {
       "Examples: clothbench plan paper/gravity --solver paper\n"
       "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
   cmd->callback([&console, &a] {
-    nlohmann::json all = nlohmann::json::array();
-    Guard guard(console.words);
+    json all = json::array();
     for (const std::string& file : a.scenes) {
-      const Scene scene = load_scene(file, split_overrides(a.with.set).scene);
+      const std::vector<std::string> set = split_overrides(a.with.set).scene;
+      const Scene scene = load_scene(file, set);
       for (const ChosenSolver& s : a.with.chosen(solver_names())) {
-        all.push_back(ask_plan(guard, scene, s, a.with.device.options));
+        const json request = {
+            {"scene", file},          {"set", set},           {"solver", s.entry->info.name},
+            {"settings", s.settings}, {"setting", s.setting}, {"device", device_to_json(a.with.device.options)}};
+        const WorkerAnswer answer = guarded(*s.entry, "plan-of-solver", request, plan_answer);
+        all.push_back(answer.end ? plan_of(scene, *s.entry, "crashed", "its process: " + answer.end->text())
+                                 : answer.value);
         if (!console.json) fmt::print("{}", plan_text(all.back()));
-        if (all.back()["status"] == "error" || guard.crashed()) console.exit_code = ExitCode::CheckFailed;
+        if (all.back()["status"] == "error" || all.back()["status"] == "crashed")
+          console.exit_code = ExitCode::CheckFailed;
       }
     }
     if (console.json) console.print(all);

@@ -1,9 +1,12 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <tuple>
 
 #include "cli/command.hpp"
 #include "render/pictures.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/run_process.hpp"
 
 namespace clothbench {
 namespace {
@@ -43,7 +46,7 @@ void render_all(const RenderArguments& a, const Console& console) {
       shots.frames = render::frames_from(a.frames, m.frames());
       render::Taken taken;
       {
-        StatusLine line(console.shows_status());
+        StatusLine line(!console.json);
         taken =
             render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
               if (interrupt_requested())
@@ -57,6 +60,27 @@ void render_all(const RenderArguments& a, const Console& console) {
       if (!console.json) fmt::print("{}", render::taken_text(taken));
     }
   if (console.json) Console::print(reported);
+}
+
+/// A plugin runs the scenarios in a worker process, which stores their motions.
+void render_plugin(RenderArguments a, const SolverEntry& solver, const Console& console) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("clothbench-render-{}", getpid());
+  const Overrides overrides = split_overrides(a.set);
+  const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
+  RunWorker worker(own_program(), folder / "scratch");
+  for (std::string& file : a.files) {
+    if (fs::is_directory(file) || render::is_run(file)) continue;
+    const Scene scene = load_scene(file, overrides.scene);
+    const RunSpec spec{&scene, entry, settings, setting};
+    const RunRecord r = worker.run(request_of(
+        spec, {a.device.options, "render", folder / std::to_string(&file - a.files.data()), plugin_limit_s()}));
+    if (r.outcome.status == "crashed" || r.outcome.status == "timed_out" || r.outcome.status == "error")
+      throw Error(solver.info.folder + ": " + r.outcome.message, ExitCode::CheckFailed);
+    file = (folder / std::to_string(&file - a.files.data()) / (run_name(spec) + ".h5")).string();
+  }
+  render_all(a, console);
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
 }
 
 }  // namespace
@@ -88,11 +112,7 @@ void add_render(CLI::App& app, Console& console) {
                                   [](const fs::path& f) { return !fs::is_directory(f) && !render::is_run(f); });
     const SolverEntry* solver = runs ? &find_solver(a.solver) : nullptr;
     if (solver == nullptr || !is_external(solver->info)) return render_all(a, console);
-    const std::string crash = Guard(console.words)
-                                  .run(
-                                      *solver, [&] { return render_all(a, console), nlohmann::json(); }, false)
-                                  .crash;
-    if (!crash.empty()) throw Error(solver->info.folder + ": its process: " + crash, ExitCode::CheckFailed);
+    render_plugin(a, *solver, console);
   });
 }
 

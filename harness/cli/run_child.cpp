@@ -1,16 +1,25 @@
 #include "cli/command.hpp"
-#include "runner/run_process.hpp"
+#include "runner/conformance.hpp"
+#include "runner/plan_process.hpp"
 
 namespace clothbench {
 
 void add_run_child(CLI::App& app, Console& console) {
   std::string& folder = console.arguments<std::string>();
-  CLI::App* cmd =
-      app.add_subcommand("run-child", "Execute runs in this process, for a study that runs each in its own process");
+  CLI::App* cmd = app.add_subcommand("run-child", "Execute what another process of this program asks for");
   cmd->group("");  // not for people
   cmd->add_option("folder", folder)->required();
-  cmd->callback(
-      [&console, &folder] { console.exit_code = static_cast<ExitCode>(run_child_main(folder, find_solver)); });
+  cmd->callback([&console, &folder] {
+    const auto alone = [](nlohmann::json (*work)(const nlohmann::json&)) {
+      return [work](const nlohmann::json& request, const WorkerProgress&) { return work(request); };
+    };
+    const auto plan = [](const nlohmann::json& request, const WorkerProgress& progress) {
+      return execute_plan(request, progress, rendering_of);
+    };
+    console.exit_code = static_cast<ExitCode>(run_child_main(
+        folder, find_solver,
+        {{"plan", plan}, {"plan-of-solver", alone(plan_answer)}, {"conformance", alone(conformance_answer)}}));
+  });
 }
 
 }  // namespace clothbench

@@ -1,32 +1,14 @@
 #include <algorithm>
+#include <set>
 
 #include "assets/assets.hpp"
 #include "cli/command.hpp"
-#include "runner/run_choice.hpp"
 #include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW
 #include "render/stereo.hpp"
 #endif
 
 namespace clothbench {
-namespace {
-
-struct StudyArguments {
-  std::string study;
-  std::vector<std::string> set, only;
-  int trials = 0, jobs = 0, count = 0;
-  std::optional<std::uint64_t> seed;
-  std::string eye = "2064x2208", runs;
-  bool with_rendering = false, list_runs = false;
-  bool quick = false, require_assets = false, procedural = false, no_moduli = false;
-  RunFlags run;
-};
-
-void print_runs(const std::vector<std::string>& names, const Console& console) {
-  if (console.json) return Console::print(names);
-  for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
-}
-
 Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 #ifdef CLOTHBENCH_WITH_DRAW
   const auto [width, height] = pixels_of("--eye", eye);
@@ -36,19 +18,38 @@ Rendering rendering_of([[maybe_unused]] const std::string& eye) {
 #endif
 }
 
-/// Protocols stability-map and contact, which judge one untimed run of every run.
-void run_untimed(Study study, const StudyArguments& a, Console& console) {
-  const std::string of = "studies of protocol " + study.protocol;
-  if (a.with_rendering) throw Error("--with-rendering: " + of + " have no timed trials");
-  if (a.trials > 0) throw Error("--trials: " + of + " have no timed trials");
-  if (a.list_runs || !a.runs.empty())
-    throw Error("--list-runs, --run: not for " + of +
-                ", whose runs are in processes of their own; --jobs uses all "
-                "cores of a machine");
-  const StudyManifest manifest = {study.name, "", "", study.definition, {}};
-  a.run.tell(console, [&](const StudyCall& call) {
-    return execute_apart(std::move(study), manifest, call, a.only, std::max(1, a.jobs));
-  });
+namespace {
+
+struct StudyArguments {
+  std::string study;
+  std::vector<std::string> set, only;
+  int trials = 0, jobs = 0, count = 0;
+  std::optional<std::uint64_t> seed;
+  std::string eye = "2064x2208", chosen;
+  bool with_rendering = false, list_jobs = false;
+  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false;
+  RunFlags run;
+};
+
+void print_jobs(const std::vector<std::string>& names, const Console& console) {
+  if (console.json) return Console::print(names);
+  for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
+}
+
+/// What the seeds drew, one line per scene; many scenes are what the result files are for.
+void print_drawn(const Study& study) {
+  constexpr std::size_t kFew = 24;
+  std::set<std::string> names;
+  for (const Study::Item& item : study.scenes) names.insert(item.scene.name);
+  if (names.size() > kFew) return;
+  for (const Study::Item& item : study.scenes) {
+    if (names.erase(item.scene.name) == 0) continue;
+    const nlohmann::json drawn = nlohmann::json::parse(item.scene.json)["drawn"];
+    std::string text = fmt::format("{}: speed {:.3g} m/s;", item.scene.name, drawn["speed_m_per_s"].get<double>());
+    for (const auto& [name, value] : drawn["values"].items())
+      text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
+    fmt::print("{}\n", text);
+  }
 }
 
 /// Drawn scenes say which assets they are drawn from: fetched ones unless asked otherwise.
@@ -58,6 +59,11 @@ Assets assets_of(const StudyArguments& a) {
 
 /// Options that only some protocols have.
 void check_options(const Study& study, const StudyArguments& a) {
+  if (is_drawn(study) || study.protocol == "stability-map") {
+    const std::string of = ": studies of protocol " + study.protocol + " have no timed trials";
+    if (a.with_rendering) throw Error("--with-rendering" + of);
+    if (a.trials > 0) throw Error("--trials" + of);
+  }
   if (is_drawn(study)) return;
   if (a.count > 0) throw Error("--count: nothing is drawn in this study; only for protocol contact");
   if (a.procedural)
@@ -77,30 +83,35 @@ void run_study(StudyArguments& a, Console& console) {
   Study study =
       load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
   check_options(study, a);
-  if (is_drawn(study)) return run_untimed(std::move(study), a, console);
-  for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
-  if (a.seed) study.definition["seed"] = *a.seed;
+  const bool drawn = is_drawn(study);
+  if (!drawn) {
+    for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
+    if (a.seed) study.definition["seed"] = *a.seed;
+  }
   if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
-  if (study.protocol == "stability-map") return run_untimed(std::move(study), a, console);
   RunPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
-  if (a.no_moduli) plan.measure_moduli = false;
   if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
   const std::vector<std::string> names = run_names(plan);
-  if (a.list_runs) return print_runs(names, console);
+  if (a.list_jobs) return print_jobs(names, console);
   StudyManifest manifest;
   manifest.study = study.name;
   manifest.definition = study.definition;
-  if (!a.runs.empty()) {
-    if (a.run.out.empty()) throw Error("--run: expected --out with the folder that all runs of the study share");
-    const std::vector<std::size_t> chosen = parse_runs(a.runs, names.size());
+  if (!a.chosen.empty()) {
+    if (a.run.out.empty()) throw Error("--job: expected --out with the folder that all runs of the study share");
+    const std::vector<std::size_t> chosen = parse_runs(a.chosen, names.size());
     require_same_runs(a.run.out, plan, true);  // also what other processes have made of it
     plan = only_runs(std::move(plan), chosen);
     manifest.runs = names;
-    plan.measure_moduli = false;  // of fronts, which need all runs
     a.run.resume = a.run.part = true;
   }
-  a.run.tell(console, [&](const StudyCall& call) { return execute_study(std::move(plan), manifest, call); });
+  a.run.tell(console, [&](StudyCall call) {
+    call.jobs = std::max(1, a.jobs);
+    call.drawn = drawn;
+    if (a.with_rendering) call.eye = a.eye;
+    if (drawn && !console.json) call.before_runs = [&] { print_drawn(study); };
+    return execute_study(std::move(plan), manifest, call);
+  });
 }
 
 }  // namespace
@@ -122,13 +133,10 @@ void add_study(CLI::App& app, Console& console) {
       ->check(CLI::Range(1, 100000));
   cmd->add_flag("--procedural", a.procedural,
                 "Draw contact scenes from procedural rooms and hands, which need no download; tables say so");
-  cmd->add_flag("--list-runs", a.list_runs, "Print the numbers and names of the runs; execute none");
-  cmd->add_option("--run", a.runs,
-                  "Only these runs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
+  cmd->add_flag("--list-jobs", a.list_jobs, "Print the numbers and names of the jobs (runs); execute none");
+  cmd->add_option("--job", a.chosen,
+                  "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
-  cmd->add_flag("--no-moduli", a.no_moduli,
-                "Do not measure effective moduli after a work-precision study; then stiffness excludes no solver "
-                "from the ranks");
   cmd->add_option("--jobs", a.jobs,
                   "Number of processes at a time, for a study that runs each run in its own process (default 1)")
       ->check(CLI::Range(1, 256));

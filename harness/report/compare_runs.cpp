@@ -264,25 +264,4 @@ nlohmann::json comparison_json(const Comparison& comparison) {
   return out;
 }
 
-nlohmann::json history_json(const std::vector<RunRecord>& runs) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const RunRecord& c : runs) {
-    const std::string name = run_name(c.header);
-    const auto& e = c.header.environment;
-    const std::string extra =
-        "status " + c.outcome.status +
-        (e.is_object() && e.contains("gpu") && e["gpu"].is_string() ? ", " + e["gpu"].get<std::string>() : "");
-    if (const std::vector<double> t = trial_means(c); !t.empty())
-      out.push_back({{"name", name + " frame"},
-                     {"unit", "ms"},
-                     {"value", 1e3 * middle(t)},
-                     {"range", fmt::format("± {:.3g}", 1e3 * (t.back() - t.front()) / 2)},
-                     {"extra", extra}});
-    for (const char* error : {"free_fall_error", "truth_error", "crossings_max"})
-      if (const double v = summary_value(c, error); std::isfinite(v))
-        out.push_back({{"name", name + " " + error}, {"unit", "1"}, {"value", v}, {"extra", extra}});
-  }
-  return out;
-}
-
 }  // namespace clothbench

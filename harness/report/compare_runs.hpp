@@ -73,8 +73,4 @@ Comparison compare_runs(const Processes& a, const Processes& b, const std::vecto
 std::vector<Table> comparison_tables(const Comparison&);
 nlohmann::json comparison_json(const Comparison&);
 
-/// Input of tools that plot results per commit (github-action-benchmark, customSmallerIsBetter): name, unit, value,
-/// range and extra of every time and error.
-nlohmann::json history_json(const std::vector<RunRecord>&);
-
 }  // namespace clothbench

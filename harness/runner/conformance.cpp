@@ -143,6 +143,7 @@ class Conformer {
 
 std::string name_of_case(const ConformanceCase& c) {
   if (c.whole) return "whole scene";
+  if (!c.relation.empty()) return c.relation;
   return c.sides + " " + c.grid + (c.mesh ? " mesh" : "") + (c.profile.empty() ? "" : " " + c.profile);
 }
 
@@ -184,12 +185,14 @@ std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool pr
     }
   for (const char* sides : {"single", "double-duplicated", "double"})
     out.push_back({scene, sides, "[9,7]", "", false, true});
+  for (const std::string& relation : relations_of(scene)) out.push_back({scene, "", "", "", false, false, relation});
   out.push_back({scene, "", "", "", true});
   return out;
 }
 
 Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (c.whole) return load_scene(c.scene);
+  if (!c.relation.empty()) return load_scene(c.scene, relation_overrides(c.relation));
   std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
   const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
   // Four vertices have none near a hand.
@@ -219,6 +222,7 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
 
 ConformanceResult run_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
                                   const Scene& scene, const ConformanceCase& c, double limit_s) {
+  if (!c.relation.empty()) return run_relation(entry, settings, device, scene, c);
   DeviceOptions options = device;
   if (!c.profile.empty()) options.profile = c.profile;
   const auto solver = entry.make(settings, options);
@@ -248,7 +252,7 @@ json conformance_json(const ConformanceRow& r) {
 }
 
 std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen) {
-  const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "metamorphic"});
+  const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "conformance"});
   for (const std::string& name : chosen)
     if (!contains(all, name)) throw Error("--scene " + name + ": no such scene" + nearest_known(name, all));
   return chosen.empty() ? all : chosen;
@@ -269,17 +273,28 @@ std::string conformance_text(const std::string& solver, const ConformanceRow& r)
   return text;
 }
 
-ConformanceRow ask_conformance(Guard& guard, const SolverEntry& entry, const json& settings,
-                               const DeviceOptions& device, const std::string& scene, bool whole, double limit_s) {
-  const Guard::Answer answer = guard.run(entry, [&] {
-    ConformanceRow row;
-    row.scene = scene;
-    row.status = "skipped";
-    for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
-      if (whole || !c.whole) add_case(entry, settings, device, c, limit_s, row);
-    return conformance_json(row);
-  });
-  if (!answer.crash.empty()) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.crash}};
+json conformance_answer(const json& request) {
+  const SolverEntry& entry = find_solver(request.at("solver"));
+  const std::string scene = request.at("scene");
+  ConformanceRow row;
+  row.scene = scene;
+  row.status = "skipped";
+  for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
+    if (request.at("whole").get<bool>() || !c.whole)
+      add_case(entry, request.at("settings"), device_from_json(request.at("device")), c, request.at("limit_s"), row);
+  return conformance_json(row);
+}
+
+ConformanceRow ask_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                               const std::string& scene, bool whole, double limit_s) {
+  const json request = {{"solver", entry.info.name},
+                        {"settings", settings},
+                        {"device", device_to_json(device)},
+                        {"scene", scene},
+                        {"whole", whole},
+                        {"limit_s", limit_s}};
+  const WorkerAnswer answer = guarded(entry, "conformance", request, conformance_answer);
+  if (answer.end) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.end->text()}};
   const json& j = answer.value;
   return {j["scene"], j["status"], j["cases"], j["skipped"], j["frames_whole"], j["frames_of_scene"], j["faults"]};
 }

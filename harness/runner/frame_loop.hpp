@@ -31,8 +31,8 @@ struct FrameRules {
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
 
-/// The one loop that steps a solver through a scene. Accuracy passes, trials, references, thresholds, moduli and
-/// metamorphic relations all read the data they need after each frame:
+/// The one loop that steps a solver through a scene. Accuracy passes, trials, references and conformance
+/// read the data they need after each frame:
 ///   for (FrameLoop loop(solver, scene, rules); loop.next();) …
 /// The solver must already be in the state to start from: loaded, reset or restarted. The clock covers only the step: a
 /// frame's input is made before the clock starts, and the step called is known at compile time.

@@ -8,12 +8,9 @@
 
 #include "base/plugin_environment.hpp"
 #include "base/words.hpp"
-#include "runner/environment.hpp"
 
 namespace clothbench {
 namespace {
-
-bool on_gpu(const SolverInfo& info) { return info.on_gpu; }
 
 /// Whether GPU solvers have a device; a notice if there is none and that is allowed.
 bool check_device(const SolverEntry& gpu, const DeviceChoice& choice) {
@@ -101,28 +98,6 @@ void settle_device(RunPlan& plan, const DeviceChoice& choice) {
       if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
   if (gpu == nullptr || check_device(*gpu, choice)) return;
   for (auto& group : plan.groups) std::erase_if(group, [](const RunSpec& c) { return c.entry->info.on_gpu; });
-}
-
-nlohmann::json settle_device(Study& study, const DeviceChoice& choice, std::vector<std::string>& only) {
-  const SolverEntry* gpu = nullptr;
-  for (const SolverEntry& e : solvers())
-    if (e.devices && e.info.on_gpu) gpu = &e;
-  DeviceInfo device;
-  if (gpu != nullptr && check_device(*gpu, choice)) {
-    const std::vector<DeviceInfo> all = gpu->devices();
-    const auto hardware = std::find_if(all.begin(), all.end(), [](const DeviceInfo& d) { return !d.is_software; });
-    device = choice.options.index >= 0 ? all[static_cast<std::size_t>(choice.options.index)]
-             : hardware != all.end()   ? *hardware
-                                       : all.front();
-  } else if (gpu != nullptr) {
-    const std::vector<std::string> gone = solver_names(on_gpu);
-    const auto is_gone = [&](const std::string& name) { return contains(gone, name); };
-    for (Study::Item& item : study.scenes)
-      std::erase_if(item.solvers, [&](std::size_t k) { return is_gone(study.solvers[k].solver); });
-    if (only.empty()) only = solver_names();
-    std::erase_if(only, is_gone);
-  }
-  return describe_environment(device, study.protocol);
 }
 
 }  // namespace clothbench

@@ -46,8 +46,4 @@ struct DeviceChoice {
 /// that is allowed. Throws Error if it is not, and if the chosen device is missing.
 void settle_device(RunPlan&, const DeviceChoice&);
 
-/// The same for a study whose runs are in processes of their own, and for `only`, the solvers of its maps. Returns the
-/// environment that is stored with them.
-nlohmann::json settle_device(Study&, const DeviceChoice&, std::vector<std::string>& only);
-
 }  // namespace clothbench

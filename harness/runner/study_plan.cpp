@@ -1,7 +1,12 @@
 #include "runner/study_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <memory>
+#include <set>
+#include <sstream>
 
 #include "base/plugin_environment.hpp"
 #include "base/words.hpp"
@@ -38,7 +43,7 @@ std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vect
   return out;
 }
 
-RunPlan plan_study(const Study& study) {
+RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(const std::string&)>& lookup) {
   const StudyRules& rules = study.rules;
   RunPlan plan;
   plan.protocol = protocol_name(study.length);
@@ -54,10 +59,10 @@ RunPlan plan_study(const Study& study) {
                 rules.agree,
                 study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
-  plan.references = plan.measure_moduli = study.protocol == "work-precision";
+  plan.references = study.protocol == "work-precision";
+  plan.apart = study.protocol == "contact" || study.protocol == "stability-map";
   std::vector<const SolverEntry*> entries;
-  for (const StudySolver& s : study.solvers)
-    entries.push_back(s.joined ? &find_solver(s.solver) : known_solver(s.solver));
+  for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : lookup(s.solver));
   for (const Study::Item& item : study.scenes) {
     if (plan.groups.size() <= static_cast<std::size_t>(item.group))
       plan.groups.resize(static_cast<std::size_t>(item.group) + 1);
@@ -75,6 +80,44 @@ RunPlan plan_study(const Study& study) {
       plan.groups[static_cast<std::size_t>(item.group)].back().timed = item.timed && s.timed;
     }
   }
+  return plan;
+}
+
+std::vector<std::string> run_names(const RunPlan& plan) {
+  std::vector<std::string> names;
+  for (const auto& group : plan.groups)
+    for (const RunSpec& c : group) names.push_back(run_name(c));
+  return names;
+}
+
+std::vector<std::size_t> parse_runs(const std::string& text, std::size_t count) {
+  const auto fail = [&] {
+    throw Error(fmt::format("--job {}: expected numbers from 0 to {}, such as 7 or 0,3-5", text, count - 1));
+  };
+  const auto number = [&](const std::string& word) {
+    std::size_t n = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), n);
+    if (error != std::errc() || end != word.data() + word.size() || n >= count) fail();
+    return n;
+  };
+  std::set<std::size_t> chosen;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const std::size_t dash = part.find('-');
+    const std::size_t first = number(part.substr(0, dash)),
+                      last = dash == std::string::npos ? first : number(part.substr(dash + 1));
+    if (last < first) fail();
+    for (std::size_t k = first; k <= last; ++k) chosen.insert(k);
+  }
+  if (chosen.empty()) fail();
+  return {chosen.begin(), chosen.end()};
+}
+
+RunPlan only_runs(RunPlan plan, const std::vector<std::size_t>& runs) {
+  std::size_t at = 0;
+  for (auto& group : plan.groups)
+    std::erase_if(group, [&](const RunSpec&) { return !std::binary_search(runs.begin(), runs.end(), at++); });
+  std::erase_if(plan.groups, [](const auto& group) { return group.empty(); });
   return plan;
 }
 

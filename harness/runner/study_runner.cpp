@@ -1,10 +1,16 @@
 #include "runner/study_runner.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cmath>
+#include <exception>
+#include <mutex>
 #include <set>
+#include <thread>
 
 #include "clothbench/error.hpp"
 #include "metrics/truth_dependence.hpp"
@@ -14,6 +20,7 @@
 #include "runner/ladder.hpp"
 #include "runner/reference.hpp"
 #include "runner/resume.hpp"
+#include "runner/run_process.hpp"
 #include "runner/sensors.hpp"
 
 namespace clothbench {
@@ -61,6 +68,18 @@ class Stopwatch {
   double& to_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+void count(const std::string& solver, const Outcome& outcome, RunResult& result) {
+  result.ends.add(solver, outcome);
+  if (outcome.status == "ok")
+    ++result.runs_ok;
+  else if (outcome.status == "unsupported")
+    ++result.runs_unsupported;
+  else if (outcome.status == "over_budget")
+    ++result.runs_over_budget;
+  else
+    ++result.runs_failed;
+}
 
 class GroupRun {
  public:
@@ -124,7 +143,7 @@ class GroupRun {
   /// Counts a run of an earlier session, and what it took of its ladder's budget.
   void recall(const RunSpec& spec, const std::string& name) {
     const RunRecord before = read_run_summary(stored_run(options_.out, name));
-    count(spec.entry->info.name, before.outcome);
+    count(spec.entry->info.name, before.outcome, result_);
     if (!(spec.work > 0)) return;
     const auto took = before.summary.find("untimed_s");
     if (before.outcome.status != "over_budget" && took != before.summary.end())
@@ -187,22 +206,10 @@ class GroupRun {
     summary["untimed_s"] = r.untimed_s;
     Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
-    count(r.run->spec().entry->info.name, outcome);
+    count(r.run->spec().entry->info.name, outcome, result_);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
     ++done_;
-  }
-
-  void count(const std::string& solver, const Outcome& outcome) {
-    result_.ends.add(solver, outcome);
-    if (outcome.status == "ok")
-      ++result_.runs_ok;
-    else if (outcome.status == "unsupported")
-      ++result_.runs_unsupported;
-    else if (outcome.status == "over_budget")
-      ++result_.runs_over_budget;
-    else
-      ++result_.runs_failed;
   }
 
   const RunPlan& plan_;
@@ -212,6 +219,78 @@ class GroupRun {
   LadderBudget budget_;
   std::vector<Running> running_;
 };
+
+using Task = std::function<void(RunWorker&)>;
+
+/// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in their order as threads become free.
+/// After an exception no further task begins, and the first exception is thrown once all threads have ended.
+void run_tasks(const std::vector<Task>& tasks, int jobs, const std::filesystem::path& program,
+               const std::filesystem::path& scratch) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr first;
+  std::mutex mutex;
+  const auto work = [&](int k) {
+    try {
+      RunWorker worker(program, scratch / std::to_string(k));
+      for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
+    } catch (...) {
+      next = tasks.size();
+      const std::lock_guard lock(mutex);
+      if (!first) first = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int k = 1; k < std::min<int>(jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
+  work(0);
+  for (std::thread& t : threads) t.join();
+  if (first) std::rethrow_exception(first);
+}
+
+void execute_apart(const RunPlan& plan, const RunOptions& options, RunResult& result) {
+  std::size_t done = 0;
+  const auto ended = [&](const RunSpec& spec, const RunRecord& r) {
+    count(spec.entry->info.name, r.outcome, result);
+    result.grades.add(r);
+    ++done;
+    if (options.progress) options.progress(run_name(spec), done, plan.size());
+  };
+  std::vector<const RunSpec*> todo;
+  for (const auto& group : plan.groups)
+    for (const RunSpec& spec : group) {
+      const std::string name = run_name(spec);
+      if (run_finished(options.out, name)) {
+        if (!options.resume) refuse_finished_run(options.out, name);
+        require_same_run(options.out, planned_run(spec));
+        ended(spec, read_run_summary(stored_run(options.out, name)));
+      } else if (!spec.entry->make) {
+        ended(spec, whole_run(spec, {options.device, plan.protocol, options.out}));
+      } else {
+        todo.push_back(&spec);
+      }
+    }
+  const auto work = [](const RunSpec* s) {
+    return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
+  };
+  // The longest first: otherwise the other workers would wait for the last run.
+  std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
+  std::mutex mutex;
+  std::vector<Task> tasks;
+  for (const RunSpec* spec : todo)
+    tasks.push_back([&, spec](RunWorker& worker) {
+      stop_if_interrupted(kRunsKept);
+      const RunRecord r =
+          worker.run(request_of(*spec, {options.device, plan.protocol, options.out, plan.rules.run_limit_s}));
+      const std::lock_guard lock(mutex);
+      ended(*spec, r);
+    });
+  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
+  const std::filesystem::path scratch =
+      std::filesystem::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
+  if (!tasks.empty())
+    run_tasks(tasks, options.jobs, options.program.empty() ? own_program() : options.program, scratch);
+  std::error_code ignored;
+  std::filesystem::remove_all(scratch, ignored);
+}
 
 /// Two runs of one name would write one file.
 void refuse_doubles(const RunPlan& plan) {
@@ -230,6 +309,35 @@ std::size_t RunPlan::size() const {
   return n;
 }
 
+void SolverEnds::add(const std::string& solver, const Outcome& outcome) {
+  if (outcome.status == "unsupported" || outcome.status == "over_budget") return;
+  Ends& e = ends_[solver];
+  if (outcome.status == "ok" || outcome.expect == "pass") {
+    ++e.finished;
+    return;
+  }
+  ++e.failed;
+  e.last = outcome.message.empty() ? outcome.status : outcome.status + ": " + outcome.message;
+}
+
+std::vector<std::string> SolverEnds::faults() const {
+  std::vector<std::string> out;
+  for (const auto& [solver, e] : ends_)
+    if (e.finished == 0)
+      out.push_back(fmt::format("{}: finished none of {} runs; the last: {}", solver, e.failed, e.last));
+  return out;
+}
+
+void Grades::add(const RunRecord& r) {
+  const auto at = r.summary.find("stability_grade");
+  const double grade = at != r.summary.end() && std::isfinite(at->second) ? at->second : 2;
+  if (r.outcome.status == "unsupported")
+    ++unsupported;
+  else
+    ++(grade == 0 ? stable : grade == 1 ? degraded : failed);
+  if (r.outcome.status == "crashed" || r.outcome.message.starts_with("its process")) ++crashed;
+}
+
 void require_same_runs(const std::filesystem::path& folder, const RunPlan& plan, bool resume) {
   std::vector<PlannedRun> runs;
   for (const auto& group : plan.groups)
@@ -240,6 +348,11 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan& plan,
 RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
   refuse_doubles(given);
   RunResult result;
+  if (given.apart) {
+    execute_apart(given, options, result);
+    result.faults = result.ends.faults();
+    return result;
+  }
   std::size_t done = 0;
   RunPlan plan = given;
   if (plan.references) {

@@ -1,10 +1,11 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "results/store.hpp"
-#include "runner/solver_ends.hpp"
 #include "runner/solver_run.hpp"
 
 namespace clothbench {
@@ -17,9 +18,8 @@ struct RunPlan {
   std::string protocol;  ///< "full" or "quick", stored with every run
   /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
+  bool apart = false;       ///< one untimed run of each whole scene, in worker processes, instead of trials
   bool references = false;  ///< store the reference solution of each scene's truth with its runs
-  bool measure_moduli =
-      false;  ///< measure every solver's effective moduli at its default setting and those of its fronts
 
   std::size_t size() const;
 };
@@ -27,10 +27,36 @@ struct RunPlan {
 struct RunOptions {
   std::filesystem::path out;
   bool resume = false;
+  int jobs = 1;                        ///< worker processes at a time, for a plan whose runs are apart
+  std::filesystem::path program = {};  ///< executable of the workers; empty: this one
   DeviceOptions device;
   /// Called before each task with its description and the numbers of finished and of all tasks.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
   std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
+};
+
+/// The rule of exit codes for every command that runs solvers: 1 if a solver finished none of its runs, whether they
+/// crashed, hung, diverged, lost the device or could not be made. Runs that the solver does not support, or that were
+/// left out for time, do not count; a run that ends as its scene expects does.
+class SolverEnds {
+ public:
+  void add(const std::string& solver, const Outcome&);
+  /// One sentence per solver that finished none of its runs.
+  std::vector<std::string> faults() const;
+
+ private:
+  struct Ends {
+    int finished = 0, failed = 0;
+    std::string last;  ///< how the last one failed
+  };
+  std::map<std::string, Ends> ends_;
+};
+
+/// Number of runs of each stability grade.
+struct Grades {
+  int stable = 0, degraded = 0, failed = 0, unsupported = 0;
+  int crashed = 0;  ///< runs among the failed ones whose process crashed or hung
+  void add(const RunRecord&);
 };
 
 struct RunResult {
@@ -38,12 +64,12 @@ struct RunResult {
   /// Of all runs of the plan, also those that an earlier session stored.
   int runs_ok = 0, runs_unsupported = 0, runs_over_budget = 0, runs_failed = 0;
   /// Wall time by solver for loads, passes, trials and files; "reference solutions" is another entry.
-  std::map<std::string, double> seconds, moduli_seconds;  ///< moduli_seconds: of effective moduli
-  int moduli = 0, moduli_left_out = 0;
+  std::map<std::string, double> seconds;
   int validation_messages = 0;
   /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
   std::vector<std::string> faults;
   SolverEnds ends;  ///< of all runs of the plan
+  Grades grades;    ///< of a plan whose runs are apart
 };
 
 /// Call before anything is written into a study's folder. Throws Error naming the file if a stored run of the plan,
@@ -53,7 +79,8 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 
 /// Executes every run and writes one file each. With `resume`, finished runs are skipped and finished trials reused,
 /// and a run stored for another scene, other settings or another version is an Error. Without it, a run that is already
-/// stored is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
+/// stored is an Error. Runs that are apart go to `jobs` RunWorkers, the longest first. Throws Error with
+/// ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
 }  // namespace clothbench

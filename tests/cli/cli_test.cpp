@@ -70,7 +70,7 @@ TEST_F(Cli, CompletesFromWhatThereIs) {
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Answer a = command("--help");
   EXPECT_EQ(a.code, 0);
-  for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "check", "bench"})
+  for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "check", "conformance"})
     EXPECT_NE(a.text.find(word), std::string::npos) << word;
 }
 
@@ -103,16 +103,6 @@ TEST_F(Cli, PlanNamesStagesAndWhatIsLeftOut) {
   ASSERT_TRUE(plan.is_array() && plan.size() == 1);
   EXPECT_FALSE(plan[0]["stages"].empty());
   EXPECT_TRUE(plan[0].contains("left_out"));
-}
-
-TEST_F(Cli, BenchIsAGoogleBenchmarkProgram) {
-  const nlohmann::json j = json_of("bench --study " + small_study() + " --benchmark_filter=gravity-8/ballistic");
-  ASSERT_TRUE(j.contains("context") && j.contains("benchmarks"));
-  EXPECT_TRUE(j["context"].contains("clothbench_git_commit"));
-  ASSERT_EQ(j["benchmarks"].size(), 1u);
-  EXPECT_EQ(j["benchmarks"][0]["iterations"], 72) << "a fixed number of frames, whatever the clock says";
-  EXPECT_GT(j["benchmarks"][0]["fps"].get<double>(), 0);
-  EXPECT_EQ(command("bench --no-such-flag").code, 2);
 }
 
 TEST_F(Cli, StudyThenReport) {
@@ -228,13 +218,13 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),
                     some = "study " + study.string() + " --out " + out.string();
-  ASSERT_EQ(command(some + " --run 0").code, 0);
+  ASSERT_EQ(command(some + " --job 0").code, 0);
   ASSERT_EQ(command(run).code, 0);
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
   // SolverRun 1 has not been run: it would join one of another scene.
-  for (const std::string& words : {some + " --resume", some + " --run 0", some + " --run 1", run + " --resume"}) {
+  for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
     const Answer a = command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;
@@ -284,79 +274,6 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
       command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("expected a scene with \"truth\""), std::string::npos) << none.text;
-}
-
-TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
-  const nlohmann::json properties = json_of("metamorphic ballistic");
-  ASSERT_EQ(properties.size(), 36u);
-  for (const auto& p : properties) EXPECT_TRUE(p["status"] == "pass") << p.dump();
-  const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
-  EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
-  EXPECT_EQ(command("threshold validation/incline-stop --solver ballistic").code, 2);
-  EXPECT_EQ(command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
-  const nlohmann::json friction = json_of("friction ballistic --substeps 64");
-  ASSERT_EQ(friction.size(), 1u) << "it has no substeps";
-  ASSERT_EQ(friction[0]["answers"].size(), 7u);
-  for (const nlohmann::json& answer : friction[0]["answers"])
-    EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos)
-        << answer << ": it falls through everything";
-  EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
-}
-
-/// One row, whether its runs are stored or not, found now or read again; and a report has it too.
-TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
-  const auto out = [&](const char* name) { return " --out " + (dir_ / name).string(); };
-  const std::string threshold = "threshold validation/capstan-hold --solver ballistic --set time.duration_s=0.5",
-                    measured = "moduli bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
-  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{measured, "moduli"},
-                                      std::pair<std::string, const char*>{"metamorphic ballistic", "relations"}}) {
-    if (command("list solvers").text.find("bullet-soft") == std::string::npos && words == measured) continue;
-    const nlohmann::json found = json_of(words);
-    EXPECT_EQ(json_of(words + out(folder)), found) << words;
-    const Answer again = command(words + out(folder));
-    EXPECT_EQ(again.code, 2) << again.text;
-    EXPECT_NE(again.text.find("--resume"), std::string::npos) << again.text;
-    EXPECT_EQ(json_of(words + out(folder) + " --resume"), found) << words;
-  }
-  const RunRecord high = read_run(dir_ / "threshold" / (read_manifest(dir_ / "threshold").runs.at(0) + ".h5"));
-  EXPECT_EQ(high.header.environment["protocol"], "threshold");
-  EXPECT_EQ(high.accuracy.time_s.size(), 31u) << "positions are stored as of any run";
-  const Answer report = command("report " + (dir_ / "threshold").string() + " -o " + (dir_ / "report").string());
-  EXPECT_EQ(report.code, 0) << report.text;
-  EXPECT_NE(report.text.find("Thresholds of friction"), std::string::npos) << report.text;
-  EXPECT_NE(report.text.find("≤ 0.11378"), std::string::npos) << report.text;
-  EXPECT_TRUE(fs::exists(dir_ / "report" / "friction.json"));
-}
-
-/// Relations are runs: a report has their table, `check` their bounds, and a resumed study measures only what is
-/// missing.
-TEST_F(Cli, MetamorphicRelationsAreReportedCheckedAndResumed) {
-  const std::string out = (dir_ / "relations").string(), words = "metamorphic ballistic --out " + out;
-  const nlohmann::json found = json_of(words);
-  const fs::path mirror = fs::path(out) / "metamorphic-sheet-mirror__ballistic__default.h5";
-  ASSERT_TRUE(fs::exists(mirror));
-  const auto kept = fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5");
-  fs::remove(mirror);
-  EXPECT_EQ(json_of(words + " --resume"), found);
-  EXPECT_TRUE(fs::exists(mirror));
-  EXPECT_EQ(fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5"), kept);
-
-  const std::string check = "check " + out + " --baseline " + (dir_ / "b.json").string();
-  ASSERT_EQ(command(check + " --update").code, 0);
-  EXPECT_EQ(command(check).code, 0) << command(check).text;
-  RunRecord broken = read_run(mirror);
-  broken.summary["expect.metamorphic_distance"] = 0;
-  fs::remove(mirror);
-  RunWriter(out, broken.header).finish(broken.outcome, broken.summary);
-  const Answer worse = command(check);
-  EXPECT_EQ(worse.code, 1) << worse.text;
-  EXPECT_NE(worse.text.find("expect.metamorphic_distance"), std::string::npos) << worse.text;
-
-  const Answer report = command("report " + out + " -o " + (dir_ / "report").string());
-  ASSERT_EQ(report.code, 0) << report.text;
-  EXPECT_NE(report.text.find("Metamorphic properties of ballistic"), std::string::npos) << report.text;
-  std::ifstream stored(dir_ / "report" / "metamorphic.json");
-  EXPECT_EQ(nlohmann::json::parse(stored).size(), found.size());
 }
 
 }  // namespace

@@ -49,17 +49,14 @@ TEST_P(Commands, TheSecondIsAsIfItWereTheFirst) {
 }
 
 const std::vector<Pair> kPairs = {
-    {{"moduli", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "moduli", "ballistic"}},
     {{"list", "features"}, {"--json", "list"}},
     {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
     {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
      {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
-    {{"metamorphic", "ballistic", "--set", "cloth.grid=[3,3]"}, {"--json", "metamorphic", "ballistic"}},
-    {{"threshold", "--solver", "ballistic", "validation/incline-stop"},
-     {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
-    {{"friction", "ballistic", "--substeps", "64"}, {"--json", "friction", "ballistic"}},
+    {{"conformance", "ballistic", "--set", "cloth.grid=[3,3]"},
+     {"--json", "conformance", "ballistic", "--scene", "conformance/sheet", "--no-whole"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
-    {{"study", "table3", "--quick", "--only", "nothing", "--run", "0"}, {"--json", "study", "table3", "--list-runs"}},
+    {{"study", "table3", "--quick", "--only", "nothing", "--job", "0"}, {"--json", "study", "table3", "--list-jobs"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),

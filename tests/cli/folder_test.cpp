@@ -31,7 +31,7 @@ TEST_F(Out, ThatCannotBeAFolderExitsTwo) {
                                   {"/proc/clothbench", "cannot be made"}})
     for (const std::string command_line :
          {"run paper/gravity --solver ballistic", "study table3 --quick --solver ballistic",
-          "study stability --quick --solver ballistic", "metamorphic ballistic"}) {
+          "study stability --quick --solver ballistic"}) {
       const Answer a = command(command_line + " --out '" + out + "'");
       EXPECT_EQ(a.code, 2) << a.text;
       EXPECT_NE(a.text.find(word), std::string::npos) << a.text;

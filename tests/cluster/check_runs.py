@@ -1,4 +1,4 @@
-"""usage: check_runs.py CLOTHBENCH: `study --list-runs` and `--run`: parts of a study, computed apart, are the study."""
+"""usage: check_runs.py CLOTHBENCH: `study --list-jobs` and `--job`: parts of a study, computed apart, are the study."""
 import json
 import os
 import subprocess
@@ -16,20 +16,20 @@ def command(*words, code=0):
 
 
 with tempfile.TemporaryDirectory() as home:
-    listed = [line.split("\t") for line in command(*STUDY, "--list-runs").splitlines()]
+    listed = [line.split("\t") for line in command(*STUDY, "--list-jobs").splitlines()]
     names = [name for _, name in listed]
     assert [int(k) for k, _ in listed] == list(range(len(names))) and len(names) >= 3, listed
-    assert json.loads(command(*STUDY, "--list-runs", "--json")) == names
+    assert json.loads(command(*STUDY, "--list-jobs", "--json")) == names
     assert not os.listdir(home)
 
     out = os.path.join(home, "run")
-    command(*STUDY, "--out", out, "--run", "1")
+    command(*STUDY, "--out", out, "--job", "1")
     done = {f[:-3] for f in os.listdir(out) if f.endswith(".h5")}
     assert done == {names[1]}, done
     with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
         assert json.load(text)["runs"] == names, "the folder says what belongs to it"
     # The rest at the same time, in two processes; one of them begins with what is there already.
-    parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--run", c]) for c in ("0-1", f"2-{len(names) - 1}")]
+    parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--job", c]) for c in ("0-1", f"2-{len(names) - 1}")]
     assert [p.wait() for p in parts] == [0, 0]
     assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(names)
     assert not [f for f in os.listdir(out) if f.endswith(".part")]
@@ -37,11 +37,16 @@ with tempfile.TemporaryDirectory() as home:
 
     for wrong in (str(len(names)), "x", "2-1", "", "1-", "-1"):
         assert (
-            f"numbers from 0 to {len(names) - 1}" in command(*STUDY, "--out", out, "--run=" + wrong, code=2)
+            f"numbers from 0 to {len(names) - 1}" in command(*STUDY, "--out", out, "--job=" + wrong, code=2)
             or wrong == ""
         ), wrong
-    assert "--out" in command(*STUDY, "--run", "0", code=2)
-    assert "stability-map" in command("study", "stability", "--quick", "--list-runs", code=2)
+    assert "--out" in command(*STUDY, "--job", "0", code=2)
+    apart = ["study", "stability", "--quick", "--solver", "ballistic"]
+    jobs = json.loads(command(*apart, "--list-jobs", "--json"))
+    out_apart = os.path.join(home, "apart")
+    parts = [subprocess.Popen([CLOTHBENCH, *apart, "--out", out_apart, "--job", k]) for k in ("0", "1-2")]
+    assert [p.wait() for p in parts] == [0, 0]
+    assert {f[:-3] for f in os.listdir(out_apart) if f.endswith(".h5")} == set(jobs[:3])
 
     # Unknown names suggest the nearest.
     assert "nearest known: table3" in command("study", "tabel3", code=2)
@@ -58,6 +63,4 @@ with tempfile.TemporaryDirectory() as home:
     assert "too few processes" in command("compare", out, out, "--markdown", markdown)
     with open(markdown, encoding="utf-8") as text:
         assert "Results that differ: none" in text.read()
-    history = json.loads(command("history", out))
-    assert {"name", "unit", "value", "extra"} <= set(history[0]) and len(history) >= len(names)
-print("runs, suggestions, compare, history: as expected")
+print("runs, suggestions, compare: as expected")

@@ -8,7 +8,7 @@ import unittest
 
 CLOTHBENCH, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 # A program tells these to itself, or they are other programs'.
-OTHERS = {"CLOTHBENCH_SUPERVISED", "CLOTHBENCH_GUARDED", "HOME", "PATH", "TERM", "XDG_CACHE_HOME", "XDG_DATA_HOME"}
+OTHERS = {"HOME", "PATH", "TERM", "XDG_CACHE_HOME", "XDG_DATA_HOME"}
 
 
 def said(*words):

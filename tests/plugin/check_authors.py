@@ -47,15 +47,6 @@ class Authors(unittest.TestCase):
         pathlib.Path(file).write_text(json.dumps(study), encoding="utf-8")
         return file
 
-    def test_moduli_of_plugins_with_substeps(self):
-        solvers = ["plugin:" + EXAMPLE, self.library("faulty_STRETCHES")]
-        rows = {r["solver"]: r for r in self.rows("moduli", *solvers)}
-        moduli = rows["example-xpbd"]["moduli"]
-        self.assertEqual([m["setting"] for m in moduli], ["default", "substeps=80"])
-        self.assertEqual({m["status"] for m in moduli}, {"ok"})
-        self.assertGreater(moduli[1]["E_0"], moduli[0]["E_0"])
-        self.assertEqual([m["status"] for m in rows["stretches"]["moduli"]], ["ok"])
-
     def test_two_builds_of_a_plugin_can_be_told_apart(self):
         words = ["run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, "--set", "cloth.grid=[5,5]", "--trials", "0"]
         self.assertEqual(self.command(*words, "--out", self.out), 0, self.text)
@@ -74,12 +65,6 @@ class Authors(unittest.TestCase):
                 self.assertIn(" is a plugin, version 2", page.read_text(encoding="utf-8"), name)
                 self.assertIn(plugin["sha256"][:16], page.read_text(encoding="utf-8"), name)
 
-    def test_threshold_goes_on_when_a_solver_cannot_run_the_scene(self):
-        words = ["threshold", "validation/incline-stick", "--solver", "plugin:" + EXAMPLE, "--solver", self.library("faulty_NONE")]
-        refused, found = self.rows(*words)
-        self.assertIn("example-xpbd has no", refused["unsupported"])
-        self.assertGreater(found["runs"], 0)
-
     def test_a_misspelt_solver_of_a_study_is_an_error(self):
         file = self.study(solvers=[{"solver": "ballistic"}, {"solver": "bullet-sofd"}])
         self.assertEqual(self.command("study", file, "--out", self.out), 2, self.text)
@@ -91,11 +76,11 @@ class Authors(unittest.TestCase):
 
     def test_an_override_of_an_axis_names_its_runs(self):
         for value, names in (("single", ["single"]), ("double-duplicated", ["double-duplicated"])):
-            runs = self.rows("study", self.study(), "--set", "cloth.sides=" + value, "--list-runs")
+            runs = self.rows("study", self.study(), "--set", "cloth.sides=" + value, "--list-jobs")
             self.assertEqual(runs, [f"gravity-{n}__ballistic__default" for n in names])
-        runs = self.rows("study", "table3", "--solver", "ballistic", "--set", "cloth.sides=single", "--list-runs")
+        runs = self.rows("study", "table3", "--solver", "ballistic", "--set", "cloth.sides=single", "--list-jobs")
         self.assertTrue(all("-single__" in r for r in runs) and len(runs) == 5, runs)
-        runs = self.rows("study", "table3", "--quick", "--solver", "ballistic", "--set", "cloth.grid=[24,24]", "--list-runs")
+        runs = self.rows("study", "table3", "--quick", "--solver", "ballistic", "--set", "cloth.grid=[24,24]", "--list-jobs")
         self.assertTrue(runs and all("-24-24-" in r for r in runs), runs)
 
     def test_a_report_of_a_folder_that_lost_its_study(self):

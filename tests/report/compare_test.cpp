@@ -303,14 +303,5 @@ TEST(CompareRuns, SaysHowFarApartTheMotionsAre) {
   EXPECT_TRUE(std::isnan(compare_runs(a, other).runs[0].apart)) << "other frames cannot be compared";
 }
 
-TEST(History, IsWhatChartToolsRead) {
-  const auto j = history_json({run("x", 2e-3, 0.5)});
-  ASSERT_EQ(j.size(), 2u);
-  EXPECT_EQ(j[0]["name"], "x__s__default frame");
-  EXPECT_EQ(j[0]["unit"], "ms");
-  EXPECT_NEAR(j[0]["value"].get<double>(), 2.04, 1e-9);
-  EXPECT_EQ(j[1]["value"], 0.5);
-}
-
 }  // namespace
 }  // namespace clothbench

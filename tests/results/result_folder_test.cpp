@@ -47,9 +47,9 @@ TEST_F(Folder, IsMadeAndHeldByOneAtATime) {
 }
 
 TEST_F(Folder, PartsOfOneStudyShareIt) {
-  const ResultFolder one(dir_, Use::Shared, "clothbench study --run 0");
+  const ResultFolder one(dir_, Use::Shared, "clothbench study --job 0");
   {
-    const ResultFolder two(dir_, Use::Shared, "clothbench study --run 1");
+    const ResultFolder two(dir_, Use::Shared, "clothbench study --job 1");
     EXPECT_NE(refusal_of(dir_, Use::Alone), "");
   }
   EXPECT_NE(refusal_of(dir_, Use::Alone), "") << "the first still writes";

@@ -173,7 +173,7 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& scene) {
 
 INSTANTIATE_TEST_SUITE_P(Every, StoredMotionOf,
                          ::testing::ValuesIn(scene_names({"paper", "contact", "garments", "validation", "stability",
-                                                          "metamorphic"})),
+                                                          "conformance"})),
                          test_name);
 
 class StoredMotionFile : public WithFolder {

@@ -6,9 +6,7 @@
 
 #include "clothbench/record.hpp"
 #include "runner/frame_loop.hpp"
-#include "runner/metamorphic.hpp"
 #include "runner/reference.hpp"
-#include "runner/threshold.hpp"
 #include "runner/whole_run.hpp"
 #include "scenario/load.hpp"
 
@@ -24,6 +22,7 @@ class Spy final : public ClothSolver {
   const SolverInfo& info() const override { return info_; }
   DeviceInfo device() const override { return {}; }
   void load(const Scene& s) override {
+    scene_ = &s;
     state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)};
   }
   void reset() override {}
@@ -34,11 +33,12 @@ class Spy final : public ClothSolver {
   }
   void read_state(ClothState& out) const override { out = state_; }
   FrameCost last_cost() const override { return {}; }
-  Plan plan() const override { return {}; }
+  Plan plan() const override { return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {}}; }
 
  private:
   SolverInfo info_;
   std::vector<FrameInput>& seen_;
+  const Scene* scene_ = nullptr;
   ClothState state_;
 };
 
@@ -49,6 +49,7 @@ SolverEntry spy(std::vector<FrameInput>& seen) {
   e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) {
     return std::make_unique<Spy>(info, seen);
   };
+  e.free_fall_m = [](const Scene&, const nlohmann::json&, int) { return 0.0; };
   return e;
 }
 
@@ -62,7 +63,7 @@ void expect_frames_of(const Scene& s, const std::vector<FrameInput>& seen) {
 }
 
 TEST(FrameInput, IsTheScenesAndEvenBeyondItsEnd) {
-  const Scene even = load_scene("metamorphic/sheet"), uneven = load_scene("metamorphic/sheet", {kHitch});
+  const Scene even = load_scene("conformance/sheet"), uneven = load_scene("conformance/sheet", {kHitch});
   const int last = even.time.frames() - 1;
   for (const int f : {0, 3, last, last + 5}) {
     EXPECT_EQ(frame_input(even, f).time_s, (f + 1) * even.time.dt());
@@ -76,7 +77,7 @@ TEST(FrameInput, IsTheScenesAndEvenBeyondItsEnd) {
 }
 
 TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
-  const Scene s = load_scene("metamorphic/sheet");
+  const Scene s = load_scene("conformance/sheet");
   std::vector<FrameInput> seen;
   const auto indices = [&] {
     std::vector<int> out;
@@ -108,28 +109,14 @@ TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
   EXPECT_EQ(fails.index(), 2);
 }
 
-TEST(UnevenFrames, ReachTheSolverInThresholds) {
-  const Scene s = load_scene("validation/incline-stick", {kHitch, "time.duration_s=0.25"});
-  std::vector<FrameInput> seen;
-  EXPECT_EQ(find_threshold(s, spy(seen), nlohmann::json::object(), {}).runs, 2);
-  EXPECT_EQ(seen.size(), 2 * static_cast<std::size_t>(s.time.frames()));
-  expect_frames_of(s, seen);
-  seen.clear();
-  const SolverEntry entry = spy(seen);
-  end_of_run({&s, &entry, nlohmann::json::object()}, {{}, "test"});
-  expect_frames_of(s, seen);
-}
-
-TEST(UnevenFrames, ReachTheSolverInMetamorphicProperties) {
+TEST(UnevenFrames, ReachTheSolverInAWholeRun) {
   for (const std::string& how : {kHitch, kJitter}) {
-    const Scene s = load_scene("metamorphic/sheet", {how});
+    const Scene s = load_scene("validation/incline-stick", {how, "time.duration_s=0.25"});
     std::vector<FrameInput> seen;
-    const auto results = run_metamorphic(spy(seen), nlohmann::json::object(), {}, {s}, nullptr);
+    const SolverEntry entry = spy(seen);
+    whole_run({&s, &entry, nlohmann::json::object()}, {{}, "test"});
+    EXPECT_EQ(seen.size(), static_cast<std::size_t>(s.time.frames()));
     expect_frames_of(s, seen);
-    for (const MetamorphicResult& r : results) {
-      const bool same_scene = r.property == "repeat" || r.property == "no-op" || r.property == "restart";
-      EXPECT_EQ(r.status, same_scene ? "pass" : "unsupported") << r.property;
-    }
   }
 }
 

@@ -1,7 +1,7 @@
 // The rule of exit codes: a solver that finished none of its runs is a fault, however they ended.
-#include "runner/solver_ends.hpp"
-
 #include <gtest/gtest.h>
+
+#include "runner/study_runner.hpp"
 
 namespace clothbench {
 namespace {

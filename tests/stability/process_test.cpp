@@ -8,7 +8,6 @@
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "runner/child.hpp"
 #include "runner/run_process.hpp"
 #include "with_folder.hpp"
 

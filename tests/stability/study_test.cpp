@@ -1,10 +1,11 @@
-// The study's driver with a solver of its own in a child: maps, bisection, resume; and what a report makes of them.
+// The study's driver with a solver of its own in a child: crashes, resume; and what a report makes of them.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "base/json_text.hpp"
@@ -12,8 +13,7 @@
 #include "report/across_runs.hpp"
 #include "report/stability.hpp"
 #include "results/store.hpp"
-#include "runner/stability_map.hpp"
-#include "runner/stability_study.hpp"
+#include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
 #include "with_folder.hpp"
 
@@ -40,59 +40,47 @@ class StabilityStudy : public WithFolder {
                           {"gravity_m_per_s2", {0, -1, 0}},
                           {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
                           {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2"}}}}});
-    study_json_ = {{"name", "maps"},
-                   {"why", "maps in a test"},
+    study_json_ = {{"name", "thrown"},
+                   {"why", "thrown in a test"},
                    {"protocol", "stability-map"},
                    {"scenes", {{{"file", "thrown.json"}}}},
                    {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
                    {"trials", 1},
                    {"run_limit_s", 20},
-                   {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}},
-                   {"maps",
-                    {{{"name", "gravity"},
-                      {"title", "Gravity and damping"},
-                      {"scene", (dir_ / "thrown.json").string()},
-                      {"good", "stable"},
-                      {"headline", "largest gravity"},
-                      {"theory", {"explicit-limit"}},
-                      {"solvers", {{{"solver", "falls"}}, {{"solver", "nan"}}}},
-                      {"x",
-                       {{"label", "gravity"},
-                        {"unit", "m/s2"},
-                        {"values", {1, 10, 100}},
-                        {"set", {{"gravity_m_per_s2", {0, "-x", 0}}}}}},
-                      {"y",
-                       {{"label", "damping"},
-                        {"unit", "1/s"},
-                        {"values", {1, 2}},
-                        {"set", {{"cloth.areal_density_kg_per_m2", "0.1*y"}}}}}}}}};
-    write("maps.json", study_json_);
+                   {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}};
+    write("thrown-study.json", study_json_);
   }
+  /// The plan of a study whose solvers only the child has.
+  static RunPlan plan_of(const Study& study) {
+    static std::map<std::string, SolverEntry> entries;
+    return plan_study(study, [](const std::string& name) -> const SolverEntry* {
+      SolverEntry& e = entries[name];
+      e.info.name = name;
+      e.make = [](const json&, const DeviceOptions&) -> std::unique_ptr<ClothSolver> { return nullptr; };
+      return &e;
+    });
+  }
+  Grades execute(const Study& study, const RunOptions& o) const { return execute_runs(plan_of(study), o).grades; }
   void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
-  StabilityOptions options(bool resume) const {
-    StabilityOptions o;
+  RunOptions options(bool resume) const {
+    RunOptions o;
     o.out = dir_ / "out";
     o.program = FAULTY_CHILD;
     o.resume = resume;
     fs::create_directories(o.out);
     return o;
   }
-  json maps() const {
-    std::ifstream in(dir_ / "out" / "stability.json");
-    return json::parse(in).at("maps");
-  }
-
   json study_json_;
 };
 
 TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  const StabilityCounts counts = execute_stability_runs(study, options(false));
+  const Study study = load_study((dir_ / "thrown-study.json").string());
+  const Grades counts = execute(study, options(false));
   EXPECT_EQ(counts.stable, 1);
   EXPECT_EQ(counts.failed, 1);
   EXPECT_EQ(counts.crashed, 1);
-  EXPECT_THROW(execute_stability_runs(study, options(false)), Error);
-  const StabilityCounts again = execute_stability_runs(study, options(true));
+  EXPECT_THROW(execute(study, options(false)), Error);
+  const Grades again = execute(study, options(true));
   EXPECT_EQ(again.stable, 1);
   EXPECT_EQ(again.failed, 1);
   std::vector<RunRecord> runs;
@@ -113,20 +101,7 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   EXPECT_NE(stability_csv(runs).find("crashed,failed,F8"), std::string::npos);
 }
 
-TEST_F(StabilityStudy, ManyProcessesGiveWhatOneGives) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json alone = maps();
-  StabilityOptions many = options(false);
-  many.jobs = 4;
-  const StabilityCounts counts = run_stability_maps(study, many);
-  EXPECT_EQ(maps(), alone);
-  EXPECT_EQ(counts.stable, 6);
-  EXPECT_EQ(counts.failed, 6);
-}
-
 TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
-  study_json_.erase("maps");
   study_json_["solvers"] = {{{"solver", "falls"}}, {{"solver", "nan"}}};
   study_json_["scenes"] = {
       {{"file", "thrown.json"},
@@ -141,10 +116,11 @@ TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
            {{"key", "cloth.start.noise_m"}, {"values", {0}}, {"labels", {"still"}}},
            {{"key", "gravity_m_per_s2"}, {"values", {{0, -scale, 0}}}, {"labels", {scale == 1 ? "g1" : "g1024"}}},
            {{"key", "cloth.size_m"}, {"values", {{scale, scale}}}, {"labels", {scale == 1 ? "m" : "km"}}}}}});
-  write("maps.json", study_json_);
-  StabilityOptions many = options(false);
+  write("thrown-study.json", study_json_);
+  RunOptions many = options(false);
   many.jobs = 3;
-  execute_stability_runs(load_study((dir_ / "maps.json").string()), many);
+  const Study study = load_study((dir_ / "thrown-study.json").string());
+  execute(study, many);
   std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor") {
@@ -165,52 +141,6 @@ TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
   EXPECT_EQ(across_table(across_runs(runs)).rows.size(), 4u);
 }
 
-TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json m = maps().at(0);
-  ASSERT_EQ(m.at("solvers").size(), 2u);
-  const json& falls = m.at("solvers").at(0);
-  EXPECT_EQ(falls.at("largest"), 100);
-  EXPECT_TRUE(falls.at("open").get<bool>());
-  EXPECT_EQ(falls.at("rows").size(), 2u);
-  EXPECT_EQ(falls.at("probes").size(), 6u);
-  const json& nan = m.at("solvers").at(1);
-  EXPECT_EQ(nan.at("largest"), 0);
-  EXPECT_EQ(nan.at("probes").at(0).at("class"), "F0");
-  EXPECT_EQ(m.at("theory").at(0).at("points").size(), 2u);
-  const Table table = headline_table(maps());
-  ASSERT_EQ(table.rows.size(), 3u);
-  EXPECT_EQ(table.rows[1][2], "≥ 100 m/s2");
-  EXPECT_EQ(table.rows[2][2], "none");
-  EXPECT_EQ(boundary_table(maps()).rows.size(), 5u);
-}
-
-std::vector<json> lines_of(const fs::path& file) {
-  std::vector<json> out;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line, nullptr, false));
-  return out;
-}
-
-TEST_F(StabilityStudy, AnAnswerAfterATornLineIsKept) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json whole = maps();
-  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
-  const std::size_t count = lines_of(probes).size();
-  fs::resize_file(probes, fs::file_size(probes) - 20);
-  run_stability_maps(study, options(true));
-  EXPECT_EQ(maps(), whole);
-  const std::vector<json> lines = lines_of(probes);
-  EXPECT_EQ(lines.size(), count);
-  for (const json& line : lines)
-    EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
-  const auto size = fs::file_size(probes);
-  run_stability_maps(study, options(true));
-  EXPECT_EQ(fs::file_size(probes), size) << "nothing is left to run";
-}
-
 std::string refusal(const std::function<void()>& what) {
   try {
     what();
@@ -221,53 +151,28 @@ std::string refusal(const std::function<void()>& what) {
   return "no error";
 }
 
-TEST_F(StabilityStudy, AnotherSceneOrMapIsNotResumed) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  execute_stability_runs(study, options(false));
-  run_stability_maps(study, options(false));
-  require_same_study(study, options(true));
-  const json first_maps = maps();
+TEST_F(StabilityStudy, AnotherSceneIsNotResumed) {
+  const Study study = load_study((dir_ / "thrown-study.json").string());
+  execute(study, options(false));
+  require_same_runs(dir_ / "out", plan_of(study), true);
 
   json scene;
   std::ifstream(dir_ / "thrown.json") >> scene;
   scene["gravity_m_per_s2"] = {0, -2, 0};
   write("thrown.json", scene);
-  const Study edited = load_study((dir_ / "maps.json").string());
+  const Study edited = load_study((dir_ / "thrown-study.json").string());
   const std::string before = study.scenes.at(0).scene.sha256.substr(0, 12),
                     now = edited.scenes.at(0).scene.sha256.substr(0, 12);
   ASSERT_NE(before, now);
-  const std::string runs = refusal([&] { execute_stability_runs(edited, options(true)); });
-  const std::string probes = refusal([&] { run_stability_maps(edited, options(true)); });
-  for (const std::string& text : {runs, probes, refusal([&] { require_same_study(edited, options(true)); })}) {
-    EXPECT_NE(text.find(before), std::string::npos) << text;
-    EXPECT_NE(text.find(now), std::string::npos) << text;
-    EXPECT_NE(text.find("--out"), std::string::npos) << text;
-  }
-  EXPECT_NE(runs.find("thrown__"), std::string::npos) << runs;
-  EXPECT_NE(probes.find("stability-probes.jsonl"), std::string::npos) << probes;
-  EXPECT_EQ(maps(), first_maps);
+  for (const std::string& text : {refusal([&] { execute(edited, options(true)); }),
+                                  refusal([&] { require_same_runs(dir_ / "out", plan_of(edited), true); })})
+    for (const std::string& word : {before, now, std::string("--out"), std::string("thrown__")})
+      EXPECT_NE(text.find(word), std::string::npos) << text;
 
   scene["gravity_m_per_s2"] = {0, -1, 0};
   write("thrown.json", scene);
-  require_same_study(load_study((dir_ / "maps.json").string()), options(true));
-  study_json_["maps"][0]["y"]["set"] = {{"cloth.areal_density_kg_per_m2", "0.2*y"}};
-  write("maps.json", study_json_);
-  EXPECT_NE(refusal([&] {
-              run_stability_maps(load_study((dir_ / "maps.json").string()), options(true));
-            }).find("definition of the map"),
-            std::string::npos);
-}
-
-TEST_F(StabilityStudy, ResumesFromItsProbesEvenAfterATornLine) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json whole = maps();
-  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
-  std::ofstream(probes, std::ios::app) << R"({"key": "gravity|fa)";
-  const auto size = fs::file_size(probes);
-  run_stability_maps(study, options(true));
-  EXPECT_EQ(maps(), whole);
-  EXPECT_EQ(fs::file_size(probes), size) << "something was run again";
+  const Study restored = load_study((dir_ / "thrown-study.json").string());
+  require_same_runs(dir_ / "out", plan_of(restored), true);
 }
 
 TEST(StabilityCases, AreAllThereAndLoad) {
@@ -291,12 +196,6 @@ TEST(StabilityCases, AreAllThereAndLoad) {
   }
   EXPECT_EQ(cases.size(), 26u);
   EXPECT_GE(full, 140u);
-}
-
-TEST_F(StabilityStudy, SaysWhatIsWrongWithAMap) {
-  study_json_["maps"][0]["x"]["values"] = {1, 0};
-  write("maps.json", study_json_);
-  EXPECT_THROW(load_study((dir_ / "maps.json").string()), Error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "studies/execute.hpp"
+#include "cli/execute.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,8 @@
 #include "report/withheld.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
-#include "runner/run_choice.hpp"
-#include "runner/supervise.hpp"
-#include "studies/front_moduli.hpp"
+#include "runner/plan_process.hpp"
+#include "runner/study_plan.hpp"
 
 namespace clothbench {
 namespace {
@@ -22,7 +21,6 @@ namespace {
 nlohmann::json seconds_json(const RunResult& r) {
   nlohmann::json j = nlohmann::json::object();
   for (const auto& [name, s] : r.seconds) j[name] = {{"runs", s}};
-  for (const auto& [name, s] : r.moduli_seconds) j[name]["moduli"] = s;
   return j;
 }
 
@@ -52,8 +50,6 @@ nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs
           {"over_budget", r.runs_over_budget},
           {"failed", r.runs_failed},
           {"seconds", seconds_json(r)},
-          {"moduli", r.moduli},
-          {"moduli_left_out", r.moduli_left_out},
           {"faults", r.faults},
           {"with_bound", count_verdicts(runs).runs},
           {"expect_passed", count_verdicts(runs).passed},
@@ -66,10 +62,8 @@ std::string spent(const RunResult& r) {
   std::string text;
   double all = 0;
   for (const auto& [name, s] : r.seconds) {
-    const auto moduli = r.moduli_seconds.find(name);
     text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
-    if (moduli != r.moduli_seconds.end()) text += fmt::format(" + {:.1f} on moduli", moduli->second);
-    all += s + (moduli == r.moduli_seconds.end() ? 0 : moduli->second);
+    all += s;
   }
   text = fmt::format("seconds: {}; together {:.0f}\n", text, all);
   if (r.runs_over_budget > 0)
@@ -77,11 +71,6 @@ std::string spent(const RunResult& r) {
         "not run: {} settings, because their solvers had used all of their time on the scene "
         "(over_budget)\n",
         r.runs_over_budget);
-  if (r.moduli_left_out > 0)
-    text += fmt::format(
-        "not run: effective moduli of {} settings on fronts, which could change no verdict; a full "
-        "study measures all\n",
-        r.moduli_left_out);
   return text;
 }
 
@@ -101,6 +90,35 @@ std::string text_of(const RunResult& r, const std::vector<std::string>& names, c
          spent(r);
 }
 
+VerdictCounts verdicts_in(const std::filesystem::path& out) {
+  std::vector<RunRecord> runs = collect({out});
+  withhold_times(runs);
+  return count_verdicts(runs);
+}
+
+/// Summaries of a study whose runs are apart: verdicts of drawn scenes, else stability grades.
+void summarise_apart(const RunResult& r, bool drawn, StudyEnd& end) {
+  const Grades n = r.grades;
+  const std::filesystem::path out = end.out;
+  if (drawn) {
+    end.json = [=] {
+      const VerdictCounts counts = verdicts_in(out);
+      return nlohmann::json{{"out", out.string()}, {"passed", counts.passed}, {"runs", counts.runs}};
+    };
+    end.text = [=] { return fmt::format("\n{}; results in {}\n", verdicts_in(out).text(), out.string()); };
+    return;
+  }
+  end.json = [=] {
+    return nlohmann::json{{"out", out.string()}, {"stable", n.stable},           {"degraded", n.degraded},
+                          {"failed", n.failed},  {"unsupported", n.unsupported}, {"crashed", n.crashed}};
+  };
+  end.text = [=] {
+    return fmt::format(
+        "\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
+        n.stable, n.degraded, n.failed, n.crashed, n.unsupported, out.string());
+  };
+}
+
 }  // namespace
 
 std::filesystem::path default_folder(const std::string& study) {
@@ -114,35 +132,31 @@ std::filesystem::path default_folder(const std::string& study) {
 
 StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& call) {
   settle_device(plan, call.device);
-  const std::optional<Supervised> parent = supervised();
   StudyEnd end;
-  end.out = parent ? parent->out : call.out.empty() ? default_folder(manifest.study) : call.out;
-  const bool resume = parent ? parent->resume : call.resume;
-  std::optional<ResultFolder> held;
-  if (!parent)
-    held.emplace(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
-  require_same_runs(end.out, plan, resume);
-  if (needs_supervision(plan)) {
-    end.exit_code = supervise(plan, end.out, call.resume, call.words);
-    end.told = true;
-    return end;
-  }
+  end.out = call.out.empty() ? default_folder(manifest.study) : call.out;
+  const ResultFolder held(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
+  require_same_runs(end.out, plan, call.resume);
   const std::vector<std::string> names = run_names(plan);
   manifest.created = utc_now();
   manifest.command_line = call.command_line;
   if (manifest.runs.empty()) manifest.runs = names;
   write_manifest(end.out, manifest);
 
-  const RunningNote note(parent);
-  const RunOptions options{end.out, resume, call.device.options,
-                           [&](const std::string& what, std::size_t done, std::size_t total) {
-                             call.progress(what, done, total);
-                             note.write(what);
-                           }};
-  RunResult result = execute_runs(plan, options);
-  if (plan.measure_moduli) add_moduli_runs(plan, options, manifest, result);
+  if (call.before_runs) call.before_runs();
+  RunOptions options;
+  options.out = end.out;
+  options.resume = call.resume;
+  options.jobs = call.jobs;
+  options.device = call.device.options;
+  options.progress = call.progress;
+  const RunResult result =
+      needs_process(plan) ? execute_in_process(plan, options, call.eye) : execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
+  if (plan.apart) {
+    summarise_apart(result, call.drawn, end);
+    return end;
+  }
   end.json = [=, out = end.out, part = call.part] {
     const std::vector<RunRecord> runs = stored_runs(names, out);
     return summary_of(result, runs, out, part ? nlohmann::json::array() : figures_of(runs));

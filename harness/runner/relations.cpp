@@ -1,0 +1,163 @@
+// Relations of two runs that must hold for every solver: cases of conformance that need no exact solution.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/error.hpp"
+#include "clothbench/restart_after.hpp"
+#include "clothbench/vector.hpp"
+#include "metrics/metric.hpp"
+#include "runner/conformance.hpp"
+#include "runner/frame_loop.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+/// The state before the first frame and after each.
+using Motion = std::vector<ClothState>;
+
+/// `so_far` and what the solver adds to it. Throws SolverError if a frame fails.
+Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
+  FrameLoop loop(solver, scene, {.first = static_cast<int>(so_far.size()), .frames = scene.time.frames()});
+  solver.read_state(so_far.emplace_back());
+  while (loop.next()) solver.read_state(so_far.emplace_back());
+  if (loop.failed()) throw SolverError(fmt::format("frame {}: step failed", loop.index()));
+  return so_far;
+}
+
+/// Overrides of scenarios/conformance/sheet.json, whose pins lie at the ends of one side, and how its motion then
+/// changes.
+struct Relation {
+  const char* name;
+  std::vector<std::string> overrides;
+  double at_most;
+  bool own_error = false, mirrored = false, transposed = false;
+};
+const Relation kRelations[] = {{"repeat", {}, 0},
+                               {"restart", {}, 1e-4, true},
+                               {"mirror", {"cloth.pose.axis_u=[-1,0,0]"}, 1e-4, false, true},
+                               {"renumber",
+                                {"cloth.grid=[13,17]", "cloth.size_m=[0.75,1]", "cloth.pose.axis_u=[0,0,1]",
+                                 "cloth.pose.axis_v=[1,0,0]", R"(pins=[{"corners":["u0v0","u0v1"]}])"},
+                                1e-4,
+                                true,
+                                false,
+                                true},
+                               {"no-op",
+                                {R"(colliders=[{"type":"sphere","center_m":[0,100,0],"radius_m":0.5,"friction":0.5},
+                    {"type":"box","center_m":[0,100,0],"size_m":[1,1,1],"friction":0.5}])"},
+                                1e-6}};
+
+const Relation& relation_of(const std::string& name) {
+  return *std::find_if(std::begin(kRelations), std::end(kRelations), [&](auto& r) { return name == r.name; });
+}
+
+/// One relation of a solver on a scene; `related` is the scene with the relation's overrides.
+class RelationCheck {
+ public:
+  RelationCheck(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const ConformanceCase& c,
+                const Scene& related)
+      : entry_(entry),
+        settings_(settings),
+        device_(device),
+        case_(c),
+        by_(relation_of(c.relation)),
+        related_(related) {}
+
+  ConformanceResult run() {
+    const Scene scene = load_scene(case_.scene);
+    const Motion base = fresh_motion(scene);
+    ConformanceResult out;
+    out.frames = scene.time.frames();
+    const auto solver = load_solver(entry_, settings_, device_, related_);
+    Motion so_far;
+    if (case_.relation == "restart") {
+      const std::size_t half = base.size() / 2;
+      if (!restart_after(*solver, base[half], frame_input(scene, static_cast<int>(half) - 1))) {
+        out.unsupported = entry_.info.name + ": positions and velocities are not its whole state";
+        return out;
+      }
+      so_far = {base.begin(), base.begin() + static_cast<std::ptrdiff_t>(half)};
+    }
+    expect(base, motion_of(*solver, related_, std::move(so_far)), scene, out);
+    if (case_.relation != "repeat") return out;
+    solver->reset();
+    expect(base, motion_of(*solver, related_), scene, out);
+    return out;
+  }
+
+ private:
+  Motion fresh_motion(const Scene& s) const { return motion_of(*load_solver(entry_, settings_, device_, s), s); }
+
+  void expect(const Motion& base, const Motion& found, const Scene& scene, ConformanceResult& out) const {
+    double at_most = by_.at_most;
+    if (case_.relation == "repeat" && entry_.info.name == "paper") at_most = 1e-6;
+    const double distance = distance_of(base, found, scene, by_.mirrored, by_.transposed);
+    const bool bits = at_most > 0 || std::equal(base.begin(), base.end(), found.begin(), found.end(),
+                                                [](const ClothState& a, const ClothState& b) {
+                                                  return a.position == b.position && a.velocity == b.velocity;
+                                                });
+    if (bits && !(distance <= at_most) && by_.own_error) at_most = std::max(at_most, own_error(base, scene));
+    if (!bits || !(distance <= at_most))
+      out.faults.push_back(
+          fmt::format("a vertex is {:.4g} of the longer side from where it must be, more than {:.4g}{}", distance,
+                      at_most, at_most > 0 ? "" : ", or the bits differ"));
+  }
+
+  /// Largest over vertices and frames, divided by the longer side of the cloth; NaN if any position is.
+  static double distance_of(const Motion& base, const Motion& found, const Scene& scene, bool mirrored = false,
+                            bool transposed = false) {
+    const std::size_t columns = static_cast<std::size_t>(scene.cloth.columns);
+    const std::size_t rows = static_cast<std::size_t>(scene.cloth.rows);
+    double worst = 0;
+    for (std::size_t f = 0; f < base.size(); ++f)
+      for (std::size_t v = 0; 3 * v < base[f].position.size(); ++v) {
+        Vec3 expected = vertex_at(base[f].position, static_cast<std::uint32_t>(v));
+        if (mirrored) expected[0] = -expected[0];
+        const std::size_t at = transposed ? v % columns * rows + v / columns : v;
+        const Vec3 x = vertex_at(found[f].position, static_cast<std::uint32_t>(at));
+        worst = max_or_nan(worst, length(minus(x, expected)));
+      }
+    return worst / std::max(scene.cloth.width_m, scene.cloth.height_m);
+  }
+
+  /// Effect of frames half as long.
+  double own_error(const Motion& base, const Scene& scene) const {
+    const Scene finer = load_scene(case_.scene, {fmt::format("time.frame_rate_hz={}", 2 * scene.time.frame_rate_hz)});
+    const Motion all = fresh_motion(finer);
+    Motion found;
+    for (std::size_t f = 0; f < all.size(); f += 2) found.push_back(all[f]);
+    return distance_of(base, found, scene);
+  }
+
+  const SolverEntry& entry_;
+  const json& settings_;
+  const DeviceOptions& device_;
+  const ConformanceCase& case_;
+  const Relation& by_;
+  const Scene& related_;
+};
+
+}  // namespace
+
+std::vector<std::string> relations_of(const std::string& scene) {
+  if (scene == "conformance/drop") return {"repeat", "restart"};
+  std::vector<std::string> all;
+  if (scene == "conformance/sheet")
+    for (const Relation& r : kRelations) all.emplace_back(r.name);
+  return all;
+}
+
+std::vector<std::string> relation_overrides(const std::string& relation) { return relation_of(relation).overrides; }
+
+ConformanceResult run_relation(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                               const Scene& related, const ConformanceCase& c) {
+  return RelationCheck(entry, settings, device, c, related).run();
+}
+
+}  // namespace clothbench
