@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "truth/root.hpp"
 #include "truth/solutions.hpp"
 #include "truth/strip.hpp"
 
@@ -11,8 +10,6 @@ namespace clothbench::truth {
 namespace {
 
 constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
-constexpr double kHeldIncline = 1e-3,
-                 kHeldCapstan = 5e-3;  // of L: creep of what holds; slipping is a hundred times as far
 
 /// The face a sheet lies on: its outward normal, and the distance of its margin from the sheet.
 struct Face {
@@ -177,14 +174,6 @@ ReferenceCase incline(const Strip& s) {
              dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
     return sum / s.links;
   };
-  if (slope.speed_m_per_s == 0 && slope.angle_rad > 0)
-    known.threshold = Threshold{
-        "colliders.0.friction",
-        std::tan(slope.angle_rad),
-        kHeldIncline * s.length_m,
-        "critical angle",
-        "degree",
-        [angle = slope.angle_rad](double found) { return (angle - std::atan(found)) * 180 / std::numbers::pi; }};
   return known;
 }
 
@@ -211,25 +200,6 @@ ReferenceCase capstan(const Strip& s) {
   known.continuum = [s, smooth](double share, int frame) {
     return draped_columns(s, smooth(frame)).at(static_cast<std::size_t>(std::lround(share * s.links)));
   };
-  const auto greatest = [polygon, light = strip.light_m](double friction) {
-    Capstan other = polygon;
-    other.friction = friction;
-    return greatest_overhang_m(other, light);
-  };
-  // Where a turn alone would hold there is no threshold below.
-  const double locks = 1 / std::tan(std::numbers::pi / (2 * strip.turns));
-  const auto missing = [&](double friction) {
-    return friction < 0.99 * locks ? greatest(friction) - strip.heavy_m : 1;
-  };
-  if (strip.heavy_m > strip.light_m) {
-    const double exact = positive_root(missing, 0.1 * locks, true, "capstan");
-    known.threshold = Threshold{"colliders.0.friction",
-                                exact,
-                                kHeldCapstan * s.length_m,
-                                "overhang held",
-                                "1",
-                                [greatest, heavy = strip.heavy_m](double found) { return heavy / greatest(found) - 1; }};
-  }
   return known;
 }
 

@@ -9,16 +9,6 @@
 
 namespace clothbench::truth {
 
-/// A scene that holds or slips depending on its friction: the threshold found by trying coefficients is compared with
-/// the closed form.
-struct Threshold {
-  std::string key;          ///< scene key that is varied
-  double exact = 0;         ///< the scene holds from this value on
-  double held_below_m = 0;  ///< |quantity| at the end of a run that held
-  std::string error_name, error_units;
-  std::function<double(double found)> error;
-};
-
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
 /// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
 /// line of the sheet; a vertex lies at its column's position plus its offset along axis_v. A triangle mesh has no exact
@@ -41,7 +31,6 @@ struct ReferenceCase {
   std::function<std::vector<Vec3>(int frame)> column_speeds;  ///< [m/s]; null if there is no solution
   std::function<Vec3(double share, int frame)> continuum;     ///< at a share 0..1 of the width; null: as `columns`
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
-  std::optional<Threshold> threshold;
 };
 
 /// The reference case that a scene names, or none. Throws Error with the scene's source if the scene does not meet the

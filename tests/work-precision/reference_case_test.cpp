@@ -203,19 +203,17 @@ TEST(ReferenceCases, ContactIsRefusedWhereTheClosedFormDoesNotHold) {
       << "any parameter will do";
 }
 
-TEST(ReferenceCases, ThresholdsAreWhereTheClosedFormsTurn) {
-  const auto stick = *truth::reference_case_of(scene("incline-stick"))->threshold;
-  EXPECT_NEAR(stick.exact, std::tan(16 * 3.14159265358979 / 180), 1e-12);
-  EXPECT_NEAR(stick.error(std::tan(15.9 * 3.14159265358979 / 180)), 0.1, 1e-9);
-  const auto hold = *truth::reference_case_of(scene("capstan-hold"))->threshold;
-  EXPECT_NEAR(hold.error(hold.exact), 0, 1e-12);
-  EXPECT_LT(hold.exact, 0.3);
-  for (const double side : {-1e-6, 1e-6}) {
-    const Scene s = scene("capstan-hold", {"colliders.0.friction=" + std::to_string(hold.exact * (1 + 1e3 * side))});
+TEST(ReferenceCases, TurnFromSlippingToHoldingAtTheClosedForm) {
+  const auto moves = [](const std::string& name, double friction, const std::string& with) {
+    const Scene s = scene(name, {"colliders.0.friction=" + std::to_string(friction), with});
     const auto known = truth::reference_case_of(s);
-    EXPECT_EQ(known->quantity(known->columns(s.time.frames())) == 0, side > 0);
-  }
-  EXPECT_FALSE(truth::reference_case_of(scene("incline-stop"))->threshold);
+    return std::abs(known->quantity(known->columns(s.time.frames()))) > 1e-9;
+  };
+  const double critical = std::tan(16 * 3.14159265358979 / 180);
+  EXPECT_TRUE(moves("incline-stick", critical - 1e-5, "time.duration_s=2"));
+  EXPECT_FALSE(moves("incline-stick", critical + 1e-5, "time.duration_s=2"));
+  EXPECT_TRUE(moves("capstan-hold", 0.225, "time.duration_s=0.4"));
+  EXPECT_FALSE(moves("capstan-hold", 0.23, "time.duration_s=0.4"));
 }
 
 TEST(Seed, DrawsScenesThatTheirCasesAnswerAndTheSameOnesAgain) {
