@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "base/former_names.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "check/gates.hpp"
@@ -55,7 +54,6 @@ BaselineRun run_from(const json& j, const std::string& where) {
   c.stages = j.at("stages");
   for (const auto& [name, value] : j.at("scalars").items())
     c.scalars[name] = number_at(value, name, where + "/scalars/" + name);
-  if (j.contains("metric_versions")) c.versions = j["metric_versions"].get<std::map<std::string, int>>();
   return c;
 }
 
@@ -69,10 +67,23 @@ ordered_json json_of(const BaselineRun& c) {
   j["class"] = c.klass;
   j["failed_frame"] = c.failed_frame;
   j["stages"] = c.stages;
-  if (!c.versions.empty()) j["metric_versions"] = c.versions;
   j["scalars"] = ordered_json::object();
   for (const auto& [name, v] : c.scalars) j["scalars"][name] = std::isfinite(v) ? ordered_json(v) : ordered_json();
   return j;
+}
+
+/// The part of a result without the scalars that `has` leaves out.
+BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
+  BaselineRun c;
+  c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
+  c.conditions = conditions_of_results(r);
+  c.status = r.outcome.status;
+  c.klass = r.outcome.klass;
+  c.failed_frame = r.outcome.failed_frame;
+  for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
+  for (const auto& [name, v] : r.summary)
+    if (has(name) && std::isfinite(v)) c.scalars[name] = v;
+  return c;
 }
 
 }  // namespace
@@ -82,26 +93,16 @@ std::string RunKey::file_name() const { return run_name(scene, solver, setting);
 std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
 
 BaselineRun gated_part(const RunRecord& r) {
-  BaselineRun c;
-  c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
-  c.conditions = conditions_of_results(r);
-  c.status = r.outcome.status;
-  c.klass = r.outcome.klass;
-  c.failed_frame = r.outcome.failed_frame;
-  for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
-  for (const auto& [name, v] : r.summary)
-    if (find_gate(name) != nullptr && std::isfinite(v)) c.scalars[name] = v;
-  for (const auto& [name, unused] : c.scalars)
-    for (const std::string& metric : metrics_behind(name))
-      for (const MetricSeries& m : r.accuracy.metrics)
-        if (m.name == metric && m.version != 1) c.versions[metric] = m.version;
-  return c;
+  return part_of(r, [](const std::string& name) { return find_gate(name) != nullptr; });
+}
+
+BaselineRun whole_part(const RunRecord& r) {
+  return part_of(r, [](const std::string& name) { return !is_of_machine(name); });
 }
 
 Baseline read_baseline(const std::filesystem::path& file) {
   const std::string source = file.string();
-  json j = parse_json(read_text(file), source);
-  rename_key(j, "cells", "runs", source);
+  const json j = parse_json(read_text(file), source);
   validate_json(j, kBaselineSchema, source);
   Baseline b;
   const json& made = j.at("made_with");

@@ -32,7 +32,6 @@ struct BaselineRun {
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
   std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
-  std::map<std::string, int> versions;    ///< of the metrics that the scalars are computed from; absent = 1
 };
 
 /// How a baseline was made. Only for readers of the file; nothing is computed from it.
@@ -53,6 +52,8 @@ struct Baseline {
 
 /// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
 BaselineRun gated_part(const RunRecord&);
+/// The same with every scalar that does not depend on the machine.
+BaselineRun whole_part(const RunRecord&);
 
 /// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a
 /// key that is unknown or missing, a scalar that has no gate, or a run that is listed twice.

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "check/baseline.hpp"
+#include "check/times.hpp"
 
 namespace clothbench {
 
-/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts.
-enum class Verdict { Same, New, Improved, Failed };
+/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts. Changed: of two builds, neither
+/// of which is right.
+enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
 
@@ -24,9 +26,15 @@ struct Finding {
 
 struct CheckedRun {
   RunKey key;
-  std::vector<Finding> findings;
+  std::vector<Finding> findings = {};
+  TimeRatio time = {};                              ///< of two builds
+  double time_a_s = kMissing, time_b_s = kMissing;  ///< median over the processes of each side
+  bool in_turns = true;                             ///< see in_turns in times.hpp
+  std::string marks = {};  ///< kinds of conditions that differ and were allowed: "scene, machine"
 
   Verdict verdict() const;
+  /// "noise", "faster", "slower", or why there is no statement about times.
+  std::string time_verdict() const;
   /// A line for each finding whose verdict `is` accepts.
   std::string sentences(const std::function<bool(Verdict)>& is) const;
 };
@@ -40,29 +48,31 @@ struct Checked {
   bool passed() const { return count(Verdict::Failed) == 0; }
 };
 
-/// A metric whose rule has different versions in baseline and result.
-struct VersionDifference {
-  std::string metric;
-  int baseline, found;
-};
-
 /// What is wrong with the motion in the record's file; empty if nothing is, or if it was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
-/// For the metrics behind scalars that both have.
-std::vector<VersionDifference> version_differences(const BaselineRun& was, const BaselineRun& is);
-
 /// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
 /// another; and what is wrong with the motion in its file, if it has one (results/trajectory.hpp). If the outcome
-/// differs, the rest is not compared; nor are scalars of a metric whose version differs. Throws Error if the record's
-/// scene has no cloth size.
+/// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
+
+/// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine
+/// (relative tolerance 1e-9), and, where one differs, the maximum distance between the two motions over the longer
+/// side.
+std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
+
+/// One element per process: the runs of its folder.
+using Processes = std::vector<std::vector<RunRecord>>;
+
+/// Compares two builds, run by run: results of the first process of each side, times of all processes. Runs in the
+/// order of A, then those that only B has. Throws Error if paired runs, or processes of one side, differ in a condition
+/// whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
+Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
 /// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in
-/// the baseline is new. Throws Error if a run is twice among the results, if a condition of a kind that is not in
-/// `allowed` differs from the baseline's (results/conditions.hpp), or if the version of a metric's rule does: values of
-/// two rules cannot be compared.
+/// the baseline is new. Throws Error if a run is twice among the results, or if a condition of a kind that is not in
+/// `allowed` differs from the baseline's (results/conditions.hpp).
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {

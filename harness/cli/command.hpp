@@ -62,9 +62,8 @@ inline std::string message_of(const std::string& text) {
 
 /// Declares the command and its options.
 using AddCommand = void(CLI::App&, Console&);
-AddCommand add_list, add_validate, add_plan, add_moduli, add_run, add_run_child, add_study, add_report, add_import,
-    add_check, add_compare, add_history, add_completion, add_manual, add_bench, add_render, add_xr, add_metamorphic,
-    add_threshold, add_friction, add_conformance;
+AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
+    add_compare, add_completion, add_manual, add_bench, add_render, add_xr, add_conformance;
 
 /// Options of every command that runs a solver: --device, --validate, --allow-no-device.
 struct DeviceFlags : DeviceChoice {

@@ -24,10 +24,8 @@ int report_error(const Console& console, const std::string& message, ExitCode co
 }
 
 /// In the order of the help.
-constexpr AddCommand* kCommands[] = {add_list,        add_validate,  add_plan,     add_moduli,
-                                     add_run,         add_run_child, add_study,    add_report,
-                                     add_import,      add_check,     add_compare,  add_history,
-                                     add_metamorphic, add_threshold, add_friction, add_conformance,
+constexpr AddCommand* kCommands[] = {add_list,       add_validate, add_plan,  add_run,     add_run_child,   add_study,
+                                     add_report,     add_import,   add_check, add_compare, add_conformance,
 #ifdef CLOTHBENCH_WITH_BENCH
                                      add_bench,
 #endif
@@ -37,7 +35,7 @@ constexpr AddCommand* kCommands[] = {add_list,        add_validate,  add_plan,  
 #ifdef CLOTHBENCH_WITH_XR
                                      add_xr,
 #endif
-                                     add_completion,  add_manual};
+                                     add_completion, add_manual};
 
 /// Of a first word that is no command.
 void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {

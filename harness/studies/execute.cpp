@@ -6,15 +6,12 @@
 
 #include "base/tint.hpp"
 #include "base/words.hpp"
-#include "report/in_short.hpp"
 #include "report/report.hpp"
 #include "report/verdict.hpp"
-#include "report/withheld.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
 #include "runner/run_choice.hpp"
 #include "runner/supervise.hpp"
-#include "studies/front_moduli.hpp"
 
 namespace clothbench {
 namespace {
@@ -139,8 +136,7 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
                              call.progress(what, done, total);
                              note.write(what);
                            }};
-  RunResult result = execute_runs(plan, options);
-  if (plan.measure_moduli) add_moduli_runs(plan, options, manifest, result);
+  const RunResult result = execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
   end.json = [=, out = end.out, part = call.part] {

@@ -4,7 +4,6 @@
 
 #include "report/report.hpp"
 #include "report/verdict.hpp"
-#include "report/withheld.hpp"
 #include "results/result_folder.hpp"
 #include "runner/child.hpp"
 #include "runner/environment.hpp"

@@ -128,34 +128,6 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
   EXPECT_EQ(json::parse(content(baseline())), bad);
 }
 
-TEST_F(CheckCommand, AnotherVersionOfAMetricIsBadInputUntilUpdated) {
-  const auto write = [&](int version) {
-    RunRecord c = with(contact_run("sweep"), "wrong_side_samples_max", 3);
-    c.header.vertices = 1;
-    const std::string name = run_name(c.header);
-    fs::remove(run() / (name + ".h5"));
-    RunWriter writer(run(), c.header);
-    AccuracyPass pass;
-    pass.time_s = {0};
-    pass.position = {0, 0, 0};
-    pass.metrics = {{"wrong_side_samples", "1", "", {3}, version}};
-    writer.write_accuracy(pass);
-    writer.finish(c.outcome, c.summary);
-  };
-  write(1);
-  ASSERT_EQ(check("--update"), 0) << text_;
-  EXPECT_EQ(content(baseline()).find("metric_versions"), std::string::npos)
-      << "version 1 is what a baseline means that names none";
-  EXPECT_EQ(check(), 0) << text_;
-  write(2);
-  EXPECT_EQ(check(), 2) << text_;
-  for (const char* part : {"sweep__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
-    EXPECT_NE(text_.find(part), std::string::npos) << text_;
-  ASSERT_EQ(check("--update"), 0) << text_;
-  EXPECT_EQ(json::parse(content(baseline()))["runs"][1]["metric_versions"]["wrong_side_samples"], 2);
-  EXPECT_EQ(check(), 0) << text_;
-}
-
 /// Whatever the summary says: the run of the baseline has the same.
 TEST_F(CheckCommand, PositionsAreLookedAt) {
   const auto write = [&](const std::vector<float>& position) {

@@ -7,8 +7,6 @@
 #include <limits>
 
 #include "check/gates.hpp"
-#include "check/github.hpp"
-#include "check/junit.hpp"
 #include "check/print.hpp"
 #include "clothbench/error.hpp"
 #include "results.hpp"
@@ -110,30 +108,6 @@ TEST(Compare, TheScenesOwnVerdict) {
   EXPECT_EQ(verdict_of("expect.depth_max_m", 1, 0), Verdict::Failed);
   EXPECT_EQ(verdict_of("expect.depth_max_m", 0, 1), Verdict::Improved);
   EXPECT_EQ(verdict_of("expect.depth_max_m", 0, 0), Verdict::Same);
-}
-
-/// A run whose wrong side was measured by some version of the rule.
-RunRecord by_version(int version, double samples) {
-  RunRecord c = with(with(contact_run(), "wrong_side_samples_max", samples), "contact_violated_longest_s", samples);
-  c.accuracy.metrics = {{"wrong_side_samples", "1", "", {0, samples}, version}};
-  return c;
-}
-
-TEST(Compare, TwoVersionsOfARuleMakeNoVerdict) {
-  const std::vector<Finding> f = findings(by_version(1, 10), by_version(2, 90));
-  ASSERT_EQ(f.size(), 1u) << "neither of the two scalars computed from it";
-  EXPECT_EQ(f[0].quantity, "metric wrong_side_samples");
-  EXPECT_EQ(f[0].baseline, "version 1");
-  EXPECT_EQ(f[0].found, "version 2");
-  EXPECT_FALSE(findings(by_version(2, 10), by_version(2, 90)).empty());
-  EXPECT_EQ(findings(by_version(2, 10), by_version(2, 90))[0].quantity, "contact_violated_longest_s");
-  const std::string said = error_of([&] { check_runs(baseline_of({by_version(1, 10)}), {by_version(2, 10)}); });
-  for (const char* part : {"desk__xpbd__default", "wrong_side_samples", "version 1", "version 2", "--update"})
-    EXPECT_NE(said.find(part), std::string::npos) << said;
-  EXPECT_EQ(error_of([&] { check_runs(baseline_of({by_version(2, 10)}), {by_version(2, 10)}); }), "no error");
-  const Updated u = update_baseline(baseline_of({by_version(1, 10)}), {by_version(2, 10)}, {});
-  EXPECT_EQ(u.baseline.runs[0].versions.at("wrong_side_samples"), 2);
-  ASSERT_EQ(u.changes.size(), 1u);
 }
 
 TEST(Compare, Outcome) {

@@ -1,5 +1,5 @@
 """usage: check_console.py CLOTHBENCH SOURCE: what people and machines see: colour and a live line on a terminal alone, JSON and
-examples for every command, the history's format."""
+examples for every command."""
 import fcntl
 import json
 import os
@@ -100,17 +100,12 @@ class Console(unittest.TestCase):
             "list": ["features"],
             "validate": ["tiny.json"],
             "plan": ["paper/gravity", "--solver", "ballistic"],
-            "moduli": ["ballistic"],
             "run": RUN[1:] + ["--out", self.out + "-2"],
             "study": ["table3", "--quick", "--list-runs"],
             "report": [self.out, "-o", self.out + "-report"],
             "import": [self.out],
             "check": [self.out, "--baseline", baseline],
             "compare": [self.out, self.out],
-            "history": [self.out],
-            "metamorphic": ["ballistic"],
-            "threshold": ["validation/incline-stick", "--solver", "ballistic"],
-            "friction": ["ballistic"],
             "bench": ["--benchmark_filter=gravity-8-single/ballistic"],
             "render": [self.out, "--run", "ballistic", "--frames", "0", "--size", "200x200", "-o", self.out + "-pictures"],
             "completion": ["bash"],
@@ -128,24 +123,6 @@ class Console(unittest.TestCase):
         self.assertEqual(json.loads(out)["exit_code"], 2)
         self.assertIn("paper/gravity", json.loads(out)["error"])
         self.assertIn("paper/gravity", errors)
-
-    def test_history_is_what_chart_tools_read(self):
-        """github-action-benchmark: customSmallerIsBetter is a list of {name, unit, value, range?, extra?}; a chart for each name."""
-        self.piped(*RUN, "--solver", "bullet-soft", "--trials", "3", "--out", self.out)
-        benches = json.loads(self.piped("history", self.out)[0])
-        self.assertGreaterEqual(len(benches), 4)
-        for bench in benches:
-            self.assertLessEqual({"name", "unit", "value"}, set(bench))
-            self.assertLessEqual(set(bench), {"name", "unit", "value", "range", "extra"})
-            for key in set(bench) - {"value"}:
-                self.assertIsInstance(bench[key], str)
-            self.assertIs(type(bench["value"]), float, bench)
-            self.assertTrue(0 <= bench["value"] < float("inf") and bench["name"] and bench["unit"], bench)
-            if "range" in bench:
-                self.assertRegex(bench["range"], r"^± \d+(\.\d+)?(e[+-]\d+)?$")
-        names = [bench["name"] for bench in benches]
-        self.assertEqual(len(names), len(set(names)), "a name is what a chart is of")
-        self.assertTrue(any("range" in bench and bench["unit"] == "ms" for bench in benches))
 
     def test_bench_is_compared_by_google_benchmarks_own_tool(self):
         tool = "/usr/share/benchmark/compare.py"

@@ -161,8 +161,7 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   EXPECT_TRUE(here.header.environment.at("solver_features").at("ignores").is_array());
   const std::string report = (dir_ / "report").string();
   ASSERT_EQ(command("report " + out.string() + " -o " + report).code, 0);
-  for (const char* name :
-       {"penetration.md", "penetration.csv", "penetration.json", "penetration-series.csv", "features.json"})
+  for (const char* name : {"report.md", "tables.tex", "runs.csv", "runs.json", "series.csv", "trials.csv"})
     EXPECT_TRUE(fs::exists(fs::path(report) / name)) << name;
 
   EXPECT_EQ(json_of("study " + file.string() + " --quick --out " + (dir_ / "quick").string()).at("ok"), 1);
@@ -285,79 +284,6 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
       command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("expected a scene with \"truth\""), std::string::npos) << none.text;
-}
-
-TEST_F(Cli, MetamorphicAndThresholdSpeakForMachinesToo) {
-  const nlohmann::json properties = json_of("metamorphic ballistic");
-  ASSERT_EQ(properties.size(), 36u);
-  for (const auto& p : properties) EXPECT_TRUE(p["status"] == "pass") << p.dump();
-  const nlohmann::json found = json_of("threshold validation/incline-stick --solver ballistic");
-  EXPECT_EQ(found[0]["bound"], ">= ") << "it falls through at any friction";
-  EXPECT_EQ(command("threshold validation/atwood --solver ballistic").code, 2);
-  EXPECT_EQ(command("metamorphic ballistic --set cloth.grid=[3,3]").code, 2);
-  const nlohmann::json friction = json_of("friction ballistic --substeps 64");
-  ASSERT_EQ(friction.size(), 1u) << "it has no substeps";
-  ASSERT_EQ(friction[0]["answers"].size(), 7u);
-  for (const nlohmann::json& answer : friction[0]["answers"])
-    EXPECT_EQ(answer["text"].get<std::string>().find("✓"), std::string::npos)
-        << answer << ": it falls through everything";
-  EXPECT_EQ(friction[0]["answers"][0]["text"], "slips at 1.5 of it");
-}
-
-/// One row, whether its runs are stored or not, found now or read again; and a report has it too.
-TEST_F(Cli, SearchesAndCardsAreStoredGoneOnWithAndReported) {
-  const auto out = [&](const char* name) { return " --out " + (dir_ / name).string(); };
-  const std::string threshold = "threshold validation/capstan-hold --solver ballistic --set time.duration_s=0.5",
-                    measured = "moduli bullet-soft --no-sweep --set solver.substeps=1 --set solver.iterations=1";
-  for (const auto& [words, folder] : {std::pair{threshold, "threshold"}, std::pair{measured, "moduli"},
-                                      std::pair<std::string, const char*>{"metamorphic ballistic", "relations"}}) {
-    if (command("list solvers").text.find("bullet-soft") == std::string::npos && words == measured) continue;
-    const nlohmann::json found = json_of(words);
-    EXPECT_EQ(json_of(words + out(folder)), found) << words;
-    const Answer again = command(words + out(folder));
-    EXPECT_EQ(again.code, 2) << again.text;
-    EXPECT_NE(again.text.find("--resume"), std::string::npos) << again.text;
-    EXPECT_EQ(json_of(words + out(folder) + " --resume"), found) << words;
-  }
-  const RunRecord high = read_run(dir_ / "threshold" / (read_manifest(dir_ / "threshold").runs.at(0) + ".h5"));
-  EXPECT_EQ(high.header.environment["protocol"], "threshold");
-  EXPECT_EQ(high.accuracy.time_s.size(), 31u) << "positions are stored as of any run";
-  const Answer report = command("report " + (dir_ / "threshold").string() + " -o " + (dir_ / "report").string());
-  EXPECT_EQ(report.code, 0) << report.text;
-  EXPECT_NE(report.text.find("Thresholds of friction"), std::string::npos) << report.text;
-  EXPECT_NE(report.text.find("≤ 0.11378"), std::string::npos) << report.text;
-  EXPECT_TRUE(fs::exists(dir_ / "report" / "friction.json"));
-}
-
-/// Relations are runs: a report has their table, `check` their bounds, and a resumed study measures only what is
-/// missing.
-TEST_F(Cli, MetamorphicRelationsAreReportedCheckedAndResumed) {
-  const std::string out = (dir_ / "relations").string(), words = "metamorphic ballistic --out " + out;
-  const nlohmann::json found = json_of(words);
-  const fs::path mirror = fs::path(out) / "metamorphic-sheet-mirror__ballistic__default.h5";
-  ASSERT_TRUE(fs::exists(mirror));
-  const auto kept = fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5");
-  fs::remove(mirror);
-  EXPECT_EQ(json_of(words + " --resume"), found);
-  EXPECT_TRUE(fs::exists(mirror));
-  EXPECT_EQ(fs::last_write_time(fs::path(out) / "metamorphic-sheet-repeat__ballistic__default.h5"), kept);
-
-  const std::string check = "check " + out + " --baseline " + (dir_ / "b.json").string();
-  ASSERT_EQ(command(check + " --update").code, 0);
-  EXPECT_EQ(command(check).code, 0) << command(check).text;
-  RunRecord broken = read_run(mirror);
-  broken.summary["expect.metamorphic_distance"] = 0;
-  fs::remove(mirror);
-  RunWriter(out, broken.header).finish(broken.outcome, broken.summary);
-  const Answer worse = command(check);
-  EXPECT_EQ(worse.code, 1) << worse.text;
-  EXPECT_NE(worse.text.find("expect.metamorphic_distance"), std::string::npos) << worse.text;
-
-  const Answer report = command("report " + out + " -o " + (dir_ / "report").string());
-  ASSERT_EQ(report.code, 0) << report.text;
-  EXPECT_NE(report.text.find("Metamorphic properties of ballistic"), std::string::npos) << report.text;
-  std::ifstream stored(dir_ / "report" / "metamorphic.json");
-  EXPECT_EQ(nlohmann::json::parse(stored).size(), found.size());
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 // What the penetration tables, files and the feature table say.
-#include "report/penetration.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "fake_runs.hpp"
-#include "report/contact_pairs.hpp"
 #include "report/features.hpp"
+#include "report/verdict.hpp"
 
 namespace clothbench {
 namespace {
@@ -48,10 +46,8 @@ RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& sce
   return c;
 }
 
-/// Entry of the row of `scene` and `solver` under a heading.
-std::string run_of(const Table& t, const std::string& scene, const std::string& solver, const std::string& head) {
-  return entry(t, scene, solver, head);
-}
+constexpr const char* kContact = "Contact";
+constexpr const char* kVerdicts = "Verdict on the acceptance criteria of each scene";
 
 TEST(Penetration, SetUpsAreToldByWhatTouches) {
   const RunRecord any = desk_run("xpbd", "default", "any_vertex_inside");
@@ -67,28 +63,15 @@ TEST(Penetration, SetUpsAreToldByWhatTouches) {
       of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
       of_scene(any, "oddest", R"({"colliders":[7]})")};
   EXPECT_FALSE(has_contact(runs[1]));
-  const std::vector<ContactSetUp> ups = set_ups(runs);
-  ASSERT_EQ(ups.size(), 5u);
   std::string text;
-  for (const ContactSetUp& u : ups) {
-    text += u.kind + ":";
-    for (const ContactScene& s : u.scenes) text += " " + s.name;
-    text += "; ";
-  }
-  EXPECT_EQ(text, "rooms: desk-flat-low sheet; capsules: sweep; hand: push; grip: pull; shapes: ball oddest; ");
-  EXPECT_EQ(ups[0].title, "Cloth on static meshes (section 4.2, Table 5)");
-  EXPECT_EQ(ups[3].title, "Hands hold and pull cloth (section 4.4)");
-  for (const ContactSetUp& u : ups)
-    for (const Table& t : std::vector<Table>{contact_table(u), cost_table(u)})
-      for (const auto& row : t.rows) EXPECT_EQ(row.size(), t.rows[0].size()) << t.title;
-}
-
-TEST(Penetration, AStudySaysTheSetUp) {
-  RunRecord c = desk_run("xpbd", "default", "any_vertex_inside");
-  c.header.environment["set_up"] = "hand";
-  const std::vector<RunRecord> runs = {c};
-  EXPECT_EQ(set_ups(runs).at(0).kind, "hand") << "not of the room that it touches";
-  EXPECT_EQ(set_ups(runs).size(), 1u);
+  const RunTable table(runs);
+  for (const Row& r : table.rows())
+    if (r.published < 0) text += r.scene + ":" + r.set_up + " ";
+  EXPECT_EQ(text,
+            "desk-flat-low:rooms free: ball:shapes sweep:capsules push:hand pull:grip sheet:rooms odd: odder: "
+            "oddest:shapes ");
+  EXPECT_EQ(tables_titled(runs, kContact).at(0).title, "Contact: Cloth on static meshes");
+  EXPECT_EQ(tables_titled(runs, kContact).size(), 5u);
 }
 
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
@@ -97,18 +80,18 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   runs[1].summary["tunnelled_fraction_max"] = 0.3456;
   runs[1].summary["tunnelled_fraction_end"] = 0.0004;
   runs[1].summary["expect.tunnelled_fraction_max"] = 0;
-  const Table t = contact_table(set_ups(runs).at(0));
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled, greatest / end [%]"), "0 / 0");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "tunnelled, greatest / end [%]"), "34.6 / <0.1");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "contour, greatest / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
+  const Table t = table_of(runs, kContact);
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "tunnelled, max / end [%]"), "0 / 0");
+  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "tunnelled, max / end [%]"), "34.6 / <0.1");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "contour, max / settled [mm]"), "12.3 / 0");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
       << "what is not nothing never reads as nothing";
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "xpbd", "verdict"), "pass");
-  EXPECT_EQ(run_of(t, "desk-flat-low", "paper", "verdict"), "fail");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "verdict"), "pass");
+  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "verdict"), "fail");
   EXPECT_EQ(t.markdown().find("depth, vertex"), std::string::npos) << "a column without a value is left out";
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
-  const Table broken = failed_expectations_table(set_ups(runs));
+  const Table broken = table_of(runs, "Acceptance criteria that are violated");
   ASSERT_EQ(broken.rows.size(), 2u);
   EXPECT_EQ(broken.rows[1],
             (std::vector<std::string>{"desk-flat-low", "paper", "tunnelled_fraction_max", "at most 0", "0.3456"}));
@@ -138,71 +121,24 @@ TEST(Penetration, OverviewHasAColumnForEverySetting) {
       with_outcome(desk_run("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
                    "not in this build"),
       of_scene(desk_run("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
-  const auto rows = parse_markdown(verdict_table(set_ups(runs)).markdown());
+  const auto rows = parse_markdown(table_of(runs, kVerdicts).markdown());
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"scene", "bullet-deformable", "paper whole-room", "xpbd"}));
   EXPECT_EQ(rows[1], (std::vector<std::string>{"desk-flat-low", "unsupported", "pass", "pass"}));
   EXPECT_EQ(rows[2], (std::vector<std::string>{"ball", "–", "–", "pass"}));
 }
 
-TEST(Penetration, SeriesHaveOneRowAFrame) {
-  const std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none")};
-  const auto csv = parse_csv(series_csv(set_ups(runs)));
+TEST(Penetration, SeriesHaveOneRowPerFrame) {
+  const auto csv = parse_csv(series_csv(RunTable({desk_run("xpbd", "default", "none")})));
   ASSERT_EQ(csv.size(), 3u);
   for (const auto& row : csv) ASSERT_EQ(row.size(), csv[0].size());
-  EXPECT_EQ(csv[2][8], "0.0138889");
-  EXPECT_EQ(csv[2][9], "0.0123");
-  EXPECT_EQ(csv[2][10], "") << "NaN is missing";
-  EXPECT_EQ(csv[2][11], "") << "so is a metric the scene does not have";
-}
-
-TEST(Penetration, JsonHasNullForMissing) {
-  const std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none")};
-  const nlohmann::json j = nlohmann::json::parse(penetration_json(set_ups(runs)).dump());
-  EXPECT_EQ(j.at(0).at("contact_length_max_m"), 0.0123);
-  EXPECT_TRUE(j.at(0).at("depth_max_m").is_null());
-  EXPECT_EQ(j.at(0).at("expect"), "pass");
-}
-
-TEST(RoomPair, DistanceIsMeasuredVertexByVertex) {
-  std::vector<RunRecord> runs = {desk_run("paper", "default", "any_vertex_inside"),
-                                 desk_run("paper", "whole-room", "none"),
-                                 desk_run("xpbd", "default", "any_vertex_inside")};
-  runs[1].accuracy.position[4] = 0.5f;   // first frame, second vertex
-  runs[1].accuracy.position[8] = 0.25f;  // last frame, first vertex
-  runs[1].summary["frame_wall_median_s"] = 0.012;
-  runs[1].summary["stage_device_median_s.Mesh"] = 0.2;
-  const std::vector<RunPair> pairs = run_pairs(runs, "whole-room");
-  ASSERT_EQ(pairs.size(), 1u) << "xpbd has no other half";
-  EXPECT_EQ(pairs[0].run, &runs[0]);
-  EXPECT_EQ(pairs[0].other, &runs[1]);
-  EXPECT_EQ(pairs[0].apart.end, 0.25);
-  EXPECT_EQ(pairs[0].value, 0.5);
-  const auto rows = parse_markdown(room_table(pairs).markdown());
-  ASSERT_EQ(rows.size(), 4u);
-  EXPECT_EQ(rows[0][3], "wall [ms]");
-  EXPECT_EQ(rows[3][3], "3.00");
-  EXPECT_EQ(rows[3][5], "100") << "of the stages that serve static meshes";
-  EXPECT_NE(room_table(pairs).note.find("0.25 m at the end, 0.5 m over all frames"), std::string::npos)
-      << room_table(pairs).note;
-}
-
-TEST(RoomPair, WhatDiffersOtherwiseOrIsNotMeasuredIsNotCompared) {
-  std::vector<RunRecord> runs = {desk_run("paper", "default", "any_vertex_inside"),
-                                 desk_run("paper", "whole-room", "none")};
-  runs[1].accuracy.position.pop_back();
-  EXPECT_TRUE(std::isnan(run_pairs(runs, "whole-room").at(0).apart.end)) << "trajectories of different lengths";
-  EXPECT_NE(room_table(run_pairs(runs, "whole-room")).note.find("not measured"), std::string::npos);
-  runs[1] = desk_run("paper", "whole-room", "none");
-  runs[1].accuracy.position[0] = NAN;
-  EXPECT_TRUE(std::isnan(run_pairs(runs, "whole-room").at(0).value));
-  runs[1] = desk_run("paper", "whole-room", "none");
-  runs[1].header.settings["iterations"] = 7;
-  EXPECT_TRUE(run_pairs(runs, "whole-room").empty());
-  runs[1] = desk_run("paper", "whole-room", "none");
-  const auto at = runs[1].header.scenario_json.find("double-duplicated");
-  runs[1].header.scenario_json.replace(at, 17, "single");
-  EXPECT_TRUE(run_pairs(runs, "whole-room").empty()) << "other sides";
+  const auto at = [&](const std::string& name) {
+    return csv[2].at(static_cast<std::size_t>(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin()));
+  };
+  EXPECT_EQ(at("time_s"), "0.0138889");
+  EXPECT_EQ(at("contact_length_m"), "0.0123");
+  EXPECT_EQ(at("tunnelled_fraction"), "") << "NaN is missing";
+  EXPECT_EQ(at("depth_m"), "") << "so is a metric the scene does not have";
 }
 
 TEST(Features, ComeFromTheResultFilesAlone) {
@@ -239,27 +175,114 @@ TEST(Features, ComeFromTheResultFilesAlone) {
             "ignored");
 }
 
-TEST(Penetration, TablesSayWhereTheSolverHoldsTheCloth) {
+TEST(Penetration, TablesStateTheContactOffset) {
   const std::string scenario = R"({"cloth":{"grid":[8,8]},"colliders":[{"type":"box","margin_m":0.004}]})";
   std::vector<RunRecord> runs = {of_scene(desk_run("xpbd", "default", ""), "box", scenario),
                                  of_scene(desk_run("other", "default", ""), "box", scenario),
                                  of_scene(desk_run("none", "default", ""), "box", scenario)};
   runs[1].header.plan["contact_margins"] = {{{"collider", "named otherwise"}, {"margin_m", 0.02}}};
   runs[2].outcome.status = "unsupported";
-  EXPECT_EQ(held_at(runs[0]), "4") << "the scene's margin";
-  EXPECT_EQ(held_at(runs[1]), "20") << "what the solver states";
-  EXPECT_EQ(held_at(runs[2]), "–");
+  const auto offset = [&](const std::string& solver) {
+    return entry(table_of(runs, kContact), "box", solver, "contact offset [mm]");
+  };
+  EXPECT_EQ(offset("xpbd"), "4") << "the scene's margin";
+  EXPECT_EQ(offset("other"), "20") << "what the solver states";
+  EXPECT_EQ(offset("none"), "–");
   runs[1].header.plan["contact_margins"].push_back({{"collider", "box"}, {"margin_m", 0.0035}});
-  EXPECT_EQ(held_at(runs[1]), "3.5 to 20");
-  const std::vector<ContactSetUp> ups = set_ups(runs);
-  const Table verdicts = verdict_table(ups);
-  EXPECT_EQ(verdicts.rows.at(0), (std::vector<std::string>{"scene", "none", "other", "xpbd"}));
-  EXPECT_EQ(verdicts.rows.at(1),
-            (std::vector<std::string>{"(the solver holds the cloth at [mm])", "–", "3.5 to 20", "4"}));
-  const Table t = contact_table(ups.at(0));
-  EXPECT_EQ(t.rows.at(0).at(3), "holds at [mm]");
-  EXPECT_EQ(t.rows.at(2).at(3), "3.5 to 20");
-  EXPECT_EQ(penetration_json(ups).at(1).at("held_at_most_m"), 0.02);
+  EXPECT_EQ(offset("other"), "3.5 to 20");
+}
+
+constexpr const char* kRates = "Randomly generated contact scenes: pass rate by speed [m/s]";
+constexpr const char* kWorst = "Randomly generated contact scenes: the worst run of each kind";
+
+RunRecord generated(const std::string& solver, const std::string& kind, int seed, double speed,
+                    const std::string& ending, double contour = 0, const std::string& assets = "npm") {
+  RunRecord c;
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.header.scene = "contact-" + std::to_string(seed) + "-" + kind;
+  c.header.environment = {{"protocol", "short"}};
+  c.header.scenario_json =
+      nlohmann::json{
+          {"name", c.header.scene},
+          {"seed", seed},
+          {"drawn",
+           {{"study", "contact"}, {"kind", kind}, {"assets", assets}, {"speed_m_per_s", speed}, {"values", {}}}}}
+          .dump();
+  const bool ended = ending == "pass" || ending == "fail";
+  c.outcome.status = ended ? "ok" : ending;
+  c.outcome.expect = ending == "fail" ? "fail: contact_length_max_m" : ended ? ending : "not measured";
+  c.summary["contact_length_max_m"] = contour;
+  c.summary["expect.contact_length_max_m"] = !ended ? NAN : ending == "pass" ? 1 : 0;
+  return c;
+}
+
+std::vector<RunRecord> sample() {
+  return {generated("xpbd", "sweep", 1, 0.5, "pass"),        generated("xpbd", "sweep", 3, 1.99, "pass"),
+          generated("xpbd", "sweep", 5, 2, "fail", 0.02),    generated("xpbd", "sweep", 7, 14, "fail", 0.3),
+          generated("xpbd", "desk", 2, 6, "timed_out"),      generated("xpbd", "desk", 4, 6, "pass"),
+          generated("paper", "desk", 2, 6, "unsupported"),   generated("paper", "desk", 4, 6, "crashed"),
+          generated("paper", "sweep", 1, 0.5, "pass", 0.01), RunRecord{}};
+}
+
+TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
+  const Table t = table_of(sample(), kRates);
+  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"solver", "kind", "0–2", "2–5", "5–10", "≥ 10", "all"}));
+  const auto rate = [&](const std::string& solver, const std::string& kind, const std::string& band) {
+    return entry(t, solver, kind, band);
+  };
+  EXPECT_EQ(rate("xpbd", "sweep", "0–2"), "2/2 (34–100 %)");
+  EXPECT_EQ(rate("xpbd", "sweep", "2–5"), "0/1 (0–79 %)") << "2 m/s is in the upper band";
+  EXPECT_EQ(rate("xpbd", "sweep", "5–10"), "–");
+  EXPECT_EQ(rate("xpbd", "sweep", "≥ 10"), "0/1 (0–79 %)");
+  EXPECT_EQ(rate("xpbd", "sweep", "all"), "2/4 (15–85 %)");
+  EXPECT_EQ(rate("xpbd", "desk", "5–10").substr(0, 3), "1/2") << "one timed out";
+  EXPECT_EQ(rate("xpbd", "all", "all").substr(0, 3), "3/6");
+  EXPECT_EQ(rate("paper", "all", "all").substr(0, 3), "1/3") << "one unsupported, one crashed";
+  EXPECT_EQ(table_of({generated("xpbd", "desk", 1, 1, "pass", 0, "procedural")}, kRates).rows[1][1],
+            "desk (procedural)");
+  EXPECT_EQ(t.note.find("missing"), std::string::npos);
+  std::vector<RunRecord> runs = sample();
+  runs.front().outcome.status = "missing";
+  EXPECT_NE(table_of(runs, kRates).note.find("1 of 9 runs are missing"), std::string::npos);
+  runs = {generated("xpbd", "desk", 1, 1, "pass")};
+  runs[0].header.plan["contact_margins"] = {{{"collider", "mesh"}, {"margin_m", 0.02}}};
+  EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
+}
+
+TEST(PassRates, TheWorstRunDidNotEndThenHasTheLongestContour) {
+  const Table t = table_of(sample(), kWorst);
+  ASSERT_EQ(t.rows.size(), 4u) << "an unsupported scene is none, a kind without a fault has none";
+  const auto scene = [&](const std::string& solver, const std::string& kind) {
+    return entry(t, solver, kind, "scene");
+  };
+  EXPECT_EQ(scene("xpbd", "sweep"), "contact-7-sweep");
+  EXPECT_EQ(scene("xpbd", "desk"), "contact-2-desk");
+  EXPECT_EQ(scene("paper", "desk"), "contact-4-desk");
+  EXPECT_EQ(entry(t, "xpbd", "sweep", "runs it again"), "clothbench study contact --seed 7 --count 1 --solver xpbd");
+}
+
+TEST(Stability, RunsOfEachCaseByGrade) {
+  const auto judged = [](const std::string& solver, const std::string& kase, double grade, const std::string& klass) {
+    RunRecord c = fake_run(solver, 8, "single", 1e-3);
+    c.header.scene = kase + "-stiff-" + solver + klass;
+    c.header.scenario_json = R"({"name":"s01-stiffness","stability":{"case":")" + kase + R"("}})";
+    c.outcome = {klass == "F8" ? "crashed" : "ok", klass, klass == "ok" ? -1 : 7, "", {}};
+    c.summary["stability_grade"] = grade;
+    return c;
+  };
+  const std::vector<RunRecord> runs = {judged("a", "S01", 0, "ok"), judged("a", "S01", 2, "F1"),
+                                       judged("a", "S02", 1, "F3"), judged("b", "S01", kMissing, "F8")};
+  const Table t = table_of(runs, "Robustness");
+  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"case", "a", "b"}));
+  EXPECT_EQ(t.rows[1],
+            (std::vector<std::string>{"S01 stiffness", "1/2 stable, 1 failed (F1)", "0/1 stable, 1 failed (F8)"}));
+  EXPECT_EQ(t.rows[2][1], "0/1 stable, 1 degraded (F3)");
+  EXPECT_EQ(t.rows[3][0] + ": " + t.rows[3][1], "all: 1/3 stable, 1 degraded (F3), 1 failed (F1)");
+  const Table failures = table_of(runs, "Runs that were not stable");
+  ASSERT_EQ(failures.rows.size(), 4u);
+  EXPECT_EQ(failures.rows[2], (std::vector<std::string>{"a", "failed", "F1", "S01-stiff-aF1 (7)"}));
+  EXPECT_EQ(failures.rows[3][3], "S01-stiff-bF8 (7) crashed");
 }
 
 }  // namespace
