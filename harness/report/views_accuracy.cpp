@@ -104,7 +104,8 @@ View work() {
          "the continuum's. Real time: at most 1000 ms. ≤: at the floor below which solvers are not distinguished, "
          "which is three times the reference's uncertainty or the error of the mesh. Failed: runs without a finite "
          "error. Not run: settings that need more work than the solver's time on the scene allowed. A refused scene "
-         "ranks no solver; the table of reference cases has the reason.",
+         "ranks no solver; the table of reference cases has the reason. Ranked: the solver has every stiffness that "
+         "the scene depends on, as its plan states; effective stiffness is not measured here.",
          in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key("solver", solver_of)};
