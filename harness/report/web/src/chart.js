@@ -158,8 +158,7 @@ export function chart({panels, across = 3, height}, theme, width) {
     paper,
     color: {field: 'label', type: 'nominal', title: null, scale: {domain: labels, range: labels.map(l => colours[l])}},
     // Without a meaning of their own, dashes and symbols repeat the colours, for readers who cannot tell these apart.
-    strokeDash: named(dashes) ? by('dash', dashes, kDashes, String(dashes) === String(shapes) ? null : undefined) :
-                                by('label', labels, rows.some(r => r.kind === 'point') ? [[1, 0]] : kDashes),
+    strokeDash: named(dashes) ? by('dash', dashes, kDashes) : by('label', labels, rows.some(r => r.kind === 'point') ? [[1, 0]] : kDashes),
     shape: named(shapes) ? by('shape', shapes, kShapes) : by('label', labels, kShapes),
     opacity: paper ? {value: 1} : {condition: {param: 'pick', value: 1, empty: true}, value: 0.1}
   };
@@ -172,15 +171,12 @@ export function chart({panels, across = 3, height}, theme, width) {
                    paper ? 280 :
                            360)));
   if (specs.length === 1) return specs[0];
+  // A selection belongs to one panel; the others follow it.
+  let chosen = false;
   specs.forEach((s, k) => s.layer.forEach(l => {
     l.name += `_${k}`;
-    if (l.params) l.params[0].name = 'pick';
+    if (chosen) delete l.params;
+    chosen ||= 'params' in l;
   }));
-  // A selection belongs to one panel; the others follow it.
-  specs.slice(1).forEach(s => s.layer.forEach(l => delete l.params));
-  return {
-    columns: n,
-    concat: specs,
-    ...(panels.some(p => p.bars) ? {} : {resolve: {scale: {x: 'shared', y: panels[0].own_y ? 'independent' : 'shared'}}})
-  };
+  return {columns: n, concat: specs, ...(panels.some(p => p.bars || p.own_y) ? {} : {resolve: {scale: {x: 'shared', y: 'shared'}}})};
 }
