@@ -305,7 +305,7 @@ void RunTable::add_published() {
       c.summary["fps_at_72"] = column.at("fps").at(n);
       const int width = published["resolution"][n];
       Row row{&c};
-      row.name = row.family = name;
+      row.name = name;
       row.family = family;
       row.solver = c.header.solver;
       row.setting = "default";

@@ -49,15 +49,10 @@ TEST_P(Commands, TheSecondIsAsIfItWereTheFirst) {
 }
 
 const std::vector<Pair> kPairs = {
-    {{"moduli", "ballistic", "--no-sweep", "--set", "cloth.grid=[3,3]"}, {"--json", "moduli", "ballistic"}},
     {{"list", "features"}, {"--json", "list"}},
     {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
     {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
      {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
-    {{"metamorphic", "ballistic", "--set", "cloth.grid=[3,3]"}, {"--json", "metamorphic", "ballistic"}},
-    {{"threshold", "--solver", "ballistic", "validation/atwood"},
-     {"--json", "threshold", "validation/incline-stick", "--solver", "ballistic"}},
-    {{"friction", "ballistic", "--substeps", "64"}, {"--json", "friction", "ballistic"}},
     {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
     {{"study", "table3", "--quick", "--only", "nothing", "--run", "0"}, {"--json", "study", "table3", "--list-runs"}},
 };
