@@ -63,10 +63,11 @@ std::string windows(const Group& runs) {
 
 /// What wraps the engine of a published row.
 std::string peers(const Group& runs) {
+  const nlohmann::json published = published_table3();
   std::string out;
   std::set<std::string> named;
   for (const Row* r : runs)
-    for (const nlohmann::json& column : published_table3().at("columns"))
+    for (const nlohmann::json& column : published.at("columns"))
       if (const std::string engine = engine_of(*r->run); !engine.empty() && column.value("engine", "") == engine)
         if (named.insert(r->label()).second) out += fmt::format(" {}: {}", r->label(), column.value("peer", ""));
   return out.empty() ? "" : out.substr(1);
