@@ -302,7 +302,8 @@ TEST(CompareRuns, SaysHowFarApartTheMotionsAre) {
   };
   const auto apart = [&](double by_m, double error) {
     const Processes a = {{moved(0, 0.5)}}, b = {{moved(by_m, error)}};
-    for (const Finding& f : compare_processes(a, b).runs[0].findings)
+    const Checked compared = compare_processes(a, b);
+    for (const Finding& f : compared.runs[0].findings)
       if (f.quantity.starts_with("positions")) return f.found;
     return std::string("none");
   };
