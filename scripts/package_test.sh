@@ -71,7 +71,7 @@ study_and_report() {
   [ "$runs" -gt 10 ] || fail "the study has $runs runs"
   [ "$(($(wc -l <"$report/runs.csv") - 1))" = "$runs" ] || fail "report/runs.csv has not the study's $runs runs"
   for solver in ballistic bullet-soft paper xpbd; do
-    grep -qE "^\| $solver \| single \|.* [0-9.]+ \|" "$report/table3.md" || fail "report/table3.md: no values of $solver"
+    grep -qE "^\| $solver \| single \|.* [0-9.]+ \|" "$report/report.md" || fail "report/report.md: no values of $solver"
   done
   [ -s "$report/index.html" ] || fail "no report/index.html"
   [ "$(grep -c 'Figures were left out: ' "$report/report.md")" = 1 ] || fail "report/report.md: expected one sentence on what is missing"

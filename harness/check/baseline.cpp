@@ -71,13 +71,8 @@ ordered_json json_of(const BaselineRun& c) {
   return j;
 }
 
-}  // namespace
-
-std::string RunKey::file_name() const { return run_name(scene, solver, setting); }
-
-std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
-
-BaselineRun gated_part(const RunRecord& r) {
+/// The part of a result without the scalars that `has` leaves out.
+BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
   BaselineRun c;
   c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
   c.conditions = conditions_of_results(r);
@@ -86,8 +81,22 @@ BaselineRun gated_part(const RunRecord& r) {
   c.failed_frame = r.outcome.failed_frame;
   for (const StageRecord& s : r.header.stages) c.stages.push_back(stage_text(s));
   for (const auto& [name, v] : r.summary)
-    if (find_gate(name) != nullptr && std::isfinite(v)) c.scalars[name] = v;
+    if (has(name) && std::isfinite(v)) c.scalars[name] = v;
   return c;
+}
+
+}  // namespace
+
+std::string RunKey::file_name() const { return run_name(scene, solver, setting); }
+
+std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
+
+BaselineRun gated_part(const RunRecord& r) {
+  return part_of(r, [](const std::string& name) { return find_gate(name) != nullptr; });
+}
+
+BaselineRun whole_part(const RunRecord& r) {
+  return part_of(r, [](const std::string& name) { return !is_of_machine(name); });
 }
 
 Baseline read_baseline(const std::filesystem::path& file) {

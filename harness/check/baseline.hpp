@@ -52,6 +52,8 @@ struct Baseline {
 
 /// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
 BaselineRun gated_part(const RunRecord&);
+/// The same with every scalar that does not depend on the machine.
+BaselineRun whole_part(const RunRecord&);
 
 /// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a
 /// key that is unknown or missing, a scalar that has no gate, or a run that is listed twice.

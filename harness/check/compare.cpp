@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
+#include "report/run_table.hpp"
 
 namespace clothbench {
 namespace {
@@ -161,6 +164,54 @@ bool same_values(const BaselineRun& a, const BaselineRun& b) {
   return baseline_text({{}, {a}}) == baseline_text({{}, {b}});
 }
 
+/// One run in the processes of two builds.
+struct Pair {
+  RunKey key;
+  std::vector<const RunRecord*> a = {}, b = {};
+};
+
+/// Adds what differs between the first run of A and every other one. An order without turns is no difference of the
+/// runs, only no basis for a statement on times.
+void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
+  const RunRecord& first = *p.a.front();
+  const std::vector<Condition> conditions = conditions_of(first);
+  std::vector<std::string> kinds;
+  for (const auto* side : {&p.a, &p.b})
+    for (const RunRecord* r : *side)
+      for (ConditionDifference d : differences(conditions, conditions_of(*r))) {
+        if (d.kind == "scene") d.what += " (" + scene_difference(first, *r) + ")";
+        differing.add(p.key.file_name(), d);
+        if (!contains(kinds, d.kind)) kinds.push_back(d.kind);
+      }
+  run.in_turns = in_turns(p.a, p.b);
+  if (!run.in_turns && contains(allowed, std::string("order"))) {
+    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not in turns"});
+    kinds.emplace_back("order");
+    run.in_turns = true;
+  }
+  run.marks = joined(kinds);
+}
+
+double median(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  return times.empty() ? kMissing : middle(times);
+}
+
+void compare_pair(const Pair& p, CheckedRun& run) {
+  const auto ended = [](const auto& side) {
+    return side.empty() ? std::string("–") : status_with_class(side.front()->outcome);
+  };
+  if (p.a.empty() || p.b.empty()) {
+    run.findings = {{Verdict::Changed, "run", ended(p.a), ended(p.b), "", ""}};
+    return;
+  }
+  const std::vector<double> a = process_times(p.a), b = process_times(p.b);
+  run.time = compare_times(a, b);
+  run.time_a_s = median(a);
+  run.time_b_s = median(b);
+  run.findings = compare_records(*p.a.front(), *p.b.front());
+}
+
 }  // namespace
 
 const char* word_for(Verdict v) {
@@ -171,6 +222,8 @@ const char* word_for(Verdict v) {
       return "new";
     case Verdict::Improved:
       return "improved";
+    case Verdict::Changed:
+      return "changed";
     case Verdict::Failed:
       return "FAILED";
   }
@@ -198,6 +251,39 @@ std::string CheckedRun::sentences(const std::function<bool(Verdict)>& is) const 
 std::size_t Checked::count(Verdict v) const {
   return static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [&](const CheckedRun& c) { return c.verdict() == v; }));
+}
+
+std::string CheckedRun::time_verdict() const {
+  const std::string out = !std::isfinite(time.ratio) ? "not timed"
+                          : !time.enough() ? fmt::format("too few processes: at least {} a side", kMinProcesses)
+                          : !in_turns      ? "no statement: A and B did not run in turns"
+                          : time.noise()   ? "noise"
+                          : time.ratio < 1 ? "faster"
+                                           : "slower";
+  return marks.empty() ? out : out + "; other " + marks;
+}
+
+Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed) {
+  std::vector<Pair> pairs;
+  for (const auto& [side, to] : {std::pair{&a, &Pair::a}, {&b, &Pair::b}})
+    for (const std::vector<RunRecord>& process : *side) {
+      std::set<std::string> seen;
+      for (const RunRecord& r : process) {
+        const RunKey key = {r.header.scene, r.header.solver, r.header.setting, ""};
+        if (!seen.insert(key.file_name()).second)
+          throw Error("compare: " + key.file_name() + " occurs twice in one folder; expected each run once");
+        (find_or_add(pairs, [&](const Pair& p) { return p.key == key; }, {key}).*to).push_back(&r);
+      }
+    }
+  Checked out;
+  out.differing = DifferingRuns(allowed);
+  for (const Pair& p : pairs) {
+    CheckedRun& run = out.runs.emplace_back(CheckedRun{p.key});
+    if (!p.a.empty() && !p.b.empty()) add_conditions(p, allowed, run, out.differing);
+  }
+  out.differing.refuse("A", "B");
+  for (std::size_t k = 0; k < pairs.size(); ++k) compare_pair(pairs[k], out.runs[k]);
+  return out;
 }
 
 Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs,

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "check/baseline.hpp"
+#include "check/times.hpp"
 
 namespace clothbench {
 
-/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts.
-enum class Verdict { Same, New, Improved, Failed };
+/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts. Changed: of two builds, neither
+/// of which is right.
+enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
 
@@ -24,9 +26,15 @@ struct Finding {
 
 struct CheckedRun {
   RunKey key;
-  std::vector<Finding> findings;
+  std::vector<Finding> findings = {};
+  TimeRatio time = {};                              ///< of two builds
+  double time_a_s = kMissing, time_b_s = kMissing;  ///< median over the processes of each side
+  bool in_turns = true;                             ///< see in_turns in times.hpp
+  std::string marks = {};  ///< kinds of conditions that differ and were allowed: "scene, machine"
 
   Verdict verdict() const;
+  /// "noise", "faster", "slower", or why there is no statement about times.
+  std::string time_verdict() const;
   /// A line for each finding whose verdict `is` accepts.
   std::string sentences(const std::function<bool(Verdict)>& is) const;
 };
@@ -47,6 +55,19 @@ std::vector<Finding> motion_findings(const RunRecord&);
 /// another; and what is wrong with the motion in its file, if it has one (results/store.hpp). If the outcome
 /// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
+
+/// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine
+/// (relative tolerance 1e-9), and, where one differs, the maximum distance between the two motions over the longer
+/// side.
+std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
+
+/// One element per process: the runs of its folder.
+using Processes = std::vector<std::vector<RunRecord>>;
+
+/// Compares two builds, run by run: results of the first process of each side, times of all processes. Runs in the
+/// order of A, then those that only B has. Throws Error if paired runs, or processes of one side, differ in a condition
+/// whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
+Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
 /// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/words.hpp"
 #include "check/compare.hpp"
 #include "check/gates.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
+#include "metrics/metric.hpp"
 #include "metrics/registry.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
@@ -98,16 +100,23 @@ Verdict judge(const std::string& name, double was, double is, double slack) {
   return is < was - slack ? Verdict::Improved : Verdict::Same;
 }
 
+double scalar(const BaselineRun& c, const std::string& name) {
+  const auto at = c.scalars.find(name);
+  return at == c.scalars.end() ? kMissing : at->second;
+}
+
+/// Names of the scalars of either.
+std::set<std::string> scalar_names(const BaselineRun& was, const BaselineRun& is) {
+  std::set<std::string> out;
+  for (const BaselineRun* c : {&was, &is})
+    for (const auto& [name, unused] : c->scalars) out.insert(name);
+  return out;
+}
+
 std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, const RunRecord& record) {
-  std::map<std::string, double> names = was.scalars;
-  names.insert(is.scalars.begin(), is.scalars.end());
-  const auto value = [](const BaselineRun& c, const std::string& name) {
-    const auto at = c.scalars.find(name);
-    return at == c.scalars.end() ? kMissing : at->second;
-  };
   std::vector<Finding> out;
-  for (const auto& [name, unused] : names) {
-    const double before = value(was, name), now = value(is, name);
+  for (const std::string& name : scalar_names(was, is)) {
+    const double before = scalar(was, name), now = scalar(is, name);
     const Gate& gate = *find_gate(name);
     // Measured moduli and relations of runs have no cloth of their own.
     const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : length_of(record));
@@ -117,6 +126,30 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
     out.push_back({verdict, name, shown(name, before), shown(name, now), limit, ""});
   }
   return out;
+}
+
+constexpr double kSameResult = 1e-9;  // relative
+constexpr const char* kMotionDistance = "positions, maximum distance over L";
+
+std::vector<float> positions_of(const RunRecord& c) {
+  return !c.accuracy.position.empty() || c.file.empty() ? c.accuracy.position : read_run(c.file).accuracy.position;
+}
+
+/// Maximum distance of a vertex between the two motions, over the longer side of the cloth; NaN if they have different
+/// frames or the scene has no cloth size.
+double motion_distance(const RunRecord& a, const RunRecord& b) {
+  const std::vector<float> p = positions_of(a), q = positions_of(b);
+  const nlohmann::json scene = nlohmann::json::parse(a.header.scenario_json, nullptr, false);
+  const nlohmann::json size = scene.is_object()
+                                  ? scene.value(nlohmann::json::json_pointer("/cloth/size_m"), nlohmann::json())
+                                  : nlohmann::json();
+  if (p.empty() || p.size() != q.size() || !size.is_array() || size.size() != 2) return kMissing;
+  double most = 0;
+  for (std::size_t k = 0; k + 2 < p.size(); k += 3) {
+    const double d = std::hypot(double{p[k]} - q[k], double{p[k + 1]} - q[k + 1], double{p[k + 2]} - q[k + 2]);
+    most = max_or_nan(most, d);
+  }
+  return most / std::max(size[0].get<double>(), size[1].get<double>());
 }
 
 }  // namespace
@@ -152,6 +185,25 @@ std::vector<Finding> compare_run(const BaselineRun& was, const RunRecord& record
   if (was.status != is.status) return out;
   for (const auto& part : {compare_stages(was, is), compare_trials(record), compare_scalars(was, is, record)})
     out.insert(out.end(), part.begin(), part.end());
+  return out;
+}
+
+std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b) {
+  const BaselineRun was = whole_part(a), is = whole_part(b);
+  std::vector<Finding> out = compare_outcome(was, is, b.outcome.message);
+  const bool same_outcome = out.empty();
+  for (const Finding& f : compare_stages(was, is)) out.push_back(f);
+  bool differ = false;
+  for (const std::string& name : scalar_names(was, is)) {
+    const double before = scalar(was, name), now = scalar(is, name);
+    if (std::abs(now - before) <= kSameResult * std::max(std::abs(before), std::abs(now))) continue;
+    differ = true;
+    out.push_back(
+        {Verdict::Changed, name, shown(name, before), shown(name, now), fmt::format("± {:g} of it", kSameResult), ""});
+  }
+  if (const double apart = differ && same_outcome ? motion_distance(a, b) : kMissing; std::isfinite(apart))
+    out.push_back({Verdict::Changed, kMotionDistance, "–", fmt::format("{:.3g}", apart), "0", ""});
+  for (Finding& f : out) f.verdict = Verdict::Changed;
   return out;
 }
 

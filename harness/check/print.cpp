@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/columns.hpp"
+#include "base/json_number.hpp"
 #include "base/tint.hpp"
 
 namespace clothbench {
@@ -10,15 +13,20 @@ namespace {
 
 using nlohmann::json;
 
-/// Table and messages of `runs`, worst verdict first; empty if there is no finding. `worse`: what a failure is called.
-std::string findings_text(const std::string& title, const std::vector<CheckedRun>& runs, const char* worse) {
+/// What the two sides of a comparison, and a failure, are called.
+struct Sides {
+  const char *a = "baseline", *b = "found", *worse = "FAILED";
+};
+
+/// One row per finding, worst verdict first. Adds their messages to `messages`.
+Table findings_table(const Table& start, const std::vector<CheckedRun>& runs, const Sides& sides,
+                     std::string& messages) {
   struct Row {
     std::string run;
     const Finding* finding;
   };
   std::vector<Row> rows;
-  std::string messages;
-  for (const Verdict verdict : {Verdict::Failed, Verdict::Improved, Verdict::New})
+  for (const Verdict verdict : {Verdict::Failed, Verdict::Changed, Verdict::Improved, Verdict::New})
     for (const CheckedRun& run : runs)
       for (const Finding& f : run.findings) {
         if (f.verdict != verdict) continue;
@@ -26,22 +34,71 @@ std::string findings_text(const std::string& title, const std::vector<CheckedRun
         if (!f.message.empty() && verdict != Verdict::New)
           messages += wrapped(fmt::format("{}: {}: {}", run.key.text(), f.quantity, f.message), 2, kConsoleColumns);
       }
-  if (rows.empty()) return "";
   const Columns<Row> columns = {
       {"", "run", &Row::run},
       {"", "quantity", [](auto& r) { return r.finding->quantity; }},
       {"", "verdict",
-       [=](auto& r) { return r.finding->verdict == Verdict::Failed ? worse : word_for(r.finding->verdict); }},
-      {"", "baseline", [](auto& r) { return r.finding->baseline; }},
-      {"", "found", [](auto& r) { return r.finding->found; }},
+       [=](auto& r) { return r.finding->verdict == Verdict::Failed ? sides.worse : word_for(r.finding->verdict); }},
+      {"", sides.a, [](auto& r) { return r.finding->baseline; }},
+      {"", sides.b, [](auto& r) { return r.finding->found; }},
       {"", "allowed", [](auto& r) { return r.finding->allowed; }}};
-  return columns.table({title, "", {}}, rows).console() + messages + "\n";
+  return columns.table(start, rows);
+}
+
+/// Table and messages of `runs`; empty if there is no finding.
+std::string findings_text(const std::string& title, const std::vector<CheckedRun>& runs, const Sides& sides = {}) {
+  std::string messages;
+  const Table t = findings_table({title, "", {}}, runs, sides, messages);
+  return t.rows.size() <= 1 ? "" : t.console() + messages + "\n";
+}
+
+std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{:+.1f} %", 100 * (ratio - 1)) : "–"; }
+
+/// Times of the runs that were timed on both sides.
+Table times_table(const Checked& c) {
+  std::vector<CheckedRun> timed = c.runs;
+  std::erase_if(timed, [](const CheckedRun& r) { return !std::isfinite(r.time.ratio); });
+  const Columns<CheckedRun> columns = {
+      {"", "run", [](auto& r) { return r.key.text(); }},
+      {"", "A", &CheckedRun::time_a_s, digits(4), kMilliseconds},
+      {"", "B", &CheckedRun::time_b_s, digits(4), kMilliseconds},
+      {"", "change", [](auto& r) { return percent(r.time.ratio); }},
+      {"", "processes", [](auto& r) { return fmt::format("{} and {}", r.time.processes_a, r.time.processes_b); }},
+      {"", "95 % interval",
+       [](auto& r) { return r.time.enough() ? percent(r.time.low) + " … " + percent(r.time.high) : "–"; }},
+      {"", "p", [](auto& r) { return r.time.p; }, digits(2)},
+      {"", "verdict", &CheckedRun::time_verdict}};
+  return columns.table(
+      {"Time per frame, A against B",
+       fmt::format("Median over the processes; runs that were not timed alone are left out. Change: ratio "
+                   "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
+                   "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
+                   "faster or slower by chance.",
+                   timed.size(), 0.05 * static_cast<double>(timed.size())),
+       {}},
+      timed);
+}
+
+std::vector<Table> comparison_tables(const Checked& c, std::string& messages) {
+  const Table results{
+      "Results that differ",
+      fmt::format("{} runs have the same outcome and the same results. Values that depend on the machine "
+                  "are not compared here.",
+                  c.count(Verdict::Same)),
+      {}};
+  return {times_table(c), findings_table(results, c.runs, {"A", "B"}, messages)};
 }
 
 json key_json(const RunKey& key) {
   json j = {{"scene", key.scene}, {"solver", key.solver}, {"setting", key.setting}};
   if (!key.assets.empty()) j["assets"] = key.assets;
   return j;
+}
+
+json time_json(const CheckedRun& run) {
+  return {{"verdict", run.time_verdict()},           {"processes", {run.time.processes_a, run.time.processes_b}},
+          {"ratio", finite_or_null(run.time.ratio)}, {"low", finite_or_null(run.time.low)},
+          {"high", finite_or_null(run.time.high)},   {"p", finite_or_null(run.time.p)}};
 }
 
 json run_json(const CheckedRun& run) {
@@ -60,11 +117,99 @@ json run_json(const CheckedRun& run) {
 
 std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 ? "" : "s"); }
 
+/// As @actions/core escapes them: %, CR and LF in the message; also : and , in a property.
+std::string github_escaped(const std::string& text, bool property) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '%')
+      out += "%25";
+    else if (c == '\r')
+      out += "%0D";
+    else if (c == '\n')
+      out += "%0A";
+    else if (property && c == ':')
+      out += "%3A";
+    else if (property && c == ',')
+      out += "%2C";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string command(const char* kind, const std::string& file, const std::string& title, const std::string& message) {
+  return fmt::format("::{} file={},title={}::{}\n", kind, github_escaped(file, true), github_escaped(title, true),
+                     github_escaped(message, false));
+}
+
+auto is(Verdict verdict) {
+  return [verdict](Verdict of_finding) { return of_finding == verdict; };
+}
+
+/// Valid UTF-8, whatever a solver put into its message.
+std::string valid_utf8(const std::string& text) {
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
+/// For element text and attributes alike. Line breaks are written as references, or attributes would lose them.
+std::string xml_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : valid_utf8(text)) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        continue;
+      case '<':
+        out += "&lt;";
+        continue;
+      case '>':
+        out += "&gt;";
+        continue;
+      case '"':
+        out += "&quot;";
+        continue;
+      case '\n':
+        out += "&#10;";
+        continue;
+      case '\r':
+        out += "&#13;";
+        continue;
+      case '\t':
+        out += "&#9;";
+        continue;
+      default:
+        break;
+    }
+    out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // the other control characters exist in no XML 1.0 text
+  }
+  for (const char* no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE and U+FFFF neither
+    for (std::size_t at = 0; (at = out.find(no_character, at)) != std::string::npos;) out.replace(at, 3, "?");
+  return out;
+}
+
+std::string test_case(const CheckedRun& run) {
+  std::string name = run.key.solver;
+  if (!run.key.setting.empty()) name += " " + run.key.setting;
+  if (!run.key.assets.empty()) name += " [" + run.key.assets + "]";
+  std::string out =
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\"", xml_escaped(run.key.scene), xml_escaped(name));
+  if (run.verdict() == Verdict::Same) return out + "/>\n";
+  out += ">\n";
+  if (const std::string text = run.sentences([](Verdict v) { return v == Verdict::Failed; }); !text.empty()) {
+    const std::string first = text.substr(0, text.find('\n'));
+    out += fmt::format("      <failure type=\"regression\" message=\"{}\">{}</failure>\n", xml_escaped(first),
+                       xml_escaped(text));
+  }
+  if (const std::string text = run.sentences([](Verdict v) { return v != Verdict::Failed; }); !text.empty())
+    out += fmt::format("      <system-out>{}</system-out>\n", xml_escaped(text));
+  return out + "    </testcase>\n";
+}
+
 }  // namespace
 
 std::string check_text(const Checked& checked, const std::string& file) {
   std::string out = checked.differing.marks();
-  out += findings_text("Different from " + file, checked.runs, word_for(Verdict::Failed));
+  out += findings_text("Different from " + file, checked.runs);
   out += fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}",
                      checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
                      runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
@@ -90,7 +235,7 @@ json check_json(const Checked& checked, const std::string& file) {
 }
 
 std::string update_text(const Updated& u, const std::string& file) {
-  std::string out = findings_text("Changed in " + file, u.changes, "changed");
+  std::string out = findings_text("Changed in " + file, u.changes, {.worse = "changed"});
   for (const RunKey& key : u.removed) out += "  removed, no result: " + key.text() + "\n";
   return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with other values within slack\n", file,
                            runs_word(u.baseline.runs.size()), u.changes.size(), u.removed.size(), u.within_slack);
@@ -105,6 +250,66 @@ json update_json(const Updated& u, const std::string& file) {
   for (const CheckedRun& run : u.changes) j["changes"].push_back(run_json(run));
   for (const RunKey& key : u.removed) j["removed"].push_back(key_json(key));
   return j;
+}
+
+std::string comparison_text(const Checked& c) {
+  std::string out = c.differing.marks(), messages;
+  for (const Table& t : comparison_tables(c, messages))
+    out += t.rows.size() > 1 ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
+  return out + messages;
+}
+
+std::string comparison_markdown(const Checked& c, const std::string& a, const std::string& b) {
+  const std::string marks = c.differing.marks();
+  std::string out, messages;
+  for (std::size_t at = 0, end; at < marks.size(); at = end + 1) {
+    end = marks.find('\n', at);
+    out += "**" + marks.substr(at, end - at) + "**\n\n";
+  }
+  out += fmt::format("A: `{}`, B: `{}`\n\n", a, b);
+  for (const Table& t : comparison_tables(c, messages))
+    out += t.rows.size() > 1 ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
+  return out;
+}
+
+json comparison_json(const Checked& c) {
+  json out = {{"overridden", c.differing.json()}, {"runs", json::array()}};
+  for (const CheckedRun& run : c.runs) {
+    out["runs"].push_back(run_json(run));
+    out["runs"].back()["time"] = time_json(run);
+  }
+  return out;
+}
+
+std::string github_commands(const Checked& checked, const std::string& file) {
+  std::string out, improved, fresh;
+  for (const CheckedRun& run : checked.runs) {
+    if (run.verdict() == Verdict::Failed)
+      out += command("error", file, run.key.text(), run.sentences(is(Verdict::Failed)));
+    const auto append = [&](std::string& to, Verdict verdict) {
+      if (const std::string text = run.sentences(is(verdict)); !text.empty())
+        to += (to.empty() ? "" : "\n") + run.key.text() + ": " + text;
+    };
+    append(improved, Verdict::Improved);
+    append(fresh, Verdict::New);
+  }
+  if (!improved.empty()) out += command("notice", file, "better than the baseline; --update accepts it", improved);
+  if (!checked.differing.empty())
+    out += command("warning", file, "other conditions than the baseline's", checked.differing.marks());
+  if (!fresh.empty()) out += command("notice", file, "not in the baseline", fresh);
+  return out;
+}
+
+std::string junit_xml(const Checked& checked) {
+  const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\"", checked.runs.size(),
+                                         checked.count(Verdict::Failed));
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  out += fmt::format("<testsuites name=\"clothbench check\" {}>\n  <testsuite name=\"clothbench check\" {}>\n", counts,
+                     counts);
+  for (const CheckedRun& run : checked.runs) out += test_case(run);
+  if (!checked.differing.empty())
+    out += fmt::format("    <system-out>{}</system-out>\n", xml_escaped(checked.differing.marks()));
+  return out + "  </testsuite>\n</testsuites>\n";
 }
 
 }  // namespace clothbench

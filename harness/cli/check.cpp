@@ -1,8 +1,6 @@
 #include "base/files.hpp"
 #include "check/baseline.hpp"
 #include "check/compare.hpp"
-#include "check/github.hpp"
-#include "check/junit.hpp"
 #include "check/print.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"

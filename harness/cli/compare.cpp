@@ -1,8 +1,7 @@
 #include "base/files.hpp"
+#include "check/print.hpp"
 #include "cli/command.hpp"
-#include "report/compare_runs.hpp"
 #include "report/report.hpp"
-#include "report/withheld.hpp"
 
 namespace clothbench {
 
@@ -36,22 +35,9 @@ Processes read_processes(const std::string& given) {
 }
 
 void compare(const CompareArguments& given, Console& console) {
-  const Processes a = read_processes(given.a), b = read_processes(given.b);
-  const Comparison comparison = compare_runs(a, b, given.allowed);
-  const std::string marks = comparison.differing.marks();
-  std::string text = marks, page;
-  for (std::size_t at = 0, end; at < marks.size(); at = end + 1) {
-    end = marks.find('\n', at);
-    page += "**" + marks.substr(at, end - at) + "**\n\n";
-  }
-  page += fmt::format("A: `{}`, B: `{}`\n\n", given.a, given.b);
-  for (const Table& t : comparison_tables(comparison)) {
-    const bool any = t.rows.size() > 1;
-    text += any ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
-    page += any ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
-  }
-  if (!given.markdown.empty()) write_file_atomically(given.markdown, page);
-  console.print([&] { return comparison_json(comparison); }, [&] { return text; });
+  const Checked compared = compare_processes(read_processes(given.a), read_processes(given.b), given.allowed);
+  if (!given.markdown.empty()) write_file_atomically(given.markdown, comparison_markdown(compared, given.a, given.b));
+  console.print([&] { return comparison_json(compared); }, [&] { return comparison_text(compared); });
 }
 
 }  // namespace

@@ -6,10 +6,8 @@
 
 #include "base/tint.hpp"
 #include "base/words.hpp"
-#include "report/in_short.hpp"
 #include "report/report.hpp"
 #include "report/verdict.hpp"
-#include "report/withheld.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
 #include "runner/plan_process.hpp"

@@ -72,7 +72,6 @@ nlohmann::json list_metrics() {
       rows.push_back({{"name", m.name},
                       {"units", m.units},
                       {"long_name", m.long_name},
-                      {"version", m.version},
                       {"needs", m.needs.words},
                       {"source", g.source}});
   return rows;

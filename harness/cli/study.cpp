@@ -27,7 +27,7 @@ struct StudyArguments {
   std::optional<std::uint64_t> seed;
   std::string eye = "2064x2208", chosen;
   bool with_rendering = false, list_jobs = false;
-  bool full = false, short_trials = false, quick = false, require_assets = false, procedural = false;
+  bool quick = false, require_assets = false, procedural = false;
   RunFlags run;
 };
 

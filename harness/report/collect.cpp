@@ -1,4 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "clothbench/error.hpp"
 #include "report/report.hpp"
@@ -48,16 +52,6 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
     const fs::path file = finished_file(dir, name);
     runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read(file));
   }
-  if (manifest.definition.is_object() && manifest.definition.contains("pairs"))
-    for (const nlohmann::json& pair : manifest.definition["pairs"])
-      for (std::size_t k = first; k < runs.size(); ++k)
-        if (RunHeader& h = runs[k].header;
-            pair.at("scene") == h.scene && pair.at("solver") == h.solver && pair.at("setting") == h.setting)
-          h.environment["pairs"].push_back(pair);
-  if (manifest.definition.is_object() && manifest.definition.contains("set_ups"))
-    for (std::size_t k = first; k < runs.size(); ++k)
-      if (const auto& all = manifest.definition["set_ups"]; all.contains(runs[k].header.scene))
-        runs[k].header.environment["set_up"] = all[runs[k].header.scene];
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k) {
     if (runs[k].outcome.status != "missing") continue;
@@ -67,7 +61,47 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   }
 }
 
+/// Whether a summary value is a time, or a rate computed from a time.
+bool is_time(const std::string& name) {
+  if (name == "load_s" || name == "untimed_s") return true;
+  for (const char* start : {"fps_", "frame_", "bandwidth_", "stage_device_"})
+    if (name.starts_with(start)) return true;
+  return false;
+}
+
 }  // namespace
+
+double jobs_of(const RunRecord& c) {
+  if (const double stored = summary_value(c, "jobs"); std::isfinite(stored)) return stored;
+  const nlohmann::json jobs = environment_of(c, "jobs");
+  return jobs.is_number() ? jobs.get<double>() : kMissing;
+}
+
+void withhold_times(std::vector<RunRecord>& runs) {
+  for (RunRecord& c : runs) {
+    if (!(jobs_of(c) > 1)) continue;
+    for (auto& [name, value] : c.summary)
+      if (is_time(name) && std::isfinite(value)) {
+        value = kMissing;
+        c.withheld[name] = fmt::format("not timed alone: up to {:.0f} jobs ran side by side", jobs_of(c));
+      }
+    c.header.load_s = kMissing;
+    c.trials.clear();
+  }
+}
+
+std::string withheld_note(const std::vector<const Row*>& rows) {
+  double most = 1;
+  std::size_t count = 0;
+  for (const Row* r : rows) {
+    if (r->run->withheld.empty()) continue;
+    ++count;
+    most = std::max(most, jobs_of(*r->run));
+  }
+  return count == 0 ? ""
+                    : fmt::format("Times of {} run{} are withheld (–) because up to {:.0f} jobs ran side by side.",
+                                  count, count == 1 ? "" : "s", most);
+}
 
 std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
   std::vector<RunRecord> runs;

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/columns.hpp"
 #include "base/words.hpp"
-#include "report/grid.hpp"
+#include "report/run_table.hpp"
 
 namespace clothbench {
 namespace {

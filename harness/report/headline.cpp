@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <map>
 
+#include "base/columns.hpp"
 #include "base/words.hpp"
 #include "report/report.hpp"
-#include "report/roles.hpp"
-#include "report/withheld.hpp"
+#include "report/verdict.hpp"
+#include "report/view.hpp"
 
 namespace clothbench {
 namespace {
@@ -53,12 +54,55 @@ std::vector<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
     if (!e.is_object() || !e.contains("plugin")) continue;
     const nlohmann::json& p = e["plugin"];
     const std::string line =
-        fmt::format("{}† is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
+        fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
                     text(e, "solver_version"), text(p, "summary"),
                     std::filesystem::path(text(p, "path")).filename().string(), text(p, "sha256").substr(0, 16));
     add(out, line);
   }
   return out;
+}
+
+/// How many runs' times are withheld, and how many do not state whether they were timed alone.
+std::vector<std::string> trust_lines(const std::vector<RunRecord>& runs) {
+  std::vector<Row> rows;
+  std::size_t silent = 0;
+  for (const RunRecord& c : runs) {
+    rows.push_back({&c});
+    silent += std::isfinite(summary_value(c, "frame_wall_median_s")) && !std::isfinite(jobs_of(c));
+  }
+  std::vector<const Row*> all;
+  for (const Row& r : rows) all.push_back(&r);
+  std::vector<std::string> out;
+  if (const std::string withheld = withheld_note(all); !withheld.empty()) out.push_back(withheld);
+  if (silent > 0)
+    out.push_back(fmt::format("{} of the timed runs {} not state whether other jobs ran beside {}.", silent,
+                              silent == 1 ? "does" : "do", silent == 1 ? "it" : "them"));
+  return out;
+}
+
+constexpr double kTornApart = 1;  // edges of twice their length
+
+/// A run in the short table.
+struct Short {
+  Row row;
+  double frame_s = kMissing, half_range_s = kMissing;  ///< median and half the range of the trials' means
+  double stretch = kMissing;                           ///< maximum strain of a structural edge in the last second
+  double fastest_s = kMissing;                         ///< frame_s of its scene's first run
+  /// Whether its time may be compared: it ended well, and its cloth is not torn apart.
+  bool ranked() const {
+    return std::isfinite(frame_s) && row.status() == "ok" && verdict(*row.run) != "fail" && !(stretch > kTornApart);
+  }
+};
+
+Short short_of(const RunRecord& c) {
+  Short s{{&c}};
+  s.row.scene = c.header.scene;
+  s.stretch = summary_value(c, "stretch_max_last_second");
+  if (const std::vector<double> means = trial_means(c); !means.empty()) {
+    s.frame_s = middle(means);
+    if (means.size() > 1) s.half_range_s = (means.back() - means.front()) / 2;
+  }
+  return s;
 }
 
 }  // namespace
@@ -76,26 +120,6 @@ std::string overhead_line(const std::vector<RunRecord>& runs) {
       "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed. Measured: "
       "{:.3g} µs a frame of {} with {}, whose particles only fall.\n",
       100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene, most->header.solver);
-}
-
-std::string window_note(const std::vector<RunRecord>& runs) {
-  double least = kMissing, most = kMissing;
-  for (const RunRecord& c : runs) {
-    const double w = summary_value(c, "bandwidth_window_s");
-    if (!std::isfinite(summary_value(c, "bandwidth_read_peak_B_per_s")) || !std::isfinite(w)) continue;
-    if (!(least <= w)) least = w;
-    if (!(most >= w)) most = w;
-  }
-  if (!std::isfinite(most)) return "";
-  return fmt::format("windows of 5 s, or of the whole trial where it is shorter (here {:.2g} to {:.2g}\u00a0s)", least,
-                     most);
-}
-
-std::string gpu_of(const RunRecord& c) {
-  const nlohmann::json& e = c.header.environment;
-  const std::string gpu = text(e, "gpu");
-  if (gpu == "CPU" || gpu == "–") return "";
-  return flag(e, "gpu_is_software") ? gpu + " (software; its times say nothing of a GPU)" : gpu;
 }
 
 std::string headline(const std::vector<RunRecord>& runs, Format format) {
@@ -123,7 +147,7 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
     out += fmt::format("**Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.**\n\n",
                        device);
   for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
-  for (const std::string& line : withheld_lines(runs)) out += fmt::format("**{}**\n\n", line);
+  for (const std::string& line : trust_lines(runs)) out += fmt::format("**{}**\n\n", line);
   for (const std::string& line : lines) {
     std::string host = line;
     for (const auto& [key, span] : created)
@@ -141,6 +165,53 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
     if (end > at) console += wrapped(out.substr(at, end - at), 0, kConsoleColumns);
   }
   return console;
+}
+
+Table in_short_table(const std::vector<RunRecord>& runs) {
+  std::map<std::string, std::vector<Short>> scenes;
+  for (const RunRecord& c : runs) scenes[c.header.scene].push_back(short_of(c));
+  std::vector<Short> all;
+  for (auto& [scene, rows] : scenes) {
+    std::stable_sort(rows.begin(), rows.end(), [](const Short& a, const Short& b) {
+      if (a.ranked() != b.ranked()) return a.ranked();
+      return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
+    });
+    for (Short& r : rows) {
+      r.fastest_s = rows.front().frame_s;
+      all.push_back(r);
+    }
+  }
+  Group beside;
+  for (const Short& s : all) beside.push_back(&s.row);
+  const auto time = [&](const Short& s) {
+    std::string shown = significant(1e3 * s.frame_s, 3);
+    if (std::isfinite(s.half_range_s)) shown += " ± " + significant(1e3 * s.half_range_s, 2);
+    return std::isfinite(s.frame_s) ? shown + frames_mark(s.row, beside) : shown;
+  };
+  const auto ended = [](const Short& s) {
+    const std::string v = verdict(*s.row.run);
+    return v == "–" ? s.row.status() : v;
+  };
+  const auto ratio = [](const Short& s) {
+    return s.ranked() ? significant(s.frame_s / s.fastest_s, 3) + "×" : std::isfinite(s.frame_s) ? "not ranked" : "–";
+  };
+  const std::string withheld = withheld_note(beside);
+  const Columns<Short> columns = {{"", "scene", [](auto& s) { return s.row.scene; }},
+                                  {"", "solver", [](auto& s) { return s.row.run->header.solver; }},
+                                  {"", "setting", [](auto& s) { return s.row.run->header.setting; }},
+                                  {"", "outcome", ended},
+                                  {"", "stretch", &Short::stretch, digits(3), {"%", 100}},
+                                  {"", "frame [ms]", time},
+                                  {"", "relative to the fastest", ratio}};
+  return columns.table(
+      {"In short",
+       "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, or the verdict "
+       "on the scene's criteria; ignored: they are met, but the solver ignores all contact. Stretch: maximum strain of "
+       "a structural edge in the last second. Not ranked: runs that failed, and cloths with an edge of more than twice "
+       "its length." +
+           (withheld.empty() ? "" : " " + withheld),
+       {}},
+      all);
 }
 
 }  // namespace clothbench

@@ -1,16 +1,14 @@
-#include "report/pictures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <set>
 
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
+#include "report/web/page.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -58,28 +56,17 @@ bool is_file_name(const std::string& name) {
   return !name.empty() && fs::path(name).filename() == name && name != "." && name != "..";
 }
 
-/// Pictures that an earlier report wrote. If it is of a version without the list, they are found in its report.md,
-/// which shows every picture.
+/// Pictures that an earlier report wrote.
 std::set<std::string> listed_pictures(const fs::path& out) {
   std::set<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (is_file_name(name)) names.insert(name);
-  };
-  if (fs::exists(out / kPicturesList)) {
-    const json j = json::parse(content_of(out / kPicturesList), nullptr, false);
-    if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") ||
-        !j["pictures"].is_array())
-      throw Error((out / kPicturesList).string() +
-                  ": expected the list of a report's pictures; move the file away or give another folder with -o");
-    for (const json& name : j["pictures"])
-      if (name.is_string()) add(name.get<std::string>());
-    return names;
-  }
-  const std::string report = content_of(out / "report.md");
-  if (!report.starts_with("# clothbench report\n")) return names;
-  static const std::regex picture(R"(!\[[^\]\n]*\]\(([A-Za-z0-9._=-]+)\.svg\))");
-  for (std::sregex_iterator at(report.begin(), report.end(), picture), end; at != end; ++at)
-    for (const char* kind : {".svg", ".png"}) add((*at)[1].str() + kind);
+  if (!fs::exists(out / kPicturesList)) return names;
+  const json j = json::parse(content_of(out / kPicturesList), nullptr, false);
+  if (!j.is_object() || j.value("format", "") != "clothbench-report-pictures" || !j.contains("pictures") ||
+      !j["pictures"].is_array())
+    throw Error((out / kPicturesList).string() +
+                ": expected the list of a report's pictures; move the file away or give another folder with -o");
+  for (const json& name : j["pictures"])
+    if (name.is_string() && is_file_name(name.get<std::string>())) names.insert(name.get<std::string>());
   return names;
 }
 

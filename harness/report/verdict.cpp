@@ -6,10 +6,8 @@
 
 #include "base/words.hpp"
 #include "clothbench/feature.hpp"
-#include "metrics/friction_forms.hpp"
 #include "metrics/registry.hpp"
-#include "report/grid.hpp"
-#include "report/penetration.hpp"
+#include "report/run_table.hpp"
 
 namespace clothbench {
 namespace {
@@ -38,14 +36,13 @@ std::vector<BoundResult> bound_results(const RunRecord& c) {
 std::string verdict(const RunRecord& c) {
   if (c.outcome.status != "ok") return ending(c.outcome);
   if (c.outcome.expect.starts_with("fail")) return "fail";
-  bool withheld = false, measured = true;
+  bool measured = true;
   const std::vector<BoundResult> bounds = bound_results(c);
   for (const BoundResult& b : bounds) {
     if (b.passed == 0) return "fail";
-    withheld = withheld || c.withheld.contains(kExpect + b.name);
     measured = measured && b.passed == 1;
   }
-  if (bounds.empty() || withheld) return "–";
+  if (bounds.empty()) return "–";
   if (!measured) return "not measured";
   return has_contact(c) && touches_nothing(c) ? "ignored" : "pass";
 }
@@ -57,8 +54,6 @@ std::size_t bounds_of(const RunRecord& c) {
   if (!scenario.is_object() || !scenario.contains("expect") || !scenario["expect"].is_object()) return found;
   return std::max(found, scenario["expect"].size() - scenario["expect"].count("outcome"));
 }
-
-bool is_probe(const RunRecord& c) { return environment_of(c, "protocol") == kThresholdProtocol; }
 
 std::string VerdictCounts::text() const {
   std::string out = fmt::format("{} of {} runs passed", passed, runs);
@@ -73,7 +68,7 @@ std::string VerdictCounts::text() const {
 VerdictCounts count_verdicts(const std::vector<const RunRecord*>& runs) {
   VerdictCounts out;
   for (const RunRecord* c : runs) {
-    if (c->outcome.status == "missing" || bounds_of(*c) == 0 || is_probe(*c)) continue;
+    if (c->outcome.status == "missing" || bounds_of(*c) == 0) continue;
     ++out.runs;
     const std::string v = verdict(*c);
     out.passed += v == "pass" ? 1 : 0;
@@ -85,7 +80,9 @@ VerdictCounts count_verdicts(const std::vector<const RunRecord*>& runs) {
 }
 
 VerdictCounts count_verdicts(const std::vector<RunRecord>& runs) {
-  return count_verdicts(runs_of(runs, [](const RunRecord& c) { return &c; }));
+  std::vector<const RunRecord*> all;
+  for (const RunRecord& c : runs) all.push_back(&c);
+  return count_verdicts(all);
 }
 
 }  // namespace clothbench

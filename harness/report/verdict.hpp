@@ -12,21 +12,18 @@ struct BoundResult {
   double passed;     ///< 1 pass, 0 fail, NaN not known
 };
 
-/// Results of every bound of the run's scene; the common source of the tables of verdicts and of failure speeds.
+/// Results of every bound of the run's scene.
 std::vector<BoundResult> bound_results(const RunRecord&);
 
-/// Verdict on a run: "pass", "fail", "not measured"; "–" if there are no bounds or the result must not be printed
-/// (withheld.hpp); "ignored" if the bounds hold but the scene has contact and the solver ignores all of it, which
+/// Verdict on a run: "pass", "fail", "not measured"; "–" if there are no bounds;
+/// "ignored" if the bounds hold but the scene has contact and the solver ignores all of it, which
 /// proves nothing. If the run did not end well, its ending. Tables, consoles, JSON and the page print this.
 std::string verdict(const RunRecord&);
 
 /// Bounds that the run's scene sets on a value; `"outcome": "ok"` alone is none.
 std::size_t bounds_of(const RunRecord&);
 
-/// Whether the run is one try of a search, such as a bisection for a threshold of friction.
-bool is_probe(const RunRecord&);
-
-/// Counted by `verdict`, of the runs whose scene has a bound. Missing runs and probes are not counted.
+/// Counted by `verdict`, of the runs whose scene has a bound. Missing runs are not counted.
 struct VerdictCounts {
   std::size_t runs = 0, passed = 0, ignored = 0, unsupported = 0, not_measured = 0;
   /// Failed a bound, or did not end well.

@@ -7,8 +7,6 @@
 #include <limits>
 
 #include "check/gates.hpp"
-#include "check/github.hpp"
-#include "check/junit.hpp"
 #include "check/print.hpp"
 #include "clothbench/error.hpp"
 #include "results.hpp"

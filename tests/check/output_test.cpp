@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "check/github.hpp"
-#include "check/junit.hpp"
 #include "check/print.hpp"
 #include "results.hpp"
 

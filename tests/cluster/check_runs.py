@@ -57,7 +57,7 @@ with tempfile.TemporaryDirectory() as home:
     # A run against itself differs in nothing, and one process a side makes no statement on times.
     compared = json.loads(command("compare", out, out, "--json"))["runs"]
     assert len(compared) == len(names) and all(
-        c["verdict"].startswith("too few processes") and not c["metrics"] and not c["outcome"] for c in compared
+        c["time"]["verdict"].startswith("too few processes") and c["verdict"] == "same" and not c["findings"] for c in compared
     )
     markdown = os.path.join(home, "comparison.md")
     assert "too few processes" in command("compare", out, out, "--markdown", markdown)

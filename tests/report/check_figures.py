@@ -15,7 +15,7 @@ import xml.etree.ElementTree as xml
 
 NODE, SCRIPT = sys.argv[1:3]
 SOLVERS = json.loads((pathlib.Path(__file__).parents[2] / "harness/report/solvers.json").read_text(encoding="utf-8"))
-EMPTY = {"rates": [], "work": [], "penetration": [], "maps": [], "cases": [], "solvers": SOLVERS}
+EMPTY = {"runs": [], "series": [], "solvers": SOLVERS}
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -80,151 +80,140 @@ def words(svg):
     return " ".join("".join(t.itertext()) for t in xml.fromstring(svg).iter(SVG + "text"))
 
 
-def series(solver, sizes, sides="single", status="ok", gpu="Fake GPU (software; its times say nothing of a GPU)", **more):
+def row(part, solver, **more):
+    """A run as page.cpp describes it."""
+    return {"part": part, "scene": "a-scene", "family": "gravity", "paper_table": 3, "published": False, "solver": solver, "setting": "default",
+            "label": solver, "sides": "single", "set_up": "", "width": 8, "resolution": "8²", "status": "ok", "verdict": "–",
+            "gpu": "Fake GPU (software; its times say nothing of a GPU)"} | more
+
+
+def rates(solver, sizes, status="ok", gpu=True, **more):
     ok = status == "ok"
-    return {"label": solver, "solver": solver, "setting": "default", "sides": sides, "points": [
-        {"width": n, "resolution": f"{n}²", "status": status, "gpu": gpu, "fps": 1e4 / n if ok else None, "spread": 0.1 if ok else None,
-         "device_s": 1e-5 * n if ok and gpu else None, "read_B_per_s": 1e7 * n if ok and gpu else None,
-         "write_B_per_s": 4e6 * n if ok and gpu else None, "window_s": 0.5 if ok else None, "stretch_max": None, "stretch_mean": None} | more
-        for n in sizes]}
-
-
-def family(all_series, name="gravity", published=True):
-    out = {"name": name, "paper_table": 3 if published else 0, "series": all_series}
-    if published:
-        out["published"] = [{"label": f"column {k}", "sides": "", "points": [{"width": n, "fps": 72} for n in (8, 16)]} for k in range(3)]
+    out = []
+    for n in sizes:
+        out.append(row("rates", solver, width=n, resolution=f"{n}²", status=status, fps_median=1e4 / n if ok else None, fps_spread=0.1 if ok else None,
+                       frame_device_median_s=1e-5 * n if ok and gpu else None, bandwidth_read_peak_B_per_s=1e7 * n if ok and gpu else None,
+                       bandwidth_write_peak_B_per_s=4e6 * n if ok and gpu else None, bandwidth_window_s=0.5 if ok else None,
+                       stretch_max_last_second=None, stretch_mean_last_second=None) | ({} if gpu else {"gpu": ""}) | more)
     return out
+
+
+def published():
+    return [row("rates", f"published: column {k}", width=n, resolution=f"{n}²", published=True, gpu="", fps_median=72, bandwidth_read_peak_B_per_s=None)
+            for k in range(3) for n in (8, 16)]
 
 
 class Rates(unittest.TestCase):
     def setUp(self):
-        self.series = [series(s, (8, 16, 32), sides) for s in ("paper", "xpbd") for sides in ("single", "double")]
-        self.series += [series("bullet-soft", (8, 16, 32), gpu=""), series("ballistic", (8, 16, 32), gpu="", fps=1e6)]
-        self.series += [series("other", (8,), status="diverged"), series("other", (16,), status="unsupported")]
+        sizes = (8, 16, 32)
+        self.rows = [r for s in ("paper", "xpbd") for sides in ("single", "double") for r in rates(s, sizes, sides=sides)]
+        self.rows += rates("bullet-soft", sizes, gpu=False) + rates("ballistic", sizes, gpu=False, fps_median=1e6)
+        self.rows += rates("other", (8,), "diverged") + rates("other", (16,), "unsupported")
 
     def test_every_run_is_there(self):
-        rates = [family([series("elsewhere", (8,))], "other", False), family(self.series)]
-        svg, shown = draw(rates=rates)
+        elsewhere = rates("elsewhere", (8,), family="other", paper_table=0)
+        svg, shown = draw(runs=elsewhere + published() + self.rows)
         self.assertEqual(sorted(svg), ["fig4", "fig5"])
         self.assertEqual(marks(svg["fig4"], "points"), 5 * 3 + 3 * 2)
         self.assertEqual(marks(svg["fig4"], "failed"), 1, "failed runs are marked, unsupported ones not")
         for part in ("frames per second, uncapped", "vertices along one side", "software; its times say nothing of a GPU", "published: column 2",
                      "1,000,000", "double"):
             self.assertIn(part, words(svg["fig4"]))
-        self.assertNotIn("elsewhere", words(svg["fig4"]), "Fig. 4 is of the paper's table")
+        self.assertNotIn("elsewhere", words(svg["fig4"]), "Fig. 4 shows the paper's table")
         self.assertEqual(marks(svg["fig5"], "points"), 2 * 4 * 3)
         self.assertEqual(marks(svg["fig5"], "failed"), 2)
         for part in ("peak bandwidth [GB/s]", "read", "written", "Not known: bullet-soft, ballistic."):
             self.assertIn(part, words(svg["fig5"]))
         self.assertIn("peak over windows of 0.5 to 0.5 s", shown)
-        self.assertEqual(draw(rates=rates)[0], svg, "the same data give another file")
+        self.assertEqual(draw(runs=elsewhere + published() + self.rows)[0], svg, "the same data give another file")
 
     def test_some_alone(self):
-        cpu = draw(rates=[family([s for s in self.series if s["solver"] == "bullet-soft"])])[0]
-        self.assertEqual(sorted(cpu), ["fig4"], "bytes are known of GPU solvers alone")
-        floor = draw(rates=[family([s for s in self.series if s["solver"] == "ballistic"], "hang", False)])[0]
+        cpu = draw(runs=[r for r in self.rows if r["solver"] == "bullet-soft"])[0]
+        self.assertEqual(sorted(cpu), ["fig4"], "bytes are known only of GPU solvers")
+        floor = draw(runs=[r | {"paper_table": 0} for r in self.rows if r["solver"] == "ballistic"])[0]
         self.assertEqual(marks(floor["fig4"], "points"), 3, "alone, it is shown")
         self.assertNotIn("published", words(floor["fig4"]))
-        failed = draw(rates=[family([series("other", (8,), status="diverged")], "x", False)])[0]
+        failed = draw(runs=rates("other", (8,), "diverged"))[0]
         self.assertEqual(marks(failed["fig4"], "failed"), 1)
         self.assertEqual(draw()[0], {})
 
     def test_stretch_against_time(self):
-        settings = [series("xpbd", (32, 64), device_s=1e-4 * k, stretch_max=0.1 / k, stretch_mean=0.01 / k) | {"setting": f"s{k}"}
-                    for k in (1, 2, 3)]
-        svg = draw(rates=[family(settings, "hang", False)])[0]
+        settings = [r for k in (1, 2, 3) for n in (32, 64)
+                    for r in rates("xpbd", (n,), family="hang", paper_table=0, setting=f"s{k}", label=f"xpbd s{k}", frame_device_median_s=1e-4 * k,
+                                   stretch_max_last_second=0.1 / k, stretch_mean_last_second=0.01 / k)]
+        svg = draw(runs=settings)[0]
         self.assertEqual(marks(svg["hang-stretch"], "points"), 3 * 2 * 2)
-        for part in ("GPU time a frame [ms]", "stretch, last second [%]", "s3", "greatest", "mean"):
+        for part in ("GPU time per frame [ms]", "stretch, last second [%]", "s3", "max", "mean"):
             self.assertIn(part, words(svg["hang-stretch"]))
-        self.assertNotIn("hang-stretch", draw(rates=[family(settings[:1], "hang", False)])[0], "of one setting there is nothing to compare")
+        self.assertNotIn("hang-stretch", draw(runs=settings[:2])[0], "with one setting there is nothing to compare")
 
 
 class Work(unittest.TestCase):
     def test_points_fronts_and_floors(self):
         def point(solver, k, status="ok", **more):
             ok = status == "ok"
-            return {"solver": solver, "setting": f"s{k}", "status": status, "gpu": "Fake GPU", "wall_ms_per_s": 10.0 * k if ok else None,
-                    "device_ms_per_s": 5.0 * k if ok else None, "error": 0.1 / k if ok else None, "on_front": ok} | more
+            return row("accuracy", solver, setting=f"s{k}", status=status, gpu="Fake GPU", wall_ms_per_s=10.0 * k if ok else None,
+                       device_ms_per_s=5.0 * k if ok else None, error=0.1 / k if ok else None, not_ranked="softer than asked" if solver == "paper" else "",
+                       ranking="RMS distance / L", space_error=1e-3, reference_uncertainty=1e-9, refused="") | more
 
-        points = [point("xpbd", k) for k in (1, 2, 3)] + [point("xpbd", 9, error=1.0, on_front=False)]
+        points = [point("xpbd", k) for k in (1, 2, 3)] + [point("xpbd", 9, error=1.0)]
         points += [point("paper", 1), point("paper", 2, "diverged", wall_ms_per_s=7.0), point("paper", 3, "diverged"), point("paper", 4, "over_budget")]
         points += [point("reference", 1, "unsupported")]
-        diagram = {"scene": "a-scene", "ranking": "RMS distance / L", "space_error": 1e-3, "reference_uncertainty": 1e-9, "refused": "",
-                   "not_ranked": {"paper": "softer than asked"}, "points": points}
-        svg = draw(work=[diagram, diagram | {"scene": "none", "points": points[-1:]}])[0]
+        svg = draw(runs=points + [points[-1] | {"scene": "none"}])[0]
         one = svg["work-precision-a-scene"]
-        for layer, count in {"points": 5, "front_points": 4, "failed": 1, "untimed": 1, "floors": 1, "not_distinguished": 1, "device_fronts": 2}.items():
+        for layer, count in {"points": 5, "failed": 1, "failed_untimed": 1, "rules_y": 1, "rules_x": 1, "shade": 1, "lines": 4}.items():
             self.assertEqual(marks(one, layer), count, layer)
         for part in ("error: RMS distance / L", "[ms per simulated second]", "error of the mesh 1.0e-3", "paper: 2 of 4 failed, 1 of 4 not run.",
                      "reference: unsupported.", "paper is shown but not ranked: softer than asked.", "uncertainty 3.0e-9", "Fake GPU"):
             self.assertIn(part, words(one))
         self.assertIn("No run of this scene", words(svg["work-precision-none"]))
-        mesh = diagram | {"scene": "a-scene-mesh", "grid_scene": "a-scene", "space_error": 2e-3, "points": points[:3]}
-        drawn = draw(work=[diagram, mesh, mesh | {"scene": "alone-mesh", "grid_scene": "alone"}])[0]
-        self.assertEqual(sorted(n for n in drawn if "beside" in n), ["work-precision-a-scene-beside-mesh"])
-        both = drawn["work-precision-a-scene-beside-mesh"]
-        for layer, count in {"points": 5 + 3, "front_points": 4 + 3, "floors": 2}.items():
-            self.assertEqual(marks(both, layer), count, layer)
-        for part in ("grid: a-scene", "mesh: a-scene-mesh", "error of the mesh 2.0e-3", "[ms per simulated second]", "those of a mesh against"):
-            self.assertIn(part, words(both))
 
 
 class Penetration(unittest.TestCase):
-    def row(self, label, status="ok", frames=40, **amplitude):
-        time = [k / 72 for k in range(frames)]
-        return {"label": label, "solver": label.split()[0], "status": status, "failed_frame": -1 if status == "ok" else frames, "time_s": time,
-                "metrics": {m: {"values": [a * max(0, math.sin(6 * t)) for t in time]} for m, a in amplitude.items()}}
+    def document(self, runs):
+        """runs: [(scene, set_up, solver, status, frames, amplitudes)]"""
+        rows, series = [], []
+        for scene, set_up, label, status, frames, amplitudes in runs:
+            time = [k / 72 for k in range(frames)]
+            rows.append(row("contact", label.split()[0], label=label, scene=scene, set_up=set_up, status=status, verdict="pass" if status == "ok" else status))
+            series.append({"run": len(rows) - 1, "time_s": time,
+                           "metrics": {m: {"values": [a * max(0, math.sin(6 * t)) for t in time]} for m, a in amplitudes.items()}})
+        return {"runs": rows, "series": series}
 
     def test_panels_and_lines(self):
-        rooms = [{"name": n, "rows": [self.row(s, contact_length_m=0.1 * k, depth_m=4.0 * k)
-                                      for k, s in enumerate(("paper", "paper whole-room", "xpbd", "bullet-soft", "bullet-deformable"))]}
-                 for n in ("desk-flat-low", "desk-corner-low")]
-        sweep = [{"name": "sweep", "rows": [self.row("xpbd", contact_length_m=0.3, depth_m=0.002),
-                                            self.row("paper", "not_finite", 9, contact_length_m=0.3, depth_m=0.05)]}]
-        grip = [{"name": f"stretch-{k}", "rows": [self.row("xpbd", stretch_max=0.2)]} for k in range(4)]
-        push = [{"name": "push", "rows": [self.row("bullet-soft"), self.row("ballistic", contact_length_m=9)]}]
-        ups = {"rooms": rooms, "capsules": sweep, "grip": grip, "hand": push}
-        svg = draw(penetration=[{"kind": k, "title": f"Set-up [{k}] <b>", "scenes": s} for k, s in ups.items()])[0]
-        self.assertEqual(sorted(svg), ["penetration-capsules", "penetration-grip", "penetration-hand", "penetration-rooms"])
+        runs = [(scene, "rooms", s, "ok", 40, {"contact_length_m": 0.1 * k, "tunnelled_fraction": 0.05 * k})
+                for scene in ("desk-flat-low", "desk-corner-low") for k, s in enumerate(("paper", "paper fine", "xpbd", "bullet-soft", "bullet-deformable"))]
+        runs += [("sweep", "capsules", "xpbd", "ok", 40, {"contact_length_m": 0.3, "depth_m": 0.002}),
+                 ("sweep", "capsules", "paper", "not_finite", 9, {"contact_length_m": 0.3, "depth_m": 0.05})]
+        runs += [(f"stretch-{k}", "grip", "xpbd", "ok", 40, {"stretch_max": 0.2}) for k in range(4)]
+        runs += [("push", "hand", "bullet-soft", "ok", 40, {}), ("push", "hand", "ballistic", "ok", 40, {"contact_length_m": 9})]
+        svg = draw(**self.document(runs))[0]
+        self.assertEqual(sorted(svg), ["penetration-capsules", "penetration-grip", "penetration-hand", "penetration-rooms", "verdicts"])
         self.assertEqual(marks(svg["penetration-rooms"], "lines"), 2 * 2 * 5)
         self.assertEqual(marks(svg["penetration-rooms"], "failed"), 0)
-        for part in ("paper whole-room", "desk-corner-low", "contour [mm]", "depth [mm]", "time [s]"):
+        for part in ("paper fine", "desk-corner-low", "contour [mm]", "tunnelled [%]", "time [s]"):
             self.assertIn(part, words(svg["penetration-rooms"]))
         self.assertEqual(marks(svg["penetration-capsules"], "failed"), 2, "a failed solver is marked in every panel")
         self.assertEqual(marks(svg["penetration-grip"], "lines"), 4)
-        self.assertIn("No run of this set-up", words(svg["penetration-hand"]))
-        alone = draw(penetration=[{"kind": "hand", "title": "A hand", "scenes": [{"name": "push", "rows": push[0]["rows"][1:]}]}])[0]
+        self.assertIn("No run of this scene has this metric", words(svg["penetration-hand"]))
+        self.assertIn("fail", words(svg["verdicts"]))
+        alone = draw(**self.document(runs[-1:]))[0]
         self.assertEqual(marks(alone["penetration-hand"], "lines"), 1, "alone, it is shown")
 
     def test_a_name_is_no_path(self):
-        self.assertEqual(list(draw(penetration=[{"kind": "../../x y", "title": "", "scenes": []}])[0]), ["penetration-..-..-x-y"])
+        self.assertIn("penetration-..-..-x-y", draw(**self.document([("s", "../../x y", "xpbd", "missing", 9, {})]))[0])
 
 
 class Stability(unittest.TestCase):
-    def test_maps_and_cases(self):
-        classes = ["ok"] + [f"F{k}" for k in range(4)]
-        probes = [{"x": 10.0 ** k, "y": 1.0, "seed": 0, "status": "ok", "class": c, "grade": 0 if c == "ok" else 2, "frame": k, "message": "<b>"}
-                  for k, c in enumerate(classes)]
-        solver = {"solver": "xpbd", "setting": "8x4", "unsupported": False, "probes": probes, "largest": 1.0, "open": True,
-                  "rows": [{"y": 1.0, "seeds": [{"last_good": 1.0, "first_bad": 1.1}, {"last_good": 2.0, "first_bad": 2.2}]},
-                           {"y": 10.0, "seeds": [{"last_good": 0, "first_bad": 1}]}]}
-        absent = {**solver, "solver": "reference", "setting": "default", "unsupported": True, "probes": [], "rows": [], "largest": None}
-        one = {"name": "one", "title": "One map", "headline": "largest of all", "x": {"label": "step", "unit": "s"}, "y": {"label": "ratio", "unit": ""},
-               "theory": [{"name": "explicit-limit", "label": "explicit", "points": [[1, 1], [2, 10]]}], "solvers": [solver, absent]}
-        cases = [{"case": "S01", "solver": "xpbd", "stable": 2, "degraded": 1, "failed": 1}, {"case": "S02", "solver": "paper", "stable": 0, "degraded": 0, "failed": 3}]
-        svg = draw(maps=[one, one | {"name": "two", "solvers": [absent]}], cases=cases)[0]
-        self.assertEqual(sorted(svg), ["stability-cases", "stability-one", "stability-two"])
-        text = svg["stability-one"]
-        self.assertEqual([marks(text, n) for n in ("points", "theory", "boundary", "seeds")], [5, 1, 1, 1])
-        for part in ("step [s]", "ratio", "xpbd 8x4: ≥ 1 s", "F2 strain beyond the load", "stable", "explicit", "One map"):
-            self.assertIn(part, words(text))
-        shapes = {re.sub(r"[-\d.e]+", "", p.get("d")) + p.get("fill") for g in xml.fromstring(text).iter(SVG + "g")
-                  if (g.get("class") or "").endswith(" points_marks") for p in g}
-        self.assertEqual(len(shapes), len(classes), "a colour and a symbol a class")
-        self.assertIn("None of these solvers supports", words(svg["stability-two"]))
+    def test_cases(self):
+        cases = {("S01", "xpbd"): (2, 1, 1), ("S02", "paper"): (0, 0, 3)}
+        runs = [row("stability", solver, case=case, grade=grade) for (case, solver), counts in cases.items() for grade, n in enumerate(counts) for _ in range(n)]
+        svg = draw(runs=runs + [row("stability", "x", case="S03", grade=-1)])[0]
+        self.assertEqual(sorted(svg), ["stability-cases"])
         self.assertEqual(marks(svg["stability-cases"], "points"), 4)
         for part in ("S02", "paper", "degraded", "share of runs"):
             self.assertIn(part, words(svg["stability-cases"]))
+        self.assertNotIn("S03", words(svg["stability-cases"]))
 
 
 class Faults(unittest.TestCase):

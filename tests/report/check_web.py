@@ -54,39 +54,34 @@ for t in tables:
         assert [[c.strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
 assert any(r[0].startswith("published") for r in static["Table 3: frames per second, capped at 72"])
 
-# Points of Figs. 4 and 5, of the diagrams, of the series.
-points = 0
-for family in doc["rates"]:
-    for s in family["series"]:
-        for p in s["points"]:
-            name = f"{family['name']}-{p['width']:g}-{s['sides']}", s["solver"], s["setting"]
-            if name not in files:
-                continue
-            with h5py.File(files[name]) as f:
-                a = f["summary"].attrs
-                assert p["status"] == f["outcome"].attrs["status"]
-                if p["status"] == "ok":
-                    assert same(p["fps"], a["fps_median"]) and same(p["spread"], a["fps_spread"]), name
-                    points += 1
-assert points >= 6, f"only {points} rates were compared"
-(diagram,) = doc["work"]
-for p in diagram["points"]:
-    with h5py.File(files["free-fall", p["solver"], p["setting"]]) as f:
-        assert p["error"] == f["summary"].attrs["truth_error"]
-        rate = json.loads(json.loads(f["header_json"][0])["scenario_json"])["time"]["frame_rate_hz"]
-        assert abs(p["wall_ms_per_s"] / (1e3 * rate * f["summary"].attrs["frame_wall_median_s"]) - 1) < 1e-12
-assert len(diagram["points"]) == 2
+# Rows of the figures, and the series.
+KEYS = {"fps_median", "fps_spread", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
+points = errors = 0
+for r in doc["runs"]:
+    if r["published"]:
+        continue
+    with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
+        a = f["summary"].attrs
+        assert r["status"] == f["outcome"].attrs["status"]
+        for name in KEYS & set(r):
+            assert same(r[name], a.get(name, np.nan)), (r["scene"], r["solver"], name)
+            points += r[name] is not None
+        if r["part"] == "accuracy":
+            rate = json.loads(f.attrs["scenario_json"])["time"]["frame_rate_hz"]
+            assert r["error"] == a["truth_error"]
+            assert abs(r["wall_ms_per_s"] / (1e3 * rate * a["frame_wall_median_s"]) - 1) < 1e-12
+            errors += 1
+assert points >= 12 and errors == 2, f"only {points} rates and {errors} errors were compared"
 series = 0
-for up in doc["penetration"]:
-    for scene in up["scenes"]:
-        for row in scene["rows"]:
-            with h5py.File(files[scene["name"], row["solver"], row["setting"]]) as f:
-                for name, m in row["metrics"].items():
-                    stored = f["metrics"][name][:]
-                    assert len(stored) == len(m["values"]) == len(row["time_s"])
-                    told = np.array([np.nan if v is None else v for v in m["values"]])
-                    np.testing.assert_allclose(told, np.where(np.isfinite(stored), stored, np.nan), rtol=1e-5, atol=0)
-                    series += 1
+for s in doc["series"]:
+    r = doc["runs"][s["run"]]
+    with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
+        for name, m in s["metrics"].items():
+            stored = f["metrics"][name][:]
+            assert len(stored) == len(m["values"]) == len(s["time_s"])
+            told = np.array([np.nan if v is None else v for v in m["values"]])
+            np.testing.assert_allclose(told, np.where(np.isfinite(stored), stored, np.nan), rtol=1e-5, atol=0)
+            series += 1
 assert series > 10, series
 
 

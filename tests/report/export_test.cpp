@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fake_runs.hpp"
-#include "report/across_runs.hpp"
 
 namespace clothbench {
 namespace {
@@ -20,7 +19,7 @@ TEST(Export, RunsCsvReadsBackExactly) {
   std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3),
                                  fake_run("bullet-soft", 8, "double", 1e-300, false)};
   runs.push_back(with_outcome(fake_run("paper", 8, "single", 1), "diverged", 17, "said \"no\", twice\nand stopped"));
-  const auto csv = parse_csv(runs_csv(runs));
+  const auto csv = parse_csv(runs_csv(RunTable(runs)));
   ASSERT_EQ(csv.size(), 4u);
   for (const auto& row : csv) EXPECT_EQ(row.size(), csv[0].size());
   for (std::size_t k = 0; k < 2; ++k)
@@ -45,7 +44,7 @@ TEST(Export, InfinityIsSaid) {
   runs[0].summary["up"] = INFINITY;
   runs[0].summary["down"] = -INFINITY;
   runs[0].summary["missing"] = kMissing;
-  const auto csv = parse_csv(runs_csv(runs));
+  const auto csv = parse_csv(runs_csv(RunTable(runs)));
   EXPECT_EQ(field(csv, 1, "up"), "inf");
   EXPECT_EQ(field(csv, 1, "down"), "-inf");
   EXPECT_EQ(field(csv, 1, "missing"), "");
@@ -53,35 +52,6 @@ TEST(Export, InfinityIsSaid) {
   EXPECT_EQ(summary.at("up"), "inf");
   EXPECT_EQ(summary.at("down"), "-inf");
   EXPECT_TRUE(summary.at("missing").is_null());
-  AcrossRuns a;
-  a.case_name = "S22";
-  a.value = INFINITY;
-  a.bound = 3;
-  const auto across = parse_csv(across_csv({a}));
-  EXPECT_EQ(field(across, 1, "value"), "inf");
-  EXPECT_EQ(field(across, 1, "verdict"), "fail");
-  EXPECT_EQ(across_table({a}).rows.at(1).at(4), "inf");
-}
-
-TEST(Export, Table3HasPublishedAndMeasured) {
-  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 0.02),
-                                 with_outcome(fake_run("xpbd", 16, "single", 1), "unsupported", -1, "")};
-  const auto csv = parse_csv(table3_csv(families(runs)[0], published_table3()));
-  ASSERT_EQ(csv.size(), 1u + 15u + 2u);
-  double sum = 0;
-  for (std::size_t k = 1; k <= 15; ++k) {
-    EXPECT_EQ(field(csv, k, "source"), "published");
-    EXPECT_EQ(field(csv, k, "fps_median"), "");
-    sum += std::stod(field(csv, k, "fps_at_72"));
-  }
-  EXPECT_EQ(sum, 11 * 72 + 65 + 42 + 40 + 16);
-  EXPECT_EQ(std::stod(field(csv, 16, "fps_median")), 50);
-  EXPECT_EQ(field(csv, 17, "status"), "unsupported");
-
-  const nlohmann::json j = nlohmann::json::parse(table3_json(families(runs)[0], published_table3()).dump());
-  EXPECT_EQ(j.at("published"), published_table3());
-  EXPECT_EQ(j.at("measured").at(0).at("fps_median"), 50);
-  EXPECT_TRUE(j.at("measured").at(1).at("fps_median").is_null());
 }
 
 TEST(Export, RunsJsonHasNullForMissing) {
@@ -91,13 +61,13 @@ TEST(Export, RunsJsonHasNullForMissing) {
   EXPECT_EQ(j.at(0).at("environment").at("cpu"), "Fake CPU");
 }
 
-TEST(Export, WindowNoteSpansTheRunsWithBytes) {
+TEST(Export, TheNoteOnWindowsSpansTheRunsWithBytes) {
   std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 16, "single", 1),
                                  fake_run("bullet-soft", 16, "single", 1, false)};
   runs[1].summary["bandwidth_window_s"] = 5;
   runs[2].summary["bandwidth_window_s"] = 0.001;
-  EXPECT_NE(window_note(runs).find("0.5 to 5"), std::string::npos) << window_note(runs);
-  EXPECT_EQ(window_note({runs[2]}), "");
+  const std::string note = table_of(runs, "Peak bandwidth, read / written [GB/s]").note;
+  EXPECT_NE(note.find("0.5 to 5"), std::string::npos) << note;
 }
 
 TEST(Export, WrappedKeepsEveryWord) {

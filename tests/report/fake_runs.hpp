@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/report.hpp"
+#include "report/view.hpp"
 
 namespace clothbench {
 
@@ -84,11 +85,18 @@ inline std::string entry(const Table& t, const std::string& solver, const std::s
   return "";
 }
 
-/// Table of the first family whose title contains `word`.
-inline Table table_of(const std::vector<RunRecord>& runs, const std::string& word) {
-  for (const Table& t : fps_tables(families(runs).at(0), published_table3()))
-    if (t.title.find(word) != std::string::npos) return t;
-  throw std::runtime_error("no table about " + word);
+/// All tables of a report of these runs whose view has the title; none if they have none.
+inline std::vector<Table> tables_titled(const std::vector<RunRecord>& runs, const std::string& title) {
+  const RunTable table(runs);
+  for (const View& v : views())
+    if (v.title == title) return tables_of(v, table);
+  throw std::runtime_error("no view has the title " + title);
+}
+
+/// The first of them; one without rows if there is none.
+inline Table table_of(const std::vector<RunRecord>& runs, const std::string& title) {
+  const std::vector<Table> all = tables_titled(runs, title);
+  return all.empty() ? Table{"", "", {{}}} : all.front();
 }
 
 /// Records of CSV text as RFC 4180 reads them.

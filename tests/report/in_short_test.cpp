@@ -1,8 +1,7 @@
-#include "report/in_short.hpp"
-
 #include <gtest/gtest.h>
 
 #include "base/tint.hpp"
+#include "report/report.hpp"
 
 namespace clothbench {
 namespace {

@@ -68,7 +68,7 @@ async function check_tables() {
     const row = (tag, first, cell) => `<tr><th>${first}</th>${`<${tag}>${cell}</${tag}>`.repeat(13)}</tr>`;
     const box = document.createElement('div');
     box.className = 'scroll';
-    box.innerHTML = `<table class="many"><thead>${row('th', 'scene', 'bullet-soft† margin 20 mm')}</thead>` +
+    box.innerHTML = `<table class="many"><thead>${row('th', 'scene', 'bullet-soft margin 20 mm')}</thead>` +
         `<tbody>${row('td', 'two-hand-stretch-0p5mps', 'unsupported')}</tbody></table>`;
     document.querySelector('main').append(box);
     const wide = box.scrollWidth - box.clientWidth;
@@ -95,45 +95,26 @@ async function check_tables() {
 }
 
 async function check_figures() {
-  const families = await page.evaluate(() => window.clothbench.document.rates);
-  for (const [k, family] of families.entries()) {
-    const ours =
-        family.series.filter(s => s.solver !== 'ballistic').flatMap(s => s.points).filter(p => p.fps > 0).length;
-    const published = (family.published ?? []).flatMap(s => s.points).length;
-    equal(await marks(`rates-${k}`, 'points'), ours + published, `points of the rates of ${family.name}`);
+  const runs = await page.evaluate(() => window.clothbench.document.runs), rated = runs.filter(r => r.part === 'rates');
+  for (const [k, family] of [...new Set(rated.map(r => r.family))].entries()) {
+    const drawn = rated.filter(r => r.family === family && r.solver !== 'ballistic' && r.fps_median > 0);
+    equal(await marks(`rates-${k}`, 'points'), drawn.length, `points of the rates of ${family}`);
   }
-  const work = await page.evaluate(() => window.clothbench.document.work);
-  for (const d of work) {
-    await page.select('figure:has(#work) select', d.scene);
-    const good = d.points.filter(p => p.status === 'ok' && p.error > 0 && p.wall_ms_per_s > 0);
-    equal(await marks('work', 'points'), good.length, `points of ${d.scene}`);
-    equal(
-        await marks('work', 'front_points'), good.filter(p => p.on_front).length, `points on the fronts of ${d.scene}`);
+  const work = runs.filter(r => r.part === 'accuracy');
+  for (const scene of new Set(work.map(r => r.scene))) {
+    await page.select('figure:has(#work) select', scene);
+    const good = work.filter(r => r.scene === scene && r.status === 'ok' && r.error > 0 && r.wall_ms_per_s > 0);
+    equal(await marks('work', 'points'), good.length, `points of ${scene}`);
   }
-  const maps = await page.evaluate(() => window.clothbench.document.maps);
-  for (const m of maps) {
-    await page.select('figure:has(#stability-map) select', m.name);
-    const probes = m.solvers.flatMap(s => s.probes).filter(p => p.seed === 0);
-    equal(await marks('stability-map', 'points'), probes.length, `probes of the map ${m.name}`);
-    if (!probes.length) continue;
-    const looks = await page.$$eval(
-        '#stability-map .points_marks > path',
-        list => list.map(p => [p.getAttribute('fill'), p.getAttribute('d').replace(/[0-9.e-]+/g, '')].join(' ')));
-    const classes = new Set(probes.map(p => p.class));
-    equal(new Set(looks).size, classes.size, `colours and symbols of the map ${m.name}, one a class`);
-    equal(
-        await page.$$eval('#stability-map .theory_marks path, #stability-map .boundary_marks path', l => l.length),
-        2 * m.solvers.filter(s => s.probes.length).length, `lines of theory and boundaries of the map ${m.name}`);
-  }
-  const ups = await page.evaluate(() => window.clothbench.document.penetration);
-  for (const scene of ups.flatMap(u => u.scenes)) {
-    await page.select('figure:has(#penetration-series) select', scene.name);
+  const series = (await page.evaluate(() => window.clothbench.document.series)).map(s => ({...s, ...runs[s.run]}));
+  for (const scene of new Set(series.map(s => s.scene))) {
+    await page.select('figure:has(#penetration-series) select', scene);
     const metric = await page.$eval('figure:has(#penetration-series) label:nth-of-type(2) select', e => e.value);
-    const wanted = scene.rows.filter(r => r.solver !== 'ballistic')
-                       .flatMap(r => r.metrics[metric]?.values ?? [])
+    const wanted = series.filter(s => s.scene === scene && s.solver !== 'ballistic')
+                       .flatMap(s => s.metrics[metric]?.values ?? [])
                        .filter(v => v !== null)
                        .length;
-    equal(await marks('penetration-series', 'points'), wanted, `points of ${scene.name}, ${metric}`);
+    equal(await marks('penetration-series', 'points'), wanted, `points of ${scene}, ${metric}`);
   }
 }
 

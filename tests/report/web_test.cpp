@@ -8,7 +8,6 @@
 
 #include "clothbench/error.hpp"
 #include "fake_runs.hpp"
-#include "report/web/packed.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
 #include "with_folder.hpp"
@@ -35,7 +34,7 @@ Replay waving(std::size_t frames, std::size_t columns, std::size_t rows) {
   return r;
 }
 
-/// As packed.hpp says, written again from there.
+/// As page.hpp states, written independently.
 std::vector<double> unpacked(const PackedMotion& m) {
   const std::size_t n = m.columns.size() * m.rows.size(), count = m.frames.size() * 3 * n;
   std::vector<unsigned char> planes(2 * count);
@@ -161,7 +160,7 @@ TEST_F(WebFiles, ReplayHasEveryNthFrameAndTheColliders) {
 
 TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
-  const Motions all = motions_of(runs, {});
+  const Motions all = motions_of(runs);
   ASSERT_EQ(all.document["runs"].size(), 4u);
   EXPECT_EQ(all.document["colliders"].size(), 1u) << "the same in every run: once";
   EXPECT_EQ(all.blobs.size(), 4u + 2);
@@ -170,12 +169,12 @@ TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
   std::size_t size = 0, packed = 0;
   for (const std::string& b : all.blobs) size += b.size();
   const std::size_t budget = size / 4;
-  const Motions few = motions_of(runs, {}, budget);
+  const Motions few = motions_of(runs, budget);
   for (const std::string& b : few.blobs) packed += b.size();
   EXPECT_LE(packed, budget + 200) << "colliders are small here";
   for (const auto& c : few.document["runs"]) EXPECT_LT(c["frames"].size(), c["frames_stored"].get<std::size_t>());
   EXPECT_GT(few.document["runs"].size(), 0u);
-  const Motions none = motions_of(runs, {}, 10);
+  const Motions none = motions_of(runs, 10);
   EXPECT_TRUE(none.document["runs"].empty());
   EXPECT_EQ(none.document["left_out"].at(0),
             "4 motions: too large at the coarsest thinning, or not finite from the start.");
@@ -184,10 +183,9 @@ TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
 TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
   Page page;
-  page.sections.push_back({"failed", "Failed", {failed_table(runs)}});
+  page.sections.push_back({"failed", "Failed", {table_of(runs, "Runs without a result")}});
   page.commands = commands_of({dir_ / "run"});
-  page.rates = rates_json(families(runs), published_table3());
-  const nlohmann::json document = page_document(runs, page, motions_of(runs, {}));
+  const nlohmann::json document = page_document(RunTable(runs), page, motions_of(runs));
   const std::string html = page_html("<html><!--clothbench:data--><script>code</script></html>", document, {"QUJD"});
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
@@ -204,36 +202,37 @@ TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
 
 TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
-  EXPECT_EQ(write_page(dir_, runs, {}, {"<html><!--clothbench:data--></html>", ""}), "");
+  EXPECT_EQ(write_page(dir_, RunTable(runs), {}, {"<html><!--clothbench:data--></html>", ""}), "");
   EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
-  EXPECT_EQ(write_page(dir_, runs, {}, {"", "there was no Node when this was built"}),
+  EXPECT_EQ(write_page(dir_, RunTable(runs), {}, {"", "there was no Node when this was built"}),
             "The interactive page was left out: there was no Node when this was built.");
   EXPECT_FALSE(fs::exists(dir_ / "index.html"));
 }
 
-TEST_F(WebFiles, RatesKeepFullPrecisionAndMissingIsNull) {
-  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3001),
-                                 fake_run("bullet-soft", 8, "single", 0.01, false)};
-  const nlohmann::json rates = nlohmann::json::parse(rates_json(families(runs), published_table3()).dump());
-  ASSERT_EQ(rates.size(), 1u);
-  EXPECT_EQ(rates[0]["published"].size(), 3u);
-  for (const auto& s : rates[0]["series"]) {
-    const auto& p = s["points"].at(0);
-    const bool gpu = s["solver"] == "xpbd";
-    EXPECT_EQ(p["fps"].get<double>(), gpu ? runs[0].summary.at("fps_median") : runs[1].summary.at("fps_median"));
-    EXPECT_EQ(p["read_B_per_s"].is_null(), !gpu);
-    EXPECT_EQ(p["width"], 8.0);
+TEST_F(WebFiles, RowsKeepFullPrecisionAndMissingIsNull) {
+  const std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3001),
+                                       fake_run("bullet-soft", 8, "single", 0.01, false)};
+  const nlohmann::json rows = nlohmann::json::parse(figure_rows(RunTable(runs)).dump());
+  ASSERT_EQ(rows.size(), 15u + 2);
+  for (const auto& r : rows) {
+    EXPECT_EQ(r["published"].get<bool>(), r["solver"].get<std::string>().starts_with("published"));
+    if (r["published"] == true) continue;
+    const bool gpu = r["solver"] == "xpbd";
+    EXPECT_EQ(r["fps_median"].get<double>(), runs[gpu ? 0 : 1].summary.at("fps_median"));
+    EXPECT_EQ(r["bandwidth_read_peak_B_per_s"].is_null(), !gpu);
+    EXPECT_EQ(r["width"], 8.0);
   }
 }
 
-TEST(Environment, OneColumnForEachPlace) {
+TEST(Environment, OneRowPerMachine) {
   std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 9, "single", 1),
                                  fake_run("bullet-soft", 8, "single", 1, false)};
   runs.push_back({});
-  const Table t = environment_table(runs);
-  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"what", "xpbd (2 runs)", "bullet-soft (1 run)"}));
-  EXPECT_EQ(t.rows.at(1), (std::vector<std::string>{"GPU", "Fake GPU", "CPU"}));
-  for (const auto& row : t.rows) EXPECT_NE(row[0], "clocks") << "a row without any value is left out";
+  const Table t = table_of(runs, "Machines of the runs");
+  ASSERT_EQ(t.rows.size(), 3u);
+  EXPECT_EQ(entry(t, "Fake GPU", "No", "runs"), "xpbd (2)");
+  EXPECT_EQ(entry(t, "CPU", "No", "runs"), "bullet-soft (1)");
+  for (const std::string& head : t.rows[0]) EXPECT_NE(head, "clocks") << "a column without any value is left out";
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "report/work_precision.hpp"
+#include "fake_runs.hpp"
 
 namespace clothbench {
 namespace {
@@ -28,11 +28,18 @@ RunRecord run(const std::string& solver, const std::string& setting, double fram
   return c;
 }
 
-const std::vector<std::string>& row_of(const Table& t, const std::string& solver) {
-  for (const auto& row : t.rows)
-    if (row.at(1) == solver) return row;
-  throw std::runtime_error("no row of " + solver);
+constexpr const char* kWork = "Error against run time";
+constexpr const char* kBudget = "Smallest error within a time budget per frame";
+constexpr const char* kCases = "Reference cases and their reference solutions";
+
+/// Value of the row of `solver` in the scene, refused or not.
+std::string value(const std::vector<RunRecord>& runs, const std::string& title, const std::string& solver,
+                  const std::string& head) {
+  const Table t = table_of(runs, title);
+  return entry(t, t.rows.at(1).at(0), solver, head);
 }
+
+std::string refused(const std::vector<RunRecord>& runs) { return RunTable(runs).rows().at(0).truth->refused(); }
 
 TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   const std::vector<RunRecord> runs = {run("a", "fast", 1e-3, 0.5),
@@ -42,21 +49,13 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
                                        run("a", "lost", 1e-3, 1e-9, "not_finite"),
                                        run("b", "tiny", 2e-3, 1e-6),
                                        run("b", "nan", 2e-3, NAN)};
-  const auto diagrams = work_diagrams(runs);
-  ASSERT_EQ(diagrams.size(), 1u);
-  std::vector<std::string> front;
-  for (const WorkPoint& p : diagrams[0].points)
-    if (p.on_front) front.push_back(p.setting);
-  EXPECT_EQ(front, (std::vector<std::string>{"fast", "good", "best", "tiny"}));
-  EXPECT_NEAR(diagrams[0].points[0].wall_ms_per_s, 60, 1e-9) << "1 ms a frame at 60 Hz";
-  const Table t = work_table(diagrams);
-  EXPECT_EQ(row_of(t, "a")[2], "240 (good)");
-  EXPECT_EQ(row_of(t, "a")[3], "6e+03 (best)");
-  EXPECT_EQ(row_of(t, "a")[4], "0.008 (good)") << "6 s a second is not real time";
-  EXPECT_EQ(row_of(t, "a")[6], "1 of 5");
-  EXPECT_EQ(row_of(t, "b")[5], "≤ 0.002 (tiny)") << "no solver is better than the mesh itself";
-  EXPECT_EQ(row_of(t, "b")[6], "1 of 2");
-  EXPECT_EQ(diagrams[0].refused(), "")
+  EXPECT_EQ(value(runs, kWork, "a", "to 1 %"), "240 (good)") << "4 ms per frame at 60 Hz";
+  EXPECT_EQ(value(runs, kWork, "a", "to 0.1 %"), "6e+03 (best)");
+  EXPECT_EQ(value(runs, kWork, "a", "best error in real time"), "0.008 (good)") << "6 s a second is not real time";
+  EXPECT_EQ(value(runs, kWork, "a", "failed"), "1 of 5");
+  EXPECT_EQ(value(runs, kWork, "b", "best error"), "≤ 0.002 (tiny)") << "no solver is better than the mesh itself";
+  EXPECT_EQ(value(runs, kWork, "b", "failed"), "1 of 2");
+  EXPECT_EQ(refused(runs), "")
       << "the best error is below 3 U_ref, and so below the mesh's own: no solver is ranked there";
 }
 
@@ -64,59 +63,59 @@ TEST(WorkTable, TimesArePipelinedWhereASolverCan) {
   std::vector<RunRecord> runs = {run("a", "x", 4e-3, 5e-3), run("b", "x", 2e-3, 5e-3)};
   runs[0].summary["frame_pipelined_median_s"] = 1e-3;
   runs[1].summary["frame_pipelined_median_s"] = NAN;
-  const auto diagrams = work_diagrams(runs);
-  const Table t = work_table(diagrams);
-  EXPECT_EQ(row_of(t, "a")[2], "60 (x)");
-  EXPECT_EQ(row_of(t, "a")[7], "240 (x)") << "from submission to fence";
-  EXPECT_EQ(row_of(t, "b")[2], "120 (x)") << "it waits for each frame";
-  EXPECT_EQ(row_of(t, "b")[7], "120 (x)");
-  EXPECT_NE(winners_table(diagrams).rows[1][2].find("a ("), std::string::npos) << "ranked by the pipelined time";
+  EXPECT_EQ(value(runs, kWork, "a", "to 1 %"), "60 (x)");
+  EXPECT_EQ(value(runs, kWork, "a", "to 1 %, fenced"), "240 (x)") << "from submission to fence";
+  EXPECT_EQ(value(runs, kWork, "b", "to 1 %"), "120 (x)") << "it waits for each frame";
+  EXPECT_EQ(value(runs, kWork, "b", "to 1 %, fenced"), "120 (x)");
 }
 
-TEST(BudgetTable, NamesWhoHasTheSmallerErrorAtAnyBudget) {
-  // 0.02 and 0.04 at 0.3 ms: between the budgets that have a column.
-  const std::vector<RunRecord> runs = {run("a", "x", 1e-4, 0.3), run("a", "y", 1e-3, 0.04), run("b", "x", 3e-4, 0.02),
-                                       run("b", "late", 2e-2, 1e-9), run("a", "nan", 1e-4, NAN)};
-  const Table t = budget_table(work_diagrams(runs));
-  EXPECT_EQ(row_of(t, "a").at(3), "0.3") << "0.1 ms";
-  EXPECT_EQ(row_of(t, "a").at(2), "–") << "0.05 ms";
-  EXPECT_EQ(row_of(t, "a").at(6), "0.04") << "1 ms";
-  EXPECT_EQ(row_of(t, "a").back(), "b: 15 times at 0.3 ms");
-  EXPECT_EQ(row_of(t, "b").back(), "a: 0.3 at 0.1 ms, where this solver has no result");
-  const std::vector<RunRecord> small = {run("a", "x", 1e-4, 1e-6), run("b", "x", 1e-4, 1e-9)};
-  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").back(), "never")
-      << "below the mesh's own error no solver is better";
-  EXPECT_EQ(row_of(budget_table(work_diagrams(small)), "a").at(3), "≤ 0.002");
+TEST(WorkTable, ASolverWithoutTheStiffnessIsNotRanked) {
+  std::vector<RunRecord> runs = {run("a", "x", 1e-3, 5e-3), run("b", "x", 1e-3, 5e-3)};
+  for (RunRecord& c : runs) c.summary["truth_dependence_B"] = 0.5;
+  runs[0].header.plan["left_out"] = {{{"what", "bending"}, {"why", "none here"}, {"no_parameter", "B"}}};
+  EXPECT_EQ(value(runs, kWork, "a", "ranked"), "NO: the run has no bending: none here");
+  EXPECT_EQ(value(runs, kWork, "b", "ranked"), "yes");
+  for (RunRecord& c : runs) c.summary["truth_dependence_B"] = 0.001;
+  EXPECT_EQ(value(runs, kWork, "a", "ranked"), "yes") << "the scene does not depend on it";
+}
+
+TEST(BudgetTable, HasTheSmallestErrorOfSettingsThatFit) {
+  const std::vector<RunRecord> runs = {run("a", "x", 1e-4, 0.3), run("a", "y", 1e-3, 0.04), run("b", "x", 3e-4, 1e-9),
+                                       run("a", "nan", 1e-4, NAN)};
+  EXPECT_EQ(value(runs, kBudget, "b", "0.1 ms"), "–");
+  EXPECT_EQ(value(runs, kBudget, "a", "0.1 ms"), "0.3");
+  EXPECT_EQ(value(runs, kBudget, "a", "1 ms"), "0.04");
+  EXPECT_EQ(value(runs, kBudget, "b", "0.5 ms"), "≤ 0.002") << "the mesh's own error";
 }
 
 TEST(EnergyTable, CountsSettingsThatGainNaNIncluded) {
   std::vector<RunRecord> runs = {run("a", "x", 1e-4, 0.3), run("a", "y", 1e-4, 0.3), run("b", "x", 1e-4, 0.3)};
   runs[0].summary["energy_gain"] = 1e-4;
   runs[1].summary["energy_gain"] = 2e-3;
-  const Table t = energy_table(work_diagrams(runs));
+  const Table t = table_of(runs, "Energy gain where energy is conserved");
   ASSERT_EQ(t.rows.size(), 2u) << "b's energy is not known";
-  EXPECT_EQ(row_of(t, "a"), (std::vector<std::string>{"swing", "a", "2.0e-03", "y", "1 of 2"}));
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"swing", "a", "2.0e-03", "y", "1 of 2"}));
 }
 
 TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
   const std::vector<RunRecord> runs = {run("a", "x", 4e-3, 5e-3), run("a", "y", NAN, NAN, "over_budget"),
                                        run("a", "z", 1e-3, NAN, "diverged")};
-  EXPECT_EQ(row_of(work_table(work_diagrams(runs)), "a")[6], "1 of 3, 1 not run");
+  EXPECT_EQ(value(runs, kWork, "a", "failed"), "1 of 3, 1 not run");
 }
 
 TEST(WorkTable, RefusesWithoutACertainReference) {
   std::vector<RunRecord> runs = {run("a", "x", 1e-3, 1e-4)};
-  EXPECT_EQ(work_diagrams(runs)[0].refused(), "");
+  EXPECT_EQ(refused(runs), "");
   runs[0].summary["truth_space_error"] = 1e-3;
   runs[0].summary["reference_uncertainty"] = 1e-4 / 2;
-  EXPECT_EQ(work_diagrams(runs)[0].refused(), "") << "the mesh's own error is above 3 U_ref";
+  EXPECT_EQ(refused(runs), "") << "the mesh's own error is above 3 U_ref";
   runs[0].summary["truth_space_error"] = 0;
-  EXPECT_NE(work_diagrams(runs)[0].refused(), "");
-  EXPECT_NE(truth_table(work_diagrams(runs)).markdown().find("REFUSED"), std::string::npos);
+  EXPECT_NE(refused(runs), "");
+  EXPECT_NE(table_of(runs, kCases).markdown().find("REFUSED"), std::string::npos);
   runs[0].summary["reference_uncertainty"] = NAN;
-  EXPECT_EQ(work_diagrams(runs)[0].refused(), "no reference solution");
+  EXPECT_EQ(refused(runs), "no reference solution");
   runs[0].header.scenario_json = "{}";
-  EXPECT_TRUE(work_diagrams(runs).empty());
+  EXPECT_TRUE(tables_titled(runs, kWork).empty());
 }
 
 }  // namespace

@@ -10,8 +10,7 @@
 
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
-#include "report/across_runs.hpp"
-#include "report/stability.hpp"
+#include "report/view.hpp"
 #include "results/store.hpp"
 #include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
@@ -88,57 +87,72 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor")
       runs.push_back(read_run_summary(entry.path()));
   ASSERT_EQ(runs.size(), 2u);
-  for (const RunRecord& c : runs) EXPECT_TRUE(is_stability(c));
-  const Table table = robustness_table(runs);
+  const RunTable rows(runs);
+  for (const Row& r : rows.rows()) EXPECT_EQ(r.part, Part::Stability);
+  std::vector<Table> tables;
+  for (const View& v : views())
+    if (v.section == "stability")
+      for (Table& t : tables_of(v, rows)) tables.push_back(std::move(t));
+  ASSERT_EQ(tables.size(), 2u);
+  const Table& table = tables[0];
   ASSERT_EQ(table.rows.size(), 3u);  // header, S16, all
-  for (std::size_t k = 1; k < 3; ++k) {
-    const std::string text = table.rows[1][k];
-    EXPECT_EQ(text, table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F8)");
-  }
-  const Table failures = first_failure_table(runs);
-  ASSERT_EQ(failures.rows.size(), 2u);
-  EXPECT_NE(failures.rows[1][3].find("crashed"), std::string::npos);
-  EXPECT_NE(stability_csv(runs).find("crashed,failed,F8"), std::string::npos);
+  for (std::size_t k = 1; k < 3; ++k)
+    EXPECT_EQ(table.rows[1][k], table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F8)");
+  ASSERT_EQ(tables[1].rows.size(), 2u);
+  EXPECT_NE(tables[1].rows[1][3].find("crashed"), std::string::npos);
 }
 
-TEST_F(StabilityStudy, RunsAreComparedWithOneAnother) {
-  study_json_["solvers"] = {{{"solver", "falls"}}, {{"solver", "nan"}}};
-  study_json_["scenes"] = {
-      {{"file", "thrown.json"},
-       {"axes",
-        {{{"key", "stability"}, {"values", {{{"case", "S26"}, {"judged", {"F0"}}}}}, {"labels", {"repeat"}}},
-         {{"key", "cloth.start.seed"}, {"values", {0, 0, 1}}, {"labels", {"0", "again", "1"}}}}}}};
-  for (const double scale : {1.0, 1024.0})
-    study_json_["scenes"].push_back(
-        {{"file", "thrown.json"},
-         {"axes",
-          {{{"key", "stability"}, {"values", {{{"case", "S24"}, {"judged", {"F0"}}}}}, {"labels", {"scale"}}},
-           {{"key", "cloth.start.noise_m"}, {"values", {0}}, {"labels", {"still"}}},
-           {{"key", "gravity_m_per_s2"}, {"values", {{0, -scale, 0}}}, {"labels", {scale == 1 ? "g1" : "g1024"}}},
-           {{"key", "cloth.size_m"}, {"values", {{scale, scale}}}, {"labels", {scale == 1 ? "m" : "km"}}}}}});
-  write("thrown-study.json", study_json_);
-  RunOptions many = options(false);
-  many.jobs = 3;
-  const Study study = load_study((dir_ / "thrown-study.json").string());
-  execute(study, many);
-  std::vector<RunRecord> runs;
-  for (const auto& entry : fs::directory_iterator(dir_ / "out"))
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor") {
-      runs.push_back(read_run_summary(entry.path()));
-      runs.back().file = entry.path().string();
-    }
-  ASSERT_EQ(runs.size(), 10u);
-  int found = 0;
-  for (const AcrossRuns& a : across_runs(runs)) {
-    SCOPED_TRACE(a.case_name + " " + a.solver + ": " + a.text);
-    EXPECT_TRUE(a.judged());
-    EXPECT_EQ(a.passed(), a.solver == "falls");
-    EXPECT_EQ(a.value == 0, a.solver == "falls");
-    EXPECT_EQ(a.text.find("other seeds") != std::string::npos, a.case_name == "S26" && a.solver == "falls");
-    ++found;
-  }
-  EXPECT_EQ(found, 3) << "both of S26, and of S24 the one that has something to compare with";
-  EXPECT_EQ(across_table(across_runs(runs)).rows.size(), 4u);
+TEST_F(StabilityStudy, ManyProcessesGiveWhatOneGives) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json alone = maps();
+  StabilityOptions many = options(false);
+  many.jobs = 4;
+  const StabilityCounts counts = run_stability_maps(study, many);
+  EXPECT_EQ(maps(), alone);
+  EXPECT_EQ(counts.stable, 6);
+  EXPECT_EQ(counts.failed, 6);
+}
+
+TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json m = maps().at(0);
+  ASSERT_EQ(m.at("solvers").size(), 2u);
+  const json& falls = m.at("solvers").at(0);
+  EXPECT_EQ(falls.at("largest"), 100);
+  EXPECT_TRUE(falls.at("open").get<bool>());
+  EXPECT_EQ(falls.at("rows").size(), 2u);
+  EXPECT_EQ(falls.at("probes").size(), 6u);
+  const json& nan = m.at("solvers").at(1);
+  EXPECT_EQ(nan.at("largest"), 0);
+  EXPECT_EQ(nan.at("probes").at(0).at("class"), "F0");
+  EXPECT_EQ(m.at("theory").at(0).at("points").size(), 2u);
+}
+
+std::vector<json> lines_of(const fs::path& file) {
+  std::vector<json> out;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line, nullptr, false));
+  return out;
+}
+
+TEST_F(StabilityStudy, AnAnswerAfterATornLineIsKept) {
+  const Study study = load_study((dir_ / "maps.json").string());
+  run_stability_maps(study, options(false));
+  const json whole = maps();
+  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
+  const std::size_t count = lines_of(probes).size();
+  fs::resize_file(probes, fs::file_size(probes) - 20);
+  run_stability_maps(study, options(true));
+  EXPECT_EQ(maps(), whole);
+  const std::vector<json> lines = lines_of(probes);
+  EXPECT_EQ(lines.size(), count);
+  for (const json& line : lines)
+    EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
+  const auto size = fs::file_size(probes);
+  run_stability_maps(study, options(true));
+  EXPECT_EQ(fs::file_size(probes), size) << "nothing is left to run";
 }
 
 std::string refusal(const std::function<void()>& what) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace clothbench {
@@ -26,22 +27,25 @@ TEST(QuickStudy, RunsReportsAndDraws) {
   const std::string device = allowed != nullptr && std::string(allowed) == "1" ? " --allow-no-device" : "";
   ASSERT_EQ(run("study work-precision --quick --out " + (dir / "run").string() + device + " > /dev/null"), 0);
   ASSERT_EQ(run("report " + (dir / "run").string() + " -o " + (dir / "report").string() + " > /dev/null"), 0);
-  std::ifstream in(dir / "report/work-precision.json");
-  const json diagrams = json::parse(in);
-  ASSERT_EQ(diagrams.size(), 2u);
-  for (const json& d : diagrams) {
-    EXPECT_EQ(d["refused"], "") << d["scene"];
-    EXPECT_LT(d["reference_truth_distance"].get<double>(), std::max(5e-7, d["reference_uncertainty"].get<double>()));
-    double coarse = NAN, fine = NAN;
-    for (const json& p : d["points"]) {
-      if (p["solver"] != "reference") continue;
-      EXPECT_EQ(p["status"], "ok");
-      if (p["setting"] == "substeps=1") coarse = p["error"].get<double>();
-      if (p["setting"] == "substeps=64") fine = p["error"].get<double>();
-    }
-    EXPECT_LT(fine, 1e-2 * coarse);
-    EXPECT_GT(fs::file_size(dir / "report" / ("work-precision-" + d["scene"].get<std::string>() + ".png")), 5000u);
+  std::ifstream in(dir / "report/runs.json");
+  std::map<std::string, std::map<std::string, double>> errors;  // of the reference solver, by scene and setting
+  for (const json& run : json::parse(in)) {
+    if (run.at("solver") != "reference") continue;
+    const json& s = run.at("summary");
+    EXPECT_LT(s.at("reference_truth_distance").get<double>(),
+              std::max(5e-7, s.at("reference_uncertainty").get<double>()));
+    EXPECT_EQ(run.at("outcome").at("status"), "ok");
+    errors[run.at("scene")][run.at("setting")] = s.at("truth_error");
   }
+  ASSERT_EQ(errors.size(), 2u);
+  for (const auto& [scene, error] : errors) {
+    EXPECT_LT(error.at("substeps=64"), 1e-2 * error.at("substeps=1"));
+    EXPECT_GT(fs::file_size(dir / "report" / ("work-precision-" + scene + ".png")), 5000u);
+  }
+  std::ifstream page(dir / "report/report.md");
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_NE(text.find("### Error against run time"), std::string::npos);
+  EXPECT_EQ(text.find("REFUSED"), std::string::npos);
   fs::remove_all(dir);
 }
 

@@ -18,7 +18,7 @@ endif()
 
 function(give_up why)
   message(STATUS "The report's page is left out: ${why}. Once that is mended, delete ${WORK}/template.cpp and build again.")
-  file(WRITE ${WORK}/template.cpp "#include \"report/web/template.hpp\"
+  file(WRITE ${WORK}/template.cpp "#include \"report/web/page.hpp\"
 namespace clothbench {
 PageTemplate page_template() { return {\"\", \"${why} when this was built\"}; }
 }  // namespace clothbench

@@ -93,7 +93,7 @@ function literal(name, text) {
   }
   return `static const char ${name}[] =\n${pieces.join('\n')};`;
 }
-writeFileSync(join(out, 'template.cpp'), `#include "report/web/template.hpp"
+writeFileSync(join(out, 'template.cpp'), `#include "report/web/page.hpp"
 namespace clothbench {
 PageTemplate page_template() {
   ${literal('html', html)}

@@ -7,11 +7,7 @@
 #include <tuple>
 
 #include "clothbench/error.hpp"
-#include "report/feature_cost.hpp"
-#include "report/penetration.hpp"
-#include "report/web/packed.hpp"
 #include "report/web/page.hpp"
-#include "report/work_precision.hpp"
 #include "results/replay.hpp"
 
 namespace clothbench {
@@ -39,15 +35,13 @@ struct Candidate {
   std::size_t turn = 0;  // among those of its scene, solver and rank
 };
 
-/// What a page shows first where not everything fits.
-int rank_of(const RunRecord& c, const std::set<std::string>& fronts) {
-  if (is_all_on(c)) return 4;
-  if (has_truth(c)) return fronts.contains(c.file) || c.header.setting == "default" ? 1 : 3;
-  return has_contact(c) ? 0 : 2;
+/// Order in which runs get a place on the page.
+int rank_of(const RunRecord& c) {
+  if (has_contact(c) && !has_truth(c)) return 0;
+  return c.header.setting == "default" ? 1 : 2;
 }
 
-std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, const std::set<std::string>& fronts,
-                                  std::size_t& without) {
+std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, std::size_t& without) {
   std::vector<Candidate> out;
   std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
   for (const RunRecord& c : runs) {
@@ -68,7 +62,7 @@ std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, const std:
       ++without;
       continue;
     }
-    k.rank = rank_of(c, fronts);
+    k.rank = rank_of(c);
     k.turn = turns[{k.rank, c.header.scene, c.header.solver}]++;
     out.push_back(std::move(k));
   }
@@ -208,9 +202,9 @@ class Packer {
 
 }  // namespace
 
-Motions motions_of(const std::vector<RunRecord>& runs, const std::set<std::string>& fronts, std::size_t budget_B) {
+Motions motions_of(const std::vector<RunRecord>& runs, std::size_t budget_B) {
   std::size_t without_cloth = 0, too_large = 0, beyond = 0;
-  std::vector<Candidate> all = candidates(runs, fronts, without_cloth);
+  std::vector<Candidate> all = candidates(runs, without_cloth);
   if (all.size() > kMostRuns) {
     beyond = all.size() - kMostRuns;
     all.resize(kMostRuns);

@@ -1,5 +1,3 @@
-#include "report/web/packed.hpp"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cmath>
 
 #include "clothbench/error.hpp"
+#include "report/web/page.hpp"
 
 namespace clothbench {
 namespace {

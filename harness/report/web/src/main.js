@@ -5,12 +5,7 @@ import {table_block} from './tables.js';
 import {start_theme} from './theme.js';
 import {start_viewer} from './viewer.js';
 
-const kOrder = [
-  'studies', 'claims', 'devices', 'summary', 'rates', 'work-precision', 'penetration', 'stability', 'material',
-  'feature-cost', 'features', 'failed', 'expect', 'environment'
-];
-const kAfterViewer = ['material', 'feature-cost', 'features', 'failed', 'expect', 'environment'];
-const rank = id => kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length;
+const kAfterViewer = ['features', 'failed', 'environment'];
 
 /// "**" marks warnings; blank lines separate paragraphs.
 function headline(text) {
@@ -21,12 +16,11 @@ function headline(text) {
   });
 }
 
-function section(s, id, figures) {
-  // The main table, then the figures, then the other tables. Work-precision figures come before all tables.
-  const blocks = s.tables.map(table_block), first = s.id === 'work-precision' ? 0 : 1;
+/// Figures come first: they show at a glance what the tables state.
+function section(s, figures) {
   return element(
-      'section', {id, 'aria-labelledby': `${id}-title`}, element('h2', {id: `${id}-title`}, s.title),
-      blocks.slice(0, first), figures.map(plot_figure), blocks.slice(first));
+      'section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, element('h2', {id: `${s.id}-title`}, s.title),
+      figures.map(plot_figure), s.tables.map(table_block));
 }
 
 function start() {
@@ -40,14 +34,11 @@ function start() {
                                         doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] :
                                     []));
 
-  const figures = make_figures(doc), links = [], seen = {};
-  const sorted = doc.sections.map((s, k) => ({s, k})).sort((a, b) => rank(a.s.id) - rank(b.s.id) || a.k - b.k);
-  for (const {s} of sorted) {
-    const nth = seen[s.id] = (seen[s.id] ?? 0) + 1, id = nth > 1 ? `${s.id}-${nth}` : s.id;
-    // Each section of rates has figures of its own. Elsewhere the first section has all of them.
-    const own = s.id === 'rates' ? figures.rates[nth - 1] ?? [] : nth === 1 ? figures[s.id] ?? [] : [];
-    document.getElementById(kAfterViewer.includes(s.id) ? 'later' : 'sections').append(section(s, id, own));
-    links.push({id, title: s.title, later: kAfterViewer.includes(s.id)});
+  const figures = make_figures(doc), links = [];
+  for (const s of doc.sections) {
+    const later = kAfterViewer.includes(s.id);
+    document.getElementById(later ? 'later' : 'sections').append(section(s, figures.filter(f => f.section === s.id)));
+    links.push({id: s.id, title: s.title, later});
   }
   const has_viewer = doc.motions.runs.length > 0;
   const all = [

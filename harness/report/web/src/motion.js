@@ -1,4 +1,4 @@
-// Packed motions and colliders back into numbers; layout: harness/report/web/packed.hpp.
+// Packed motions and colliders back into numbers; layout: harness/report/web/page.hpp.
 
 /// zlib in base64, of all first bytes, then all second, ... of words -> bytes of the words in turn.
 async function words(index, size) {

@@ -17,7 +17,7 @@ function make_view(spec, name, container) {
   return view.run();
 }
 
-/// The element of a figure (figure_parts.js), with hover, controls and downloads.
+/// The element of a figure (figures.js), with hover, controls and downloads.
 export function plot_figure(
     {id, title, caption, hint, spec, rows, choices = [], empty = 'There are no data for this choice.', remark = null}) {
   const plot = element('div', {class: 'plot', id});

@@ -41,8 +41,7 @@ const columns_for = labels =>
 function full_spec({title, empty, labels = [], notes = [], make}) {
   const plot =
       empty ? {data: {values: [{}]}, width: kWidth_px, height: 60, mark: {type: 'text', text: empty}} : make(kWidth_px);
-  const plugins = labels.some(l => l.includes('†')) ? '†: a plugin, built outside of clothbench.' : '';
-  const lines = [...notes, plugins].filter(Boolean).flatMap(n => wrapped(n, kWidth_px));
+  const lines = notes.filter(Boolean).flatMap(n => wrapped(n, kWidth_px));
   const below = lines.length ? {text: lines, orient: 'bottom', anchor: 'start', fontSize: kNote_px, offset: 8} : null;
   const look = config('paper');
   look.legend.columns = columns_for(labels);
@@ -72,7 +71,7 @@ const plain = text => text.replace(/\s+/g, ' ').replace(/[<[\]]/g, c => ({'<': '
 
 async function main(from, out) {
   let markdown = '';
-  for (const figure of Object.values(make_figures(document_of(from))).flat(2))
+  for (const figure of make_figures(document_of(from)))
     for (const still of figure.stills) {
       writeFileSync(join(out, `${still.file}.svg`), await draw(still));
       const title = plain(still.title);

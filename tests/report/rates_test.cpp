@@ -2,11 +2,28 @@
 #include <gtest/gtest.h>
 
 #include "fake_runs.hpp"
-#include "report/plugin_marks.hpp"
-#include "report/withheld.hpp"
 
 namespace clothbench {
 namespace {
+
+constexpr const char* kCapped = "Frames per second, capped at 72";
+constexpr const char* kUncapped = "Frames per second, uncapped";
+constexpr const char* kWall = "Wall time per frame [ms]";
+constexpr const char* kGpu = "GPU time per frame [ms]";
+constexpr const char* kFall = "Free-fall error over gT²/2 at T = 0.5 s";
+constexpr const char* kBytes = "kB per frame, read / written";
+constexpr const char* kBandwidth = "Peak bandwidth, read / written [GB/s]";
+constexpr const char* kMemory = "Device memory [kB] · dispatches per frame";
+
+/// Every table of frame rates.
+std::vector<Table> rate_tables(const std::vector<RunRecord>& runs) {
+  const RunTable table(runs);
+  std::vector<Table> out;
+  for (const View& v : views())
+    if (v.section == "rates")
+      for (Table& t : tables_of(v, table)) out.push_back(std::move(t));
+  return out;
+}
 
 std::vector<RunRecord> study() {
   std::vector<RunRecord> runs;
@@ -20,7 +37,7 @@ std::vector<RunRecord> study() {
 }
 
 TEST(Tables, PublishedColumnsStandBesideOurs) {
-  const Table t = table_of(study(), "Table 3");
+  const Table t = table_of(study(), kCapped);
   EXPECT_EQ(entry(t, "published: PBD single-sided", "single", "128²"), "42");
   EXPECT_EQ(entry(t, "published: PBD double-sided", "double-duplicated", "128²"), "16");
   EXPECT_EQ(entry(t, "published: Unity Cloth", "–", "8²"), "72");
@@ -44,7 +61,7 @@ TEST(Tables, PublishedValuesAreElevenTimesTheCap) {
 }
 
 TEST(Tables, ResolutionsAscendAndSidesAreInOrder) {
-  const auto rows = parse_markdown(table_of(study(), "uncapped").markdown());
+  const auto rows = parse_markdown(table_of(study(), kUncapped).markdown());
   EXPECT_EQ(rows.at(0), (std::vector<std::string>{"solver", "sides", "8²", "128²"}));
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[3][0] + rows[3][1], "xpbdsingle");
@@ -52,7 +69,7 @@ TEST(Tables, ResolutionsAscendAndSidesAreInOrder) {
 }
 
 TEST(Tables, UncappedHasSpreadAndFourDigits) {
-  const Table t = table_of(study(), "uncapped");
+  const Table t = table_of(study(), kUncapped);
   EXPECT_EQ(entry(t, "xpbd", "single", "128²"), "50.0 ± 3.1 %");
   EXPECT_EQ(entry(t, "xpbd", "double", "8²"), "5000 ± 3.1 %");
   EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "10.0k ± 3.1 %");
@@ -61,34 +78,29 @@ TEST(Tables, UncappedHasSpreadAndFourDigits) {
 
 TEST(Tables, TimesBytesAndMemory) {
   const std::vector<RunRecord> runs = study();
-  EXPECT_EQ(entry(table_of(runs, "Wall time"), "xpbd", "double", "128²"), "21.7");
-  EXPECT_EQ(entry(table_of(runs, "GPU time"), "xpbd", "single", "128²"), "18.0");
-  EXPECT_EQ(entry(table_of(runs, "ree-fall"), "xpbd", "single", "8²"), "1.2e-06");
-  EXPECT_EQ(entry(table_of(runs, "kB a frame"), "xpbd", "single", "128²"), "256 / 128");
-  EXPECT_EQ(entry(table_of(runs, "bandwidth"), "xpbd", "single", "128²"), "4.00 / 2.00");
-  EXPECT_EQ(entry(table_of(runs, "memory"), "xpbd", "single", "128²"), "8.992 · 14");
+  EXPECT_EQ(entry(table_of(runs, kWall), "xpbd", "double", "128²"), "21.7");
+  EXPECT_EQ(entry(table_of(runs, kGpu), "xpbd", "single", "128²"), "18.0");
+  EXPECT_EQ(entry(table_of(runs, kFall), "xpbd", "single", "8²"), "1.2e-06");
+  EXPECT_EQ(entry(table_of(runs, kBytes), "xpbd", "single", "128²"), "256 / 128");
+  EXPECT_EQ(entry(table_of(runs, kBandwidth), "xpbd", "single", "128²"), "4.00 / 2.00");
+  EXPECT_EQ(entry(table_of(runs, kMemory), "xpbd", "single", "128²"), "8.992 · 14");
 }
 
 TEST(Tables, MissingValuesAreDashes) {
   std::vector<RunRecord> runs = study();
-  for (const char* word : {"GPU time", "kB a frame", "bandwidth", "memory"})
+  for (const char* word : {kGpu, kBytes, kBandwidth, kMemory})
     EXPECT_EQ(entry(table_of(runs, word), "bullet-soft", "single", "8²"), "–") << word;
   for (RunRecord& c : runs) c.summary.clear();
-  for (const Table& t : fps_tables(families(runs).at(0), published_table3())) {
-    EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "–") << t.title;
-    EXPECT_EQ(t.markdown().find("nan"), std::string::npos) << t.title;
-  }
+  for (const Table& t : rate_tables(runs))
+    EXPECT_EQ(t.title, "Table 3: frames per second, capped at 72") << "no values";
 }
 
 TEST(Tables, WithoutAGpuThereAreNoTablesOfDashes) {
   std::vector<RunRecord> runs;
   for (const char* solver : {"bullet-soft", "other"}) runs.push_back(fake_run(solver, 8, "single", 1e-3, false));
-  // Two jobs at a time: times are withheld, which leaves their tables; those of a GPU go all the same.
-  for (RunRecord& c : runs) c.summary["jobs"] = 2;
-  withhold_times(runs);
-  for (const char* word : {"GPU time", "kB a frame", "bandwidth", "memory"})
-    EXPECT_THROW(table_of(runs, word), std::runtime_error) << word;
-  EXPECT_EQ(entry(table_of(runs, "Wall time"), "other", "single", "8²"), "–");
+  for (const char* title : {kGpu, kBytes, kBandwidth, kMemory})
+    EXPECT_TRUE(tables_titled(runs, title).empty()) << title;
+  EXPECT_EQ(entry(table_of(runs, kWall), "other", "single", "8²"), "1.00");
 }
 
 TEST(Tables, RunsThatFailedSayHow) {
@@ -96,32 +108,102 @@ TEST(Tables, RunsThatFailedSayHow) {
   runs.push_back(with_outcome(fake_run("paper", 8, "single", 1), "diverged", 17, "edge | 40 times\nits length"));
   runs.push_back(with_outcome(fake_run("paper", 128, "single", 1), "unsupported", -1, "paper has no Wind"));
   runs.push_back(with_outcome(fake_run("paper", 8, "double", 1), "unsupported", -1, "paper has no Wind"));
-  for (const Table& t : fps_tables(families(runs).at(0), published_table3())) {
+  for (const Table& t : rate_tables(runs)) {
     EXPECT_EQ(entry(t, "paper", "single", "8²"), "diverged at 17") << t.title;
     EXPECT_EQ(entry(t, "paper", "single", "128²"), "unsupported") << t.title;
     EXPECT_EQ(entry(t, "paper", "double", "128²"), "–") << "not planned: " << t.title;
   }
-  const auto failed = parse_markdown(failed_table(runs).markdown());
+  const auto failed = parse_markdown(table_of(runs, "Runs without a result").markdown());
   ASSERT_EQ(failed.size(), 3u);
   EXPECT_EQ(failed[1], (std::vector<std::string>{"paper", "diverged (F2)", "edge \\| 40 times its length",
                                                  "gravity-8-single (frame 17)"}));
   EXPECT_EQ(failed[2][3], "gravity-128-single, gravity-8-double");
-  EXPECT_EQ(failed_table(study()).rows.size(), 1u);
+  EXPECT_TRUE(tables_titled(study(), "Runs without a result").empty());
 }
 
-TEST(Tables, BrokenExpectationsAreListedAndTheOthersCounted) {
+TEST(Tables, FailedCriteriaAreListed) {
+  constexpr const char* kFailed = "Acceptance criteria that failed";
   std::vector<RunRecord> runs = study();
-  EXPECT_EQ(expect_table(runs).rows.size(), 1u) << "nothing expected";
-  runs[0].outcome.expect = "fail: crossings_max 0.2 > 0";
+  EXPECT_TRUE(tables_titled(runs, kFailed).empty()) << "nothing expected";
+  runs[0].outcome.expect = "fail: tunnelled_fraction_max 0.2 > 0";
   runs[1].outcome.expect = "pass";
-  runs[2].outcome.expect = "not measured";
-  for (const auto& [run, passed] : {std::pair{0, 0.0}, {1, 1.0}, {2, kMissing}})
-    runs[static_cast<std::size_t>(run)].summary["expect.crossings_max"] = passed;
-  const Table t = expect_table(runs);
+  const Table t = table_of(runs, kFailed);
   ASSERT_EQ(t.rows.size(), 2u);
-  EXPECT_EQ(t.rows[1][0], runs[0].header.scene);
-  EXPECT_EQ(t.rows[1][2], "fail: crossings_max 0.2 > 0");
-  EXPECT_EQ(t.note, "1 of 3 runs passed, 1 failed, 1 not measured, of those whose scene has a bound.");
+  EXPECT_EQ(t.rows[1],
+            (std::vector<std::string>{runs[0].header.scene, "xpbd", "fail: tunnelled_fraction_max 0.2 > 0"}));
+}
+
+TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
+  RunRecord c = fake_run("xpbd", 8, "single", 1e-3);
+  c.header.scenario_json = R"({"name":"gravity","cloth":{"grid":[8,8],"sides":"single"},"time":{"frame_rate_hz":100}})";
+  TimedTrial one, two;
+  for (int k = 1; k <= 50; ++k) {
+    one.frame_wall_s.push_back(1e-3 * k);
+    two.frame_wall_s.push_back(1e-3 * (50 + k));
+  }
+  c.trials = {one, two};
+  const Table t = table_of({c}, "Time per frame: median, 95th and 99th percentile, maximum");
+  const auto value = [&](const std::string& head) { return entry(t, "gravity-8-single", "xpbd", head); };
+  EXPECT_EQ(value("trials × frames"), "2 × 50");
+  EXPECT_EQ(value("wall p50 / p95 / p99 / max [ms]"), "50.0 / 95.0 / 99.0 / 100");
+  EXPECT_EQ(value("missed at 72 Hz [%]"), "87.0") << "14 to 100 ms";
+  EXPECT_EQ(value("missed at 90 Hz [%]"), "89.0");
+  EXPECT_EQ(value("real-time factor"), "0.200");
+  EXPECT_EQ(t.markdown().find("GPU p50"), std::string::npos) << "no GPU times";
+  const auto csv = parse_csv(trials_csv(RunTable({c})));
+  ASSERT_EQ(csv.size(), 3u);
+  for (std::size_t k = 0; k < csv[0].size(); ++k) {
+    if (csv[0][k] == "wall_p95_s") {
+      EXPECT_EQ(csv[1][k], "0.048");
+    }
+    if (csv[0][k] == "wall_max_s") {
+      EXPECT_EQ(csv[2][k], "0.1");
+    }
+    if (csv[0][k] == "device_p50_s") {
+      EXPECT_EQ(csv[1][k], "");
+    }
+  }
+}
+
+TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
+  std::vector<RunRecord> runs = {fake_run("alone", 8, "single", 0.002), fake_run("crowd", 8, "single", 0.002),
+                                 fake_run("silent", 8, "single", 0.002)};
+  runs[1].summary["jobs"] = 11;
+  runs[2].summary["jobs"] = kMissing;
+  runs[1].trials.resize(1);
+  withhold_times(runs);
+  EXPECT_TRUE(runs[1].trials.empty());
+  for (const char* title : {kCapped, kUncapped, kWall, kGpu, kBandwidth}) {
+    const Table t = table_of(runs, title);
+    EXPECT_NE(entry(t, "alone", "single", "8²"), "–") << title;
+    EXPECT_EQ(entry(t, "crowd", "single", "8²"), "–") << title;
+    EXPECT_NE(entry(t, "silent", "single", "8²"), "–") << title << ": its file does not state it";
+    EXPECT_NE(t.note.find("Times of 1 run are withheld (–) because up to 11 jobs ran side by side."), std::string::npos)
+        << t.note;
+  }
+  EXPECT_NE(entry(table_of(runs, kBytes), "crowd", "single", "8²"), "–") << "bytes are no time";
+  EXPECT_NE(entry(table_of(runs, kFall), "crowd", "single", "8²"), "–");
+  EXPECT_EQ(table_of(runs, kFall).note.find("jobs"), std::string::npos);
+  const std::string head = headline(runs, Format::Markdown);
+  EXPECT_NE(head.find("up to 11 jobs ran side by side"), std::string::npos) << head;
+  EXPECT_NE(head.find("1 of the timed runs does not state whether other jobs ran beside it"), std::string::npos)
+      << head;
+  EXPECT_NE(in_short_table(runs).note.find("11 jobs"), std::string::npos);
+  const nlohmann::json j = runs_json(runs)[1];
+  EXPECT_TRUE(j["summary"]["frame_wall_median_s"].is_null());
+  EXPECT_EQ(j["withheld"]["frame_wall_median_s"], "not timed alone: up to 11 jobs ran side by side");
+  // Where every time is withheld, the table stays with the reason.
+  EXPECT_EQ(entry(table_of({runs[1]}, kWall), "crowd", "single", "8²"), "–");
+}
+
+TEST(Tables, BytesThatAreALowerBoundSaySo) {
+  std::vector<RunRecord> runs = {fake_run("a", 8, "single", 0.002), fake_run("b", 8, "single", 0.002)};
+  runs[0].header.stages = {{"Lines", {}, 1, "computed"}, {"Contact", {}, 1, "at least"}};
+  runs[1].header.stages = {{"Lines", {}, 1, "computed"}};
+  EXPECT_EQ(entry(table_of(runs, kBytes), "a", "single", "8²"), "≥ 16.0 / 8.00");
+  EXPECT_EQ(entry(table_of(runs, kBytes), "b", "single", "8²"), "16.0 / 8.00");
+  EXPECT_EQ(entry(table_of(runs, kBandwidth), "a", "single", "8²"), "≥ 4.00 / 2.00");
+  EXPECT_NE(table_of(runs, kBytes).note.find("computed"), std::string::npos);
 }
 
 TEST(Tables, EveryLineFitsTheTerminal) {
@@ -134,12 +216,12 @@ TEST(Tables, EveryLineFitsTheTerminal) {
       runs.back().summary["read_B_per_frame"] = 118864e3;
       runs.back().summary["write_B_per_frame"] = 42583e3;
     }
-  for (const Table& t : fps_tables(families(runs).at(0), published_table3())) {
+  for (const Table& t : rate_tables(runs)) {
     const std::string console = t.console();
     std::istringstream lines(console);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), kConsoleColumns) << line;
     for (const std::string& column : t.rows[0]) EXPECT_NE(console.find(column), std::string::npos) << console;
-    if (t.title.find("kB a frame") != std::string::npos) {
+    if (t.title.starts_with(kBytes)) {
       EXPECT_NE(console.find("solver"), console.rfind("solver")) << "too wide for one piece: " << console;
     }
   }
@@ -153,7 +235,7 @@ TEST(Tables, LatexKnowsEveryCharacter) {
             "\\end{tabular}\n\\par\\footnotesize Set \\texttt{time.dt\\_s} \\& more.\n\\end{table}\n");
   // The tables of a report have no character that LaTeX would have to be taught.
   std::string all;
-  for (const Table& t3 : fps_tables(families(study()).at(0), published_table3())) all += t3.latex();
+  for (const Table& t3 : rate_tables(study())) all += t3.latex();
   EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](unsigned char c) { return c < 128; })) << all;
 }
 
@@ -166,11 +248,11 @@ TEST(Tables, OtherScenesAreTablesOfTheirOwn) {
   other.header.scene = "odd";
   other.header.scenario_json = R"({"name":"hang","cloth":{"grid":[9,7],"sides":"single"}})";
   runs.push_back(other);
-  const std::vector<Family> all = families(runs);
+  const std::vector<Table> all = tables_titled(runs, kCapped);
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].runs.size(), runs.size() - 2);
-  const Table t = fps_tables(all[1], published_table3()).front();
-  EXPECT_NE(t.title.find("hang"), std::string::npos);
+  EXPECT_EQ(all[0].rows.size(), 1u + 3 + 4) << "published and ours";
+  const Table& t = all[1];
+  EXPECT_EQ(t.title, "Frames per second, capped at 72 (hang)");
   EXPECT_EQ(t.markdown().find("published"), std::string::npos);
   EXPECT_EQ(parse_markdown(t.markdown()).at(0), (std::vector<std::string>{"solver", "sides", "9×7", "8²"}));
   EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "2.0");
@@ -178,7 +260,7 @@ TEST(Tables, OtherScenesAreTablesOfTheirOwn) {
 
 TEST(Tables, TheSameRunTwiceIsTwoRows) {
   std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 0.02), fake_run("xpbd", 8, "single", 0.04)};
-  const Table t = table_of(runs, "Table 3");
+  const Table t = table_of(runs, kCapped);
   EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "50.0");
   EXPECT_EQ(entry(t, "xpbd (2)", "single", "8²"), "25.0");
 }
@@ -189,11 +271,12 @@ TEST(Tables, RunsWithoutASceneDoNotHarm) {
     std::vector<RunRecord> runs(1);
     runs[0].header.scenario_json = scene;
     runs[0].header.scene = "s";
-    ASSERT_EQ(families(runs).size(), 1u) << scene;
-    for (const Table& t : fps_tables(families(runs)[0], published_table3())) EXPECT_EQ(t.rows.size(), 2u) << scene;
-    EXPECT_EQ(parse_csv(runs_csv(runs)).size(), 2u) << scene;
+    for (const View& v : views())
+      for (const Table& t : tables_of(v, RunTable(runs)))
+        for (const auto& row : t.rows) EXPECT_EQ(row.size(), t.rows[0].size()) << scene << t.title;
+    EXPECT_EQ(parse_csv(runs_csv(RunTable(runs))).size(), 2u) << scene;
   }
-  EXPECT_TRUE(families({}).empty());
+  EXPECT_TRUE(RunTable({}).rows().empty());
 }
 
 TEST(Headline, SoftwareComesFirstAndInBold) {
@@ -252,7 +335,7 @@ TEST(Tables, APluginStandsBelowThePublishedRowOfItsEngine) {
   runs.push_back(plugin_run("other", 8, "Unlike"));
   runs.push_back(plugin_run("peer", 8, "NvCloth"));
   runs.push_back(plugin_run("plain", 8, ""));
-  const Table t = table_of(runs, "Table 3");
+  const Table t = table_of(runs, kCapped);
   std::vector<std::string> names;
   for (const auto& row : t.rows) names.push_back(row.at(0));
   EXPECT_EQ(names, (std::vector<std::string>{"solver", "published: Unity Cloth", "peer", "published: PBD single-sided",
@@ -260,33 +343,11 @@ TEST(Tables, APluginStandsBelowThePublishedRowOfItsEngine) {
                                              "plain", "xpbd", "xpbd"}));
   EXPECT_NE(t.note.find("peer: the engine behind Unity Cloth"), std::string::npos) << t.note;
   EXPECT_NE(t.note.find("not Unity Cloth"), std::string::npos) << t.note;
-  EXPECT_EQ(table_of(study(), "Table 3").note.find("not Unity Cloth"), std::string::npos) << "no such plugin";
-  EXPECT_EQ(entry(table_of(runs, "CPU time"), "peer", "single", "8²"), "0.900");
-  EXPECT_EQ(entry(table_of(runs, "CPU time"), "xpbd", "single", "8²"), "–");
-  EXPECT_THROW(table_of(study(), "CPU time"), std::runtime_error) << "files without CPU times have no such table";
-}
-
-TEST(Tables, PluginsAreMarkedInTablesAndDataAlike) {
-  std::vector<RunRecord> runs = study();
-  runs.push_back(plugin_run("jolt", 8, ""));
-  const PluginMarks marks(runs);
-  EXPECT_EQ(marks.text("jolt"), "jolt†");
-  EXPECT_EQ(marks.text("jolt iterations=5, xpbd; not jolting nor my-jolt"),
-            "jolt† iterations=5, xpbd; not jolting nor my-jolt");
-  EXPECT_EQ(marks.text(marks.text("jolt")), "jolt†") << "once";
-  const Table t = marks.table({"", "N.", {{"scene", "solver", "jolt"}, {"jolt", "jolt x=1", "pass"}}});
-  EXPECT_EQ(t.rows,
-            (std::vector<std::vector<std::string>>{{"scene", "solver", "jolt†"}, {"jolt", "jolt† x=1", "pass"}}));
-  EXPECT_EQ(t.note, "N. †: a plugin, built outside of clothbench.");
-  EXPECT_EQ(marks.table({"", "N.", {{"solver"}, {"xpbd"}}}).note, "N.");
-  EXPECT_EQ(
-      marks.data({{"series", {{{"label", "jolt a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt", "why"}}}}),
-      nlohmann::json({{"series", {{{"label", "jolt† a=1"}, {"scene", "jolt"}}}}, {"not_ranked", {{"jolt†", "why"}}}}));
-  EXPECT_NE(t.latex().find("jolt$^\\dagger$ x=1"), std::string::npos) << t.latex();
-  EXPECT_EQ(t.latex().find("†"), std::string::npos) << "LaTeX does not know it without a package";
-  const PluginMarks none(study());
-  EXPECT_EQ(none.text("jolt"), "jolt");
-  EXPECT_NE(headline(runs, Format::Markdown).find("jolt† is a plugin"), std::string::npos);
+  EXPECT_EQ(table_of(study(), kCapped).note.find("not Unity Cloth"), std::string::npos) << "no such plugin";
+  EXPECT_EQ(entry(table_of(runs, "CPU time per frame [ms]"), "peer", "single", "8²"), "0.900");
+  EXPECT_EQ(entry(table_of(runs, "CPU time per frame [ms]"), "xpbd", "single", "8²"), "–");
+  EXPECT_TRUE(tables_titled(study(), "CPU time per frame [ms]").empty()) << "no CPU times, no table";
+  EXPECT_NE(headline(runs, Format::Markdown).find("plain is a plugin"), std::string::npos);
   EXPECT_NE(headline(runs, Format::Markdown).find("Library p.so,"), std::string::npos) << "no path of a machine";
 }
 

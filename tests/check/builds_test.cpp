@@ -4,8 +4,8 @@
 #include <functional>
 #include <random>
 
+#include "check/print.hpp"
 #include "clothbench/error.hpp"
-#include "report/compare_runs.hpp"
 
 namespace clothbench {
 namespace {
@@ -162,27 +162,38 @@ TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
                               "sampled_fps_mean",   "expect.frame_wall_median_s"};
   for (const char* name : kOfMachine) changed[1].summary[name] = 7;
   const Processes b = processes(changed);
-  const Comparison all = compare_runs(a, b);
+  const Checked all = compare_processes(a, b);
   const auto& runs = all.runs;
   ASSERT_EQ(runs.size(), 5u);
-  EXPECT_TRUE(runs[0].time.noise() && runs[0].metrics.empty() && runs[0].outcome.empty());
+  EXPECT_TRUE(runs[0].time.noise() && runs[0].findings.empty());
   EXPECT_FALSE(runs[1].time.noise());
   EXPECT_NEAR(runs[1].time.ratio, 2, 1e-12);
-  ASSERT_EQ(runs[1].metrics.size(), 1u) << "rates are the machine's";
-  EXPECT_EQ(runs[1].metrics[0].name, "free_fall_error");
-  EXPECT_EQ(runs[2].outcome, "ok → diverged (F1)");
-  EXPECT_TRUE(runs[3].b.empty());
-  EXPECT_TRUE(runs[4].a.empty());
-  const std::string text = comparison_tables(all)[0].markdown() + comparison_tables(all)[1].markdown();
-  for (const char* word : {"noise", "slower", "+100.0 %", "free_fall_error", "diverged (F1)", "gone__s__default"})
+  ASSERT_EQ(runs[1].findings.size(), 1u) << "rates are the machine's";
+  EXPECT_EQ(runs[1].findings[0].quantity, "free_fall_error");
+  EXPECT_EQ(runs[2].findings.at(0).baseline + " → " + runs[2].findings.at(0).found, "ok → diverged F1");
+  EXPECT_EQ(runs[3].findings.at(0).found, "–");
+  EXPECT_EQ(runs[4].findings.at(0).baseline, "–");
+  for (const CheckedRun& run : runs)
+    for (const Finding& f : run.findings) EXPECT_EQ(f.verdict, Verdict::Changed);
+  const std::string text = comparison_markdown(all, "a", "b");
+  for (const char* word : {"noise", "slower", "+100.0 %", "free_fall_error", "diverged F1", "gone__s__default"})
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
-  EXPECT_EQ(comparison_json(all)["runs"][0]["verdict"], "noise");
+  EXPECT_EQ(comparison_json(all)["runs"][0]["time"]["verdict"], "noise");
   EXPECT_TRUE(comparison_json(all)["overridden"].empty());
+}
+
+TEST(CompareRuns, ResultsHaveATolerance) {
+  for (const double factor : {1 + 1e-12, 1 + 1e-6}) {
+    const Processes a = {{run("x", 1e-3, 0.5)}}, b = {{run("x", 1e-3, 0.5 * factor)}};
+    EXPECT_EQ(compare_processes(a, b).runs[0].findings.empty(), factor < 1 + 1e-9);
+  }
+  const Processes a = {{run("x", 1e-3, 0.5)}}, b = {{run("x", 1e-3, std::nan(""))}};
+  EXPECT_EQ(compare_processes(a, b).runs[0].findings.at(0).found, "not measured");
 }
 
 TEST(CompareRuns, OneProcessASideMakesNoStatement) {
   const Processes a = processes({run("x", 1e-3, 0.5)}, 1), b = processes({run("x", 9e-3, 0.5)}, 1);
-  const nlohmann::json row = comparison_json(compare_runs(a, b))["runs"][0];
+  const nlohmann::json row = comparison_json(compare_processes(a, b))["runs"][0]["time"];
   EXPECT_EQ(row["verdict"], "too few processes: at least 5 a side");
   EXPECT_TRUE(row["p"].is_null());
 }
@@ -212,7 +223,7 @@ TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
     Processes b = a;
     for (auto& process : b) other.change(process[0]);
     try {
-      compare_runs(a, b);
+      compare_processes(a, b);
       ADD_FAILURE() << other.kind << " differs and is compared";
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ExitCode::BadInput);
@@ -221,12 +232,12 @@ TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
     }
     for (const std::string& wrong : condition_kinds()) {
       if (wrong == other.kind) continue;
-      EXPECT_THROW(compare_runs(a, b, {wrong}), Error) << "another kind than " << other.kind << " was allowed";
+      EXPECT_THROW(compare_processes(a, b, {wrong}), Error) << "another kind than " << other.kind << " was allowed";
     }
-    const Comparison allowed = compare_runs(a, b, {other.kind});
+    const Checked allowed = compare_processes(a, b, {other.kind});
     EXPECT_NE(allowed.differing.marks().find(other.b), std::string::npos);
     EXPECT_EQ(comparison_json(allowed)["overridden"][0]["kind"], other.kind);
-    const std::string table = comparison_tables(allowed)[0].markdown();
+    const std::string table = comparison_markdown(allowed, "a", "b");
     EXPECT_NE(table.find(std::string("other ") + other.kind), std::string::npos) << table;
   }
 }
@@ -239,11 +250,11 @@ TEST(CompareRuns, ProcessesThatDidNotRunInTurnsMakeNoStatement) {
   };
   const Processes one = processes({run("x", 1e-3, 0.5)}), other = processes({run("x", 2e-3, 0.5)});
   const Processes a = started(one, 0, 2), turns = started(other, 1, 2), after = started(other, 100, 2);
-  EXPECT_EQ(comparison_json(compare_runs(a, turns))["runs"][0]["verdict"], "slower");
-  const std::string without = comparison_json(compare_runs(a, after))["runs"][0]["verdict"];
+  EXPECT_EQ(comparison_json(compare_processes(a, turns))["runs"][0]["time"]["verdict"], "slower");
+  const std::string without = comparison_json(compare_processes(a, after))["runs"][0]["time"]["verdict"];
   EXPECT_NE(without.find("did not run in turns"), std::string::npos) << without;
-  const nlohmann::json allowed = comparison_json(compare_runs(a, after, {"order"}));
-  EXPECT_EQ(allowed["runs"][0]["verdict"], "slower; other order");
+  const nlohmann::json allowed = comparison_json(compare_processes(a, after, {"order"}));
+  EXPECT_EQ(allowed["runs"][0]["time"]["verdict"], "slower; other order");
   EXPECT_EQ(allowed["overridden"][0]["kind"], "order");
 }
 
@@ -251,7 +262,7 @@ TEST(CompareRuns, ProcessesOfOneSideMustAgreeToo) {
   Processes a = processes({run("x", 1e-3, 0.5)});
   const Processes b = a;
   a[3][0].header.environment["cpu"] = "CPU two";
-  EXPECT_THROW(compare_runs(a, b), Error);
+  EXPECT_THROW(compare_processes(a, b), Error);
 }
 
 TEST(CompareRuns, ARunThatFailedIsNoOtherLength) {
@@ -261,7 +272,7 @@ TEST(CompareRuns, ARunThatFailedIsNoOtherLength) {
     process[0].outcome.status = "diverged";
     process[0].accuracy.time_s = {0};
   }
-  EXPECT_EQ(compare_runs(a, b).runs[0].outcome, "ok → diverged");
+  EXPECT_EQ(compare_processes(a, b).runs[0].findings.at(0).found, "diverged");
 }
 
 TEST(CompareRuns, OtherScenesAreNamedByTheirKeys) {
@@ -272,14 +283,14 @@ TEST(CompareRuns, OtherScenesAreNamedByTheirKeys) {
     process[0].header.scenario_sha256 = "07e4";
   }
   try {
-    compare_runs(a, b);
+    compare_processes(a, b);
     FAIL() << "other scenes are compared";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("/cloth/grid/0: 8, 24"), std::string::npos) << e.what();
   }
 }
 
-/// Positions are compared where a result differs, by the mechanism of all pairs of runs.
+/// Positions are compared where a result differs.
 TEST(CompareRuns, SaysHowFarApartTheMotionsAre) {
   const auto moved = [](double by_m, double error) {
     RunRecord c = run("sheet", 1e-3, error);
@@ -291,16 +302,17 @@ TEST(CompareRuns, SaysHowFarApartTheMotionsAre) {
   };
   const auto apart = [&](double by_m, double error) {
     const Processes a = {{moved(0, 0.5)}}, b = {{moved(by_m, error)}};
-    return compare_runs(a, b).runs[0].apart;
+    const Checked compared = compare_processes(a, b);
+    for (const Finding& f : compared.runs[0].findings)
+      if (f.quantity.starts_with("positions")) return f.found;
+    return std::string("none");
   };
-  EXPECT_NEAR(apart(0.5, 0.25), 0.25, 1e-6) << "half a metre over the longer side of 2 m";
-  EXPECT_EQ(apart(0, 0.25), 0);
-  EXPECT_TRUE(std::isnan(apart(0.5, 0.5))) << "no value differs: not read";
-  const Processes a = {{moved(0, 0.5)}}, b = {{moved(0.5, 0.25)}};
-  EXPECT_NE(comparison_tables(compare_runs(a, b))[1].markdown().find("apart over L"), std::string::npos);
-  Processes other = b;
-  other[0][0].accuracy.position.resize(6);
-  EXPECT_TRUE(std::isnan(compare_runs(a, other).runs[0].apart)) << "other frames cannot be compared";
+  EXPECT_EQ(apart(0.5, 0.25), "0.25") << "half a metre over the longer side of 2 m";
+  EXPECT_EQ(apart(0, 0.25), "0");
+  EXPECT_EQ(apart(0.5, 0.5), "none") << "no value differs: not read";
+  Processes a = {{moved(0, 0.5)}}, b = {{moved(0.5, 0.25)}};
+  b[0][0].accuracy.position.resize(6);
+  EXPECT_EQ(compare_processes(a, b).runs[0].findings.size(), 1u) << "other frames cannot be compared";
 }
 
 }  // namespace

@@ -1,11 +1,7 @@
 #pragma once
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
-#include "base/table.hpp"
 #include "clothbench/record.hpp"
-#include "results/conditions.hpp"
 
 namespace clothbench {
 
@@ -38,39 +34,5 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// least as often as in a random order, 2 a b/(a + b) times of a and b processes. Otherwise a drift of the machine is
 /// taken for a difference of the builds. True if a start is not known.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
-
-/// A run that is on both sides, or on one (the other list is empty then).
-struct ComparedRun {
-  std::string name;
-  std::vector<const RunRecord*> a, b;  ///< one per process; results are compared between the first of each side
-  std::string marks = {};              ///< kinds of conditions that differ and were allowed: "scene, machine"
-  TimeRatio time = {};
-  bool in_turns = true;  ///< see in_turns below
-  struct Change {
-    std::string name;
-    double a = kMissing, b = kMissing;
-  };
-  std::vector<Change> metrics =
-      {};  ///< summary values that do not depend on the machine and differ by more than 1e-9 of their size
-  std::string outcome = {};  ///< "ok → diverged (F1)", empty if it is the same
-  /// Greatest distance between the two motions over the longer side (relation "before" of pairs.hpp); measured only if
-  /// a value of the result differs, since positions are read from the files for it.
-  double apart = kMissing;
-};
-
-/// One element per process: the runs of its folder.
-using Processes = std::vector<std::vector<RunRecord>>;
-
-struct Comparison {
-  std::vector<ComparedRun> runs;  ///< in the order of A, then those that only B has
-  DifferingRuns differing;        ///< conditions that differ and were allowed
-};
-
-/// Pairs runs by name. Throws Error if paired runs, or processes of one side, differ in a condition whose kind is not
-/// in `allowed` (results/conditions.hpp), or if a process has a run twice. The records must outlive the result.
-Comparison compare_runs(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
-
-std::vector<Table> comparison_tables(const Comparison&);
-nlohmann::json comparison_json(const Comparison&);
 
 }  // namespace clothbench

@@ -1,0 +1,320 @@
+#include "report/run_table.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "truth/reference_case.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+json at(const json& scenario, const char* pointer) {
+  return scenario.is_object() ? scenario.value(json::json_pointer(pointer), json()) : json();
+}
+
+std::string text_at(const json& scenario, const char* pointer) {
+  const json j = at(scenario, pointer);
+  return j.is_string() ? j.get<std::string>() : "";
+}
+
+bool filled(const json& scenario, const char* key) {
+  const json j = at(scenario, key);
+  return j.is_array() && !j.empty();
+}
+
+bool touches(const json& scenario) { return filled(scenario, "/colliders") || filled(scenario, "/grips"); }
+
+/// Kind of contact, by the collider that is rarest.
+std::string set_up_of(const json& scenario) {
+  if (!touches(scenario)) return "";
+  if (text_at(scenario, "/truth/case") == "two-hand-pull") return "wave";
+  if (filled(scenario, "/grips")) return "grip";
+  std::set<std::string> types;
+  for (const json& c : scenario.value("colliders", json::array()))
+    if (c.is_object()) types.insert(c.value("type", ""));
+  if (types.contains("hand_mesh")) return "hand";
+  if (types.contains("hand_capsules")) return "capsules";
+  return types.contains("room") || types.contains("mesh") ? "rooms" : "shapes";
+}
+
+Part part_of(const RunRecord& c, const json& scenario) {
+  if (c.header.scenario_json.empty() && c.outcome.status == "missing") return Part::None;
+  if (!scenario.is_object()) return Part::Rates;
+  if (scenario.contains("stability")) return Part::Stability;
+  if (scenario.contains("drawn")) return Part::Generated;
+  if (!text_at(scenario, "/truth/case").empty()) return Part::Truth;
+  return touches(scenario) ? Part::Contact : Part::Rates;
+}
+
+/// Fills what comes from the scenario; returns the text that scenes of one family share.
+std::string read_scenario(Row& row) {
+  const RunRecord& c = *row.run;
+  row.scene = row.name = c.header.scene;
+  row.solver = c.header.solver;
+  row.setting = c.header.setting;
+  row.scenario = scenario_of(c);
+  row.part = part_of(c, row.scenario);
+  row.set_up = set_up_of(row.scenario);
+  if (!row.scenario.is_object()) return "\n" + row.scene;  // no scene's JSON starts with a line break
+  if (const std::string name = text_at(row.scenario, "/name"); !name.empty()) row.name = name;
+  if (const json table = at(row.scenario, "/paper/table"); table.is_number_integer()) row.paper_table = table;
+  json family = row.scenario;
+  if (json& cloth = family["cloth"]; cloth.is_object()) {
+    const json grid = cloth.value("grid", json());
+    if (grid.is_array() && grid.size() == 2 && grid[0].is_number_integer() && grid[1].is_number_integer()) {
+      row.resolution.grid[0] = grid[0];
+      row.resolution.grid[1] = grid[1];
+    }
+    row.sides = text_at(row.scenario, "/cloth/sides");
+    cloth.erase("grid");
+    cloth.erase("sides");
+  }
+  if (row.resolution.grid[0] == 0) row.resolution.vertices = c.header.vertices;
+  return family.dump();
+}
+
+int rank_of_sides(const std::string& sides) { return sides == "single" ? 0 : sides == "double-duplicated" ? 1 : 2; }
+
+void take(double& to, double value) {
+  if (!std::isfinite(to)) to = value;
+}
+
+/// Adds what one run knows of its scene's exact solution.
+void add_facts(TruthFacts& t, const Row& r) {
+  t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
+  take(t.space_error, r.value("truth_space_error"));
+  take(t.uncertainty, r.value("reference_uncertainty"));
+  take(t.truth_distance, r.value("reference_truth_distance"));
+  take(t.order_bdf2, r.value("reference_order_bdf2"));
+  take(t.order_conservative, r.value("reference_order_conservative"));
+  if (r.counts() && r.not_ranked().empty() && !is_baseline(r.solver) && !(t.best_error <= r.error()))
+    t.best_error = r.error();
+}
+
+}  // namespace
+
+double summary_value(const RunRecord& c, const std::string& name) {
+  const auto found = c.summary.find(name);
+  return found == c.summary.end() ? kMissing : found->second;
+}
+
+json scenario_of(const RunRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
+
+json environment_of(const RunRecord& c, const char* key) {
+  const json& e = c.header.environment;
+  return e.is_object() ? e.value(key, json()) : json();
+}
+
+std::string engine_of(const RunRecord& c) {
+  const json plugin = environment_of(c, "plugin");
+  return plugin.is_object() ? plugin.value("engine", std::string()) : "";
+}
+
+std::string gpu_of(const RunRecord& c) {
+  const json gpu = environment_of(c, "gpu");
+  if (!gpu.is_string() || gpu == "CPU") return "";
+  const bool software = environment_of(c, "gpu_is_software") == json(true);
+  return gpu.get<std::string>() + (software ? " (software; its times say nothing of a GPU)" : "");
+}
+
+const json& solver_roles() {
+  static const json all = json::parse(kSolverRoles);
+  return all;
+}
+
+bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
+bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
+
+std::vector<double> trial_means(const RunRecord& c) {
+  std::vector<double> out;
+  for (const TimedTrial& t : c.trials) {
+    double sum = 0;
+    for (const double w : t.frame_wall_s) sum += w;
+    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+double middle(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size();
+  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return kMissing;
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
+  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+}
+
+std::string ending(const Outcome& o) {
+  return o.failed_frame < 0 ? o.status : fmt::format("{} at {}", o.status, o.failed_frame);
+}
+
+std::string status_with_class(const Outcome& o) {
+  return o.status + (o.klass.empty() || o.klass == "ok" ? "" : " (" + o.klass + ")");
+}
+
+std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
+
+std::string label_of(const RunRecord& c) {
+  const std::string& setting = c.header.setting;
+  return c.header.solver + (setting == "default" || setting.empty() ? "" : " " + setting);
+}
+
+std::string Resolution::label() const {
+  if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
+  return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
+}
+
+double TruthFacts::rank_floor() const {
+  double most = 0;
+  for (const double f : {floor(), space_error})
+    if (f > most) most = f;
+  return most;
+}
+
+std::string TruthFacts::refused() const {
+  if (!std::isfinite(uncertainty)) return "no reference solution";
+  // The truth is exact where the reference confirms it, so only the uncertainty of the reference counts here. No solver
+  // is ranked below the error of the mesh, so the reference need not be more certain than that.
+  if (!std::isfinite(best_error)) return "no solver ranked on it has an error";
+  const double least = std::max(best_error, std::isfinite(space_error) ? space_error : 0.0);
+  if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
+  return "";
+}
+
+std::string Row::label() const { return label_of(*run) + (repeat > 1 ? fmt::format(" ({})", repeat) : ""); }
+
+double Row::frame_rate_hz() const {
+  const json rate = at(scenario, "/time/frame_rate_hz");
+  return rate.is_number() ? rate.get<double>() : kMissing;
+}
+
+double Row::wall_ms_per_s() const {
+  const double pipelined = 1e3 * frame_rate_hz() * value("frame_pipelined_median_s");
+  return std::isfinite(pipelined) ? pipelined : fenced_ms_per_s();
+}
+
+bool Row::counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
+
+std::string Row::not_ranked() const {
+  constexpr double kLeastDependence = 0.01;
+  const json shear = at(scenario, "/material/shear");
+  const char* Y = shear.is_boolean() && !shear.get<bool>() ? "strip_Y" : "sheet_Y";
+  const json& plan = run->header.plan;
+  for (const json& l : plan.is_object() ? plan.value("left_out", json::array()) : json::array()) {
+    const std::string without = l.value("no_parameter", "");
+    if ((without == Y && value("truth_dependence_Y") >= kLeastDependence) ||
+        (without == "B" && value("truth_dependence_B") >= kLeastDependence))
+      return "the run has no " + l.value("what", "") + ": " + l.value("why", "");
+  }
+  return "";
+}
+
+std::pair<double, double> Row::offset_m() const {
+  std::pair<double, double> out = {kMissing, kMissing};
+  if (status() == "unsupported" || status() == "missing") return out;
+  const auto add = [&](const json& margin) {
+    if (!margin.is_number()) return;
+    const double m = margin.get<double>();
+    if (!(out.first <= m)) out.first = m;
+    if (!(out.second >= m)) out.second = m;
+  };
+  const json stated = at(run->header.plan, "/contact_margins"), colliders = at(scenario, "/colliders");
+  std::set<std::string> names;
+  for (const json& m : stated.is_array() ? stated : json::array()) {
+    names.insert(m.value("collider", ""));
+    add(m.value("margin_m", json()));
+  }
+  // A solver names colliders by their types, or by what they stand for; a list as long as the scene's covers all.
+  if (!colliders.is_array() || (stated.is_array() && stated.size() >= colliders.size())) return out;
+  for (const json& c : colliders)
+    if (c.is_object() && !names.contains(c.value("type", ""))) add(c.value("margin_m", json()));
+  return out;
+}
+
+json Row::drawn() const { return at(scenario, "/drawn"); }
+
+bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
+bool has_truth(const RunRecord& c) { return !text_at(scenario_of(c), "/truth/case").empty(); }
+
+json published_table3() { return json::parse(kPublishedTable3); }
+
+RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
+  std::map<std::string, std::string> families;
+  std::map<std::string, int> names;
+  std::map<std::string, std::shared_ptr<TruthFacts>> facts;
+  std::set<std::string> timed;
+  std::map<std::string, std::size_t> scenes;
+  for (const RunRecord& c : runs_) {
+    Row row{&c};
+    const std::string family = read_scenario(row);
+    if (const auto [found, is_new] = families.try_emplace(family); is_new) {
+      const int same_name = ++names[row.name];
+      found->second = same_name > 1 ? fmt::format("{} ({})", row.name, same_name) : row.name;
+    }
+    row.family = families.at(family);
+    for (const Row& r : rows_)
+      row.repeat += r.family == row.family && r.resolution == row.resolution && r.sides == row.sides &&
+                    r.solver == row.solver && r.setting == row.setting && r.scene == row.scene;
+    if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
+    scenes.try_emplace(row.part == Part::Rates ? row.family : row.scene, scenes.size());
+    rows_.push_back(std::move(row));
+  }
+  for (Row& r : rows_) {
+    // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
+    if (r.part == Part::Truth && r.set_up == "wave" && !timed.contains(r.scene)) r.part = Part::Contact;
+    if (r.part != Part::Truth) continue;
+    auto& shared = facts.try_emplace(r.scene, std::make_shared<TruthFacts>()).first->second;
+    add_facts(*shared, r);
+    r.truth = shared;
+  }
+  add_published();
+  const json columns = published_table3().at("columns");
+  const auto key = [&](const Row& r) {
+    std::size_t peer = columns.size();
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      if (!engine_of(*r.run).empty() && columns[k].value("engine", "") == engine_of(*r.run)) peer = k;
+    if (r.published >= 0) peer = static_cast<std::size_t>(r.published);
+    const auto scene = scenes.find(r.part == Part::Rates ? r.family : r.scene);
+    return std::tuple(scene == scenes.end() ? 0 : scene->second, peer, r.published < 0, r.solver, r.setting, r.repeat,
+                      rank_of_sides(r.sides), r.resolution.size());
+  };
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+}
+
+void RunTable::add_published() {
+  const auto paper = std::find_if(rows_.begin(), rows_.end(),
+                                  [](const Row& r) { return r.paper_table == 3 && r.part == Part::Rates; });
+  if (paper == rows_.end()) return;
+  const std::string family = paper->family, name = paper->name;
+  const json published = published_table3();
+  for (std::size_t k = 0; k < published["columns"].size(); ++k)
+    for (std::size_t n = 0; n < published["resolution"].size(); ++n) {
+      const json& column = published["columns"][k];
+      RunRecord& c = published_.emplace_back();
+      c.header.solver = "published: " + column.at("name").get<std::string>();
+      c.header.setting = "default";
+      c.summary["fps_at_72"] = column.at("fps").at(n);
+      const int width = published["resolution"][n];
+      Row row{&c};
+      row.name = name;
+      row.family = family;
+      row.solver = c.header.solver;
+      row.setting = "default";
+      row.sides = column.value("sides", "");
+      row.resolution = {{width, width}};
+      row.paper_table = 3;
+      row.published = static_cast<int>(k);
+      rows_.push_back(std::move(row));
+    }
+}
+
+}  // namespace clothbench

@@ -1,0 +1,157 @@
+#pragma once
+#include <algorithm>
+#include <compare>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/words.hpp"
+#include "clothbench/record.hpp"
+
+namespace clothbench {
+
+/// A summary value of a run; NaN if the run does not have it.
+double summary_value(const RunRecord&, const std::string& name);
+
+/// The scenario of a run; a discarded value if the stored text is not JSON.
+nlohmann::json scenario_of(const RunRecord&);
+
+/// The environment's value of `key`; null if there is none.
+nlohmann::json environment_of(const RunRecord&, const char* key);
+
+/// Engine that the run's plugin wraps, as the plugin states it: "NvCloth"; empty if it states none, or is no plugin.
+std::string engine_of(const RunRecord&);
+
+/// The GPU that a run ran on, and whether it is software; empty for a CPU.
+std::string gpu_of(const RunRecord&);
+
+extern const char* const kPublishedTable3;  ///< results/paper-table3.json
+extern const char* const kSolverRoles;      ///< solvers.json
+
+/// Roles of solvers in comparisons and colours of figures by label, from solvers.json.
+const nlohmann::json& solver_roles();
+/// The harness without a cloth model: its times are the harness's cost, and its motion proves nothing.
+bool is_floor(const std::string& solver);
+/// The model that others are compared with; it is not ranked.
+bool is_baseline(const std::string& solver);
+
+/// Mean wall time of a frame in each trial [s], ascending.
+std::vector<double> trial_means(const RunRecord&);
+/// The median of a sorted, non-empty list.
+double middle(const std::vector<double>& sorted);
+
+/// Nearest-rank quantile of a sorted list; NaN if it is empty.
+double quantile(const std::vector<double>& sorted, double q);
+
+/// "diverged at 12" (the failed frame), or only the status if no frame failed.
+std::string ending(const Outcome&);
+/// "diverged (F1)"; only the status if it has no class.
+std::string status_with_class(const Outcome&);
+/// "–" for an empty text.
+std::string or_dash(const std::string&);
+/// "xpbd substeps=4": the solver, and the setting if it is not the default.
+std::string label_of(const RunRecord&);
+
+/// The first item for which `is` holds; if there is none, appends `fresh` and returns it.
+template <class Item, class Is>
+Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
+  const auto at = std::find_if(items.begin(), items.end(), is);
+  return at == items.end() ? items.emplace_back(std::move(fresh)) : *at;
+}
+
+/// Cloth resolution. `grid` is {0, 0} for a cloth that is not a grid.
+struct Resolution {
+  int grid[2] = {0, 0};
+  std::uint32_t vertices = 0;  ///< number of vertices of a cloth that is not a grid; 0 otherwise
+  std::string label() const;   ///< "32²", "9×7", "1234 vertices", "–"
+  double size() const { return static_cast<double>(grid[0]) * grid[1] + vertices; }
+  auto operator<=>(const Resolution&) const = default;
+};
+
+/// The section of the report that a run belongs to. None: a planned run whose scene is not known.
+enum class Part { Rates, Contact, Generated, Truth, Stability, None };
+
+/// Properties of a scene with an exact solution that all of its runs share.
+struct TruthFacts {
+  std::string ranking;            ///< definition of the error that ranks solvers
+  double space_error = kMissing;  ///< error of this mesh's exact solution against the continuum
+  double uncertainty = kMissing;  ///< U_ref over the quantity's scale
+  double truth_distance = kMissing, order_bdf2 = kMissing,
+         order_conservative = kMissing;  ///< of the reference solution
+  double best_error = kMissing;          ///< smallest error of all ranked solvers that ended well; NaN if none did
+  double floor() const { return 3 * uncertainty; }  ///< uncertainty floor; NaN if unknown
+  /// Errors below it are not distinguished: the larger of floor() and space_error, where known; 0 if neither is.
+  double rank_floor() const;
+  /// Why no solver is ranked: there is no reference, or 3 U_ref is not below the best error. Empty if solvers are.
+  std::string refused() const;
+};
+
+/// A run as tables and figures see it.
+struct Row {
+  const RunRecord* run = nullptr;
+  nlohmann::json scenario = {};  ///< discarded if the stored text is not JSON
+  Part part = Part::Rates;
+  std::string scene = {};   ///< with the labels of axes
+  std::string name = {};    ///< in the scene's file, without the labels of axes
+  std::string family = {};  ///< name shared by runs whose scenes differ only in resolution and sides; "x (2)" if taken
+  std::string solver = {}, setting = {}, sides = {};
+  std::string set_up = {};  ///< kind of contact: "rooms", "capsules", "hand", "grip", "wave", "shapes"; "" without
+  Resolution resolution = {};
+  int repeat = 1;       ///< 2, 3, … where several files hold the same run
+  int paper_table = 0;  ///< number of the paper's table that the scene names; 0: none
+  int published = -1;   ///< index of the paper's column whose value this is; -1 for a run
+  std::shared_ptr<TruthFacts> truth = nullptr;
+
+  std::string label() const;  ///< "xpbd substeps=4 (2)"
+  double value(const std::string& name) const { return summary_value(*run, name); }
+  std::string status() const { return run->outcome.status; }
+  double frame_rate_hz() const;
+  /// Wall time [ms] per simulated second; pipelined where the solver supports it.
+  double wall_ms_per_s() const;
+  /// The same, from submission to fence, waiting for each frame; and by the device's clock, NaN on a CPU.
+  double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
+  double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
+  double error() const { return value("truth_error"); }
+  /// The run ended well and has an error and a time.
+  bool counts() const;
+  /// Why this run is shown but not ranked: the scene depends on a stiffness that the solver leaves out. Empty if
+  /// ranked.
+  std::string not_ranked() const;
+  /// Minimum and maximum contact offset [m]: the solver's own, otherwise the scene's margin; NaN without colliders.
+  std::pair<double, double> offset_m() const;
+  /// Parameters of a randomly generated scene; null for any other.
+  nlohmann::json drawn() const;
+};
+
+/// True if the run's scene has colliders or hands that grip the cloth; and if it states an exact solution.
+bool has_contact(const RunRecord&);
+bool has_truth(const RunRecord&);
+
+/// results/paper-table3.json, as it was at build time.
+nlohmann::json published_table3();
+
+/// All runs of a report as typed rows. Rows point into the table, so it must not be copied or moved.
+class RunTable {
+ public:
+  explicit RunTable(std::vector<RunRecord> runs);
+  RunTable(const RunTable&) = delete;
+  RunTable& operator=(const RunTable&) = delete;
+
+  const std::vector<RunRecord>& runs() const { return runs_; }
+  /// In the order of tables: peers of the paper's columns first, then by solver, setting and sides, by ascending
+  /// resolution; scenes in the order of first appearance. Includes the published values if a run has paper_table 3.
+  const std::vector<Row>& rows() const { return rows_; }
+
+ private:
+  void add_published();
+
+  std::vector<RunRecord> runs_;
+  std::deque<RunRecord> published_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace clothbench

@@ -1,0 +1,176 @@
+#include "report/view.hpp"
+
+#include <map>
+
+#include "report/report.hpp"
+
+namespace clothbench {
+namespace {
+
+/// A row of a table before its cells are known.
+struct TableRow {
+  Texts keys;
+  Group runs;
+  std::map<std::string, Group> across = {};
+};
+
+constexpr const char* kAll = "all";
+
+bool has_value(const std::string& text) { return !text.empty() && text != "–" && !text.starts_with("– /"); }
+
+/// Every combination of a run's values, one per key.
+std::vector<Texts> combinations(const View& v, const Row& r) {
+  std::vector<Texts> out = {{}};
+  for (const Key& k : v.keys) {
+    std::vector<Texts> longer;
+    for (const Texts& start : out)
+      for (const std::string& value : k.of(r)) {
+        longer.push_back(start);
+        longer.back().push_back(value);
+      }
+    out = std::move(longer);
+  }
+  return out;
+}
+
+std::vector<TableRow> rows_of(const View& v, const Group& runs) {
+  std::vector<TableRow> out;
+  std::map<Texts, std::size_t> index;
+  for (const Row* r : runs)
+    for (const Texts& keys : combinations(v, *r)) {
+      const auto [at, is_new] = index.try_emplace(keys, out.size());
+      if (is_new) out.push_back({keys, {}, {}});
+      TableRow& row = out[at->second];
+      row.runs.push_back(r);
+      if (v.across)
+        for (const std::string& value : v.across->key.of(*r)) row.across[value].push_back(r);
+    }
+  const auto place = [](const TableRow& r) {
+    std::vector<std::pair<bool, std::string>> keys;
+    for (const std::string& k : r.keys) keys.emplace_back(k.starts_with(kAll), k);
+    return keys;
+  };
+  if (v.by_key) std::stable_sort(out.begin(), out.end(), [&](auto& a, auto& b) { return place(a) < place(b); });
+  return out;
+}
+
+/// Values of the columns that the runs give, in order.
+Texts values_across(const Across& a, const Group& runs) {
+  if (!a.values.empty()) return a.values;
+  Texts out;
+  std::map<std::string, double> order;
+  for (const Row* r : runs)
+    for (const std::string& value : a.key.of(*r)) {
+      if (!contains(out, value)) out.push_back(value);
+      if (a.order) order[value] = a.order(*r);
+    }
+  if (a.order) std::stable_sort(out.begin(), out.end(), [&](auto& x, auto& y) { return order[x] < order[y]; });
+  return out;
+}
+
+/// Adds a column if a row has a value in it. Returns whether it was added.
+bool add_column(Table& t, const std::string& head, const Texts& cells, bool always) {
+  if (!always && std::none_of(cells.begin(), cells.end(), has_value)) return false;
+  t.rows[0].push_back(head);
+  for (std::size_t k = 0; k < cells.size(); ++k) t.rows[k + 1].push_back(or_dash(cells[k]));
+  return true;
+}
+
+std::string note_of(const View& v, const Group& runs) {
+  std::string note = v.note;
+  const auto add = [&](const std::string& more) { note += (note.empty() || more.empty() ? "" : " ") + more; };
+  if (v.more) add(v.more(runs));
+  if (v.timed) add(withheld_note(runs));
+  return note;
+}
+
+/// No rows if no cell has a value and no time is withheld.
+Table table_of(const View& v, const std::string& title, const Group& runs) {
+  Table t{title, note_of(v, runs), {}, v.in_full};
+  const std::vector<TableRow> rows = rows_of(v, runs);
+  t.rows.resize(rows.size() + 1);
+  for (std::size_t k = 0; k < v.keys.size(); ++k) {
+    Texts cells;
+    for (const TableRow& r : rows) cells.push_back(r.keys[k]);
+    add_column(t, v.keys[k].head, cells, k == 0);
+  }
+  bool any = v.columns.empty() && !v.across;
+  if (v.across)
+    for (const std::string& value : values_across(*v.across, runs)) {
+      Texts cells;
+      for (const TableRow& r : rows) {
+        const auto at = r.across.find(value);
+        cells.push_back(at == r.across.end() ? "" : v.across->cell(at->second));
+        any = any || has_value(cells.back());
+        if (at != r.across.end() && v.across->without && !has_value(cells.back()))
+          cells.back() = v.across->without(at->second);
+      }
+      add_column(t, value, cells, true);
+    }
+  for (const ViewColumn& c : v.columns) {
+    Texts cells;
+    for (const TableRow& r : rows) cells.push_back(c.text(r.runs, r.keys));
+    any = add_column(t, c.head, cells, false) || any;
+  }
+  if (!any && (!v.timed || withheld_note(runs).empty())) t.rows.resize(1);
+  return t;
+}
+
+}  // namespace
+
+Key key(std::string head, std::function<std::string(const Row&)> of) {
+  return {std::move(head), [of = std::move(of)](const Row& r) -> Texts { return {of(r)}; }};
+}
+
+Key scene_key() {
+  return key("scene", [](const Row& r) { return r.scene; });
+}
+Key label_key() {
+  return key("solver", [](const Row& r) { return label_of(*r.run); });
+}
+Key solver_key() { return key("solver", &Row::label); }
+Key sides_key() {
+  return key("sides", [](const Row& r) { return or_dash(r.sides); });
+}
+
+ViewColumn column(std::string head, std::function<std::string(const Row&)> text) {
+  return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) { return text(*g.front()); }};
+}
+
+std::vector<Table> tables_of(const View& v, const RunTable& table) {
+  std::vector<std::pair<std::string, Group>> groups;
+  for (const Row& r : table.rows()) {
+    if (!v.where(r)) continue;
+    const std::string title = v.each ? v.each(r) : v.title;
+    find_or_add(groups, [&](auto& g) { return g.first == title; }, {title, {}}).second.push_back(&r);
+  }
+  std::vector<Table> out;
+  for (const auto& [title, runs] : groups)
+    if (Table t = table_of(v, title, runs); t.rows.size() > 1) out.push_back(std::move(t));
+  return out;
+}
+
+const std::vector<View>& views() {
+  static const std::vector<View> all = [] {
+    std::vector<View> out = rate_views();
+    for (auto* more : {contact_views, accuracy_views})
+      for (View& v : more()) out.push_back(std::move(v));
+    return out;
+  }();
+  return all;
+}
+
+const std::vector<Section>& sections() {
+  static const std::vector<Section> all = {{"rates", "Frame rates"},
+                                           {"time", "Time per frame"},
+                                           {"contact", "Contact"},
+                                           {"generated", "Randomly generated contact scenes"},
+                                           {"accuracy", "Error against run time"},
+                                           {"stability", "Stability"},
+                                           {"features", "Features"},
+                                           {"failed", "Runs without a result"},
+                                           {"environment", "Environment"}};
+  return all;
+}
+
+}  // namespace clothbench

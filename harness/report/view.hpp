@@ -1,0 +1,87 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/table.hpp"
+#include "report/run_table.hpp"
+
+namespace clothbench {
+
+/// Runs behind one cell of a table; never empty.
+using Group = std::vector<const Row*>;
+using Texts = std::vector<std::string>;
+
+/// Divides runs into rows or columns. A run with several values stands in several of them ("all" as well as its own).
+struct Key {
+  std::string head;
+  std::function<Texts(const Row&)> of;
+};
+/// A key with one value per run.
+Key key(std::string head, std::function<std::string(const Row&)> of);
+
+/// The scene; the solver with its setting, without and with the number of a repeated run; the sides.
+Key scene_key();
+Key label_key();
+Key solver_key();
+Key sides_key();
+
+/// A value of a row; an empty text or "–" is no value.
+struct ViewColumn {
+  std::string head;
+  std::function<std::string(const Group&, const Texts& keys)> text;
+};
+/// A column that shows the row's first run.
+ViewColumn column(std::string head, std::function<std::string(const Row&)> text);
+
+/// Columns that the runs themselves give: one per value of `key`, ascending by `order` or in the order of `values`.
+struct Across {
+  Key key;
+  std::function<std::string(const Group&)> cell;
+  std::function<double(const Row&)> order = nullptr;
+  Texts values = {};
+  std::function<std::string(const Group&)> without = nullptr;  ///< text of a cell without a value
+};
+
+/// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is one of these.
+struct View {
+  std::string section, title, note;
+  std::function<bool(const Row&)> where;
+  std::vector<Key> keys = {};            ///< one row per combination of their values; the first columns
+  std::vector<ViewColumn> columns = {};  ///< left out where no row has a value
+  std::optional<Across> across = {};
+  std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, which is its title
+  std::function<std::string(const Group&)> more = nullptr;  ///< a further sentence of the note
+  bool by_key = false;   ///< rows in the order of their keys, "all" last; otherwise in the order of the runs
+  bool timed = false;    ///< shows times: the note states whose times are withheld
+  bool in_full = false;  ///< only in files and on the page, not on the terminal
+};
+
+/// The tables of a view that have rows and values; none if no run is concerned.
+std::vector<Table> tables_of(const View&, const RunTable&);
+
+/// All views, in the order of report.md.
+const std::vector<View>& views();
+
+/// Titles of sections by id, in their order: "rates", "contact", …
+struct Section {
+  const char *id, *title;
+};
+const std::vector<Section>& sections();
+
+/// "S01 stiffness" of a scene that stability is judged on.
+std::string case_of(const Row&);
+/// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.
+int grade_of(const Row&);
+
+/// " (first 36 frames)" where a run timed fewer frames than another run of its scene in `beside`; otherwise empty.
+std::string frames_mark(const Row&, const Group& beside);
+
+// Parts of views(), by file.
+View cost_view();
+std::vector<View> rate_views();
+std::vector<View> contact_views();
+std::vector<View> accuracy_views();
+
+}  // namespace clothbench

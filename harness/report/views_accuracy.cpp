@@ -1,0 +1,336 @@
+// Tables of error against run time, stability, failures and machines.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "report/verdict.hpp"
+#include "report/view.hpp"
+
+namespace clothbench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kRealTime_ms_per_s = 1000;  // a frame of 1/72 s is computed in 1/72 s
+// From the cost of one dispatch with its submission to the display time of a headset's frame.
+constexpr std::array kBudgets_ms = {0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 13.9};
+constexpr double kSmallEnough = 1e-3;  // all errors below it are small enough for real-time use
+constexpr double kEnergyGain = 1e-3;
+
+bool in_truth(const Row& r) { return r.part == Part::Truth; }
+std::string solver_of(const Row& r) { return r.solver; }
+
+using Measure = double (Row::*)() const;
+
+/// The row with the smallest `by` among those that count and satisfy `when`; null without any.
+const Row* best(const Group& g, const std::function<bool(const Row&)>& when, Measure by) {
+  const Row* out = nullptr;
+  for (const Row* r : g)
+    if (r->counts() && std::isfinite((r->*by)()) && when(*r) && (out == nullptr || (r->*by)() < (out->*by)())) out = r;
+  return out;
+}
+
+/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
+std::string short_setting(const Row& r) {
+  const std::string first = "substeps=", second = ",iterations=", &setting = r.setting;
+  const std::size_t at = setting.find(second);
+  if (!setting.starts_with(first)) return setting;
+  if (at == std::string::npos) return setting.substr(first.size());
+  return setting.substr(first.size(), at - first.size()) + "×" + setting.substr(at + second.size());
+}
+
+/// Shortest time to an error of at most `most`, by a clock.
+ViewColumn time_to(const char* head, double most, Measure clock) {
+  return {head, [=](const Group& g, const Texts&) {
+            const Row* r = best(
+                g, [&](const Row& row) { return row.error() <= most; }, clock);
+            return r == nullptr ? "" : fmt::format("{:.3g} ({})", (r->*clock)(), short_setting(*r));
+          }};
+}
+
+/// Errors are not distinguished below the floor.
+std::string error_text(double error, double floor) {
+  return error <= floor ? fmt::format("≤ {:.2g}", floor) : fmt::format("{:.2g}", error);
+}
+
+ViewColumn best_error(const char* head, double most_ms_per_s) {
+  return {head, [=](const Group& g, const Texts&) {
+            const Row* r = best(
+                g, [&](const Row& row) { return row.wall_ms_per_s() <= most_ms_per_s; }, &Row::error);
+            if (r == nullptr) return std::string();
+            return error_text(r->error(), r->truth->rank_floor()) + " (" + short_setting(*r) + ")";
+          }};
+}
+
+std::string failed_text(const Group& g) {
+  std::size_t failed = 0, over_budget = 0, able = 0;
+  for (const Row* r : g) {
+    if (r->status() == "over_budget")
+      ++over_budget;
+    else if (!r->counts() && !r->run->withheld.contains("frame_wall_median_s"))
+      ++failed;
+    able += r->status() != "unsupported" && r->status() != "missing";
+  }
+  if (able == 0) return "unsupported";
+  return fmt::format("{} of {}", failed, g.size()) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : "");
+}
+
+std::string ranked_text(const Group& g) {
+  std::size_t able = 0, ranked = 0;
+  std::string why;
+  for (const Row* r : g) {
+    if (r->status() == "unsupported" || r->status() == "missing") continue;
+    ++able;
+    if (const std::string not_ranked = r->not_ranked(); not_ranked.empty())
+      ++ranked;
+    else
+      why = not_ranked;
+  }
+  if (able > 0 && ranked == 0) return "NO: " + why;
+  if (able == 0 || !g.front()->truth->refused().empty()) return "no";
+  if (ranked < able) return fmt::format("at {} of {} settings", ranked, able);
+  return is_baseline(g.front()->solver) ? "baseline" : "yes";
+}
+
+View work() {
+  View v{"accuracy", "Error against run time",
+         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
+         "brackets substeps × iterations. Fenced: each frame from submission to fence; the next starts after it. GPU: "
+         "by the device's own clock. Errors: against the exact solution of the same grid; for triangle meshes, against "
+         "the continuum's. Real time: at most 1000 ms. ≤: at the floor below which solvers are not distinguished, "
+         "which is three times the reference's uncertainty or the error of the mesh. Failed: runs without a finite "
+         "error. Not run: settings that need more work than the solver's time on the scene allowed. A refused scene "
+         "ranks no solver; the table of reference cases has the reason. Ranked: the solver has every stiffness that "
+         "the scene depends on, as its plan states; effective stiffness is not measured here.",
+         in_truth};
+  v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
+            key("solver", solver_of)};
+  v.columns = {time_to("to 1 %", 1e-2, &Row::wall_ms_per_s),
+               time_to("to 0.1 %", 1e-3, &Row::wall_ms_per_s),
+               best_error("best error in real time", kRealTime_ms_per_s),
+               best_error("best error", INFINITY),
+               {"failed", [](const Group& g, const Texts&) { return failed_text(g); }},
+               time_to("to 1 %, fenced", 1e-2, &Row::fenced_ms_per_s),
+               time_to("to 0.1 %, fenced", 1e-3, &Row::fenced_ms_per_s),
+               time_to("to 1 %, GPU", 1e-2, &Row::device_ms_per_s),
+               time_to("to 0.1 %, GPU", 1e-3, &Row::device_ms_per_s),
+               {"ranked", [](const Group& g, const Texts&) { return ranked_text(g); }}};
+  v.timed = true;
+  return v;
+}
+
+View within_budgets() {
+  View v{"accuracy", "Smallest error within a time budget per frame",
+         "Smallest error among the settings of a solver whose frame takes at most this wall time; frames are pipelined "
+         "where the solver can. ≤: the error is at most 0.001 or at the scene's floor, below which solvers are not "
+         "distinguished. –: no setting is that fast.",
+         in_truth};
+  v.keys = {scene_key(), key("solver", solver_of)};
+  for (const double budget_ms : kBudgets_ms)
+    v.columns.push_back(
+        {fmt::format("{:g} ms", budget_ms), [=](const Group& g, const Texts&) {
+           const auto fits = [&](const Row& r) { return r.wall_ms_per_s() / r.frame_rate_hz() <= budget_ms; };
+           const Row* r = best(g, fits, &Row::error);
+           return r == nullptr ? std::string() : error_text(r->error(), std::max(kSmallEnough, r->truth->rank_floor()));
+         }});
+  v.timed = true;
+  return v;
+}
+
+View energy() {
+  const auto gains = [](const Row& r) { return in_truth(r) && r.counts() && std::isfinite(r.value("energy_gain")); };
+  View v{"accuracy", "Energy gain where energy is conserved",
+         "Maximum gain of total energy over its value at the start, in any frame, divided by M g L, and the setting "
+         "that shows it. Only scenes that conserve energy and settings that ended ok. Last column: the number of "
+         "settings with a gain above 0.001.",
+         gains};
+  const auto most = [](const Group& g) {
+    return *std::max_element(g.begin(), g.end(), [](const Row* a, const Row* b) {
+      return a->value("energy_gain") < b->value("energy_gain");
+    });
+  };
+  v.keys = {scene_key(), key("solver", solver_of)};
+  v.columns = {{"maximum gain",
+                [=](const Group& g, const Texts&) { return fmt::format("{:.1e}", most(g)->value("energy_gain")); }},
+               {"setting", [=](const Group& g, const Texts&) { return most(g)->setting; }},
+               {"settings above 0.001", [](const Group& g, const Texts&) {
+                  const auto above = std::count_if(
+                      g.begin(), g.end(), [](const Row* r) { return !(r->value("energy_gain") <= kEnergyGain); });
+                  return fmt::format("{} of {}", above, g.size());
+                }}};
+  return v;
+}
+
+ViewColumn fact(const char* head, double TruthFacts::*value, bool order = false) {
+  return column(head, [=](const Row& r) {
+    const double x = (*r.truth).*value;
+    return !std::isfinite(x) ? std::string() : order ? fmt::format("{:.2f}", x) : fmt::format("{:.1e}", x);
+  });
+}
+
+View reference_cases() {
+  View v{"accuracy", "Reference cases and their reference solutions",
+         "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from "
+         "the continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the "
+         "reference case's quantity, over its scale. On a grid, the distance of the reference solution from the exact "
+         "one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time "
+         "steps agree.",
+         in_truth};
+  v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
+  v.columns = {fact("space", &TruthFacts::space_error),
+               fact("U_ref", &TruthFacts::uncertainty),
+               fact("reference − exact", &TruthFacts::truth_distance),
+               fact("order BDF2", &TruthFacts::order_bdf2, true),
+               fact("order conservative", &TruthFacts::order_conservative, true),
+               column("ranks", [](const Row& r) {
+                 const std::string refused = r.truth->refused();
+                 return refused.empty() ? std::string("yes") : "REFUSED: " + refused;
+               })};
+  return v;
+}
+
+constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
+
+bool in_stability(const Row& r) { return r.part == Part::Stability; }
+
+std::string class_of(const Row& r) {
+  const std::string& klass = r.run->outcome.klass;
+  return klass == "ok" || klass.empty() ? "F3" : klass;
+}
+
+/// "5/7 stable, 2 failed (F1, F2)".
+std::string tally(const Group& g) {
+  std::map<int, std::map<std::string, int>> classes;
+  int all = 0, stable = 0, unsupported = 0;
+  for (const Row* r : g) {
+    const int grade = grade_of(*r);
+    unsupported += r->status() == "unsupported";
+    if (grade < 0) continue;
+    ++all;
+    stable += grade == 0;
+    if (grade > 0) ++classes[grade][class_of(*r)];
+  }
+  if (all == 0) return unsupported > 0 ? "unsupported" : "–";
+  std::string out = fmt::format("{}/{} stable", stable, all);
+  for (const auto& [grade, counts] : classes) {
+    int runs = 0;
+    std::string names;
+    for (const auto& [klass, n] : counts) {
+      runs += n;
+      names += (names.empty() ? "" : ", ") + klass + (counts.size() > 1 ? fmt::format(" {}", n) : "");
+    }
+    out += fmt::format(", {} {} ({})", runs, kGrades[grade], names);
+  }
+  return out;
+}
+
+View robustness() {
+  View v{
+      "stability", "Robustness",
+      "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load (F2). "
+      "Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, "
+      "crash or device.",
+      in_stability};
+  v.keys = {{"case", [](const Row& r) { return Texts{case_of(r), "all"}; }}};
+  v.across = {key("", [](const Row& r) { return label_of(*r.run); }), tally};
+  v.by_key = true;
+  return v;
+}
+
+View not_stable() {
+  View v{"stability", "Runs that were not stable", "In brackets: the first frame of that class.",
+         [](const Row& r) { return in_stability(r) && grade_of(r) > 0; }};
+  v.keys = {label_key(), key("grade", [](const Row& r) { return std::string(kGrades[grade_of(r)]); }),
+            key("class", class_of)};
+  v.by_key = true;
+  v.columns = {{"runs", [](const Group& g, const Texts&) {
+                  return joined(g, ", ", [](const Row* r) {
+                    const Outcome& o = r->run->outcome;
+                    return r->scene + (o.failed_frame >= 0 ? fmt::format(" ({})", o.failed_frame) : "") +
+                           (o.status != "ok" && o.status != "diverged" ? " " + o.status : "");
+                  });
+                }}};
+  v.in_full = true;
+  return v;
+}
+
+View failed() {
+  View v{"failed", "Runs without a result", "", [](const Row& r) {
+           return r.published < 0 && r.status() != "ok" && r.part != Part::Stability && r.part != Part::Generated;
+         }};
+  v.keys = {label_key(), key("status", [](const Row& r) { return status_with_class(r.run->outcome); }),
+            key("message", [](const Row& r) { return or_dash(r.run->outcome.message); })};
+  v.columns = {{"scenes", [](const Group& g, const Texts&) {
+                  return joined(g, ", ", [](const Row* r) {
+                    const int frame = r->run->outcome.failed_frame;
+                    return r->scene + (frame >= 0 ? fmt::format(" (frame {})", frame) : "");
+                  });
+                }}};
+  return v;
+}
+
+View failed_criteria() {
+  View v{"failed", "Acceptance criteria that failed", "", [](const Row& r) {
+           return r.part != Part::Stability && r.part != Part::Generated && r.run->outcome.expect.starts_with("fail");
+         }};
+  v.keys = {scene_key(), solver_key(), key("verdict", [](const Row& r) { return r.run->outcome.expect; })};
+  v.in_full = true;
+  return v;
+}
+
+View environment() {
+  static constexpr std::pair<const char*, const char*> kKeys[] = {{"gpu", "GPU"},
+                                                                  {"gpu_is_software", "GPU is software"},
+                                                                  {"device_profile", "device profile"},
+                                                                  {"driver", "driver"},
+                                                                  {"cpu", "CPU"},
+                                                                  {"shader_compiler", "shader compiler"},
+                                                                  {"clock_policy", "clocks"},
+                                                                  {"protocol", "protocol"},
+                                                                  {"git_commit", "commit"},
+                                                                  {"git_dirty", "local changes"},
+                                                                  {"source_sha256", "sources"},
+                                                                  {"build_type", "build"},
+                                                                  {"assets", "assets"}};
+  View v{"environment", "Machines of the runs", "As stated in each result file.",
+         [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
+  for (const auto& [name, head] : kKeys)
+    v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
+      const json e = environment_of(*r.run, name);
+      // Facts, not verdicts: the page colours yes and no.
+      if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";
+      return e.is_null() ? "–" : e.is_string() ? or_dash(e.get<std::string>()) : e.dump();
+    }));
+  v.columns = {{"runs", [](const Group& g, const Texts&) {
+                  std::map<std::string, int> runs;
+                  for (const Row* r : g) ++runs[r->solver];
+                  return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });
+                }}};
+  v.in_full = true;
+  return v;
+}
+
+}  // namespace
+
+std::string case_of(const Row& r) {
+  const json stability = r.scenario.is_object() ? r.scenario.value("stability", json()) : json();
+  const std::string name = r.name.size() > 4 && r.name[3] == '-' ? r.name.substr(4) : r.name;
+  return (stability.is_object() ? stability.value("case", "") : "") + " " + name;
+}
+
+int grade_of(const Row& r) {
+  if (r.part != Part::Stability || r.status() == "unsupported" || r.status() == "missing") return -1;
+  const double grade = r.value("stability_grade");
+  return std::isfinite(grade) ? static_cast<int>(grade) : 2;
+}
+
+std::vector<View> accuracy_views() {
+  return {work(),       within_budgets(), energy(),          reference_cases(), robustness(),
+          not_stable(), failed(),         failed_criteria(), environment()};
+}
+
+}  // namespace clothbench

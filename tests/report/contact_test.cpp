@@ -1,0 +1,287 @@
+// What the penetration tables, files and the feature table say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fake_runs.hpp"
+#include "report/features.hpp"
+#include "report/verdict.hpp"
+
+namespace clothbench {
+namespace {
+
+/// A run of a desk drop with the given part of the room.
+RunRecord desk_run(const std::string& solver, const std::string& setting, const std::string& cut) {
+  RunRecord c = fake_run(solver, 32, "double-duplicated", 0.004);
+  c.header.scene = "desk-flat-low";
+  c.header.setting = setting;
+  c.header.scenario_json =
+      R"({"name":"desk-flat-low","paper":{"section":"4.2","table":5},"cloth":{"grid":[32,32],"sides":"double-duplicated"},
+    "colliders":[{"type":"room","cut":")" +
+      cut +
+      R"("}],"expect":{"outcome":"ok","crossings_max":{"at_most":0},"stretch_max":{"at_least":0.5,"at_most":1}}})";
+  c.header.stages = {{"Integrate", {}, 1}, {"Mesh", {"static_mesh", "friction"}, 1}};
+  c.header.environment["solver_features"] = {
+      {"supports", {"static_mesh", "friction", "sphere"}},
+      {"ignores", nlohmann::json::array()},
+      {"only_with", nlohmann::json::array({nlohmann::json::array({"static_mesh", "duplicated_layer"})})}};
+  c.summary["crossings_max"] = 0;
+  c.summary["contact_length_max_m"] = 0.0123;
+  c.summary["contact_length_settled_m"] = 0;
+  c.summary["depth_max_m"] = 3e-6;
+  c.summary["stage_device_median_s.Mesh"] = 0.002;
+  c.summary["expect.crossings_max"] = 1;
+  c.summary["expect.outcome"] = 1;
+  c.header.vertices = 2;
+  c.accuracy.time_s = {0, 1.0 / 72};
+  c.accuracy.position = {0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0};
+  c.accuracy.metrics = {{"contact_length_m", "m", "", {0, 0.0123}}, {"depth_m", "m", "", {0, kMissing}}};
+  return c;
+}
+
+RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& scenario) {
+  c.header.scene = scene;
+  c.header.scenario_json = scenario;
+  return c;
+}
+
+constexpr const char* kContact = "Contact";
+constexpr const char* kVerdicts = "Verdict on the acceptance criteria of each scene";
+
+TEST(Penetration, SetUpsAreToldByWhatTouches) {
+  const RunRecord any = desk_run("xpbd", "default", "any_vertex_inside");
+  const std::vector<RunRecord> runs = {
+      any,
+      of_scene(any, "free", R"({"cloth":{"grid":[8,8]},"colliders":[],"grips":[]})"),
+      of_scene(any, "ball", R"({"colliders":[{"type":"sphere"}]})"),
+      of_scene(any, "sweep", R"({"paper":{"section":"4.3","table":6},"colliders":[{"type":"hand_capsules"}]})"),
+      of_scene(any, "push", R"({"colliders":[{"type":"plane"},{"type":"hand_mesh"}]})"),
+      of_scene(any, "pull", R"({"paper":{"section":"4.4"},"grips":[{"track":"x"}]})"),
+      of_scene(any, "sheet", R"({"colliders":[{"type":"mesh"}]})"),
+      of_scene(any, "odd", "not JSON"),
+      of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
+      of_scene(any, "oddest", R"({"colliders":[7]})")};
+  EXPECT_FALSE(has_contact(runs[1]));
+  std::string text;
+  const RunTable table(runs);
+  for (const Row& r : table.rows())
+    if (r.published < 0) text += r.scene + ":" + r.set_up + " ";
+  EXPECT_EQ(text,
+            "desk-flat-low:rooms free: ball:shapes sweep:capsules push:hand pull:grip sheet:rooms odd: odder: "
+            "oddest:shapes ");
+  EXPECT_EQ(tables_titled(runs, kContact).at(0).title, "Contact: Cloth on static meshes");
+  EXPECT_EQ(tables_titled(runs, kContact).size(), 5u);
+}
+
+TEST(Penetration, TableShowsNumbersInTheirUnits) {
+  std::vector<RunRecord> runs = {desk_run("xpbd", "default", "any_vertex_inside"),
+                                 desk_run("paper", "default", "any_vertex_inside")};
+  runs[1].summary["tunnelled_fraction_max"] = 0.3456;
+  runs[1].summary["tunnelled_fraction_end"] = 0.0004;
+  runs[1].summary["expect.tunnelled_fraction_max"] = 0;
+  const Table t = table_of(runs, kContact);
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "tunnelled, max / end [%]"), "0 / 0");
+  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "tunnelled, max / end [%]"), "34.6 / <0.1");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "contour, max / settled [mm]"), "12.3 / 0");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "tunnelled depth [mm]"), "<0.01")
+      << "what is not nothing never reads as nothing";
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "wall / GPU [ms]"), "4.00 / 3.60");
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "verdict"), "pass");
+  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "verdict"), "fail");
+  EXPECT_EQ(t.markdown().find("depth, vertex"), std::string::npos) << "a column without a value is left out";
+  EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
+  const Table broken = table_of(runs, "Acceptance criteria that are violated");
+  ASSERT_EQ(broken.rows.size(), 2u);
+  EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "at most 0", "34"}));
+}
+
+TEST(Penetration, VerdictNeverHidesAFailure) {
+  RunRecord c = desk_run("xpbd", "default", "none");
+  EXPECT_EQ(verdict(c), "pass");
+  RunRecord control = c;
+  for (const FeatureRow& f : kFeatures) control.header.environment["solver_features"]["ignores"].push_back(f.name);
+  EXPECT_EQ(verdict(control), "ignored") << "luck is no merit";
+  control.summary["expect.stretch_max"] = 0;
+  EXPECT_EQ(verdict(control), "fail");
+  c.summary["expect.stretch_max"] = kMissing;
+  EXPECT_EQ(verdict(c), "not measured");
+  c.summary["expect.stretch_max"] = 0;
+  EXPECT_EQ(verdict(c), "fail") << "also beside one that is not measured";
+  EXPECT_EQ(verdict(with_outcome(c, "diverged", 17, "")), "diverged at 17");
+  EXPECT_EQ(verdict(with_outcome(c, "unsupported", -1, "")), "unsupported");
+  std::erase_if(c.summary, [](const auto& s) { return s.first.starts_with("expect."); });
+  EXPECT_EQ(verdict(c), "–");
+}
+
+TEST(Penetration, OverviewHasAColumnForEverySetting) {
+  std::vector<RunRecord> runs = {
+      desk_run("xpbd", "default", "any_vertex_inside"), desk_run("paper", "whole-room", "none"),
+      with_outcome(desk_run("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
+                   "not in this build"),
+      of_scene(desk_run("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
+  const auto rows = parse_markdown(table_of(runs, kVerdicts).markdown());
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"scene", "bullet-deformable", "paper whole-room", "xpbd"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"desk-flat-low", "unsupported", "pass", "pass"}));
+  EXPECT_EQ(rows[2], (std::vector<std::string>{"ball", "–", "–", "pass"}));
+}
+
+TEST(Penetration, SeriesHaveOneRowPerFrame) {
+  const auto csv = parse_csv(series_csv(RunTable({desk_run("xpbd", "default", "none")})));
+  ASSERT_EQ(csv.size(), 3u);
+  for (const auto& row : csv) ASSERT_EQ(row.size(), csv[0].size());
+  const auto at = [&](const std::string& name) {
+    return csv[2].at(static_cast<std::size_t>(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin()));
+  };
+  EXPECT_EQ(at("time_s"), "0.0138889");
+  EXPECT_EQ(at("contact_length_m"), "0.0123");
+  EXPECT_EQ(at("tunnelled_fraction"), "") << "NaN is missing";
+  EXPECT_EQ(at("depth_m"), "") << "so is a metric the scene does not have";
+}
+
+TEST(Features, ComeFromTheResultFilesAlone) {
+  std::vector<RunRecord> runs = {
+      desk_run("paper", "default", "none"),
+      with_outcome(desk_run("absent", "default", "none"), "unsupported", -1, "not in this build"),
+      desk_run("ignorant", "default", "none")};
+  runs[1].header.environment.erase("solver_features");
+  runs[2].header.environment["solver_features"] = {
+      {"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
+  runs[2].header.stages.clear();
+  const Table t = feature_table(solver_features(runs), true);
+  const auto text = [&](const std::string& feature, std::size_t column) {
+    for (const auto& row : t.rows)
+      if (row[0] == feature) return row.at(column);
+    return std::string("no row");
+  };
+  EXPECT_EQ(t.rows.at(0), (std::vector<std::string>{"feature", "paper", "absent", "ignorant"}));
+  EXPECT_EQ(t.rows.size(), kFeatureCount + 1);
+  EXPECT_EQ(text("static mesh", 1), "yes (only with duplicated layer)");
+  EXPECT_EQ(text("friction", 1), "yes");
+  EXPECT_EQ(text("sphere", 1), "declared") << "no run shows it";
+  EXPECT_EQ(text("plane", 1), "no");
+  EXPECT_EQ(text("plane", 2), "not built");
+  EXPECT_EQ(text("sphere", 3), "ignored");
+  EXPECT_EQ(text("plane", 3), "declared");
+  runs[0].outcome.status = "diverged";
+  EXPECT_EQ(feature_text(solver_features(runs).at(0), Feature::Friction, true), "declared")
+      << "a run that failed shows nothing";
+  EXPECT_EQ(feature_json(solver_features(runs), true)
+                .at(static_cast<std::size_t>(Feature::Sphere))
+                .at("solvers")
+                .at("ignorant"),
+            "ignored");
+}
+
+TEST(Penetration, TablesStateTheContactOffset) {
+  const std::string scenario = R"({"cloth":{"grid":[8,8]},"colliders":[{"type":"box","margin_m":0.004}]})";
+  std::vector<RunRecord> runs = {of_scene(desk_run("xpbd", "default", ""), "box", scenario),
+                                 of_scene(desk_run("other", "default", ""), "box", scenario),
+                                 of_scene(desk_run("none", "default", ""), "box", scenario)};
+  runs[1].header.plan["contact_margins"] = {{{"collider", "named otherwise"}, {"margin_m", 0.02}}};
+  runs[2].outcome.status = "unsupported";
+  const auto offset = [&](const std::string& solver) {
+    return entry(table_of(runs, kContact), "box", solver, "contact offset [mm]");
+  };
+  EXPECT_EQ(offset("xpbd"), "4") << "the scene's margin";
+  EXPECT_EQ(offset("other"), "20") << "what the solver states";
+  EXPECT_EQ(offset("none"), "–");
+  runs[1].header.plan["contact_margins"].push_back({{"collider", "box"}, {"margin_m", 0.0035}});
+  EXPECT_EQ(offset("other"), "3.5 to 20");
+}
+
+constexpr const char* kRates = "Randomly generated contact scenes: pass rate by speed [m/s]";
+constexpr const char* kWorst = "Randomly generated contact scenes: the worst run of each kind";
+
+RunRecord generated(const std::string& solver, const std::string& kind, int seed, double speed,
+                    const std::string& ending, double contour = 0, const std::string& assets = "npm") {
+  RunRecord c;
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.header.scene = "contact-" + std::to_string(seed) + "-" + kind;
+  c.header.environment = {{"protocol", "short"}};
+  c.header.scenario_json =
+      nlohmann::json{
+          {"name", c.header.scene},
+          {"seed", seed},
+          {"drawn",
+           {{"study", "contact"}, {"kind", kind}, {"assets", assets}, {"speed_m_per_s", speed}, {"values", {}}}}}
+          .dump();
+  const bool ended = ending == "pass" || ending == "fail";
+  c.outcome.status = ended ? "ok" : ending;
+  c.outcome.expect = ending == "fail" ? "fail: contact_length_max_m" : ended ? ending : "not measured";
+  c.summary["contact_length_max_m"] = contour;
+  c.summary["expect.contact_length_max_m"] = !ended ? NAN : ending == "pass" ? 1 : 0;
+  return c;
+}
+
+std::vector<RunRecord> sample() {
+  return {generated("xpbd", "sweep", 1, 0.5, "pass"),        generated("xpbd", "sweep", 3, 1.99, "pass"),
+          generated("xpbd", "sweep", 5, 2, "fail", 0.02),    generated("xpbd", "sweep", 7, 14, "fail", 0.3),
+          generated("xpbd", "desk", 2, 6, "timed_out"),      generated("xpbd", "desk", 4, 6, "pass"),
+          generated("paper", "desk", 2, 6, "unsupported"),   generated("paper", "desk", 4, 6, "crashed"),
+          generated("paper", "sweep", 1, 0.5, "pass", 0.01), RunRecord{}};
+}
+
+TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
+  const Table t = table_of(sample(), kRates);
+  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"solver", "kind", "0–2", "2–5", "5–10", "≥ 10", "all"}));
+  const auto rate = [&](const std::string& solver, const std::string& kind, const std::string& band) {
+    return entry(t, solver, kind, band);
+  };
+  EXPECT_EQ(rate("xpbd", "sweep", "0–2"), "2/2 (34–100 %)");
+  EXPECT_EQ(rate("xpbd", "sweep", "2–5"), "0/1 (0–79 %)") << "2 m/s is in the upper band";
+  EXPECT_EQ(rate("xpbd", "sweep", "5–10"), "–");
+  EXPECT_EQ(rate("xpbd", "sweep", "≥ 10"), "0/1 (0–79 %)");
+  EXPECT_EQ(rate("xpbd", "sweep", "all"), "2/4 (15–85 %)");
+  EXPECT_EQ(rate("xpbd", "desk", "5–10").substr(0, 3), "1/2") << "one timed out";
+  EXPECT_EQ(rate("xpbd", "all", "all").substr(0, 3), "3/6");
+  EXPECT_EQ(rate("paper", "all", "all").substr(0, 3), "1/3") << "one unsupported, one crashed";
+  EXPECT_EQ(table_of({generated("xpbd", "desk", 1, 1, "pass", 0, "procedural")}, kRates).rows[1][1],
+            "desk (procedural)");
+  EXPECT_EQ(t.note.find("missing"), std::string::npos);
+  std::vector<RunRecord> runs = sample();
+  runs.front().outcome.status = "missing";
+  EXPECT_NE(table_of(runs, kRates).note.find("1 of 9 runs are missing"), std::string::npos);
+  runs = {generated("xpbd", "desk", 1, 1, "pass")};
+  runs[0].header.plan["contact_margins"] = {{{"collider", "mesh"}, {"margin_m", 0.02}}};
+  EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
+}
+
+TEST(PassRates, TheWorstRunDidNotEndThenHasTheLongestContour) {
+  const Table t = table_of(sample(), kWorst);
+  ASSERT_EQ(t.rows.size(), 4u) << "an unsupported scene is none, a kind without a fault has none";
+  const auto scene = [&](const std::string& solver, const std::string& kind) {
+    return entry(t, solver, kind, "scene");
+  };
+  EXPECT_EQ(scene("xpbd", "sweep"), "contact-7-sweep");
+  EXPECT_EQ(scene("xpbd", "desk"), "contact-2-desk");
+  EXPECT_EQ(scene("paper", "desk"), "contact-4-desk");
+  EXPECT_EQ(entry(t, "xpbd", "sweep", "runs it again"), "clothbench study contact --seed 7 --count 1 --solver xpbd");
+}
+
+TEST(Stability, RunsOfEachCaseByGrade) {
+  const auto judged = [](const std::string& solver, const std::string& kase, double grade, const std::string& klass) {
+    RunRecord c = fake_run(solver, 8, "single", 1e-3);
+    c.header.scene = kase + "-stiff-" + solver + klass;
+    c.header.scenario_json = R"({"name":"s01-stiffness","stability":{"case":")" + kase + R"("}})";
+    c.outcome = {klass == "F8" ? "crashed" : "ok", klass, klass == "ok" ? -1 : 7, "", {}};
+    c.summary["stability_grade"] = grade;
+    return c;
+  };
+  const std::vector<RunRecord> runs = {judged("a", "S01", 0, "ok"), judged("a", "S01", 2, "F1"),
+                                       judged("a", "S02", 1, "F3"), judged("b", "S01", kMissing, "F8")};
+  const Table t = table_of(runs, "Robustness");
+  EXPECT_EQ(t.rows[0], (std::vector<std::string>{"case", "a", "b"}));
+  EXPECT_EQ(t.rows[1],
+            (std::vector<std::string>{"S01 stiffness", "1/2 stable, 1 failed (F1)", "0/1 stable, 1 failed (F8)"}));
+  EXPECT_EQ(t.rows[2][1], "0/1 stable, 1 degraded (F3)");
+  EXPECT_EQ(t.rows[3][0] + ": " + t.rows[3][1], "all: 1/3 stable, 1 degraded (F3), 1 failed (F1)");
+  const Table failures = table_of(runs, "Runs that were not stable");
+  ASSERT_EQ(failures.rows.size(), 4u);
+  EXPECT_EQ(failures.rows[2], (std::vector<std::string>{"a", "failed", "F1", "S01-stiff-aF1 (7)"}));
+  EXPECT_EQ(failures.rows[3][3], "S01-stiff-bF8 (7) crashed");
+}
+
+}  // namespace
+}  // namespace clothbench
