@@ -176,7 +176,10 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
       if (a.ranked() != b.ranked()) return a.ranked();
       return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
     });
+    int most_frames = 0;
+    for (const Short& r : rows) most_frames = std::max(most_frames, r.row.frames());
     for (Short& r : rows) {
+      r.row.most_frames = most_frames;
       r.fastest_s = rows.front().frame_s;
       all.push_back(r);
     }
@@ -186,7 +189,7 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
   const auto time = [&](const Short& s) {
     std::string shown = significant(1e3 * s.frame_s, 3);
     if (std::isfinite(s.half_range_s)) shown += " ± " + significant(1e3 * s.half_range_s, 2);
-    return std::isfinite(s.frame_s) ? shown + frames_mark(s.row, beside) : shown;
+    return std::isfinite(s.frame_s) ? shown + s.row.frames_mark() : shown;
   };
   const auto ended = [](const Short& s) {
     const std::string v = verdict(*s.row.run);

@@ -192,6 +192,10 @@ std::string TruthFacts::refused() const {
 
 std::string Row::label() const { return label_of(*run) + (repeat > 1 ? fmt::format(" ({})", repeat) : ""); }
 
+std::string Row::frames_mark() const {
+  return frames() > 0 && frames() < most_frames ? fmt::format(" (first {} frames)", frames()) : "";
+}
+
 double Row::frame_rate_hz() const {
   const json rate = at(scenario, "/time/frame_rate_hz");
   return rate.is_number() ? rate.get<double>() : kMissing;
@@ -253,6 +257,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::map<std::string, std::shared_ptr<TruthFacts>> facts;
   std::set<std::string> timed;
   std::map<std::string, std::size_t> scenes;
+  std::map<std::string, int> most_frames;
   for (const RunRecord& c : runs_) {
     Row row{&c};
     const std::string family = read_scenario(row);
@@ -265,10 +270,12 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
       row.repeat += r.family == row.family && r.resolution == row.resolution && r.sides == row.sides &&
                     r.solver == row.solver && r.setting == row.setting && r.scene == row.scene;
     if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
+    most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
     scenes.try_emplace(row.part == Part::Rates ? row.family : row.scene, scenes.size());
     rows_.push_back(std::move(row));
   }
   for (Row& r : rows_) {
+    r.most_frames = most_frames[r.scene];
     // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
     if (r.part == Part::Truth && r.set_up == "wave" && !timed.contains(r.scene)) r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

@@ -16,10 +16,8 @@ namespace clothbench {
 
 /// A summary value of a run; NaN if the run does not have it.
 double summary_value(const RunRecord&, const std::string& name);
-
 /// The scenario of a run; a discarded value if the stored text is not JSON.
 nlohmann::json scenario_of(const RunRecord&);
-
 /// The environment's value of `key`; null if there is none.
 nlohmann::json environment_of(const RunRecord&, const char* key);
 
@@ -104,9 +102,13 @@ struct Row {
   int repeat = 1;       ///< 2, 3, … where several files hold the same run
   int paper_table = 0;  ///< number of the paper's table that the scene names; 0: none
   int published = -1;   ///< index of the paper's column whose value this is; -1 for a run
+  int most_frames = 0;  ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
+  int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
+  /// " (first 36 frames)" where the run timed fewer frames than another run of its scene; otherwise empty.
+  std::string frames_mark() const;
   double value(const std::string& name) const { return summary_value(*run, name); }
   std::string status() const { return run->outcome.status; }
   double frame_rate_hz() const;

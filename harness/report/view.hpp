@@ -75,9 +75,6 @@ std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.
 int grade_of(const Row&);
 
-/// " (first 36 frames)" where a run timed fewer frames than another run of its scene in `beside`; otherwise empty.
-std::string frames_mark(const Row&, const Group& beside);
-
 // Parts of views(), by file.
 View cost_view();
 std::vector<View> rate_views();

@@ -98,7 +98,9 @@ View contact() {
                {"wall / GPU [ms]",
                 [](const Group& g, const Texts&) {
                   const Row& r = *g.front();
-                  return paired(1e3 * r.value("frame_wall_median_s"), 1e3 * r.value("frame_device_median_s"), " / ", 3);
+                  const std::string times =
+                      paired(1e3 * r.value("frame_wall_median_s"), 1e3 * r.value("frame_device_median_s"), " / ", 3);
+                  return times == "–" ? times : times + r.frames_mark();
                 }},
                column("verdict", [](const Row& r) { return verdict(*r.run); })};
   v.timed = true;

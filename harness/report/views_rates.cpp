@@ -43,8 +43,6 @@ std::string bytes(const Row& r, const char* read, const char* written, double sc
   return (bound ? "≥ " : "") + significant(in, 3) + " / " + significant(out, 3);
 }
 
-int frames_of(const Row& r) { return r.run->trials.empty() ? 0 : r.run->trials.front().frames(); }
-
 /// "windows of 5 s, or of the whole trial where it is shorter (here 0.3 to 2 s)".
 std::string windows(const Group& runs) {
   double least = kMissing, most = kMissing;
@@ -78,7 +76,11 @@ View rates(const std::string& title, const std::string& note, std::function<std:
            bool timed = true) {
   View v{"rates", title, note, [](const Row& r) { return r.part == Part::Rates && r.published < 0; }};
   v.keys = {solver_key(), sides_key()};
-  const auto cell = [=](const Group& g) { return g.front()->status() == "ok" ? text(*g.front()) : ""; };
+  const auto cell = [=](const Group& g) -> std::string {
+    const Row& r = *g.front();
+    const std::string value = r.status() == "ok" ? text(r) : "";
+    return value.empty() || value == "–" || !timed ? value : value + r.frames_mark();
+  };
   const auto ended = [](const Group& g) { return g.front()->status() == "ok" ? "" : ending(g.front()->run->outcome); };
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
               cell,
@@ -149,28 +151,21 @@ View time_of_a_frame() {
       "one refresh of the display. Real-time factor: simulated time over the median wall time.",
       [](const Row& r) { return !r.run->trials.empty(); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
-  v.columns = {column("trials × frames",
-                      [](const Row& r) { return fmt::format("{} × {}", r.run->trials.size(), frames_of(r)); }),
-               quantiles("wall p50 / p95 / p99 / max [ms]", &TimedTrial::frame_wall_s),
-               missed(72),
-               missed(90),
-               quantiles("GPU p50 / p95 / p99 / max [ms]", &TimedTrial::frame_device_s),
-               column("real-time factor", [](const Row& r) {
-                 return significant(1 / (r.frame_rate_hz() * quantile(frames(r, &TimedTrial::frame_wall_s), 0.5)), 3);
-               })};
+  v.columns = {
+      column("trials × frames", [](const Row& r) { return fmt::format("{} × {}", r.run->trials.size(), r.frames()); }),
+      quantiles("wall p50 / p95 / p99 / max [ms]", &TimedTrial::frame_wall_s),
+      missed(72),
+      missed(90),
+      quantiles("GPU p50 / p95 / p99 / max [ms]", &TimedTrial::frame_device_s),
+      column("real-time factor", [](const Row& r) {
+        return significant(1 / (r.frame_rate_hz() * quantile(frames(r, &TimedTrial::frame_wall_s), 0.5)), 3);
+      })};
   v.in_full = true;
   v.timed = true;
   return v;
 }
 
 }  // namespace
-
-std::string frames_mark(const Row& row, const Group& beside) {
-  int most = 0;
-  for (const Row* r : beside)
-    if (r->scene == row.scene) most = std::max(most, frames_of(*r));
-  return frames_of(row) > 0 && frames_of(row) < most ? fmt::format(" (first {} frames)", frames_of(row)) : "";
-}
 
 View cost_view() {
   View v{"contact", "Cost", std::string("Bytes: ") + kBytes + " Memory: device-local buffers. –: a CPU solver.",
