@@ -97,62 +97,9 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   const Table& table = tables[0];
   ASSERT_EQ(table.rows.size(), 3u);  // header, S16, all
   for (std::size_t k = 1; k < 3; ++k)
-    EXPECT_EQ(table.rows[1][k], table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F8)");
+    EXPECT_EQ(table.rows[1][k], table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F3)");
   ASSERT_EQ(tables[1].rows.size(), 2u);
   EXPECT_NE(tables[1].rows[1][3].find("crashed"), std::string::npos);
-}
-
-TEST_F(StabilityStudy, ManyProcessesGiveWhatOneGives) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json alone = maps();
-  StabilityOptions many = options(false);
-  many.jobs = 4;
-  const StabilityCounts counts = run_stability_maps(study, many);
-  EXPECT_EQ(maps(), alone);
-  EXPECT_EQ(counts.stable, 6);
-  EXPECT_EQ(counts.failed, 6);
-}
-
-TEST_F(StabilityStudy, MapsEndInOneNumberASolver) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json m = maps().at(0);
-  ASSERT_EQ(m.at("solvers").size(), 2u);
-  const json& falls = m.at("solvers").at(0);
-  EXPECT_EQ(falls.at("largest"), 100);
-  EXPECT_TRUE(falls.at("open").get<bool>());
-  EXPECT_EQ(falls.at("rows").size(), 2u);
-  EXPECT_EQ(falls.at("probes").size(), 6u);
-  const json& nan = m.at("solvers").at(1);
-  EXPECT_EQ(nan.at("largest"), 0);
-  EXPECT_EQ(nan.at("probes").at(0).at("class"), "F0");
-  EXPECT_EQ(m.at("theory").at(0).at("points").size(), 2u);
-}
-
-std::vector<json> lines_of(const fs::path& file) {
-  std::vector<json> out;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line, nullptr, false));
-  return out;
-}
-
-TEST_F(StabilityStudy, AnAnswerAfterATornLineIsKept) {
-  const Study study = load_study((dir_ / "maps.json").string());
-  run_stability_maps(study, options(false));
-  const json whole = maps();
-  const fs::path probes = dir_ / "out" / "stability-probes.jsonl";
-  const std::size_t count = lines_of(probes).size();
-  fs::resize_file(probes, fs::file_size(probes) - 20);
-  run_stability_maps(study, options(true));
-  EXPECT_EQ(maps(), whole);
-  const std::vector<json> lines = lines_of(probes);
-  EXPECT_EQ(lines.size(), count);
-  for (const json& line : lines)
-    EXPECT_TRUE(line.is_object() && line.contains("answer")) << "the torn line swallowed the next one";
-  const auto size = fs::file_size(probes);
-  run_stability_maps(study, options(true));
-  EXPECT_EQ(fs::file_size(probes), size) << "nothing is left to run";
 }
 
 std::string refusal(const std::function<void()>& what) {
