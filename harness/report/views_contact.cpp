@@ -75,14 +75,16 @@ View verdicts() {
 }
 
 View contact() {
-  View v{"contact", "Contact",
-         "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
-         "offsets. Crossings: passages of cloth and colliders through each other between two frames, at most in one frame. "
-         "Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the last 0.5 s. "
-         "Depth: how far the cloth is inside a collider, without the margin. Popping: "
-         "maximum displacement of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders "
-         "and grips. Strain: strain of the structural edges. Time: median over the timed frames.",
-         in_contact};
+  View v{
+      "contact", "Contact",
+      "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
+      "offsets. Crossings: passages of cloth and colliders through each other between two frames, at most in one "
+      "frame. "
+      "Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the last 0.5 s. "
+      "Depth: how far the cloth is inside a collider, without the margin. Popping: "
+      "maximum displacement of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders "
+      "and grips. Strain: strain of the structural edges. Time: median over the timed frames.",
+      in_contact};
   v.each = [](const Row& r) { return "Contact: " + kSetUps.at(r.set_up); };
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {column("contact offset [mm]", offset_of),

@@ -191,10 +191,8 @@ json to_json(const TimedTrial& t) {
 json to_json(const AccuracyPass& a) {
   json j = {{"time_s", packed(a.time_s)}, {"position", packed(a.position)}, {"metrics", json::array()}};
   for (const MetricSeries& m : a.metrics)
-    j["metrics"].push_back({{"name", m.name},
-                            {"units", m.units},
-                            {"long_name", m.long_name},
-                            {"values", packed(m.values)}});
+    j["metrics"].push_back(
+        {{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"values", packed(m.values)}});
   return j;
 }
 

@@ -58,7 +58,7 @@ struct ContactLedger {
   uint farthest;                     // greatest displacement of a vertex in a frame [m], the bits of a float: this one
                                      // at its end; until its list is made, the last one; 0: there was none
   uint counted[PAIR_LEVELS];         // pairs at each share of the reaches
-  float drift[3];  // velocity [m/s] that the list of the cloth with itself moves along with
+  float drift[3];                    // velocity [m/s] that the list of the cloth with itself moves along with
   uint unused0[3];
 };
 

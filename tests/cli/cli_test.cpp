@@ -272,7 +272,7 @@ TEST_F(Cli, SeedDrawsAndIsStored) {
   const Answer none =
       command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.text.find("expected a scene with \"truth\""), std::string::npos) << none.text;
+  EXPECT_NE(none.text.find("--seed draws parameters for scenes whose \"truth\" is"), std::string::npos) << none.text;
 }
 
 }  // namespace

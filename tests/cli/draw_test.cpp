@@ -77,7 +77,7 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
       {"study contact --procedural --require-assets", "--procedural"},
       {"study table3 --count 3", "--count: nothing is drawn in this study"},
       {"study table3 --procedural", "--procedural: only for studies of protocol contact"},
-      {"study table3 --seed 1", "--seed: expected a scene with \"truth\""},
+      {"study table3 --seed 1", "--seed draws parameters for scenes whose \"truth\" is"},
       {"run paper/desk-flat-low --seed 1 --solver ballistic",
        "contact scenes are drawn by `clothbench study contact --seed N`"},
       {"study contact --seed 1 --count 1 --procedural --trials 3", "--trials"},

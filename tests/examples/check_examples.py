@@ -13,7 +13,7 @@ EXPECTED = {
     "motion.py": ["gravity__ballistic__default: t = 1.00 s"],
     "over_time.py": [],
     "where.py": ["gravity__ballistic__default: ", "Release"],
-    "failures.py": ["sample__none__readback=blocking: diverged (F1) a message"],
+    "failures.py": ["sample__none__readback=blocking: diverged (F0) a message"],
 }
 
 with tempfile.TemporaryDirectory() as home:

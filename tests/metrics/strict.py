@@ -26,9 +26,9 @@ class Run:
     def __init__(self, path):
         f = h5py.File(path)
         self.name = f"{path.parent.name}/{path.stem}"
-        self.scene, self.summary = json.loads(f.attrs["scenario_json"]), dict(f["summary"].attrs)
+        self.scene, self.summary = json.loads(json.loads(f["header_json"][0])["scenario_json"]), dict(f["summary"].attrs)
         self.triangles, self.time = f["triangles"][:], f["metrics/time_s"][:]
-        self.x = f["VTKHDF/Points"][:].astype(float).reshape(len(self.time), -1, 3)
+        self.x = f["trajectory/position"][:].astype(float)
         count = int(f["colliders"].attrs["count"]) if "colliders" in f else 0
         self.colliders = [dict(f[f"colliders/{k}"].attrs) | {n: d[:] for n, d in f[f"colliders/{k}"].items()} for k in range(count)]
         self.grips = {n: d[:] for n, d in f["colliders/grips"].items()} if "colliders/grips" in f else {}

@@ -181,7 +181,7 @@ class Penetration(unittest.TestCase):
         return {"runs": rows, "series": series}
 
     def test_panels_and_lines(self):
-        runs = [(scene, "rooms", s, "ok", 40, {"contact_length_m": 0.1 * k, "tunnelled_fraction": 0.05 * k})
+        runs = [(scene, "rooms", s, "ok", 40, {"contact_length_m": 0.1 * k, "depth_m": 4.0 * k})
                 for scene in ("desk-flat-low", "desk-corner-low") for k, s in enumerate(("paper", "paper fine", "xpbd", "bullet-soft", "bullet-deformable"))]
         runs += [("sweep", "capsules", "xpbd", "ok", 40, {"contact_length_m": 0.3, "depth_m": 0.002}),
                  ("sweep", "capsules", "paper", "not_finite", 9, {"contact_length_m": 0.3, "depth_m": 0.05})]
@@ -191,7 +191,7 @@ class Penetration(unittest.TestCase):
         self.assertEqual(sorted(svg), ["penetration-capsules", "penetration-grip", "penetration-hand", "penetration-rooms", "verdicts"])
         self.assertEqual(marks(svg["penetration-rooms"], "lines"), 2 * 2 * 5)
         self.assertEqual(marks(svg["penetration-rooms"], "failed"), 0)
-        for part in ("paper fine", "desk-corner-low", "contour [mm]", "tunnelled [%]", "time [s]"):
+        for part in ("paper fine", "desk-corner-low", "contour [mm]", "depth [mm]", "time [s]"):
             self.assertIn(part, words(svg["penetration-rooms"]))
         self.assertEqual(marks(svg["penetration-capsules"], "failed"), 2, "a failed solver is marked in every panel")
         self.assertEqual(marks(svg["penetration-grip"], "lines"), 4)

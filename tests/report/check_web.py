@@ -67,7 +67,7 @@ for r in doc["runs"]:
             assert same(r[name], a.get(name, np.nan)), (r["scene"], r["solver"], name)
             points += r[name] is not None
         if r["part"] == "accuracy":
-            rate = json.loads(f.attrs["scenario_json"])["time"]["frame_rate_hz"]
+            rate = json.loads(json.loads(f["header_json"][0])["scenario_json"])["time"]["frame_rate_hz"]
             assert r["error"] == a["truth_error"]
             assert abs(r["wall_ms_per_s"] / (1e3 * rate * a["frame_wall_median_s"]) - 1) < 1e-12
             errors += 1

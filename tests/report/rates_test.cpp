@@ -115,7 +115,7 @@ TEST(Tables, RunsThatFailedSayHow) {
   }
   const auto failed = parse_markdown(table_of(runs, "Runs without a result").markdown());
   ASSERT_EQ(failed.size(), 3u);
-  EXPECT_EQ(failed[1], (std::vector<std::string>{"paper", "diverged (F2)", "edge \\| 40 times its length",
+  EXPECT_EQ(failed[1], (std::vector<std::string>{"paper", "diverged (F1)", "edge \\| 40 times its length",
                                                  "gravity-8-single (frame 17)"}));
   EXPECT_EQ(failed[2][3], "gravity-128-single, gravity-8-double");
   EXPECT_TRUE(tables_titled(study(), "Runs without a result").empty());
@@ -125,12 +125,12 @@ TEST(Tables, FailedCriteriaAreListed) {
   constexpr const char* kFailed = "Acceptance criteria that failed";
   std::vector<RunRecord> runs = study();
   EXPECT_TRUE(tables_titled(runs, kFailed).empty()) << "nothing expected";
-  runs[0].outcome.expect = "fail: tunnelled_fraction_max 0.2 > 0";
+  runs[0].outcome.expect = "fail: crossings_max 2 > 0";
   runs[1].outcome.expect = "pass";
   const Table t = table_of(runs, kFailed);
   ASSERT_EQ(t.rows.size(), 2u);
   EXPECT_EQ(t.rows[1],
-            (std::vector<std::string>{runs[0].header.scene, "xpbd", "fail: tunnelled_fraction_max 0.2 > 0"}));
+            (std::vector<std::string>{runs[0].header.scene, "xpbd", "fail: crossings_max 2 > 0"}));
 }
 
 TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {

@@ -75,7 +75,5 @@ TEST_F(Friction, CriticalAngleWithinATenthOfADegree) {
 /// The error falls with the substeps, of which a finer strip has more at default.
 TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-slip"), 0.05); }
 
-
-
 }  // namespace
 }  // namespace clothbench
