@@ -167,7 +167,7 @@ RunResult execute_in_process(const RunPlan& plan, const RunOptions& options, con
     const std::string message = fmt::format("its process: {}, at \"{}\"", answer.end->text(), doing);
     fmt::print(stderr, "{}\n", message);
     write_row(*at, plan, options.out,
-              {answer.end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F8", -1, message});
+              {answer.end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1, message});
     request["resume"] = true;
   }
   throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);

@@ -74,7 +74,8 @@ void require_same_run(const fs::path& folder, const PlannedRun& run) {
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";
-  if (run.solver != nullptr && !version.empty() && version != run.solver->version)  // a crash before the start leaves none
+  if (run.solver != nullptr && !version.empty() &&
+      version != run.solver->version)  // a crash before the start leaves none
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             run.solver->name, run.solver->version, kWhatToDo));
 }

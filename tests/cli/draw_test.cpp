@@ -79,7 +79,7 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
       {"study table3 --procedural", "--procedural: only for studies of protocol contact"},
       {"study table3 --seed 1", "--seed draws parameters for scenes whose \"truth\" is"},
       {"run paper/desk-flat-low --seed 1 --solver ballistic",
-       "contact scenes are drawn by `clothbench study contact --seed N`"},
+       "`clothbench study contact --seed N` draws contact scenes"},
       {"study contact --seed 1 --count 1 --procedural --trials 3", "--trials"},
   };
   for (const auto& c : cases) {

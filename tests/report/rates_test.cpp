@@ -129,8 +129,7 @@ TEST(Tables, FailedCriteriaAreListed) {
   runs[1].outcome.expect = "pass";
   const Table t = table_of(runs, kFailed);
   ASSERT_EQ(t.rows.size(), 2u);
-  EXPECT_EQ(t.rows[1],
-            (std::vector<std::string>{runs[0].header.scene, "xpbd", "fail: crossings_max 2 > 0"}));
+  EXPECT_EQ(t.rows[1], (std::vector<std::string>{runs[0].header.scene, "xpbd", "fail: crossings_max 2 > 0"}));
 }
 
 TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
