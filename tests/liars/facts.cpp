@@ -33,6 +33,26 @@ double rms_way(const motion_check::Motion& m, std::size_t from, std::size_t to) 
   return std::sqrt(sum / static_cast<double>(m.vertices));
 }
 
+/// Of the mean of the vertices, between a frame and the one before it.
+V3 mean_velocity(const motion_check::Motion& m, std::size_t frame) {
+  V3 sum = V3::Zero();
+  for (std::size_t v = 0; v < m.vertices; ++v) sum += m.at(frame, v) - m.at(frame - 1, v);
+  return sum / (m.dt(frame) * static_cast<double>(m.vertices));
+}
+
+/// Whether all colliders are planes, and one is steep or the cloth lands too fast to stop in a tenth of a second.
+bool slides(const motion_check::Motion& m, const Facts& f) {
+  bool out = false;
+  for (const Collider& c : m.scene.colliders) {
+    if (c.shape != Collider::Shape::Plane || c.moves()) return false;
+    const V3 normal = motion_check::to_v3(c.normal);
+    const V3 landing = f.first_touch < f.frames ? mean_velocity(m, std::max<std::size_t>(f.first_touch, 1)) : V3::Zero();
+    const double across = (landing - landing.dot(normal) * normal).norm();
+    out = out || normal.dot(f.up) < 0.98 || across > 0.1 * c.friction * m.weight_unit;
+  }
+  return out;
+}
+
 }  // namespace
 
 Facts facts_of(const Motion& motion) {
@@ -47,6 +67,7 @@ Facts facts_of(const Motion& motion) {
   f.solid = !s.colliders.empty();
   f.self = s.cloth.self_collision.thickness_m > 0;
   f.length_m = m.length_m;
+  f.frame_s = s.time.dt();
   for (const Collider& c : s.colliders) f.mover = f.mover || c.moves();
   f.frames = f.first_touch = f.at_rest = f.fastest = f.deepest_touch = m.frames;
   std::size_t most = 0;
@@ -62,6 +83,7 @@ Facts facts_of(const Motion& motion) {
   }
   for (std::size_t k = 3; k + 3 < m.frames; ++k)
     if (air[k - 2] && air[k - 1] && air[k] && air[k + 1] && air[k + 2]) f.air.push_back(k);
+  f.slides = slides(m, f);
   for (std::size_t k = m.frames; k-- > 0 && rms_way(m, k, m.frames - 1) < 0.002 * m.length_m;) f.at_rest = k;
   return f;
 }

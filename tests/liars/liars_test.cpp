@@ -1,6 +1,8 @@
 // Wrong motions fail by what positions say, and right ones pass: no bound of a scene is asked.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "base/interval.hpp"
 #include "trial.hpp"
 
@@ -12,6 +14,9 @@ namespace {
 void expect_told_apart(const Matrix& matrix, std::size_t fewest) {
   const std::vector<Trial> trials = tell_all(matrix);
   const Totals n = totals(trials);
+#ifdef CLOTHBENCH_MANY_LIES
+  std::puts(as_text(trials).c_str());  // the rate with its interval
+#endif
   EXPECT_GE(n.told, fewest);
   EXPECT_GE(wilson_95(n.caught, n.told).high, 0.97) << as_text(trials);
   EXPECT_GE(static_cast<double>(n.passed), 0.995 * static_cast<double>(n.right)) << as_text(trials);
@@ -22,8 +27,8 @@ void expect_told_apart(const Matrix& matrix, std::size_t fewest) {
 TEST(Liars, OfContact) {
   Matrix matrix;
   matrix.solver = "bullet-deformable";
-  matrix.kinds = {"sphere", "box", "contact/plane", "plate"};
-  matrix.motions = 4;
+  matrix.kinds = {"box", "contact/plane", "plate"};
+  matrix.motions = 3;
   expect_told_apart(matrix, 100);
 }
 #else

@@ -21,6 +21,7 @@ struct Facts {
   bool solid = false;     ///< a collider
   bool mover = false;     ///< a collider that moves
   bool self = false;      ///< the cloth meets itself
+  bool slides = false;    ///< on planes alone, steep or faster than they stop in a tenth of a second
   std::size_t frames = 0;
   std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
@@ -28,6 +29,7 @@ struct Facts {
   std::size_t deepest_touch = 0;  ///< with a mover: the frame with most contacts; `frames` if there is none
   std::vector<std::size_t> air;   ///< frames without contact and two neighbours without
   double speed_m_per_s = 0;       ///< at `fastest`
+  double frame_s = 0;             ///< duration of a frame
   double length_m = 1;
   V3 up{};  ///< unit vector against gravity
 };

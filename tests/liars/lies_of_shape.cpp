@@ -63,7 +63,8 @@ Told shrunk(const Right& r, Dice&) {
 }
 Told patch_frozen(const Right& r, Dice& dice) {
   const Cloth& c = r.motion.scene->cloth;
-  const Index at = std::min(std::max<Index>(r.facts.fastest, 3), r.motion.frames() - 12);
+  // While it moves: at the highest speed it may be about to come to rest.
+  const Index at = std::clamp<Index>(std::max<Index>(r.facts.fastest, 5) - 5, 3, r.motion.frames() - 12);
   const int i = dice.whole(1, std::max(1, c.columns - 5)), j = dice.whole(c.rows / 2, std::max(c.rows / 2, c.rows - 5));
   return moved(r, [&](Index k, Index v, const V3& x) {
     const int a = static_cast<int>(v) % c.columns, b = static_cast<int>(v) / c.columns;

@@ -58,7 +58,7 @@ void add_contact(std::vector<Kind>& out) {
 /// Scenes with an exact solution, drawn as for the tables of accuracy. Their number of vertices is their own.
 void add_truth(std::vector<Kind>& out) {
   for (const char* name : {"free-fall", "incline-slip", "incline-stick", "incline-stop", "swing-strip", "heavy-strip",
-                           "pendulum", "hang-elastic", "two-hand-pull", "cantilever-10", "capstan-slip"})
+                           "pendulum", "capstan-slip"})
     out.push_back({name, [name](std::uint64_t seed) {
                      const std::string own = name;
                      std::vector<std::string> set;

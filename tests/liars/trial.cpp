@@ -92,11 +92,11 @@ std::vector<Trial> tell_all(const Matrix& matrix, void (*progress)(const std::st
   const std::vector<std::string>& kinds = matrix.kinds.empty() ? scene_kinds() : matrix.kinds;
   for (int i = 0; i < matrix.motions; ++i) {
     const std::uint64_t seed = matrix.seed + static_cast<std::uint64_t>(i);
-    const std::string& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
+    const std::string& kind = kinds[seed % kinds.size()];
     const Source source(matrix, kind, seed);
     const std::vector<RightSolver> with = source.solvers();
     if (with.empty()) continue;
-    const RightSolver& solver = with[static_cast<std::size_t>(i) / kinds.size() % with.size()];
+    const RightSolver& solver = with[seed / kinds.size() % with.size()];
     std::optional<Motion> motion = source.motion(solver, "right", nullptr);
     if (!motion) continue;
     Right right{std::move(*motion), {}, [&](const char* what, const std::function<void(Scene&)>& changed) {
@@ -180,6 +180,19 @@ std::string as_text(const std::vector<Trial>& trials) {
   for (const Trial& t : trials)
     if (!t.right && t.determined && !t.failed())
       out += fmt::format("  {}: {}: {}, off by {:.3g} m\n", of(t), t.lie, worst_of(t), t.difference_m);
+  out += "\nright motions failed by check:\n";
+  for (const auto check : {motion_check::Check::Kinematic, motion_check::Check::Dynamic,
+                           motion_check::Check::Continuous, motion_check::Check::Present}) {
+    std::size_t told = 0, failed = 0;
+    for (const Trial& t : trials)
+      if (t.right && t.lie == lies()[0].name) {
+        ++told;
+        failed += std::any_of(t.findings.begin(), t.findings.end(), [check](const motion_check::Finding& f) {
+          return f.statistic->check == check && !(f.ratio <= 1);
+        });
+      }
+    out += fmt::format("  {:<11} {}\n", motion_check::name_of(check), share(failed, told));
+  }
   const Totals n = totals(trials);
   out += fmt::format("\nlies that positions determine, caught: {}\n", share(n.caught, n.told));
   out += fmt::format("lies that they do not determine, caught: {}\n", share(n.undetermined_caught, n.undetermined));

@@ -10,7 +10,8 @@
 
 namespace clothbench::liars {
 
-/// Which motions are told lies of. One motion per seed: the kinds of scenes take turns, and so do the solvers.
+/// Which motions are told lies of. One motion per seed, which alone decides on the kind of scene and the solver, so
+/// that many small matrices are the same as a large one.
 struct Matrix {
   std::uint64_t seed = 1000;
   int motions = 40;

@@ -1,8 +1,11 @@
 #include "metrics/motion_check/bodies.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <unordered_set>
 
 #include "clothbench/motion.hpp"
 #include "metrics/contact/touch.hpp"
@@ -37,7 +40,7 @@ std::array<V3, 2> nearest_of_segments(const V3& a, const V3& b, const V3& c, con
 
 /// Nearest points of a triangle and a segment that do not cross: on the triangle, on the segment.
 std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& b) {
-  std::array<V3, 2> best;
+  std::array<V3, 2> best = {t[0], a};
   double least = kInfinite;
   const auto keep = [&](const V3& on_triangle, const V3& on_segment) {
     const double d = (on_triangle - on_segment).squaredNorm();
@@ -139,6 +142,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
                                    const std::vector<double>& reach, bool any) {
   const double far = *std::max_element(reach.begin(), reach.end());
   const double near_cell = std::max(m.cell_m * 1.5, far);
+  std::vector<bool> noted(x.size(), false);
   for (const Capsule& c : pose(b, frame).capsules) {
     const V3 a = to_v3(c.a_m), e = to_v3(c.b_m);
     std::vector<bool> close(x.size(), false);
@@ -160,6 +164,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
       if (distance < allowed) {
         const V3 normal = distance > 0 ? V3(out / distance) : V3(V3::Zero());
         note(on_axis + c.radius_m * normal, normal, b, any);
+        for (const std::uint32_t v : t) (*flags)[v] = true;
       }
       for (const std::uint32_t v : t) {
         const V3 along = e - a;
@@ -167,8 +172,8 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
             along.squaredNorm() > 0 ? std::clamp((x[v] - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
         const V3 from = x[v] - a - share * along;
         const double d = from.norm();
-        if (!(d < c.radius_m + reach[v]) || (*flags)[v]) continue;
-        (*flags)[v] = true;
+        if (!(d < c.radius_m + reach[v]) || noted[v]) continue;
+        (*flags)[v] = noted[v] = true;
         const V3 normal = d > 0 ? V3(from / d) : V3(V3::Zero());
         note(x[v] - (d - c.radius_m) * normal, normal, b, any);
       }
@@ -178,7 +183,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
 
 /// Every triangle of the surface within reach of a triangle of the cloth may push along its own normal, and along the
 /// shortest way between the two: a frame does not say where in it they met. Where the cloth moves by more than half a
-/// cell, the overlap of boxes decides.
+/// cell, the overlap of boxes decides about triangles that are smaller than the reach.
 void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
                                    bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
@@ -186,15 +191,19 @@ void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, con
   for (const V3& corner : t) box.extend(corner);
   box.extend(V3(box.min() - V3::Constant(reach)));
   box.extend(V3(box.max() + V3::Constant(reach)));
-  const bool coarse = reach > m.cell_m / 2;
   p.tree->for_each_overlapping(box, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
+    const bool coarse = reach > m.cell_m / 2 && p.tree->item_boxes()[index].diagonal().norm() < reach;
+    if (coarse)
+      for (const std::uint32_t v : corners) (*flags)[v] = true;
     if (coarse && p.noted[index]) return;
-    const Corners& c = b.triangles[index];
+    const Corners& c = b.triangles[p.near[index]];
     Simplex<3> s;
     for (std::size_t k = 0; k < 3; ++k) s[k] = V3::Map(p.positions.data() + 3 * c[k]);
     const V3 normal = (s[1] - s[0]).cross(s[2] - s[0]).normalized();
     if (!normal.allFinite()) return;
+    const auto [low, high] = std::minmax({normal.dot(t[0] - s[0]), normal.dot(t[1] - s[0]), normal.dot(t[2] - s[0])});
+    if (!coarse && (low > reach || high < -reach)) return;
     if (coarse) {
       p.noted[index] = true;
       const V3 middle = (t[0] + t[1] + t[2]) / 3;
@@ -202,18 +211,20 @@ void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, con
       return;
     }
     double least = kInfinite;
-    std::array<V3, 2> best;
+    std::array<V3, 2> best = {t[0], s[0]};
     const auto keep = [&](const V3& on_cloth, const V3& on) {
       const double d = (on_cloth - on).squaredNorm();
       if (d < least) least = d, best = {on_cloth, on};
     };
     for (std::size_t k = 0; k < 3; ++k) {
       keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+      if (!box.intersects(Box(s[k].cwiseMin(s[(k + 1) % 3]), s[k].cwiseMax(s[(k + 1) % 3])))) continue;
       const auto [on_cloth, on] = nearest_of(t, s[k], s[(k + 1) % 3]);
       keep(on_cloth, on);
     }
     const double d = std::sqrt(least);
     if (!(d < reach)) return;
+    for (const std::uint32_t v : corners) (*flags)[v] = true;
     const V3 way = d > 0 ? V3((best[0] - best[1]) / d) : normal;
     note(best[1], way, b, any);
     if (way.dot(normal) < 0.99) note(best[1], normal, b, any);
@@ -230,25 +241,27 @@ void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<
     cloth_box.extend(V3(x[v] + V3::Constant(reach[v])));
   }
   if (!cloth_box.intersects(box_of(p.positions))) return;
-  if (!p.surface) {
-    p.surface = std::make_unique<contact::NearSurface>(contact::TriangleMeshView{p.positions, b.triangles});
+  if (!p.tree || b.moves()) {
+    p.near.clear();
     std::vector<Box> boxes;
-    for (const Corners& t : b.triangles) {
+    for (std::uint32_t i = 0; i < b.triangles.size(); ++i) {
       Box box;
-      for (const std::uint32_t v : t) box.extend(V3(V3::Map(p.positions.data() + 3 * v)));
+      for (const std::uint32_t v : b.triangles[i]) box.extend(V3(V3::Map(p.positions.data() + 3 * v)));
+      if (b.moves() && !cloth_box.intersects(box)) continue;
       boxes.push_back(box);
+      p.near.push_back(i);
     }
     p.tree = std::make_unique<contact::BoxTree>(std::move(boxes));
   }
-  p.noted.assign(b.triangles.size(), false);
-  for (std::size_t v = 0; v < x.size(); ++v)
-    if (const auto n = (*p.surface)(x[v], reach[v]); n && n->distance_m < reach[v]) {
-      (*flags)[v] = true;
-      note(x[v] - n->distance_m * n->normal, n->normal, b, any);
-      if (any && m.has_attachments()) return;  // any force at all: the frame is not judged
-    }
-  for (const Corners& t : m.triangles)
+  p.noted.assign(p.near.size(), false);
+  const std::size_t before = found->size();
+  for (const Corners& t : m.triangles) {
     touch_triangle(b, p, t, x, std::max({reach[t[0]], reach[t[1]], reach[t[2]]}), any);
+    if (any && m.has_attachments() && found->size() > before) {  // any force at all: the frame is not judged
+      flags->assign(x.size(), true);
+      return;
+    }
+  }
 }
 
 void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach) {
@@ -317,6 +330,15 @@ const std::vector<Contact>& Bodies::contacts(std::size_t frame) {
     half_way.push_back(way / 2);
   }
   for (Body& b : s.bodies) s.touch(b, frame, x, half_way);
+  // Neighbouring triangles touch at their common vertices.
+  std::unordered_set<std::uint64_t> known_places;
+  std::erase_if(*s.found, [&](const Contact& c) {
+    std::uint64_t place = c.any_force ? 1 : std::bit_cast<std::uint64_t>(c.friction);
+    for (int i = 0; i < 3; ++i)
+      for (const double q : {c.point[i] / (10 * s.m.resolution_m), c.normal[i] / 0.01})
+        place = place * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(std::llround(q));
+    return !known_places.insert(place).second;
+  });
   return *s.found;
 }
 

@@ -29,7 +29,7 @@ class Bodies {
   /// Where the cloth of a frame is within reach of a collider; the reach grows with the displacements next to the
   /// frame.
   const std::vector<Contact>& contacts(std::size_t frame);
-  /// Whether a vertex was within reach of a collider in a frame, as found by `contacts`.
+  /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
   bool touched(std::size_t frame, std::size_t vertex) const;
   /// Largest depth of a frame over its tolerance: of vertices in solids with a signed distance.
   double depth_ratio(std::size_t frame) const;

@@ -24,9 +24,9 @@ struct Pose {
   std::size_t frame = 0;
   std::vector<Capsule> capsules;
   std::vector<double> positions;
-  std::unique_ptr<contact::NearSurface> surface;
-  std::unique_ptr<contact::BoxTree> tree;
-  std::vector<bool> noted;  ///< triangles that are contacts of the frame already
+  std::vector<std::uint32_t> near;         ///< triangles that may be within reach of the cloth
+  std::unique_ptr<contact::BoxTree> tree;  ///< of those
+  std::vector<bool> noted;                 ///< of those: which are contacts of the frame already
 };
 
 struct Body {

@@ -17,6 +17,7 @@ class Limits {
       : m_(m), found_(f), scripted_(std::max(b.speed(), m.grip_speed)), moves_(b.any_moves() || m.grip_speed > 0) {
     driven_ = std::max(scripted_, m.start_speed);
     area_m2_ = m.mass_kg / m.scene.cloth.areal_density_kg_per_m2;
+    whip_ = std::max(3.0, std::sqrt(1 + m.length_m / m.cell_m));
     stiffness_ = m.scene.material.membrane_stiffness_N_per_m;
   }
 
@@ -40,6 +41,7 @@ class Limits {
   Findings& found_;
   double scripted_, driven_ = 0, area_m2_ = 0;
   bool moves_;
+  double whip_;  ///< a whip puts the energy of the sheet into one line of its vertices
   std::optional<double> stiffness_;
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
@@ -73,7 +75,7 @@ void Limits::velocities(std::size_t k) {
     fastest = std::max(fastest, now.norm());
     if (k > 1) change += (now - (m_.at(k - 1, v) - m_.at(k - 2, v)) / m_.dt(k - 1)).squaredNorm();
   }
-  found_.add("speed", fastest / (3 * (budget_ + recoil + floor)), k);
+  found_.add("speed", fastest / (whip_ * (budget_ + recoil + floor)), k);
   if (k > 1)
     found_.add(
         "speed_change",
@@ -133,6 +135,6 @@ void Limits::strain(std::size_t k) {
 
 }  // namespace
 
-void check_limits(const Motion& m, const Bodies& bodies, Findings& found) { Limits(m, bodies, found).run(); }
+void check_limits(const Motion& m, Bodies& bodies, Findings& found) { Limits(m, bodies, found).run(); }
 
 }  // namespace clothbench::motion_check

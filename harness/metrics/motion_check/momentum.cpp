@@ -24,21 +24,6 @@ constexpr std::size_t kWindow = 12;
 /// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
 
-/// Coefficients of free flight with linear damping c around a stored frame: the displacement before it is
-/// a1 v + b1 g, the displacement after it a2 v + b2 g.
-struct Flight {
-  double a1, b1, a2, b2;
-  Flight(double before_s, double after_s, double c) {
-    if (c * std::max(before_s, after_s) < 1e-6) {
-      a1 = before_s, a2 = after_s;
-      b1 = -before_s * before_s / 2, b2 = after_s * after_s / 2;
-      return;
-    }
-    a1 = std::expm1(c * before_s) / c, a2 = -std::expm1(-c * after_s) / c;
-    b1 = (before_s - a1) / c, b2 = (after_s - a2) / c;
-  }
-};
-
 /// min |w - sum of non-negative multiples of the columns|, with the residual.
 template <class Columns>
 V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multiples) {
@@ -118,7 +103,7 @@ class Momentum {
   void window(std::size_t k);
   void free_motion();
   V3 middle_of(std::size_t k) const;
-  double noise(std::size_t k) const;
+  double noise(std::size_t k) const { return m_.noise(k, m_.vertices); }
 
   const Motion& m_;
   Bodies& bodies_;
@@ -131,12 +116,6 @@ V3 Momentum::middle_of(std::size_t k) const {
   V3 sum = V3::Zero();
   for (std::size_t v = 0; v < m_.vertices; ++v) sum += m_.masses_kg[v] * m_.at(k, v);
   return sum / m_.mass_kg;
-}
-
-/// Wrench [weights] of positions that are off by the resolution.
-double Momentum::noise(std::size_t k) const {
-  const double t = m_.dt(k);
-  return 15 * m_.resolution_m / std::sqrt(static_cast<double>(m_.vertices)) / (t * t * m_.weight_unit);
 }
 
 /// Projection on the wrenches that no attachment can exert. Held vertices of both intervals count.
@@ -206,21 +185,22 @@ Momentum::Interval Momentum::interval(std::size_t k) {
   Interval out;
   const double after = m_.dt(k + 1), before = m_.dt(k), c = m_.scene.material.damping_per_s;
   const Flight flight(before, after, c);
-  const double ratio = flight.a2 / flight.a1, unit = k == 0 ? after * after : flight.b2 - ratio * flight.b1;
   const V3 middle = middle_of(k);
   const double fastest = std::sqrt(2 * m_.weight_unit * m_.length_m) + 2 * std::max(bodies_.speed(), m_.start_speed);
   for (std::size_t v = 0; v < m_.vertices; ++v) {
     const V3 now = m_.at(k, v), ahead = m_.at(k + 1, v) - now;
-    V3 behind = V3::Zero(), impulse;
+    V3 force;  // over the vertex's mass
     if (k == 0) {
-      impulse = ahead - flight.a2 * m_.start_velocity_of(v) - flight.b2 * m_.gravity;
+      force = (ahead - flight.a2 * m_.start_velocity_of(v) - flight.b2 * m_.gravity) / (after * after);
+      const double speed = std::max(m_.start_velocity_of(v).norm(), ahead.norm() / after);
+      out.hidden += m_.masses_kg[v] * std::min(speed, fastest) * force.norm();
     } else {
-      behind = now - m_.at(k - 1, v);
-      impulse = ahead - ratio * behind - unit * m_.gravity;
+      const V3 behind = now - m_.at(k - 1, v);
+      force = flight.unexplained(behind, ahead, m_.gravity);
       const double speed = std::min((ahead + behind).norm() / (before + after), fastest);
       out.hidden += m_.masses_kg[v] * speed * ((ahead / after - behind / before) / after - m_.gravity).norm();
     }
-    out.wrench += m_.masses_kg[v] / unit * wrench_of(impulse, (now - middle) / arm_m_);
+    out.wrench += m_.masses_kg[v] * wrench_of(force, (now - middle) / arm_m_);
   }
   const double weight = m_.mass_kg * m_.weight_unit;
   out.wrench /= weight;
@@ -290,7 +270,13 @@ void Momentum::window(std::size_t k) {
   if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
   const std::size_t at = k - kWindow / 2;
   const V3 middle = middle_of(at);
-  const double off = outside_cone(mean, contacts_round(at), free_of_attachments(at, middle), middle, true);
+  // What rests may have been touched later, or only until earlier.
+  std::vector<Contact> contacts = contacts_round(at);
+  for (const std::size_t f : {k - kWindow, k - 1}) {
+    const std::vector<Contact>& more = bodies_.contacts(f);
+    contacts.insert(contacts.end(), more.begin(), more.end());
+  }
+  const double off = outside_cone(mean, contacts, free_of_attachments(at, middle), middle, true);
   found_.add("support", off / (0.03 + noise(k) / kWindow), k);
 }
 

@@ -10,6 +10,16 @@
 
 namespace clothbench::motion_check {
 
+Flight::Flight(double before_s, double after_s, double c) {
+  if (c * std::max(before_s, after_s) < 1e-6) {
+    a1 = before_s, a2 = after_s;
+    b1 = -before_s * before_s / 2, b2 = after_s * after_s / 2;
+    return;
+  }
+  a1 = std::expm1(c * before_s) / c, a2 = -std::expm1(-c * after_s) / c;
+  b1 = (before_s - a1) / c, b2 = (after_s - a2) / c;
+}
+
 Motion::Motion(const Scene& s, const Frames& f)
     : scene(s), vertices(s.cloth.vertex_count()), frames(f.time_s.size()), time_s_(f.time_s), position_(f.position) {
   if (position_.size() != 3 * vertices * frames)

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "metrics/motion_check/motion_check.hpp"
@@ -13,6 +14,18 @@ inline V3 to_v3(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 /// Share of the cloth's longer side below which nothing is judged.
 inline constexpr double kResolution = 1e-4;
+
+/// Coefficients of free flight with linear damping c around a stored frame: the displacement before it is
+/// a1 v + b1 g, the displacement after it a2 v + b2 g.
+struct Flight {
+  double a1, b1, a2, b2;
+  Flight(double before_s, double after_s, double c);
+  double unit() const { return b2 - a2 / a1 * b1; }
+  /// Acceleration [m/s2] beyond gravity and damping, from the displacements before and after the frame.
+  V3 unexplained(const V3& behind, const V3& ahead, const V3& gravity) const {
+    return (ahead - a2 / a1 * behind) / unit() - gravity;
+  }
+};
 
 /// A stored motion and what the scene says of it.
 class Motion {
@@ -54,6 +67,11 @@ class Motion {
   bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
   /// Of a frame, or the scene's last one after its end; null if nothing moves but cloth.
   const FrameMotion* scripted(std::size_t frame) const;
+  /// Acceleration [weights] of the mean of `count` vertices that are off by the resolution.
+  double noise(std::size_t frame, std::size_t count) const {
+    const double t = dt(frame);
+    return 15 * resolution_m / std::sqrt(static_cast<double>(count)) / (t * t * weight_unit);
+  }
 
  private:
   std::span<const double> time_s_;
@@ -76,14 +94,21 @@ class Findings {
 
 class Bodies;
 
-void check_attachments(const Motion&, Findings&);
-/// Momentum: first_step, impulse, force, mean_force, support, and free_motion.
+/// One pass over the frames.
+struct Part {
+  const char* name;
+  void (*run)(const Motion&, Bodies&, Findings&);
+};
+/// All of them, in the order of the findings: later ones use the contacts that earlier ones found.
+std::span<const Part> parts();
+
+/// first_step, impulse, force, friction, mean_force, support, free_motion.
 void check_momentum(const Motion&, Bodies&, Findings&);
+/// hinge.
+void check_hinges(const Motion&, Bodies&, Findings&);
 /// energy, speed, speed_change, strain, compression.
-void check_limits(const Motion&, const Bodies&, Findings&);
+void check_limits(const Motion&, Bodies&, Findings&);
 /// spike, roughness, freeze, stuck.
-void check_smoothness(const Motion&, const Bodies&, Findings&);
-/// crossing, depth.
-void check_passage(const Motion&, Bodies&, Findings&);
+void check_smoothness(const Motion&, Bodies&, Findings&);
 
 }  // namespace clothbench::motion_check

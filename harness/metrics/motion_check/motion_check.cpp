@@ -22,6 +22,7 @@ std::span<const Statistic> statistics() {
       {"force", Dynamic, "the same, held for two of three intervals"},
       {"friction", Dynamic, "contact force outside Coulomb's cone, held for two of three intervals, in weights"},
       {"mean_force", Dynamic, "mean force of intervals without contact that no attachment can exert, in weights"},
+      {"hinge", Dynamic, "moment about a line of the cloth that the line cannot exert on the part beyond it"},
       {"energy", Dynamic, "energy above the energy at the start, where nothing but cloth moves"},
       {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},
       {"speed_change", Dynamic, "change of velocity in one interval over the speed that the scene can cause"},
@@ -54,54 +55,7 @@ double time_of(const TimeSpan& t, std::size_t frame) {
   return beyond > 0 ? t.at(t.frames()) + beyond * t.dt() : t.at(k);
 }
 
-/// A cloth that meets itself crosses itself by no more than the corner of a cell.
-void check_self(const Motion& m, Findings& found) {
-  if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
-  found.define("self_crossing");
-  double start_m = 0;
-  std::vector<double> x(3 * m.vertices);
-  for (std::size_t k = 0; k < m.frames; ++k) {
-    for (std::size_t v = 0; v < m.vertices; ++v) V3::Map(x.data() + 3 * v) = m.at(k, v);
-    const double length_m = self_contact(x, m.triangles).length_m;
-    if (k == 0) start_m = length_m;
-    found.add("self_crossing", (length_m - start_m) / (m.cell_m / 2), k);
-  }
-}
-
-}  // namespace
-
-std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<const double> contact_offsets_m) {
-  const Motion motion(scene, frames);
-  Findings found;
-  for (std::size_t k = 0; k < motion.frames; ++k)
-    for (std::size_t v = 0; v < motion.vertices; ++v)
-      if (!motion.at(k, v).allFinite()) {
-        found.add("finite", std::numeric_limits<double>::infinity(), k);
-        return found.take();
-      }
-  found.define("finite");
-  found.define("time");
-  for (std::size_t k = 0; k < motion.frames; ++k)
-    found.add("time", std::abs(frames.time_s[k] - time_of(scene.time, k)) / (0.01 * scene.time.dt()), k);
-  if (motion.frames == 0) return found.take();
-  check_attachments(motion, found);
-  Bodies bodies(motion, contact_offsets_m);
-  check_momentum(motion, bodies, found);
-  check_limits(motion, bodies, found);
-  check_smoothness(motion, bodies, found);
-  if (!bodies.empty()) check_passage(motion, bodies, found);
-  check_self(motion, found);
-  return found.take();
-}
-
-const Finding* worst(std::span<const Finding> findings) {
-  const Finding* out = nullptr;
-  for (const Finding& f : findings)
-    if (out == nullptr || (!(f.ratio <= out->ratio) && !std::isnan(out->ratio))) out = &f;
-  return out;
-}
-
-void check_attachments(const Motion& m, Findings& found) {
+void check_attachments(const Motion& m, Bodies&, Findings& found) {
   const double tolerance_m = 4 * m.resolution_m;
   const std::vector<double> start = initial_positions(m.scene);
   const auto start_of = [&](std::size_t v) { return V3(V3::Map(start.data() + 3 * v)); };
@@ -123,12 +77,66 @@ void check_attachments(const Motion& m, Findings& found) {
 }
 
 void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
+  if (bodies.empty()) return;
   found.define("crossing");
   found.define("depth");
   for (std::size_t k = 0; k < m.frames; ++k) {
     found.add("depth", bodies.depth_ratio(k), k);
     if (k > 0) found.add("crossing", bodies.passages(k) / kCrossingTolerance, k);
   }
+}
+
+/// A cloth that meets itself crosses itself by no more than the corner of a cell.
+void check_self(const Motion& m, Bodies&, Findings& found) {
+  if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
+  found.define("self_crossing");
+  double start_m = 0;
+  std::vector<double> x(3 * m.vertices);
+  for (std::size_t k = 0; k < m.frames; ++k) {
+    for (std::size_t v = 0; v < m.vertices; ++v) V3::Map(x.data() + 3 * v) = m.at(k, v);
+    const double length_m = self_contact(x, m.triangles).length_m;
+    if (k == 0) start_m = length_m;
+    found.add("self_crossing", (length_m - start_m) / (m.cell_m / 2), k);
+  }
+}
+
+}  // namespace
+
+std::span<const Part> parts() {
+  static constexpr std::array kAll = std::to_array<Part>({{"attachments", check_attachments},
+                                                          {"momentum", check_momentum},
+                                                          {"hinges", check_hinges},
+                                                          {"limits", check_limits},
+                                                          {"smoothness", check_smoothness},
+                                                          {"passages", check_passage},
+                                                          {"self", check_self}});
+  return kAll;
+}
+
+std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<const double> contact_offsets_m) {
+  const Motion motion(scene, frames);
+  Findings found;
+  for (std::size_t k = 0; k < motion.frames; ++k)
+    for (std::size_t v = 0; v < motion.vertices; ++v)
+      if (!motion.at(k, v).allFinite()) {
+        found.add("finite", std::numeric_limits<double>::infinity(), k);
+        return found.take();
+      }
+  found.define("finite");
+  found.define("time");
+  for (std::size_t k = 0; k < motion.frames; ++k)
+    found.add("time", std::abs(frames.time_s[k] - time_of(scene.time, k)) / (0.01 * scene.time.dt()), k);
+  if (motion.frames == 0) return found.take();
+  Bodies bodies(motion, contact_offsets_m);
+  for (const Part& part : parts()) part.run(motion, bodies, found);
+  return found.take();
+}
+
+const Finding* worst(std::span<const Finding> findings) {
+  const Finding* out = nullptr;
+  for (const Finding& f : findings)
+    if (out == nullptr || (!(f.ratio <= out->ratio) && !std::isnan(out->ratio))) out = &f;
+  return out;
 }
 
 }  // namespace clothbench::motion_check

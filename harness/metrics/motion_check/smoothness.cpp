@@ -2,6 +2,7 @@
 // still in the air.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
@@ -13,8 +14,15 @@ using Field = std::vector<V3>;
 
 class Smoothness {
  public:
-  Smoothness(const Motion& m, const Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f), degree_(m.vertices, 0) {
-    for (const Edge& e : m.edges) ++degree_[e.a], ++degree_[e.b];
+  Smoothness(const Motion& m, const Bodies& b, Findings& f)
+      : m_(m), bodies_(b), found_(f), degree_(m.vertices, 0), near_(m.vertices) {
+    std::vector<std::vector<std::uint32_t>> beside(m.vertices);
+    for (const Edge& e : m.edges)
+      ++degree_[e.a], ++degree_[e.b], beside[e.a].push_back(e.b), beside[e.b].push_back(e.a);
+    for (std::uint32_t v = 0; v < m.vertices; ++v)
+      for (const std::uint32_t a : beside[v])
+        for (const std::uint32_t w : beside[a])
+          if (w != v && std::find(beside[v].begin(), beside[v].end(), w) == beside[v].end()) near_[v].push_back(w);
   }
 
   void run();
@@ -23,7 +31,7 @@ class Smoothness {
   Field high_pass(std::size_t k) const;
   void roughness(std::size_t k, const Field& f);
   void spike(std::size_t k, const std::vector<Field>& around);
-  double reference_m(const Field& f, double t) const;
+  double usual_m(const Field& f) const;
   std::vector<bool> held(std::size_t k) const;
   void freeze();
   void stuck();
@@ -32,6 +40,7 @@ class Smoothness {
   const Bodies& bodies_;
   Findings& found_;
   std::vector<int> degree_;
+  std::vector<std::vector<std::uint32_t>> near_;  ///< vertices two edges away
 };
 
 std::vector<bool> Smoothness::held(std::size_t k) const {
@@ -53,29 +62,43 @@ Field Smoothness::high_pass(std::size_t k) const {
 }
 
 /// What is usual in a frame: a spike and its neighbours are a few vertices, an impact moves more.
-double Smoothness::reference_m(const Field& f, double t) const {
+double Smoothness::usual_m(const Field& f) const {
   std::vector<double> size;
   for (const V3& x : f) size.push_back(x.norm());
-  std::sort(size.rbegin(), size.rend());
-  const double usual = size.size() > 12 ? (size[7] + size[8]) / 2 : size.back();
-  return 12 * m_.resolution_m + m_.weight_unit * t * t / 4 + 3 * usual;
+  std::nth_element(size.begin(), size.begin() + 8, size.end(), std::greater());
+  return size[8];
 }
 
 void Smoothness::roughness(std::size_t k, const Field& f) {
-  const double allowed = 5 * reference_m(f, m_.dt(k));
-  for (const V3& x : f) found_.add("roughness", x.norm() / allowed, k);
+  const double t = m_.dt(k), allowed = 5 * (12 * m_.resolution_m + m_.weight_unit * t * t / 4 + 3 * usual_m(f));
+  double most = 0;
+  for (const V3& x : f) most = std::max(most, x.norm());
+  found_.add("roughness", most / allowed, k);
 }
 
-/// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1.
+/// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. What of the vertex has
+/// another course, and what vertices two edges away have, is the noise.
 void Smoothness::spike(std::size_t k, const std::vector<Field>& around) {
   static constexpr std::array kSignature = {1.0 / 6, -2.0 / 3, 1.0, -2.0 / 3, 1.0 / 6};
-  const double allowed = 3 * reference_m(around[2], m_.dt(k));
+  constexpr double kSquares = 35.0 / 18;
+  const double t = m_.dt(k), floor = 20 * m_.resolution_m + 0.75 * m_.weight_unit * t * t;
+  std::vector<double> height(m_.vertices), rest(m_.vertices);
   for (std::size_t v = 0; v < m_.vertices; ++v) {
-    const V3& height = around[2][v];
-    double rest = 0;
-    for (std::size_t o = 0; o < 5; ++o) rest += (around[o][v] - kSignature[o] * height).squaredNorm();
-    if (rest < std::pow(0.25 * height.norm(), 2)) found_.add("spike", height.norm() / allowed, k);
+    V3 fit = V3::Zero();
+    double squares = 0;
+    for (std::size_t o = 0; o < 5; ++o)
+      fit += kSignature[o] / kSquares * around[o][v], squares += around[o][v].squaredNorm();
+    height[v] = fit.norm();
+    rest[v] = std::sqrt(std::max(0.0, squares - kSquares * fit.squaredNorm()));
   }
+  double most = 0;
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    double noise = 0;
+    for (const std::uint32_t n : near_[v]) noise += 4 * height[n] + rest[n];
+    noise /= static_cast<double>(std::max<std::size_t>(near_[v].size(), 1));
+    most = std::max(most, height[v] / (floor + 2 * rest[v] + noise));
+  }
+  found_.add("spike", most, k);
 }
 
 void Smoothness::freeze() {
@@ -129,6 +152,6 @@ void Smoothness::run() {
 
 }  // namespace
 
-void check_smoothness(const Motion& m, const Bodies& bodies, Findings& found) { Smoothness(m, bodies, found).run(); }
+void check_smoothness(const Motion& m, Bodies& bodies, Findings& found) { Smoothness(m, bodies, found).run(); }
 
 }  // namespace clothbench::motion_check
