@@ -63,7 +63,7 @@ struct OwnPlan {
 const Scene& add_scene(OwnPlan& own, const json& spec) {
   Scene scene = scene_from_json(spec.at("scenario"), spec.at("source"));
   scene.name = spec.at("name");
-  if (scene.sha256 != spec.at("sha256"))
+  if (scene.sha256 != spec.at("sha256").get<std::string>())
     throw Error(scene.source + ": the scene of " + scene.name + " differs in another process", ExitCode::CheckFailed);
   return own.scenes.emplace_back(std::move(scene));
 }
