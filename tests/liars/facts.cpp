@@ -46,7 +46,8 @@ bool slides(const motion_check::Motion& m, const Facts& f) {
   for (const Collider& c : m.scene.colliders) {
     if (c.shape != Collider::Shape::Plane || c.moves()) return false;
     const V3 normal = motion_check::to_v3(c.normal);
-    const V3 landing = f.first_touch < f.frames ? mean_velocity(m, std::max<std::size_t>(f.first_touch, 1)) : V3::Zero();
+    const V3 landing =
+        f.first_touch < f.frames ? mean_velocity(m, std::max<std::size_t>(f.first_touch, 1)) : V3::Zero();
     const double across = (landing - landing.dot(normal) * normal).norm();
     out = out || normal.dot(f.up) < 0.98 || across > 0.1 * c.friction * m.weight_unit;
   }

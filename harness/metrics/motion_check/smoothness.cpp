@@ -82,6 +82,7 @@ void Smoothness::spike(std::size_t k, const std::vector<Field>& around) {
   static constexpr std::array kSignature = {1.0 / 6, -2.0 / 3, 1.0, -2.0 / 3, 1.0 / 6};
   constexpr double kSquares = 35.0 / 18;
   const double t = m_.dt(k), floor = 20 * m_.resolution_m + 0.75 * m_.weight_unit * t * t;
+  constexpr double kTolerance = 1.5;
   std::vector<double> height(m_.vertices), rest(m_.vertices);
   for (std::size_t v = 0; v < m_.vertices; ++v) {
     V3 fit = V3::Zero();
@@ -96,7 +97,7 @@ void Smoothness::spike(std::size_t k, const std::vector<Field>& around) {
     double noise = 0;
     for (const std::uint32_t n : near_[v]) noise += 4 * height[n] + rest[n];
     noise /= static_cast<double>(std::max<std::size_t>(near_[v].size(), 1));
-    most = std::max(most, height[v] / (floor + 2 * rest[v] + noise));
+    most = std::max(most, height[v] / (kTolerance * (floor + 2 * rest[v] + noise)));
   }
   found_.add("spike", most, k);
 }
