@@ -8,6 +8,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "base/files.hpp"
 #include "base/json_number.hpp"
@@ -56,9 +57,29 @@ void expect(bool holds, const char* what) {
   if (!holds) throw Error(what);
 }
 
+/// A whole number, or a list of them. Throws Error unless each fits in T: the library would cast any number.
+template <class T>
+void get_whole(const json& j, T& to) {
+  bool fits = j.is_number_unsigned() && std::in_range<T>(j.get<std::uint64_t>());
+  fits = fits || (j.is_number_integer() && !j.is_number_unsigned() && std::in_range<T>(j.get<std::int64_t>()));
+  expect(fits, "expected a whole number in range");
+  j.get_to(to);
+}
+template <class T>
+void get_whole(const json& j, std::vector<T>& to) {
+  expect(j.is_array(), "expected a list of whole numbers");
+  for (const json& e : j) get_whole(e, to.emplace_back());
+}
+template <class T>
+T whole(const json& j) {
+  T to{};
+  get_whole(j, to);
+  return to;
+}
+
 TimedTrial trial_from_json(const json& j, std::size_t stages) {
   TimedTrial t;
-  j.at("index").get_to(t.index);
+  get_whole(j.at("index"), t.index);
   for (const TrialNumber& n : kTrialNumbers) j.at(n.name).get_to(t.*n.value);
   for (const TrialSeries& s : kTrialSeries) {
     unpack(j.at(s.name), t.*s.values);
@@ -87,7 +108,13 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
     groups.push_back({g.at("path"), g.at("attributes"), {}});
     for (const json& a : g.at("arrays")) {
       StoredArray& array = groups.back().arrays.emplace_back();
-      array = {a.at("name"), a.at("units"), a.at("long_name"), a.at("dims"), a.at("shape"), a.at("integer"), {}};
+      array = {a.at("name"),
+               a.at("units"),
+               a.at("long_name"),
+               a.at("dims"),
+               whole<decltype(array.shape)>(a.at("shape")),
+               a.at("integer"),
+               {}};
       unpack(a.at("values"), array.values);
       std::size_t left = array.values.size();  // divided, so that no product can overflow
       for (const std::uint64_t n : array.shape) {
@@ -158,9 +185,15 @@ json header_to_json(const RunHeader& h) {
 
 RunHeader header_from_json(const json& j) {
   RunHeader h;
-  each_member(h, [&](const char* key, auto& value) { j.at(key).get_to(value); });
+  each_member(h, [&](const char* key, auto& value) {
+    using T = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_integral_v<T> || std::is_same_v<T, std::vector<std::uint32_t>>)
+      get_whole(j.at(key), value);
+    else
+      j.at(key).get_to(value);
+  });
   for (const json& s : j.at("stages"))
-    h.stages.push_back({s.at("name"), s.at("serves"), s.at("dispatches"), s.at("bytes")});
+    h.stages.push_back({s.at("name"), s.at("serves"), whole<int>(s.at("dispatches")), s.at("bytes")});
   h.load_s = number_from_json(j.at("load_s"), "load_s");
   return h;
 }
@@ -176,7 +209,7 @@ json outcome_to_json(const Outcome& o, const std::map<std::string, double>& summ
 }
 
 void outcome_from_json(const json& j, RunRecord& r) {
-  r.outcome = {j.at("status"),  j.at("class"),  j.at("failed_frame"),
+  r.outcome = {j.at("status"),  j.at("class"),  whole<int>(j.at("failed_frame")),
                j.at("message"), j.at("expect"), j.at("trajectory_sha256")};
   r.summary = numbers_from_json(j.at("summary"));
 }
