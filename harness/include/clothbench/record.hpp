@@ -104,7 +104,7 @@ struct RunRecord {
   std::vector<StoredGroup> samples =
       {};  ///< device readings during the run (results/device_samples.hpp); not read back
   std::map<std::string, std::string> withheld =
-      {};  ///< summary values that a report must not print, and why (report/collect.hpp)
+      {};  ///< summary values that a report must not print, and why (report/report.hpp)
 };
 
 }  // namespace clothbench
