@@ -4,7 +4,7 @@
 #                                                --arm64: also the cross build and the packaging of the APK
 set -euo pipefail
 
-packages=(g++ cmake ninja-build ccache
+packages=(g++ cmake make ninja-build ccache
           glslc spirv-tools spirv-headers libvulkan-dev mesa-vulkan-drivers
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libopenxr-loader1 libpng-dev fonts-dejavu-core
