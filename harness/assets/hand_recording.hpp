@@ -44,7 +44,7 @@ struct RecordedMesh {
   std::array<RecordedJoint, kRecordedJointCount> bind;  ///< joints at rest
 };
 
-/// Motion of a hand as a headset tracked it, one sample per frame. Numbers equal those of the runtime, bit for bit.
+/// Motion of a hand as a headset tracked it, one sample per frame. Numbers are bit-identical to the runtime's.
 struct HandRecording {
   Side side = Side::Right;
   double frame_rate_hz = 0;

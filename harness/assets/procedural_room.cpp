@@ -20,7 +20,7 @@ struct Plan {
   double length_x, length_z;
 };
 
-// Heights and sizes about those of the two scanned tables, rounded.
+// Heights and sizes are rounded from the two scanned tables.
 const Plan kPlans[] = {{"procedural-low-table", "444c8313", {1.2, 0.45, -0.4}, 0.6, 1.1},
                        {"procedural-desk", "1088a241", {-1.4, 0.76, 0.2}, 0.75, 1.3}};
 

@@ -98,7 +98,7 @@ TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
   return mesh;
 }
 
-/// Gives every box the rectangle whose centre is nearest to that of its upper face, if within half its shorter side.
+/// Gives every box the rectangle whose centre is nearest to the centre of its upper face, if within half its shorter side.
 void pair_tops(std::vector<Table>& tables, const std::vector<Rectangle>& tops) {
   for (Table& table : tables) {
     const auto corners = table.top_corners();

@@ -17,7 +17,7 @@ struct Drawn {
       follow;  // xyz: where vertex w of the cloth began [m]; the picture goes with it. w < 0: the picture does not move
 };
 
-// Of a collider's vertex: how it looks.
+// Look of a collider's vertex.
 #define LOOK_SMOOTH 0
 #define LOOK_FLAT 1  // lit by its triangles' own normals
 #define LOOK_MARK 2  // a small dark thing: where a hand holds the cloth

@@ -68,7 +68,6 @@ class Peer(unittest.TestCase):
         if ENGINE == "nvcloth":
             self.assertEqual(outcome["status"], "unsupported")
             self.assertIn("no friction", outcome["message"])
-            self.assertIn("not built", self.run_on("validation/hang", "solver.cuda=1")[0]["message"])
         else:
             self.assertEqual(outcome["status"], "ok", self.text)
 

@@ -13,7 +13,7 @@
 
 /// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images, and a strict eye on
 /// what it is asked. $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
-///   clock=virtual  time is that of the frames alone; else the machine's
+///   clock=virtual  time counts only frames; otherwise the clock of the machine
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
 ///   hands|capsules|mesh|passthrough|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
@@ -95,7 +95,7 @@ PFN_xrVoidFunction frame_function(const std::string& name);
 PFN_xrVoidFunction input_function(const std::string& name);
 PFN_xrVoidFunction graphics_function(const std::string& name);
 
-/// Of the last released image: share of pixels that are neither white nor transparent.
+/// Fraction of the pixels of the last released image that are neither white nor transparent.
 double drawn_share(Runtime&, const Swapchain&);
 void destroy(Runtime&, Swapchain&);
 

@@ -59,7 +59,7 @@ inline std::array<V, 26> joints(bool right) {
   return j;
 }
 
-/// Of every joint: -z along the fingers, +y out of the hand's back.
+/// Orientation of every joint: -z along the fingers, +y out of the hand's back.
 inline Q joint_turn() { return {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; }
 
 /// Ends of the 19 capsules, as joints' numbers.

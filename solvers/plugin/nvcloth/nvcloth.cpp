@@ -1,86 +1,9 @@
-#include "nvcloth/solver.hpp"
-
-#include <foundation/PxAllocatorCallback.h>
-#include <foundation/PxErrorCallback.h>
-
-#include <cstdlib>
-#include <stdexcept>
+// NvCloth on the CPU behind clothbench_plugin.h.
+#include "nvcloth/scene.hpp"
 
 namespace clothbench::nvcloth {
-namespace {
-
-using physx::PxVec3;
-using physx::PxVec4;
-
-struct Memory : physx::PxAllocatorCallback {
-  void* allocate(std::size_t size, const char*, const char*, int) override {
-    return std::aligned_alloc(16, (size + 15) / 16 * 16);
-  }
-  void deallocate(void* at) override { std::free(at); }
-};
-
-struct Messages : physx::PxErrorCallback {
-  std::string last;
-  void reportError(physx::PxErrorCode::Enum, const char* message, const char*, int) override { last = message; }
-};
-
-struct Asserts : nv::cloth::PxAssertHandler {
-  void operator()(const char*, const char*, int, bool& ignore) override { ignore = true; }
-};
-
-Messages& messages() {
-  static Messages all;
-  return all;
-}
-
-/// Farther than a cloth reaches [cm]: a radius within which a motion constraint leaves its particle free.
-constexpr float kFree = 1e7F;
-
-std::vector<double> inverse_masses(const ClothbenchScene& s) {
-  std::vector<double> out;
-  for (std::uint32_t v = 0; v < s.vertex_count; ++v) out.push_back(1 / s.mass_kg[v]);
-  for (std::uint32_t k = 0; k < s.pin_count; ++k) out[s.pins[k]] = 0;
-  return out;
-}
-
-}  // namespace
-
-void start_engine() {
-  static Memory memory;
-  static Asserts asserts;
-  static const bool once = (nv::cloth::InitializeNvCloth(&memory, &messages(), &asserts, nullptr), true);
-  (void)once;
-}
-
-void require(const void* made, const char* what) {
-  if (made == nullptr) throw std::runtime_error(std::string("NvCloth: ") + what + " failed: " + messages().last);
-}
-
-Settings::Settings(const double* v)
-    : solver_frequency_hz(v[0]),
-      substeps(v[1]),
-      stiffness_frequency_hz(v[2]),
-      tethers(v[3]),
-      virtual_particles(v[4]),
-      continuous_collision(v[5]),
-      collision_margin_m(v[6]),
-      frictionless_triangles(v[7]),
-      cuda(v[8]) {}
-
-double Settings::frequency_hz(double frame_rate_hz) const {
-  return substeps > 0 ? substeps * frame_rate_hz : solver_frequency_hz;
-}
-
-int Settings::iterations(double dt_s) const {
-  const double n = substeps > 0 ? substeps : std::floor(dt_s * solver_frequency_hz + 0.5);
-  return static_cast<int>(std::max(1.0, n));
-}
 
 std::string obstacle(const Settings& settings, const ClothbenchScene& s) {
-  if (settings.cuda > 0)
-    return std::string("not built: ") + (NvClothCompiledWithCudaSupport()
-                                             ? "this adapter has no path to NvCloth on CUDA"
-                                             : "the engine was compiled without CUDA");
   const std::vector<double> w = inverse_masses(s);
   if (std::all_of(w.begin(), w.end(), [](double x) { return x == 0; }))
     return "NvCloth's cooker makes no fabric where every vertex is pinned";
@@ -88,8 +11,44 @@ std::string obstacle(const Settings& settings, const ClothbenchScene& s) {
   for (std::uint32_t k = 0; k < s.collider_count && !(settings.frictionless_triangles > 0); ++k)
     if (s.colliders[k].shape == CLOTHBENCH_SHAPE_MESH && s.colliders[k].friction > 0)
       return "NvCloth's collision with triangles has no friction (solver.frictionless_triangles=1 runs it without)";
-  return Colliders::obstacle(s);
+  return shape_obstacle(s);
 }
+
+class Solver {
+ public:
+  /// Throws std::runtime_error with the reason if the engine cannot run the scene.
+  Solver(const Settings&, const ClothbenchScene&);
+  ~Solver();
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
+
+  void reset();
+  void restart(const ClothbenchRestart&);
+  std::int32_t step(const ClothbenchFrame&);
+  void read(double* position_m, double* velocity_m_per_s) const;
+  double margin_m(std::uint32_t collider) const;
+
+  ClothbenchStage stage;
+
+ private:
+  void make_cloth(const double* position_m, const double* velocity_m_per_s);
+  void drop_cloth();
+  void set_constants();
+  void add_virtual_particles();
+  /// Positions [m] of the grips and whether each is held; null: where the scene starts, all of them.
+  void hold(const double* position_m, const std::uint8_t* held);
+
+  const ClothbenchScene& scene_;
+  Settings settings_;
+  peer::Point origin_;
+  double iteration_s_;
+  std::vector<double> inverse_mass_;  ///< [1/kg], 0 where pinned
+  Colliders colliders_;
+  nv::cloth::Factory* factory_ = nullptr;
+  nv::cloth::Solver* solver_ = nullptr;
+  nv::cloth::Cloth* cloth_ = nullptr;
+  Cooked cooked_;
+};
 
 Solver::Solver(const Settings& settings, const ClothbenchScene& s)
     : stage(peer::whole_step("simulate", s)),
@@ -103,12 +62,7 @@ Solver::Solver(const Settings& settings, const ClothbenchScene& s)
   start_engine();
   factory_ = NvClothCreateFactoryCPU();
   require(factory_, "NvClothCreateFactoryCPU");
-  FabricOptions options;
-  options.tethers = settings.tethers > 0;
-  options.iteration_s = iteration_s_;
-  options.stiffness_frequency_hz =
-      settings.stiffness_frequency_hz > 0 ? settings.stiffness_frequency_hz : 1 / iteration_s_;
-  cooked_ = cook(*factory_, s, inverse_mass_, options);
+  cooked_ = cook(*factory_, s, inverse_mass_, settings.tethers > 0, iteration_s_);
   solver_ = factory_->createSolver();
   reset();
 }
@@ -144,12 +98,12 @@ void Solver::make_cloth(const double* position_m, const double* velocity_m_per_s
   }
   set_constants();
   colliders_.place(*cloth_);
-  if (colliders_.has_spheres() && settings_.virtual_particles > 0) add_virtual_particles();
+  if (colliders_.has_spheres()) add_virtual_particles();
   solver_->addCloth(cloth_);
 }
 
 void Solver::set_constants() {
-  const double frequency = settings_.stiffness_frequency_hz > 0 ? settings_.stiffness_frequency_hz : 1 / iteration_s_;
+  const double frequency = 1 / iteration_s_;
   const double* g = scene_.gravity_m_per_s2;
   cloth_->setSolverFrequency(static_cast<float>(settings_.frequency_hz(scene_.frame_rate_hz)));
   cloth_->setStiffnessFrequency(static_cast<float>(frequency));
@@ -159,7 +113,7 @@ void Solver::set_constants() {
   cloth_->setDamping(PxVec3(static_cast<float>(-std::expm1(-scene_.damping_per_s / frequency))));
   cloth_->setPhaseConfig(range(cooked_.phases));
   cloth_->setFriction(static_cast<float>(peer::needs(scene_, CLOTHBENCH_FRICTION) ? colliders_.friction() : 0));
-  cloth_->enableContinuousCollision(colliders_.has_spheres() && settings_.continuous_collision > 0);
+  cloth_->enableContinuousCollision(colliders_.has_spheres());
 }
 
 /// One at the middle of each triangle. The engine tests them against spheres and capsules alone.
@@ -230,4 +184,29 @@ double Solver::margin_m(std::uint32_t collider) const {
   return peer::margin(settings_.collision_margin_m, scene_.colliders[collider]);
 }
 
+namespace {
+
+/// The engine's integrator: v += (v e^(-c h) - v) + g h, x += h v.
+double free_fall_m(const double* values, double dt_s, double gravity, double velocity, double damping,
+                   std::int32_t frames) {
+  const int n = Settings(values).iterations(dt_s);
+  const double h = dt_s / n, kept = std::exp(-damping * h);
+  return peer::fallen_m(std::int64_t{frames} * n, h, velocity, [=](double v) { return kept * v + h * gravity; });
+}
+
+const ClothbenchSetting kSettings[] = {
+    {"solver_frequency_hz", "solver iterations a second (setSolverFrequency)", 300, 0},
+    {"substeps", "solver iterations a frame, in place of the solver frequency; 0: by the frequency", 0, 1},
+    {"tethers", "1: geodesic tethers to the pins", 1, 1},
+    {"collision_margin_m", "distance at which colliders hold the cloth; 0: the scene's margins", 0, 0},
+    {"frictionless_triangles", "1: run scenes whose meshes have friction, without it; 0: refuse them", 0, 1}};
+
+}  // namespace
 }  // namespace clothbench::nvcloth
+
+extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
+  using namespace clothbench::nvcloth;
+  static const ClothbenchPlugin plugin = clothbench::peer::plugin<Solver, Settings>(
+      {"nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres", "1", free_fall_m}, kSettings);
+  return &plugin;
+}

@@ -1,0 +1,15 @@
+# clothbench_peer(<target>): settings that all adapters of installed engines share. In clothbench's own tree its own header counts.
+function(clothbench_peer target)
+  find_path(CLOTHBENCH_INCLUDE clothbench_plugin.h PATHS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../harness/include NO_DEFAULT_PATH
+    DOC "Folder of clothbench_plugin.h, if clothbench is not installed")
+  set_target_properties(${target} PROPERTIES CXX_STANDARD 17 CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden UNITY_BUILD OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -ffp-contract=off $<$<NOT:$<BOOL:${CMAKE_BUILD_TYPE}>>:-O3>)
+  target_link_options(${target} PRIVATE -Wl,--exclude-libs,ALL)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_FUNCTION_LIST_DIR})
+  if(CLOTHBENCH_INCLUDE)
+    target_include_directories(${target} PRIVATE ${CLOTHBENCH_INCLUDE})
+  else()
+    find_package(clothbench REQUIRED)
+    target_link_libraries(${target} PRIVATE clothbench::plugin)
+  endif()
+endfunction()
