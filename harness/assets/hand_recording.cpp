@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "assets/base64.hpp"
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "assets/base64.hpp"
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
@@ -98,7 +97,8 @@ TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
   return mesh;
 }
 
-/// Gives every box the rectangle whose centre is nearest to the centre of its upper face, if within half its shorter side.
+/// Gives every box the rectangle whose centre is nearest to the centre of its upper face, if within half its shorter
+/// side.
 void pair_tops(std::vector<Table>& tables, const std::vector<Rectangle>& tops) {
   for (Table& table : tables) {
     const auto corners = table.top_corners();

@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW
-#include "render/stereo.hpp"
+#include "render/offscreen.hpp"
 #endif
 
 namespace clothbench {

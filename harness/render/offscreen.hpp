@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/scene_renderer.hpp"
+#include "runner/frame_drawer.hpp"
 
 namespace clothbench::render {
 
@@ -47,5 +48,10 @@ class Offscreen {
   VkFence fence_ = VK_NULL_HANDLE;
   SceneRenderer* drawn_by_ = nullptr;
 };
+
+/// Draws both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. For a GPU
+/// solver the vertex shader reads the solver's buffer; for a CPU solver the positions of read_state are uploaded. Both
+/// are part of the measured time. Waiting for a display is not, since nothing is displayed.
+Rendering stereo_rendering(int width, int height);
 
 }  // namespace clothbench::render

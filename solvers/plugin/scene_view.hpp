@@ -1,13 +1,23 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench_plugin.h"
-#include "plugin/rest_shape.hpp"
 
 namespace clothbench::plugin {
+
+/// The cloth at rest, as the C interface shows it: see ClothbenchScene for layout and units.
+struct RestShape {
+  explicit RestShape(const Scene&);
+  std::vector<double> position_m;         ///< (vertices, 3)
+  std::vector<double> pattern_m;          ///< (vertices, 2); empty for a mesh
+  std::vector<std::uint32_t> neighbours;  ///< (triangles, 3)
+  std::vector<double> structural_N_per_m, shear_N_per_m;
+  double poisson_ratio = 0;
+};
 
 /// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
 class SceneView {

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "clothbench/error.hpp"
-#include "mesh_bending.hpp"
-#include "mesh_membrane.hpp"
+#include "mesh_energy.hpp"
 
 namespace clothbench::reference {
 namespace {

@@ -13,7 +13,7 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 
 /// C(x) = |x_b - x_a| - rest, with a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and not
 /// a large stiffness. lambda [N] is the tension. The springs of an elastic mesh are three a triangle, along its edges,
-/// and their compliance is the triangle's matrix (mesh_membrane.hpp).
+/// and their compliance is the triangle's matrix (mesh_energy.hpp).
 struct Spring {
   std::uint32_t a, b;
   double rest_m, compliance;

@@ -1,6 +1,6 @@
 #include "assets/mesh.hpp"
 
-#include "assets/base64.hpp"
+#include "assets/json_at.hpp"
 #include "support.hpp"
 
 namespace clothbench::assets {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "assets/base64.hpp"
 #include "assets/hand_recording.hpp"
+#include "assets/json_at.hpp"
 #include "assets/room.hpp"
 #include "assets/submesh.hpp"
 #include "clothbench/error.hpp"

@@ -1,4 +1,4 @@
-"""usage: check_plugin.py CLOTHBENCH EXAMPLE FAULTY_FOLDER SOURCE CMAKE: solvers from elsewhere through the command."""
+"""usage: check_plugin.py CLOTHBENCH EXAMPLE FAULTY_FOLDER SOURCE: solvers from elsewhere through the command."""
 import json
 import os
 import shutil
@@ -11,7 +11,7 @@ import unittest
 
 import h5py
 
-CLOTHBENCH, EXAMPLE, FAULTY, SOURCE, CMAKE = sys.argv[1:6]
+CLOTHBENCH, EXAMPLE, FAULTY, SOURCE = sys.argv[1:5]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
 
 
@@ -91,38 +91,12 @@ class Plugin(unittest.TestCase):
         self.assertEqual(self.stored("sphere-drop__faulty__default")[2]["plan"]["contact_margins"], plan["contact_margins"])
 
     def test_it_joins_studies(self):
-        words = [
-            "study",
-            "table3",
-            "--quick",
-            "--trials",
-            "1",
-            "--solver",
-            "plugin:" + EXAMPLE,
-            "--solver",
-            "ballistic",
-        ]
+        words = ["study", "table3", "--quick", "--trials", "1", "--solver", "plugin:" + EXAMPLE, "--solver", "ballistic"]
         self.assertEqual(self.command(*words, "--out", self.out), 0, self.text)
         with open(os.path.join(self.out, "study.json"), encoding="utf-8") as text:
             runs = json.load(text)["runs"]
         self.assertTrue(any("example-xpbd" in c for c in runs) and any("ballistic" in c for c in runs))
         self.assertIn("example-xpbd", self.text)
-
-    def test_the_example_builds_elsewhere(self):
-        shutil.copytree(os.path.join(SOURCE, "solvers", "plugin", "example"), os.path.join(self.home, "mine"))
-        os.mkdir(os.path.join(self.home, "include"))
-        shutil.copy(
-            os.path.join(SOURCE, "harness", "include", "clothbench_plugin.h"), os.path.join(self.home, "include")
-        )
-        for words in (
-            ["-S", "mine", "-B", "build", "-DCLOTHBENCH_INCLUDE=" + os.path.join(self.home, "include")],
-            ["--build", "build"],
-        ):
-            subprocess.run([CMAKE, *words], cwd=self.home, check=True, stdout=subprocess.DEVNULL)
-        code = self.command(
-            "run", "paper/gravity", "--solver", "plugin:build/example_plugin.so", *SMALL, "--out", self.out
-        )
-        self.assertEqual(code, 0, self.text)
 
     # --- those that are wrong
 
@@ -147,19 +121,7 @@ class Plugin(unittest.TestCase):
             self.assertIn(word, self.text)
 
     def both(self, *more, **environment):
-        return self.command(
-            "run",
-            "paper/gravity",
-            "--solver",
-            self.faulty(),
-            "--solver",
-            "ballistic",
-            *SMALL,
-            "--out",
-            self.out,
-            *more,
-            **environment,
-        )
+        return self.command("run", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic", *SMALL, "--out", self.out, *more, **environment)
 
     def test_a_crash_is_a_row(self):
         for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
@@ -174,34 +136,25 @@ class Plugin(unittest.TestCase):
             self.assertEqual([f for f in os.listdir(self.out) if not f.endswith((".h5", ".xdmf", ".json"))], [])
             shutil.rmtree(self.out)
 
-    def test_a_plugin_that_ends_the_program_or_hangs_is_a_row(self):
-        self.assertEqual(self.both(FAULT="exit:3"), 1, self.text)
-        self.assertIn("exit status 0", self.stored("gravity__faulty__default")[0]["message"])
-        shutil.rmtree(self.out)
-        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
-        self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], "timed_out")
-        self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
-
-    def test_one_that_blows_up_or_cannot_load(self):
-        self.assertEqual(self.both(FAULT="nan:3"), 1, self.text)
-        outcome = self.stored("gravity__faulty__default")[0]
-        self.assertEqual((outcome["status"], outcome["failed_frame"]), ("not_finite", 3))
-        shutil.rmtree(self.out)
-        self.assertEqual(self.both(FAULT="load"), 1, self.text)
-        outcome = self.stored("gravity__faulty__default")[0]
-        self.assertEqual(outcome["status"], "error")
-        self.assertIn("it was asked to fail", outcome["message"])
-        self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
-
     def test_one_rule_of_exit_codes(self):
         """1 where a solver finished none of its runs, however it failed; 0 where it finished one."""
-        faults = {"crash:5": "crashed", "exit:5": "crashed", "hang:5": "timed_out", "nan:5": "not_finite", "create": "crashed", "load": "error"}
-        for fault, status in faults.items():
+        for fault, status, message in (
+            ("crash:5", "crashed", "signal 11"),
+            ("exit:5", "crashed", "exit status 0"),
+            ("hang:5", "timed_out", ""),
+            ("nan:3", "not_finite", ""),
+            ("create", "crashed", "signal 11"),
+            ("load", "error", "it was asked to fail"),
+        ):
             words = ["run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--trials", "0", "--out", self.out]
-            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
-            self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], status)
+            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="1"), 1, self.text)
+            outcome = self.stored("gravity__faulty__default")[0]
+            self.assertEqual(outcome["status"], status)
+            self.assertIn(message, outcome["message"])
+            if fault == "nan:3":
+                self.assertEqual(outcome["failed_frame"], 3)
             self.assertIn("FAULT faulty: finished none of 1 runs; the last: " + status, self.text)
-            # A scene that it can run: it finished one of two.
+            # The solver can run this scene, so it finished one of two.
             self.assertEqual(self.command(*words[:2], "validation/free-fall", *words[2:], "--resume"), 0, self.text)
             shutil.rmtree(self.out)
 
@@ -252,18 +205,7 @@ class Plugin(unittest.TestCase):
         self.assertIn("signal 11", self.text)
 
     def test_interrupted_and_resumed(self):
-        process = self.start(
-            "run",
-            "paper/gravity",
-            "--solver",
-            self.faulty(),
-            "--solver",
-            "ballistic",
-            *SMALL,
-            "--out",
-            self.out,
-            FAULT="hang:20",
-        )
+        process = self.start("run", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic", *SMALL, "--out", self.out, FAULT="hang:20")
         for _ in range(400):
             if os.path.exists(os.path.join(self.out, "gravity__faulty__default.part")):
                 break
@@ -277,4 +219,4 @@ class Plugin(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[6:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])

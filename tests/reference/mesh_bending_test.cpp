@@ -1,6 +1,4 @@
 // Bending of triangle meshes (Morley's element) against beams, on meshes drawn by a seed.
-#include "reference/mesh_bending.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -10,6 +8,7 @@
 
 #include "../scenario/scratch_folder.hpp"
 #include "clothbench/solver.hpp"
+#include "reference/mesh_energy.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 

@@ -1,10 +1,10 @@
 // Triangles of constant strain against the energy of an isotropic sheet.
-#include "reference/mesh_membrane.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
+
+#include "reference/mesh_energy.hpp"
 
 namespace clothbench {
 namespace {

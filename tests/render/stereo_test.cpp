@@ -1,4 +1,3 @@
-#include "render/stereo.hpp"
 
 #include <gtest/gtest.h>
 

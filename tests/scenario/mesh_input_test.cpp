@@ -4,7 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "assets/base64.hpp"
+#include "assets/json_at.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
