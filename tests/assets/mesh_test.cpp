@@ -45,16 +45,6 @@ TEST(Mesh, TwoBodiesThatShareAVertexAreNoManifold) {
 
 TEST(Mesh, EmptyIsNothing) { EXPECT_EQ(topology(TriangleMesh{}).edges, 0u); }
 
-TEST(Base64, RoundTrip) {
-  for (std::size_t n = 0; n < 20; ++n) {
-    std::vector<std::uint8_t> bytes, back;
-    for (std::size_t i = 0; i < n; ++i) bytes.push_back(static_cast<std::uint8_t>(37 * i + n));
-    std::string problem;
-    ASSERT_TRUE(decode_base64(base64_of(bytes), back, problem)) << problem;
-    EXPECT_EQ(back, bytes);
-  }
-}
-
 TEST(Base64, RefusesWhatIsNot) {
   std::vector<std::uint8_t> bytes;
   std::string problem;
