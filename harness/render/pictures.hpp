@@ -28,7 +28,7 @@ bool is_run(const std::filesystem::path&);
 /// Reads a result file. No frames if it has no trajectory. Throws Error naming the file and what is wrong with it.
 Motion stored_motion(const std::filesystem::path&);
 
-/// Runs a scene for its positions alone. Throws Error if the solver cannot run it.
+/// Runs a scene only for its positions. Throws Error if the solver cannot run it.
 Motion run_motion(const RunSpec&, const DeviceOptions&);
 
 /// The motions that a result file or a folder of them holds; of a folder those with `wanted` in their names. Any other

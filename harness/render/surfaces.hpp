@@ -19,7 +19,7 @@ struct Bounds {
 
 /// Triangles of colliders and grips to draw, in world coordinates.
 struct Surfaces {
-  std::vector<Vec3> position_m, normal;  ///< one a vertex; normals unit, or zero where there is none
+  std::vector<Vec3> position_m, normal;  ///< one per vertex; normals unit, or zero if undefined
   std::vector<std::uint8_t> look;        ///< LOOK_… of render_shared.h
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };

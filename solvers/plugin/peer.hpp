@@ -1,5 +1,5 @@
 /// What the adapters of engines from elsewhere share: the sheet at rest, its springs, its stages. Header only, so that
-/// an adapter builds with clothbench_plugin.h and its engine alone.
+/// an adapter builds only with clothbench_plugin.h and its engine.
 #pragma once
 
 #include <algorithm>

@@ -20,7 +20,7 @@ namespace clothbench::reference {
 /// quadratic deflections on any mesh, in energy and in force, and converges with order 2.
 ///
 /// A triangle whose vertices are all in `pinned` (ascending) is a clamp: derivatives across its edges are its own.
-/// Entries below 1e-13 of the greatest are left out. Needs a factorisation and a solution a vertex.
+/// Entries below 1e-13 of the maximum are left out. Needs one factorisation and one solution per vertex.
 Eigen::SparseMatrix<double> bending_matrix(const ClothMesh&, double rigidity_N_m,
                                            const std::vector<std::uint32_t>& pinned);
 
