@@ -350,9 +350,11 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::jolt
 
+namespace adapter = clothbench::jolt;
+
 extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
-  using namespace clothbench::jolt;
-  static const ClothbenchPlugin plugin = clothbench::peer::plugin<Solver, Settings>(
-      {"jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core", "1", free_fall_m}, kSettings);
+  static const ClothbenchPlugin plugin = clothbench::peer::plugin<adapter::Solver, adapter::Settings>(
+      {"jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core", "1", adapter::free_fall_m},
+      adapter::kSettings);
   return &plugin;
 }

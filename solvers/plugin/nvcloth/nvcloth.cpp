@@ -204,9 +204,11 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::nvcloth
 
+namespace adapter = clothbench::nvcloth;
+
 extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
-  using namespace clothbench::nvcloth;
-  static const ClothbenchPlugin plugin = clothbench::peer::plugin<Solver, Settings>(
-      {"nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres", "1", free_fall_m}, kSettings);
+  static const ClothbenchPlugin plugin = clothbench::peer::plugin<adapter::Solver, adapter::Settings>(
+      {"nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres", "1", adapter::free_fall_m},
+      adapter::kSettings);
   return &plugin;
 }
