@@ -4,40 +4,21 @@ import json
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
+
+from command import PluginTest
 
 CLOTHBENCH, EXAMPLE, LIBRARIES, SOURCE = sys.argv[1:5]
 RULES = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
 
 
-class Authors(unittest.TestCase):
-    def setUp(self):
-        self.home = tempfile.mkdtemp(prefix="clothbench-authors-")
-        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
-        self.out = os.path.join(self.home, "out")
+PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, LIBRARIES, SOURCE
 
-    def command(self, *words, **environment):
-        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"))
-        env.pop("CLOTHBENCH_PLUGINS", None)
-        env.update(environment)
-        done = subprocess.run(
-            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
-        self.text = done.stdout
-        return done.returncode
 
-    def rows(self, *words, code=0, **environment):
-        self.assertEqual(self.command("--json", *words, **environment), code, self.text)
-        return json.loads(self.text[min(k for k in (self.text.find("[\n"), self.text.find("{\n")) if k >= 0) :])
-
-    def library(self, name):
-        return "plugin:" + os.path.join(LIBRARIES, name + ".so")
-
+class Authors(PluginTest):
     def study(self, **more):
         scene = os.path.join(SOURCE, "scenarios", "paper", "gravity.json")
         study = {"name": "small", "why": "A test.", "protocol": "fps", "trials": 1,

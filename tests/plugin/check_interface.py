@@ -3,36 +3,24 @@ import json
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from command import PluginTest
+
 CLOTHBENCH, LIBRARIES, SOURCE = sys.argv[1:4]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
 
 
-class Interface(unittest.TestCase):
-    def setUp(self):
-        self.home = tempfile.mkdtemp(prefix="clothbench-plugin-")
-        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
-        self.out = os.path.join(self.home, "out")
-        self.log = os.path.join(self.home, "log.txt")
+PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, LIBRARIES, SOURCE
 
-    def command(self, *words, **environment):
-        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), LOG=self.log, **environment)
-        env.pop("CLOTHBENCH_PLUGINS", None)
-        done = subprocess.run(
-            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
-        self.text = done.stdout
-        return done.returncode
 
+class Interface(PluginTest):
     def library(self, name="full_NONE"):
-        return "plugin:" + os.path.join(LIBRARIES, name + ".so")
+        return super().library(name)
 
     def run_on(self, scene, *more, trials=1, code=0, **environment):
         words = ["run", scene, "--solver", self.library(), "--trials", str(trials), "--out", self.out, *more]

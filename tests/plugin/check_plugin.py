@@ -5,41 +5,28 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import h5py
 
+from command import PluginTest
+
 CLOTHBENCH, EXAMPLE, FAULTY, SOURCE = sys.argv[1:5]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
 
 
-class Plugin(unittest.TestCase):
-    def setUp(self):
-        self.home = tempfile.mkdtemp(prefix="clothbench-plugin-")
-        self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
-        self.out = os.path.join(self.home, "out")
+PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, FAULTY, SOURCE
 
-    def start(self, *words, **environment):
-        env = dict(os.environ, CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios"), **environment)
-        env.pop("CLOTHBENCH_PLUGINS", None)
-        return subprocess.Popen(
-            [CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
 
-    def command(self, *words, **environment):
-        process = self.start(*words, **environment)
-        self.text, _ = process.communicate(timeout=120)
-        return process.returncode
-
+class Plugin(PluginTest):
     def stored(self, name):
         with h5py.File(os.path.join(self.out, name + ".h5")) as f:
             outcome = dict(f["outcome"].attrs)
             return outcome, dict(f["summary"].attrs), json.loads(f["header_json"][0])
 
     def faulty(self, fault="NONE"):
-        return "plugin:" + os.path.join(FAULTY, f"faulty_{fault}.so")
+        return self.library(f"faulty_{fault}")
 
     # --- one that is right
 
@@ -174,13 +161,6 @@ class Plugin(unittest.TestCase):
             self.assertIn("prints", process.stderr)
 
     # --- other commands than run and study: a crash is an answer, and what others answered is kept
-
-    def rows(self, *words, code, **environment):
-        process = self.start("--json", *words, **environment)
-        self.text, _ = process.communicate(timeout=120)
-        self.assertEqual(process.returncode, code, self.text)
-        # Standard error is in the text too, before and after.
-        return json.JSONDecoder().raw_decode(self.text[self.text.index("[\n") if "[\n" in self.text else self.text.index("[]") :])[0]
 
     def test_a_crash_is_an_answer_of_plan(self):
         words = ["plan", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic"]
