@@ -36,7 +36,7 @@ Eigen::Affine3d local_transform(const tinygltf::Node& node) {
   return t;
 }
 
-/// Images are of no use here, and this build cannot decode them: each stays empty.
+/// Images are not needed and this build cannot decode them, so each stays empty.
 bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }

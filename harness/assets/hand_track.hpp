@@ -49,7 +49,7 @@ struct HandSample {
 };
 
 /// The hand at `time_s`, interpolated between keys: position linearly, orientation by slerp, pose by `blended`. It is
-/// constant before the first and after the last key. Throws Error if the hand is of the other side.
+/// constant before the first and after the last key. Throws Error if the hand is the other one.
 HandSample sample(const HandTrack&, const Hand&, double time_s);
 
 }  // namespace clothbench::assets

@@ -26,7 +26,7 @@ constexpr Column kColumns[] = {
     {"right_seen", "1", "1 if the right hand was tracked", &FrameRow::right_seen},
 };
 
-/// By rank, 0 to 1; of finite values alone. NaN without any.
+/// Quantile by rank (0 to 1) of the finite values; NaN if there are none.
 double quantile(std::vector<double> v, double q) {
   std::erase_if(v, [](double x) { return !std::isfinite(x); });
   if (v.empty()) return kMissing;

@@ -10,7 +10,7 @@ namespace clothbench::xr {
 
 /// One frame of a live session. NaN: not available.
 struct FrameRow {
-  double predicted_display_s = kMissing;  ///< by the runtime's clock, relative to that of the first frame
+  double predicted_display_s = kMissing;  ///< by the runtime's clock, relative to the first frame
   double predicted_period_s = kMissing;   ///< by the runtime
   double paint_device_s = kMissing;       ///< both eyes of the frame before on the device, first to last timestamp
   double frame_s = kMissing;              ///< from xrWaitFrame's return to xrEndFrame's

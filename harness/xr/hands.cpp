@@ -83,7 +83,7 @@ std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
   auto shapes = blank<XrHandTrackingCapsulesStateFB>(XR_TYPE_HAND_TRACKING_CAPSULES_STATE_FB);
   std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> joints{};
   auto found = blank<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
-  // Though the headers of 1.0.20 say that it extends the question, the specification has it with the answer.
+  // The headers of 1.0.20 chain this struct to the input; the specification chains it to the output.
   found.next = capsules_ ? &shapes : nullptr;
   found.jointCount = static_cast<std::uint32_t>(joints.size());
   found.jointLocations = joints.data();

@@ -37,7 +37,7 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
   written_ = load_scene(scenario, overrides);
   document_ = parse_json(read_text(source), source.string());
   for (const std::string& o : overrides) apply_override(document_, o, source.string());
-  // These say what comes of the script's motion, not of the user's.
+  // These criteria hold for the scripted motion, not for the user's.
   for (const std::string& key : kScriptedAlone) document_.erase(key);
   document_["name"] = document_["name"].get<std::string>() + "-live";
   document_["why"] = "Recorded from a headset. " + document_["why"].get<std::string>();

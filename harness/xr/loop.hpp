@@ -47,7 +47,7 @@ struct LoopResult {
 /// the solver once per displayed frame, by the display's refresh period, as the application of the paper does. If
 /// frames are displayed late, the cloth moves slower than in real time, and the log shows it. Ends after `frames`, when
 /// the runtime ends the session, when it is interrupted, or if the device is lost or a call fails after the first step
-/// (`outcome` tells which). Stores the frames so far in all of these cases. Throws Error with ExitCode::NoDevice if
+/// (`outcome` states which). Stores the frames so far in all of these cases. Throws Error with ExitCode::NoDevice if
 /// there is no headset.
 LoopResult run_loop(const LoopOptions&);
 

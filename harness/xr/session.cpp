@@ -123,7 +123,7 @@ void Session::choose_blend_mode(bool passthrough) {
 void Session::start_passthrough() {
   auto info = blank<XrPassthroughCreateInfoFB>(XR_TYPE_PASSTHROUGH_CREATE_INFO_FB);
   info.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
-  // A headset without cameras has the extension all the same, and says so here.
+  // A headset without cameras has the extension too, and reports here that it cannot be used.
   if (XR_FAILED(xr_.function<PFN_xrCreatePassthroughFB>("xrCreatePassthroughFB")(session_, &info, &passthrough_))) {
     passthrough_ = XR_NULL_HANDLE;
     return;
@@ -139,7 +139,7 @@ void Session::start_passthrough() {
 
 void Session::request_rate(double rate_hz) const {
   if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
-  // A rate that the display does not have is no error: the log tells what it runs at.
+  // A rate that the display does not have is not an error: the log records the actual rate.
   xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
                                                                                    static_cast<float>(rate_hz));
 }

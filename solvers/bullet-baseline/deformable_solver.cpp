@@ -124,7 +124,7 @@ bool linked(const Scene& scene, EdgeKind kind) {
   return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend);
 }
 
-/// The same bound for a mesh at its start. The greatest eigenvalue of S_i is at most its Frobenius norm.
+/// The same bound for a mesh at its start. The largest eigenvalue of S_i is at most its Frobenius norm.
 double stiffest_of_mesh_rad_per_s(const Scene& scene) {
   const std::vector<double> mass = vertex_masses(scene);
   const std::vector<Vec3>& x = scene.cloth.mesh->vertices;

@@ -94,7 +94,7 @@ inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const doub
 constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
                                      CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
 
-/// All but self-collision and a duplicated layer. What else an engine cannot do, its `obstacle` says.
+/// All features except self-collision and a duplicated layer. `obstacle` names further limits of an engine.
 constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
                                     CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | kColliders | CLOTHBENCH_FRICTION |
                                     CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
@@ -127,7 +127,7 @@ inline const char* kept(const std::string& text) {
   return last.c_str();
 }
 
-/// What an adapter says of itself.
+/// Description of an adapter.
 struct About {
   const char *name, *engine, *summary, *version;
   double (*free_fall_m)(const double*, double, double, double, double, std::int32_t);

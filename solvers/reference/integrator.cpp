@@ -41,7 +41,7 @@ double largest(const Vector& v) {
 
 /// One implicit step in the unknowns y (position where forces are taken) and lambda:
 ///   M (mass_scale * (y - base)) = force(y) - G(y)^T lambda,   C(y) = compliance * lambda.
-/// Both implicit integrators are of this form.
+/// Both implicit integrators have this form.
 StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolerance, double mass_scale,
                           const Vector& base, Vector& y, Vector& lambda) {
   const int n = m.free_dofs(), all = n + static_cast<int>(m.springs());
@@ -69,7 +69,7 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
     for (std::size_t v = 0; v < m.vertices(); ++v)
       if (!m.held(v)) y.segment<3>(static_cast<Eigen::Index>(3 * v)) += rhs.segment<3>(m.dof(v));
     lambda += rhs.tail(all - n);
-    // Very stiff bending of tiny cells: rounding alone may be above the tolerance. Then it no longer falls.
+    // With very stiff bending of tiny cells rounding may exceed the tolerance; the residual then no longer falls.
     const bool at_rounding = i > 0 && residual > 0.5 * before;
     if ((residual <= tolerance.acceleration || at_rounding) && largest(rhs.head(n)) <= tolerance.length_m)
       return StepStatus::Ok;
@@ -223,7 +223,7 @@ class Rattle final : public Integrator {
 /// true matrix takes the difference out again.
 void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   constexpr double kShift =
-      1e-9;  // of the greatest entry of G A^-1 G^T's diagonal, which is 2 / smallest diagonal of A
+      1e-9;  // relative to the largest diagonal entry of G A^-1 G^T, which is 2 / smallest diagonal of A
   constexpr int kRefinements = 6;
   Eigen::SparseMatrix<double> K(size, size);
   K.setFromTriplets(lower.begin(), lower.end());

@@ -123,7 +123,7 @@ void Model::add_compliance(double scale, int first, Triplets& out) const {
   for (std::size_t s = 0; triangles_.empty() && s < springs_.size(); ++s) {
     const int row = first + static_cast<int>(s);
     const Spring& k = springs_[s];
-    // A spring between two held vertices takes no part: its row says lambda = 0.
+    // A spring between two attached vertices has no effect: its row sets lambda = 0.
     out.emplace_back(row, row, held(k.a) && held(k.b) ? -1 : -scale * k.compliance);
   }
 }

@@ -1,4 +1,4 @@
-// The judge's solver: double precision, implicit, sparse direct solves, constraints where there is no compliance.
+// The reference solver: double precision, implicit, sparse direct solves, constraints where there is no compliance.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

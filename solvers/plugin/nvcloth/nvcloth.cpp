@@ -116,7 +116,7 @@ void Solver::set_constants() {
   cloth_->enableContinuousCollision(colliders_.has_spheres());
 }
 
-/// One at the middle of each triangle. The engine tests them against spheres and capsules alone.
+/// One at the middle of each triangle. The engine tests them only against spheres and capsules.
 void Solver::add_virtual_particles() {
   std::vector<std::array<std::uint32_t, 4>> particles;
   for (std::uint32_t t = 0; t < scene_.triangle_count; ++t) {
