@@ -147,20 +147,5 @@ TEST_F(Hdf5, FaultsNameTheFile) {
   EXPECT_THROW(write_hdf5(dir_ / "no" / "such" / "x.h5", sample_run()), Error);
 }
 
-TEST_F(Hdf5, LargeTrajectoriesAreWrittenQuickly) {
-  RunRecord r = sample_run(1, 4, 6);
-  r.header.vertices = 128 * 128;
-  r.accuracy = {};
-  std::vector<float> frame(3 * 128 * 128);
-  for (int f = 0; f < 37; ++f) {
-    r.accuracy.time_s.push_back(f / 72.0);
-    for (std::size_t k = 0; k < frame.size(); ++k)
-      frame[k] = static_cast<float>(std::sin(0.001 * static_cast<double>(k) + 0.1 * f));
-    r.accuracy.position.insert(r.accuracy.position.end(), frame.begin(), frame.end());
-  }
-  write_hdf5(dir_ / "x.h5", r);
-  EXPECT_EQ(read_hdf5(dir_ / "x.h5", 1).accuracy.position, r.accuracy.position);
-}
-
 }  // namespace
 }  // namespace clothbench
