@@ -1,5 +1,5 @@
 #pragma once
-#include "runner/frame_drawer.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench::render {
 

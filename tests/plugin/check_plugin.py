@@ -178,7 +178,7 @@ class Plugin(unittest.TestCase):
         self.assertEqual(self.both(FAULT="exit:3"), 1, self.text)
         self.assertIn("exit status 0", self.stored("gravity__faulty__default")[0]["message"])
         shutil.rmtree(self.out)
-        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
+        self.assertEqual(self.both(FAULT="hang:3", CLOTHBENCH_SOLVER_LIMIT_S="2"), 1, self.text)
         self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], "timed_out")
         self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
 
@@ -198,7 +198,7 @@ class Plugin(unittest.TestCase):
         faults = {"crash:5": "crashed", "exit:5": "crashed", "hang:5": "timed_out", "nan:5": "not_finite", "create": "crashed", "load": "error"}
         for fault, status in faults.items():
             words = ["run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--trials", "0", "--out", self.out]
-            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="2"), 1, self.text)
+            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_SOLVER_LIMIT_S="2"), 1, self.text)
             self.assertEqual(self.stored("gravity__faulty__default")[0]["status"], status)
             self.assertIn("FAULT faulty: finished none of 1 runs; the last: " + status, self.text)
             # A scene that it can run: it finished one of two.
@@ -240,7 +240,7 @@ class Plugin(unittest.TestCase):
     def test_a_crash_a_hang_and_an_exit_are_answers_of_conformance(self):
         words = ["conformance", self.faulty(), "ballistic", "--scene", "conformance/sheet", "--no-whole"]
         for fault, message in (("crash:5", "signal 11"), ("hang:5", "killed after 1"), ("exit:5", "exit status 0")):
-            bad, good = self.rows(*words, code=1, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="1")
+            bad, good = self.rows(*words, code=1, FAULT=fault, CLOTHBENCH_SOLVER_LIMIT_S="1")
             self.assertEqual((bad["status"], good["status"]), ("FAIL", "pass"))
             self.assertIn(message, bad["faults"][0])
 
