@@ -42,7 +42,7 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   else if (!setup.err.empty())
     open(STDERR_FILENO, setup.err);
-  // Of two of one name in an environment the first counts.
+  // If an environment has two variables of one name, the first counts.
   const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, nullptr, pointers(argv, nullptr).data(),
                                   pointers(setup.environment, environ).data());
   posix_spawn_file_actions_destroy(&files);

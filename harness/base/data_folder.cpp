@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 
-#include "base/paths.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 

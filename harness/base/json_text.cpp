@@ -101,7 +101,7 @@ void fill(json& value, const json& schema, const json& root) {
 
 }  // namespace
 
-// Of a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
+// For a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
 std::string what_without_text(const std::exception& e) {
   const std::string what = e.what();
   const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");

@@ -7,9 +7,15 @@ namespace clothbench {
 inline constexpr char kPluginsVariable[] = "CLOTHBENCH_PLUGINS";
 inline constexpr char kInProcess[] = "CLOTHBENCH_IN_PROCESS";
 
-/// Whether plugins run in this process and not in a child that they may crash: $CLOTHBENCH_IN_PROCESS is set, as
-/// --in-process does. A debugger then sees them, and a crash ends the program.
-inline bool plugins_in_process() { return std::getenv(kInProcess) != nullptr; }
-inline void run_plugins_in_process() { setenv(kInProcess, "1", 1); }
+/// Whether solvers run in this process and not in a child that they may crash: $CLOTHBENCH_IN_PROCESS is set, as
+/// --in-process does. A debugger then sees them, and a crash ends the program. An app cannot start a child.
+inline bool solvers_in_process() {
+#ifdef __ANDROID__
+  return true;
+#else
+  return std::getenv(kInProcess) != nullptr;
+#endif
+}
+inline void run_solvers_in_process() { setenv(kInProcess, "1", 1); }
 
 }  // namespace clothbench

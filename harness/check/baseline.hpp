@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clothbench/record.hpp"
+#include "metrics/registry.hpp"
 #include "results/conditions.hpp"
 
 namespace clothbench {
@@ -41,7 +42,7 @@ struct BaselineOrigin {
   std::vector<std::string> commits, devices;  ///< of the results, sorted
 };
 
-/// Of a baseline that `command` makes of these runs.
+/// The origin of a baseline that `command` makes from these runs.
 BaselineOrigin origin_of(const std::vector<std::filesystem::path>& folders, const std::vector<RunRecord>& runs,
                          const std::string& command);
 
@@ -61,5 +62,23 @@ Baseline read_baseline(const std::filesystem::path&);
 
 /// The file's text: one line per value, sorted; numbers read back exactly.
 std::string baseline_text(const Baseline&);
+
+/// results/baselines/baseline.schema.json, compiled in.
+extern const char* const kBaselineSchema;
+
+/// Rule that compares a summary scalar with its baseline, from the metric registry; nullptr if it is not compared. The
+/// result of a bound has no slack.
+const Gate* find_gate(const std::string& name);
+
+/// Whether it is the result of a bound, 1 pass or 0 fail: fail after pass fails, pass after fail is an improvement.
+bool is_verdict(const std::string& name);
+
+std::vector<std::string> gated_names();
+
+/// Allowed deviation from `baseline` in either direction [unit of the scalar]. `length_m`: shorter side of the cloth.
+double slack(const Gate&, double baseline, double length_m);
+
+/// "0.01 L + 10 %; none at 0", where L is the shorter side.
+std::string slack_text(const Gate&);
 
 }  // namespace clothbench

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/words.hpp"
+#include "check/baseline.hpp"
 #include "check/compare.hpp"
-#include "check/gates.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/metric.hpp"
@@ -159,7 +159,7 @@ std::vector<Finding> motion_findings(const RunRecord& r) {
   if (const std::string fault = trajectory_fault(r.file); !fault.empty())
     return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
   if (!r.summary.contains(kMotionCheck + "finite") || std::filesystem::is_directory(r.file)) return {};
-  // What the summary says of the motion is not taken on trust.
+  // The summary's own statement on the motion is not trusted.
   const StoredMotion motion = read_motion(r.file);
   if (!kWithContactMetrics && !motion.scene.colliders.empty()) return {};
   std::vector<Finding> out;

@@ -70,11 +70,12 @@ Table times_table(const Checked& c) {
       {"", "verdict", &CheckedRun::time_verdict}};
   return columns.table(
       {"Time per frame, A against B",
-       fmt::format("Median over the processes; runs that were not timed alone are left out. Change: ratio "
-                   "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
-                   "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
-                   "faster or slower by chance.",
-                   timed.size(), 0.05 * static_cast<double>(timed.size())),
+       fmt::format(
+           "Median over the processes; runs that shared the machine with other jobs are left out. Change: ratio "
+           "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
+           "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
+           "faster or slower by chance.",
+           timed.size(), 0.05 * static_cast<double>(timed.size())),
        {}},
       timed);
 }
@@ -116,35 +117,6 @@ json run_json(const CheckedRun& run) {
 }
 
 std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 ? "" : "s"); }
-
-/// As @actions/core escapes them: %, CR and LF in the message; also : and , in a property.
-std::string github_escaped(const std::string& text, bool property) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '%')
-      out += "%25";
-    else if (c == '\r')
-      out += "%0D";
-    else if (c == '\n')
-      out += "%0A";
-    else if (property && c == ':')
-      out += "%3A";
-    else if (property && c == ',')
-      out += "%2C";
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string command(const char* kind, const std::string& file, const std::string& title, const std::string& message) {
-  return fmt::format("::{} file={},title={}::{}\n", kind, github_escaped(file, true), github_escaped(title, true),
-                     github_escaped(message, false));
-}
-
-auto is(Verdict verdict) {
-  return [verdict](Verdict of_finding) { return of_finding == verdict; };
-}
 
 /// Valid UTF-8, whatever a solver put into its message.
 std::string valid_utf8(const std::string& text) {
@@ -278,25 +250,6 @@ json comparison_json(const Checked& c) {
     out["runs"].push_back(run_json(run));
     out["runs"].back()["time"] = time_json(run);
   }
-  return out;
-}
-
-std::string github_commands(const Checked& checked, const std::string& file) {
-  std::string out, improved, fresh;
-  for (const CheckedRun& run : checked.runs) {
-    if (run.verdict() == Verdict::Failed)
-      out += command("error", file, run.key.text(), run.sentences(is(Verdict::Failed)));
-    const auto append = [&](std::string& to, Verdict verdict) {
-      if (const std::string text = run.sentences(is(verdict)); !text.empty())
-        to += (to.empty() ? "" : "\n") + run.key.text() + ": " + text;
-    };
-    append(improved, Verdict::Improved);
-    append(fresh, Verdict::New);
-  }
-  if (!improved.empty()) out += command("notice", file, "better than the baseline; --update accepts it", improved);
-  if (!checked.differing.empty())
-    out += command("warning", file, "other conditions than the baseline's", checked.differing.marks());
-  if (!fresh.empty()) out += command("notice", file, "not in the baseline", fresh);
   return out;
 }
 

@@ -19,10 +19,6 @@ std::string comparison_text(const Checked&);
 std::string comparison_markdown(const Checked&, const std::string& a, const std::string& b);
 nlohmann::json comparison_json(const Checked&);
 
-/// Workflow commands of GitHub Actions: one `::error` per failed run, one `::notice` for all improvements and one for
-/// all new runs (GitHub shows ten of a kind per step). `file`: the baseline, to which the annotations point.
-std::string github_commands(const Checked&, const std::string& file);
-
 /// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver, setting and assets), with a
 /// <failure> if it failed. Improvements and new runs are in <system-out>. Text that XML 1.0 or UTF-8 does not allow is
 /// replaced.

@@ -1,11 +1,10 @@
-#include "check/times.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "report/run_table.hpp"
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 struct CheckArguments {
   std::vector<std::string> runs, allowed;
   std::string baseline, junit;
-  bool github = false, update = false;
+  bool update = false;
 };
 
 void update(const CheckArguments& a, const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
@@ -28,9 +28,6 @@ void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console&
   const Checked checked = check_runs(read_baseline(a.baseline), runs, a.allowed);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
-  std::fflush(stdout);
-  // A runner reads commands from both streams; on stdout they would spoil the JSON.
-  if (a.github) fmt::print(console.json ? stderr : stdout, "{}", github_commands(checked, a.baseline));
   if (!checked.passed()) console.exit_code = ExitCode::CheckFailed;
 }
 
@@ -53,7 +50,6 @@ void add_check(CLI::App& app, Console& console) {
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
-  cmd->add_flag("--github", a.github, "Also print annotations for GitHub Actions")->excludes(rewrite);
   cmd->footer(
       "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without the positions "
       "that its outcome is of, 2 bad input, or runs under other conditions than the baseline's.\nExample: clothbench "

@@ -33,7 +33,7 @@ constexpr AddCommand* kCommands[] = {add_list,       add_validate, add_plan,  ad
 #endif
                                      add_completion, add_manual};
 
-/// Of a first word that is no command.
+/// Prints the nearest command if the first word is none.
 void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty() || !app.get_subcommands().empty()) return;
   std::vector<std::string> commands;
@@ -63,9 +63,9 @@ int run_command_line(const std::vector<std::string>& words) {
   console.command_line = "clothbench " + joined(words, " ");
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),
-               "Run plugins in this process, for a debugger; a crash of a plugin then ends the program");
+               "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
   // Before the words are read: plugins are loaded on the way.
-  if (contains(words, "--in-process")) run_plugins_in_process();
+  if (contains(words, "--in-process")) run_solvers_in_process();
   std::optional<SummaryOutput> summary_alone;
   if (contains(words, "--json")) summary_alone.emplace();
   app.fallthrough();

@@ -17,10 +17,11 @@ void run(const ConformanceArguments& a, Console& console) {
   const std::vector<std::string> scenes = conformance_scenes(a.scenes);
   nlohmann::json all = nlohmann::json::array();
   int passed = 0, failed = 0, skipped = 0;
+  Worker worker;
   for (const auto& [entry, settings, setting] : a.with.chosen({}))
     for (const std::string& scene : scenes) {
       const ConformanceRow row =
-          ask_conformance(*entry, settings, a.with.device.options, scene, !a.no_whole, a.limit_s);
+          ask_conformance(worker, *entry, settings, a.with.device.options, scene, !a.no_whole, a.limit_s);
       (row.status == "pass" ? passed : row.status == "skipped" ? skipped : failed) += 1;
       all.push_back(conformance_json(row));
       all.back()["solver"] = entry->info.name;

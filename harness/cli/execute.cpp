@@ -1,16 +1,14 @@
-#include "cli/execute.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/tint.hpp"
 #include "base/words.hpp"
+#include "cli/command.hpp"
 #include "report/report.hpp"
 #include "report/verdict.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
-#include "runner/plan_process.hpp"
 #include "runner/study_plan.hpp"
 
 namespace clothbench {
@@ -22,7 +20,7 @@ nlohmann::json seconds_json(const RunResult& r) {
   return j;
 }
 
-/// Of all runs of a command those of its plan, as they are stored.
+/// The runs of a plan, as its folder stores them.
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
   std::vector<RunRecord> runs = collect({out});
   std::erase_if(runs, [&](const RunRecord& c) { return !contains(names, run_name(c.header)); });
@@ -148,7 +146,7 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   options.device = call.device.options;
   options.progress = call.progress;
   const RunResult result =
-      needs_process(plan) ? execute_in_process(plan, options, call.eye) : execute_runs(plan, options);
+      runs_in_worker(plan) ? execute_in_worker(plan, options, call.eye) : execute_runs(plan, options);
   end.faults = result.faults;
   if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
   if (plan.apart) {

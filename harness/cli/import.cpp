@@ -1,5 +1,4 @@
 #include "cli/command.hpp"
-#include "results/device_samples.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

@@ -5,11 +5,11 @@
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
-#include "check/gates.hpp"
+#include "check/baseline.hpp"
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
 #include "report/features.hpp"
-#include "runner/solver_choice.hpp"
+#include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 

@@ -4,7 +4,7 @@
 #include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
-#include "runner/run_process.hpp"
+#include "runner/worker.hpp"
 
 namespace clothbench {
 namespace {
@@ -100,6 +100,7 @@ void add_plan(CLI::App& app, Console& console) {
       "          clothbench plan paper/desk-flat-low --solver xpbd --set cloth.grid=[64,64] --json");
   cmd->callback([&console, &a] {
     json all = json::array();
+    Worker worker;
     for (const std::string& file : a.scenes) {
       const std::vector<std::string> set = split_overrides(a.with.set).scene;
       const Scene scene = load_scene(file, set);
@@ -107,7 +108,7 @@ void add_plan(CLI::App& app, Console& console) {
         const json request = {
             {"scene", file},          {"set", set},           {"solver", s.entry->info.name},
             {"settings", s.settings}, {"setting", s.setting}, {"device", device_to_json(a.with.device.options)}};
-        const WorkerAnswer answer = guarded(*s.entry, "plan-of-solver", request, plan_answer);
+        const WorkerAnswer answer = guarded(worker, "plan-of-solver", request, plan_answer);
         all.push_back(answer.end ? plan_of(scene, *s.entry, "crashed", "its process: " + answer.end->text())
                                  : answer.value);
         if (!console.json) fmt::print("{}", plan_text(all.back()));

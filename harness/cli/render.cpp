@@ -6,7 +6,7 @@
 #include "cli/command.hpp"
 #include "render/pictures.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/run_process.hpp"
+#include "runner/worker.hpp"
 
 namespace clothbench {
 namespace {
@@ -20,7 +20,7 @@ struct RenderArguments {
   DeviceFlags device;
 };
 
-/// Runs a scenario for its positions alone.
+/// Runs a scenario only for its positions.
 auto run_of(const RenderArguments& a, const Console& console) {
   return [&](const std::string& file) {
     const Overrides overrides = split_overrides(a.set);
@@ -67,13 +67,13 @@ void render_plugin(RenderArguments a, const SolverEntry& solver, const Console& 
   const fs::path folder = fs::temp_directory_path() / fmt::format("clothbench-render-{}", getpid());
   const Overrides overrides = split_overrides(a.set);
   const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
-  RunWorker worker(own_program(), folder / "scratch");
+  Worker worker(own_program(), folder / "scratch");
   for (std::string& file : a.files) {
     if (fs::is_directory(file) || render::is_run(file)) continue;
     const Scene scene = load_scene(file, overrides.scene);
     const RunSpec spec{&scene, entry, settings, setting};
     const RunRecord r = worker.run(request_of(
-        spec, {a.device.options, "render", folder / std::to_string(&file - a.files.data()), plugin_limit_s()}));
+        spec, {a.device.options, "render", folder / std::to_string(&file - a.files.data()), solver_limit_s()}));
     if (r.outcome.status == "crashed" || r.outcome.status == "timed_out" || r.outcome.status == "error")
       throw Error(solver.info.folder + ": " + r.outcome.message, ExitCode::CheckFailed);
     file = (folder / std::to_string(&file - a.files.data()) / (run_name(spec) + ".h5")).string();
@@ -100,7 +100,7 @@ void add_render(CLI::App& app, Console& console) {
   cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
   cmd->add_option("--size", a.size, "Size of a picture: WIDTHxHEIGHT in pixels")->capture_default_str();
   cmd->add_option("--run", a.run, "For a folder: draw the runs with this text in their names");
-  cmd->add_flag("--no-movie", a.no_movie, "Pictures alone");
+  cmd->add_flag("--no-movie", a.no_movie, "Images only, no movie");
   cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();
   cmd->add_option("--set", a.set, "For a scenario: override, as with `clothbench run`");
   a.device.add_to(*cmd);

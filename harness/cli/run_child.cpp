@@ -1,6 +1,6 @@
 #include "cli/command.hpp"
 #include "runner/conformance.hpp"
-#include "runner/plan_process.hpp"
+#include "runner/study_plan.hpp"
 
 namespace clothbench {
 
@@ -10,15 +10,15 @@ void add_run_child(CLI::App& app, Console& console) {
   cmd->group("");  // not for people
   cmd->add_option("folder", folder)->required();
   cmd->callback([&console, &folder] {
-    const auto alone = [](nlohmann::json (*work)(const nlohmann::json&)) {
+    const auto silent = [](nlohmann::json (*work)(const nlohmann::json&)) {
       return [work](const nlohmann::json& request, const WorkerProgress&) { return work(request); };
     };
     const auto plan = [](const nlohmann::json& request, const WorkerProgress& progress) {
-      return execute_plan(request, progress, rendering_of);
+      return execute_plan(request, progress, known_solver, rendering_of);
     };
     console.exit_code = static_cast<ExitCode>(run_child_main(
-        folder, find_solver,
-        {{"plan", plan}, {"plan-of-solver", alone(plan_answer)}, {"conformance", alone(conformance_answer)}}));
+        folder, known_solver,
+        {{"plan", plan}, {"plan-of-solver", silent(plan_answer)}, {"conformance", silent(conformance_answer)}}));
   });
 }
 

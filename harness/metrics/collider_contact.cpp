@@ -5,7 +5,7 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "metrics/collider_surface.hpp"
+#include "metrics/collider_touch.hpp"
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/contour.hpp"
 

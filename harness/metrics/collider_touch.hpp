@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "clothbench/scene.hpp"
+#include "metrics/contact/surface.hpp"
+#include "scenario/collider_kinds.hpp"
 
 namespace clothbench {
 
@@ -12,7 +14,7 @@ struct SceneTouch;
 ///
 /// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus a tolerance: a tenth
 /// of that distance or a thousandth of the cloth's shorter side, whichever is greater. A triangle touches if any of its
-/// points does, edges and face included. Sliding is that of vertices.
+/// points does, edges and face included. Only vertices slide.
 class ColliderTouch {
  public:
   /// `scene` outlives this. `held_at_m`: how far off each collider the solver keeps cloth, as in
@@ -30,6 +32,22 @@ class ColliderTouch {
   std::unique_ptr<Watch> watch_;
   std::vector<double>
       before_;  ///< positions at the last frame; empty at the start and after a state that is not finite
+};
+
+std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>&);
+
+/// Signed distance to a collider at one instant, for kinds that have a closed form. The other kinds use triangles.
+class ClosedForm {
+ public:
+  static bool has(const Collider& c) { return kind_of(c).nearest != nullptr || kind_of(c).capsules != nullptr; }
+  /// `was`: its pose at the previous frame. The collider must outlive this.
+  ClosedForm(const Collider&, const ColliderPose& now, const ColliderPose& was);
+  contact::Nearest operator()(const contact::Point<3>&) const;
+
+ private:
+  const Collider& collider_;
+  const ColliderKind& kind_;
+  std::vector<contact::Capsule> now_, was_;
 };
 
 }  // namespace clothbench

@@ -68,7 +68,7 @@ inline bool touches_nothing(const Scene& s) {
 
 inline constexpr Needs kGravity{"gravity", [](const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }};
 
-/// How the page and penetration-series.csv show a series; without `words` they do not show it.
+/// How the page and series.csv show a series; without `words` they do not show it.
 struct Plotted {
   const char* words = "";  ///< on its axis
   int place = 0;           ///< among the page's choices

@@ -1,10 +1,9 @@
-#include "metrics/reduction.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include "metrics/collider_contact.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {

@@ -17,17 +17,6 @@ bool fits(const std::string& pattern, const std::string& name) {
   return name.starts_with(pattern.substr(0, pattern.size() - 1));
 }
 
-/// Names of the entries that have a column, in column order.
-template <class T, class Column>
-std::vector<std::string> by_column(const std::vector<T>& entries, Column column) {
-  std::map<int, std::string> names;
-  for (const T& e : entries)
-    if (column(e) > 0) names[column(e)] = e.name;
-  std::vector<std::string> out;
-  for (const auto& [unused, name] : names) out.push_back(name);
-  return out;
-}
-
 }  // namespace
 
 const char* name_of(Better better) {
@@ -63,12 +52,12 @@ const Scalar* find_scalar(const std::string& name) {
 }
 
 std::vector<std::string> series_columns() {
-  return by_column(metrics(), [](const Metric& m) { return m.drawn.column; });
-}
-
-const std::vector<std::string>& penetration_columns() {
-  static const std::vector<std::string> names = by_column(scalars(), [](const Scalar& s) { return s.column; });
-  return names;
+  std::map<int, std::string> names;
+  for (const Metric& m : metrics())
+    if (m.drawn.column > 0) names[m.drawn.column] = m.name;
+  std::vector<std::string> out;
+  for (const auto& [unused, name] : names) out.push_back(name);
+  return out;
 }
 
 std::map<std::string, double> scalars_of(const RunView& run, const std::string& start) {
@@ -79,16 +68,8 @@ std::map<std::string, double> scalars_of(const RunView& run, const std::string& 
   return out;
 }
 
-namespace {
-
-const Scalar* scalar_behind(const std::string& summary_name) {
-  return find_scalar(summary_name.starts_with(kExpect) ? summary_name.substr(kExpect.size()) : summary_name);
-}
-
-}  // namespace
-
 bool is_of_machine(const std::string& summary_name) {
-  const Scalar* s = scalar_behind(summary_name);
+  const Scalar* s = find_scalar(summary_name.starts_with(kExpect) ? summary_name.substr(kExpect.size()) : summary_name);
   return s != nullptr && s->of_machine;
 }
 

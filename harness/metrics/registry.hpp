@@ -3,12 +3,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clothbench/record.hpp"
-#include "metrics/exact_bound.hpp"
 #include "metrics/metric.hpp"
 #include "metrics/motion_check/motion_check.hpp"
+#include "metrics/truth_errors.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
@@ -83,11 +84,10 @@ struct Scalar {
   Reduction from;
   Expect expect = Expect::No;
   const Gate* gate = nullptr;                 ///< null: not checked
-  int column = 0;                             ///< position among the columns of penetration.csv; 0: none
   bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
   std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
   Better better = Better::Less;
-  bool of_machine = false;  ///< a time or what depends on times: the machine's, not the solver's alone
+  bool of_machine = false;  ///< a time, or a value that depends on times: it measures the machine too
 };
 
 /// The metrics that one file of measures/ defines.
@@ -109,9 +109,8 @@ const Scalar* find_scalar(const std::string& name);
 /// Whether a value of a result's summary, or the outcome of a bound on it, depends on the machine and its load.
 bool is_of_machine(const std::string& summary_name);
 
-/// Names of the columns of penetration-series.csv and of penetration.csv, in their order.
+/// Names of the series of series.csv, in its order.
 std::vector<std::string> series_columns();
-const std::vector<std::string>& penetration_columns();
 
 /// One scalar per stage of a run's plan, named after the stage.
 std::map<std::string, double> stage_scalars(const RunView&);
@@ -129,5 +128,22 @@ inline const std::string kBound = "_bound";
 
 /// The scalars that have such a bound.
 inline constexpr const char* kExactlyBounded[] = {"truth_e2", "truth_quantity_error"};
+
+/// Reductions of one series. The result is NaN if any frame is NaN or the series is missing.
+Reduction greatest(const char* series);
+Reduction least(const char* series);
+Reduction last(const char* series);
+Reduction sum(const char* series);
+Reduction greatest_settled(const char* series);  ///< over the scene's last half second; NaN unless the pass is complete
+Reduction greatest_last_second(const char* series);  ///< the same over its last second
+Reduction mean_last_second(const char* series);
+/// A reduction by a custom rule.
+inline Reduction own(std::vector<std::string> series, std::string what, std::function<double(const RunView&)> value,
+                     std::string units) {
+  return {std::move(series), std::move(what), std::move(value), std::move(units)};
+}
+
+/// Greatest value from an index on; NaN if any is NaN, or if there are none.
+double greatest_of(const std::vector<double>* values, std::size_t from = 0);
 
 }  // namespace clothbench

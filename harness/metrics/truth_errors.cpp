@@ -1,8 +1,16 @@
 #include "metrics/truth_errors.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
+#include "scenario/load.hpp"
+#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -51,10 +59,6 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   const std::vector<double> vertices = truth::vertex_positions(c, case_, frame);
   const auto here = sampler_.sample(state.position), there = sampler_.sample(vertices);
   out.e2 = lattice_e2(here, there);
-  if (case_.column_speeds && case_.speed_scale_m_per_s > 0)
-    out.speed = truth::lattice_rms_error(lattice_, sampler_.sample(state.velocity),
-                                         sampler_.sample(truth::vertex_values(c, case_.column_speeds(frame), false)),
-                                         case_.speed_scale_m_per_s);
   out.quantity = case_.quantity(truth::column_means(c, state.position));
   out.quantity_error = truth::quantity_error(out.quantity, case_.quantity(columns), case_.quantity_scale);
   const truth::StretchError stretch = truth::stretch_error(strains(c, state.position), strains(c, vertices));
@@ -83,7 +87,7 @@ double TruthJudge::space_error(int frame) const {
     const Vec3 x = case_.continuum(u / c.width_m, frame);
     for (std::size_t k = 0; k < 3; ++k) smooth.push_back(x[k] + (v - c.height_m / 2) * c.axis_v[k]);
   }
-  return lattice_e2(sampler_.sample(truth::vertex_values(c, columns, true)), smooth);
+  return lattice_e2(sampler_.sample(truth::vertex_values(c, columns)), smooth);
 }
 
 double TruthJudge::space_error() const {
@@ -105,6 +109,110 @@ bool keeps_energy(const Scene& s) {
       kColliderFeatures;
   return (s.needs & loses).empty() && s.gravity_m_per_s2 != Vec3{} && s.cloth.span_m == 0 &&
          s.cloth.drape_radius_m == 0;
+}
+
+namespace {
+
+constexpr double kMore = 1.1;
+constexpr int kFrames = 4;
+
+double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
+  const Scene other =
+      scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
+  const auto known = truth::reference_case_of(other);
+  const int last = scene.time.frames();
+  double most = 0;
+  for (int k = known->settles ? kFrames : 1; k <= kFrames; ++k) {
+    const int frame = last * k / kFrames;
+    ClothState state;
+    state.position = truth::vertex_positions(other.cloth, *known, frame);
+    state.velocity.assign(state.position.size(), 0);
+    const TruthErrors e = judge.judge(frame, state);
+    most = max_or_nan(most, judge.reference_case().by_quantity ? e.quantity_error : e.e2);
+  }
+  return most / std::log(kMore);
+}
+
+}  // namespace
+
+std::map<std::string, double> truth_dependence(const Scene& scene) {
+  if (scene.reference_case.empty()) return {};
+  const TruthJudge judge(scene);
+  std::map<std::string, double> out = {{"truth_dependence_Y", 0}, {"truth_dependence_B", 0}};
+  if (const auto Y = scene.material.membrane_stiffness_N_per_m)
+    out["truth_dependence_Y"] = change(judge, scene, "material.membrane_stiffness_N_per_m", *Y);
+  if (const double B = scene.material.bending_rigidity_N_m; B > 0)
+    out["truth_dependence_B"] = change(judge, scene, "material.bending_rigidity_N_m", B);
+  return out;
+}
+
+namespace {
+
+constexpr double kNothing = 1e-12;  // a motion of rounding errors only
+
+/// What the mesh changes, as a share of the exact motion. A triangle mesh has no exact solution of its own and is
+/// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
+/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
+/// their own.
+double mesh_error(const TruthJudge& judge, double moved_quantity) {
+  const Cloth& c = judge.scene().cloth;
+  if (c.mesh) return c.mesh->edge_m / c.width_m;
+  return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
+}
+
+/// Half a unit in the last place of float32, of the coordinate that is farthest from the origin.
+double rounding_m(const std::vector<Vec3>& columns) {
+  double largest_m = 0;
+  for (const Vec3& x : columns)
+    for (const double coordinate : x) largest_m = std::max(largest_m, std::abs(coordinate));
+  return std::exp2(-24) * largest_m;
+}
+
+/// Three standard deviations of the quantity if every coordinate is rounded (uniformly, by `by_m` at most), over its
+/// scale. Each column is a mean over as many vertices as lie across the strip.
+double rounding_of_quantity(const TruthJudge& judge, std::vector<Vec3> columns, double by_m) {
+  const truth::ReferenceCase& known = judge.reference_case();
+  const Cloth& c = judge.scene().cloth;
+  const double exact = known.quantity(columns), across = c.mesh ? 1 + c.height_m / c.mesh->edge_m : c.rows;
+  double squares = 0;
+  for (Vec3& x : columns)
+    for (double& coordinate : x) {
+      const double kept = coordinate;
+      coordinate += by_m;
+      squares += std::pow(known.quantity(columns) - exact, 2);
+      coordinate = kept;
+    }
+  return 3 * std::sqrt(squares / 3 / across) / known.quantity_scale;
+}
+
+}  // namespace
+
+ExactBound exact_bound(const TruthJudge& judge) {
+  const Scene& scene = judge.scene();
+  const truth::ReferenceCase& known = judge.reference_case();
+  const truth::Tolerance& tolerance = truth::tolerance_of(known.name);
+  const int last = scene.time.frames();
+  const ClothState start{initial_positions(scene), std::vector<double>(3 * scene.cloth.vertex_count())};
+  std::vector<double> times_s, e2, quantity_error;
+  for (int frame = known.settles ? last : 0; frame <= last; ++frame) {
+    const TruthErrors moved = judge.judge(frame, start);
+    times_s.push_back(scene.time.at(frame));
+    e2.push_back(moved.e2);
+    quantity_error.push_back(moved.quantity_error);
+  }
+  const auto norm = [&](const std::vector<double>& errors) {
+    return errors.size() < 2 ? errors.back() : truth::time_rms(times_s, errors);
+  };
+  const bool moves = norm(e2) > kNothing;
+  const double share = moves ? tolerance.of_motion + mesh_error(judge, norm(quantity_error)) : 0;
+  const auto bound = [&](const std::vector<double>& errors, double at_rest, double rounding) {
+    return (moves ? share * norm(errors) : at_rest) + rounding;
+  };
+  const std::vector<Vec3> columns = known.columns(last);
+  const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m), by_m = rounding_m(columns);
+  return {bound(e2, tolerance.at_rest, by_m / longer_m),
+          bound(quantity_error, tolerance.at_rest * longer_m / known.quantity_scale,
+                rounding_of_quantity(judge, columns, by_m))};
 }
 
 }  // namespace clothbench

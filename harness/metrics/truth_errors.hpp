@@ -1,4 +1,6 @@
 #pragma once
+#include <map>
+#include <string>
 
 #include "clothbench/record.hpp"
 #include "clothbench/scene.hpp"
@@ -12,7 +14,6 @@ namespace clothbench {
 /// to the longer side. NaN if the state is not finite or the reference case has no answer.
 struct TruthErrors {
   double e2 = kMissing;                                   ///< positions: RMS
-  double speed = kMissing;                                ///< speeds: RMS, over the reference case's speed scale
   double quantity = kMissing;                             ///< the reference case's quantity of this state
   double quantity_error = kMissing;                       ///< |quantity - true| over the reference case's scale
   double stretch_p99 = kMissing, stretch_max = kMissing;  ///< strain less true strain, edges along u
@@ -46,5 +47,26 @@ class TruthJudge {
 /// Scenes whose strips conserve the sum of kinetic, gravitational and spring energy (metric energy_rise): no damping,
 /// shear, bending, hands or colliders.
 bool keeps_energy(const Scene&);
+
+/// How much a scene's truth depends on its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is the
+/// change of what ranks the scene's runs (quantity or positions, truth::ReferenceCase) with the logarithm of the
+/// membrane stiffness or the bending rigidity, from evaluating the reference case at 10 % more of each. 1 means that it
+/// changes by 1 % for 1 % more stiffness; 0 that the scene has no such stiffness. For truths in motion it is the
+/// greatest of a few frames. Empty for a scene without a reference case.
+std::map<std::string, double> truth_dependence(const Scene&);
+
+/// Bounds on two scalars of a whole run of a scene with an exact solution: the distance of the positions (`truth_e2`)
+/// and the error of the reference case's quantity (`truth_quantity_error`), both as the norm of a difference, so that
+/// a value too small fails as one too large. Each is
+///   tolerance * moved + mesh + rounding,
+/// where `moved` is the same scalar of a cloth that keeps its start (where that is 0: the tolerance at rest), `mesh`
+/// the part of it that a triangle mesh is off, and `rounding` what positions in float32 change.
+struct ExactBound {
+  double e2 = kMissing, quantity_error = kMissing;
+};
+
+/// The judge's scene is the one that was run, with drawn and overridden parameters. Throws Error if its reference case
+/// has no tolerance (truth/reference_case.hpp).
+ExactBound exact_bound(const TruthJudge&);
 
 }  // namespace clothbench

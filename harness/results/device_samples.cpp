@@ -1,5 +1,3 @@
-#include "results/device_samples.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

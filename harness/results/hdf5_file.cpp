@@ -221,7 +221,7 @@ class Writer {
     }
   }
 
-  /// Arrays as they come, each with its dimensions; those of a group share them by name.
+  /// Arrays as they come, each with its dimensions; arrays of one group share dimensions by name.
   void stored(const StoredGroup& group) {
     const Id g = make_group(file_, group.path);
     for (const auto& [name, value] : group.attributes.items()) json_attribute(g, name, value);

@@ -187,7 +187,7 @@ void read_accuracy(hid_t file, RunRecord& r, std::size_t stride) {
     a.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"),
                          numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
   }
-  // A grid's follow from its size; a summary has those of a mesh.
+  // Triangles of a grid follow from its size; a summary includes the triangles of a mesh.
   if (stride > 0 || r.header.scenario_json.find("\"mesh\"") != std::string::npos)
     for (std::int64_t v : numbers<std::int64_t>(file, "triangles", H5T_NATIVE_INT64))
       r.header.triangles.push_back(static_cast<std::uint32_t>(v));

@@ -13,7 +13,7 @@ RunHeader header_from_json(const nlohmann::json&);
 nlohmann::json outcome_to_json(const Outcome&, const std::map<std::string, double>& summary);
 void outcome_from_json(const nlohmann::json&, RunRecord&);
 
-/// A series of a trial: a value a frame, or a value a frame and stage. An optional one is empty unless it was measured.
+/// A series of a trial: one value per frame, or per frame and stage. An optional one is empty unless it was measured.
 struct TrialSeries {
   const char *group, *name, *units, *long_name;  ///< group: of the HDF5 file
   std::vector<double> TimedTrial::*values;

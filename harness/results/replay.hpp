@@ -27,7 +27,7 @@ std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>&,
 /// change groups of kinds that this version does not know. Throws as above.
 void show_shape(StoredGroup&);
 
-/// A stored run's scene and motion, from its result file alone.
+/// A stored run's scene and motion, read only from its result file.
 struct StoredMotion {
   Scene scene;                  ///< complete: cloth, pins, colliders and grips with their motion
   std::vector<double> time_s;   ///< of each stored frame; frame 0 is the initial state
@@ -37,7 +37,7 @@ struct StoredMotion {
 };
 
 /// Reads a result file; opens no other file. All is empty if the run has no trajectory.
-/// Throws Error naming the file and what is wrong with it, such as a number of positions that is not that of the scene.
+/// Throws Error naming the file and what is wrong with it, such as a number of positions that differs from the scene.
 StoredMotion read_motion(const std::filesystem::path&);
 
 }  // namespace clothbench

@@ -12,7 +12,6 @@
 #include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "results/device_samples.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/part_file.hpp"
 
@@ -47,7 +46,7 @@ std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
   return "";
 }
 
-/// Results of several scenes (moduli, metamorphic relations) have no vertices, and live sessions store their end alone.
+/// Live sessions store only their end.
 bool needs_motion(const RunRecord& r) {
   const nlohmann::json& e = r.header.environment;
   const bool live = e.is_object() && e.value("protocol", "") == "xr";

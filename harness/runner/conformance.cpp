@@ -13,7 +13,7 @@
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
 #include "runner/frame_loop.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/as_mesh.hpp"
 #include "scenario/load.hpp"
 
@@ -214,7 +214,7 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
       (s.needs.has(Feature::Shear) || s.cloth.mesh))
     return "reference diverges: over-determined";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
-    return "xpbd has self_collision for grids alone";
+    return "xpbd has self_collision only for grids";
   if (s.cloth.mesh && s.needs.has(Feature::Bend) && (info.name == "paper" || info.name.starts_with("bullet-")))
     return info.name + " has no resistance to bending for triangle meshes";
   return missing_features(info, s.needs);
@@ -285,15 +285,15 @@ json conformance_answer(const json& request) {
   return conformance_json(row);
 }
 
-ConformanceRow ask_conformance(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
-                               const std::string& scene, bool whole, double limit_s) {
+ConformanceRow ask_conformance(Worker& worker, const SolverEntry& entry, const json& settings,
+                               const DeviceOptions& device, const std::string& scene, bool whole, double limit_s) {
   const json request = {{"solver", entry.info.name},
                         {"settings", settings},
                         {"device", device_to_json(device)},
                         {"scene", scene},
                         {"whole", whole},
                         {"limit_s", limit_s}};
-  const WorkerAnswer answer = guarded(entry, "conformance", request, conformance_answer);
+  const WorkerAnswer answer = guarded(worker, "conformance", request, conformance_answer);
   if (answer.end) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.end->text()}};
   const json& j = answer.value;
   return {j["scene"], j["status"], j["cases"], j["skipped"], j["frames_whole"], j["frames_of_scene"], j["faults"]};

@@ -4,7 +4,7 @@
 
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/run_process.hpp"
+#include "runner/worker.hpp"
 
 namespace clothbench {
 
@@ -51,7 +51,7 @@ struct ConformanceResult {
 /// scene's (1e-6 of the width); a frame that fails or is not finite; pins that moved (1e-6 of the width); grips farther
 /// than 1 mm from where they are held; costs without a stage; device times where there is no device or none where there
 /// is; a reset that does not restore the start bit for bit; messages of a validation layer. A whole scene ends after
-/// `limit_s` of wall time (0: never), with what was found until then. A relation is checked alone.
+/// `limit_s` of wall time (0: never), with what was found until then. A relation is the only check of its case.
 ConformanceResult run_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                   const Scene&, const ConformanceCase&, double limit_s = 0);
 
@@ -68,8 +68,8 @@ struct ConformanceRow {
   std::vector<std::string> faults;  ///< with the case before each; of a skipped row the reason
 };
 
-/// All cases of a scene, in a worker for a plugin; a crash is a fault.
-ConformanceRow ask_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+/// All cases of a scene; a crash is a fault.
+ConformanceRow ask_conformance(Worker&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const std::string& scene, bool whole, double limit_s);
 /// The worker's side.
 nlohmann::json conformance_answer(const nlohmann::json& request);

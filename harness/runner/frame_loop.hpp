@@ -72,7 +72,7 @@ class FrameLoop {
   using Clock = std::chrono::steady_clock;
 
   bool begin();
-  /// CPU time of the process [s]: the stepping thread's, and that of threads which a solver has started.
+  /// CPU time of the process [s]: the stepping thread and all threads that a solver has started.
   static double process_cpu_s() {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 
 namespace clothbench {
 
@@ -13,6 +14,15 @@ void clear_interrupt();
 void hold_runs(bool held);
 /// How often runs have been held so far.
 int times_held();
+
+/// While there is one, stop_if_interrupted calls `report` at most once a second: the sign of life of a worker.
+class FrameReports {
+ public:
+  explicit FrameReports(std::function<void()> report);
+  ~FrameReports();
+  FrameReports(const FrameReports&) = delete;
+  FrameReports& operator=(const FrameReports&) = delete;
+};
 
 /// Messages on Ctrl-C for a command that keeps its finished work.
 inline constexpr char kTrialsKept[] = "interrupted; every finished trial is kept (continue with --resume)";

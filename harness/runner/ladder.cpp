@@ -1,8 +1,8 @@
-#include "runner/ladder.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "runner/study_runner.hpp"
 
 namespace clothbench {
 

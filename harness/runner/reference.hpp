@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "clothbench/scene.hpp"
@@ -41,7 +43,7 @@ struct ReferenceRules {
 /// where f1 is the finest, and Fs = 1.25, or Fs = 3 with p = 2 if the observed p is off by more than 0.5. A shape at
 /// rest does not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|, tolerance, change of f1 in the last
 /// tenth of the run), and no order is observed. Rows of a grid that do not shear move alike, so only two of them are
-/// run. A triangle mesh has no truth of its own. Its space_error is that of the finest runs, the greater of both
+/// run. A triangle mesh has no truth of its own. Its space_error is taken from the finest runs, the larger of both
 /// integrators. Throws Error if the scene has no reference case, if the build has no solver `reference`, or if a run of
 /// it fails.
 ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
@@ -55,5 +57,16 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
                                                   const std::filesystem::path& cache,
                                                   const std::function<void(const std::string&)>& note,
                                                   const ReferenceRules& = {});
+
+/// SHA-256 of the sources that reference values depend on (reference_code.cmake), computed at compile time.
+extern const char* const kReferenceCode;
+
+/// Everything that a scene's reference value depends on: the scenario, the reference solver's version and complete
+/// settings, the rules of the runs, and the code of solver, truths and scenes.
+nlohmann::json reference_key(const Scene&, const ReferenceRules&);
+
+/// The value stored in `folder` for this key. None if the file is missing, unreadable or of another key.
+std::optional<ReferenceResult> read_reference(const std::filesystem::path& folder, const nlohmann::json& key);
+void write_reference(const std::filesystem::path& folder, const nlohmann::json& key, const ReferenceResult&);
 
 }  // namespace clothbench

@@ -1,7 +1,7 @@
 # cmake -D SOURCE_DIR= -D OUTPUT= -P reference_code.cmake: the SHA-256 of all sources that a reference value depends on, as C++.
 # A value cached from other sources is not found again, so no version number has to be raised by hand.
 set(folders solvers/reference harness/base harness/truth harness/scenario harness/scenario/kinds harness/include/clothbench)
-set(files harness/runner/reference.cpp harness/runner/reference.hpp harness/runner/reference_cache.cpp harness/runner/frame_loop.cpp harness/runner/frame_loop.hpp
+set(files harness/runner/reference.cpp harness/runner/reference.hpp harness/runner/frame_loop.cpp harness/runner/frame_loop.hpp
   harness/metrics/truth_errors.cpp harness/metrics/truth_errors.hpp)
 set(watch "")
 if(LIST_FILES)
@@ -23,7 +23,7 @@ foreach(file ${files})
 endforeach()
 string(SHA256 CODE "${all}")
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "runner/reference_cache.hpp"
+#include "runner/reference.hpp"
 
 namespace clothbench {
 const char* const kReferenceCode = "@CODE@";

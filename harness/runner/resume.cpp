@@ -1,5 +1,3 @@
-#include "runner/resume.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "clothbench/error.hpp"
 #include "results/result_folder.hpp"
 #include "results/store.hpp"
+#include "runner/study_runner.hpp"
 
 namespace clothbench {
 namespace {

@@ -13,8 +13,6 @@
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/jobs.hpp"
-#include "runner/stage_check.hpp"
 
 namespace clothbench {
 namespace {
@@ -25,7 +23,7 @@ double unix_now() { return std::chrono::duration<double>(std::chrono::system_clo
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Of a trial's frames, which begin the scene anew with every drop.
+/// Rules for a trial's frames, which restart the scene with every drop.
 FrameRules frame_rules(const TrialRules& rules, int frames, double max_wall_s = 0) {
   return {0, frames, rules.drop_frames, max_wall_s, rules.min_frames, kTrialsKept};
 }
@@ -59,7 +57,7 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   return j;
 }
 
-/// Adds what the solver has counted after a frame, a series a count. Returns what makes the run an error.
+/// Adds what the solver has counted after a frame, one series per count. Returns the reason if the run is an error.
 std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vector<MetricSeries>& series) {
   std::string fault;
   const std::vector<SolverCount> counts = solver.counts();
@@ -298,7 +296,7 @@ void SolverRun::describe(const Rendering& rendering) {
 }
 
 /// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial
-/// may. What draws is made for the trial: images of every run of a group at once would fill a device.
+/// may. The drawer is made anew for each trial: images of every run of a group at once would fill a device.
 void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);
@@ -339,6 +337,27 @@ std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, c
   s.merge(stage_scalars(run));
   for (const auto& [name, value] : spec.scene_values) s[name] = value;
   return s;
+}
+
+constexpr FeatureSet kData = features_of(FeatureOf::Data);
+
+std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan) {
+  std::string fault;
+  const FeatureSet implied = scene.needs - info.ignores - kData;
+  FeatureSet served;
+  for (const StagePlan& stage : plan.stages) {
+    served |= stage.serves;
+    (stage.serves - kData - implied).for_each([&](Feature f) {
+      fault += "stage " + stage.name + " serves " + std::string(name_of(f)) + ", which the scene does not need; ";
+    });
+  }
+  (implied - served).for_each([&](Feature f) { fault += "no stage serves " + std::string(name_of(f)) + "; "; });
+  if (!plan.contact_margins_m.empty() && plan.contact_margins_m.size() != scene.colliders.size())
+    fault += fmt::format("{} contact margins of {} colliders; ", plan.contact_margins_m.size(), scene.colliders.size());
+  for (const double m : plan.contact_margins_m)
+    if (!(m >= 0 || std::isnan(m)) || std::isinf(m)) fault += fmt::format("a contact margin of {} m; ", m);
+  if (plan.stages.empty()) fault += "no stage at all; ";
+  return fault.empty() ? fault : fault.substr(0, fault.size() - 2);
 }
 
 }  // namespace clothbench

@@ -1,11 +1,29 @@
 #pragma once
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "clothbench/record.hpp"
+#include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/frame_drawer.hpp"
 
 namespace clothbench {
+
+/// Draws the state at the end of a frame as an application would show it; used for the frame time with rendering.
+class FrameDrawer {
+ public:
+  virtual ~FrameDrawer() = default;
+  /// Draws the cloth as the solver holds it after frame `frame` (0 = the start), and the colliders; complete on return.
+  virtual void draw(int frame) = 0;
+};
+
+/// How frames are drawn in studies that time rendering; both are empty in others.
+struct Rendering {
+  /// Describes, for the result file, what is drawn and where positions come from.
+  std::function<std::string(const SolverInfo&)> describe;
+  /// Makes a drawer for a loaded solver, which the drawer reads and which must outlive it.
+  std::function<std::unique_ptr<FrameDrawer>(const Scene&, const ClothSolver&, const DeviceOptions&)> make;
+};
 
 /// One planned run: one scene x one solver x one complete set of settings.
 struct RunSpec {
@@ -15,7 +33,6 @@ struct RunSpec {
   std::string setting = "default";
   int work = 0;                                     ///< on a ladder of settings: multiple of the work of its first rung
   std::string over_budget = {};                     ///< reason why it is not run, if any; stored as it is
-  bool timed = true;                                ///< false: the accuracy pass alone
   std::map<std::string, double> scene_values = {};  ///< known values of the scene itself, added to every run's summary
 };
 
@@ -96,5 +113,10 @@ class SolverRun {
 
 /// Every scalar of the tables, from the record of one run. NaN where not applicable.
 std::map<std::string, double> summarise(const RunSpec&, const Plan&, const RunRecord&);
+
+/// Checks that a plan leaves out stages a scene does not need: the features that its stages serve must be exactly those
+/// the scene needs, less those the backend declares to ignore. Returns the extra or missing ones, or "" if there are
+/// none.
+std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan);
 
 }  // namespace clothbench

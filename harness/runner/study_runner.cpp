@@ -13,15 +13,12 @@
 #include <thread>
 
 #include "clothbench/error.hpp"
-#include "metrics/truth_dependence.hpp"
+#include "metrics/truth_errors.hpp"
 #include "results/replay.hpp"
+#include "runner/environment.hpp"
 #include "runner/expect.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/ladder.hpp"
 #include "runner/reference.hpp"
-#include "runner/resume.hpp"
-#include "runner/run_process.hpp"
-#include "runner/sensors.hpp"
 
 namespace clothbench {
 namespace {
@@ -102,7 +99,7 @@ class GroupRun {
     for (const bool on_gpu : {true, false}) {
       std::vector<Running*> part;
       for (Running& r : running_)
-        if (r.run->alive() && r.run->spec().timed && r.run->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
+        if (r.run->alive() && r.run->spec().entry->info.on_gpu == on_gpu && !r.has_trial(k) &&
             !r.trials_agree(plan_.rules.agree))
           part.push_back(&r);
       for (std::size_t i = 0; i < part.size(); ++i) {
@@ -220,7 +217,7 @@ class GroupRun {
   std::vector<Running> running_;
 };
 
-using Task = std::function<void(RunWorker&)>;
+using Task = std::function<void(Worker&)>;
 
 /// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in their order as threads become free.
 /// After an exception no further task begins, and the first exception is thrown once all threads have ended.
@@ -231,7 +228,7 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const std::filesystem::
   std::mutex mutex;
   const auto work = [&](int k) {
     try {
-      RunWorker worker(program, scratch / std::to_string(k));
+      Worker worker(program, scratch / std::to_string(k));
       for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
     } catch (...) {
       next = tasks.size();
@@ -276,7 +273,7 @@ void execute_apart(const RunPlan& plan, const RunOptions& options, RunResult& re
   std::mutex mutex;
   std::vector<Task> tasks;
   for (const RunSpec* spec : todo)
-    tasks.push_back([&, spec](RunWorker& worker) {
+    tasks.push_back([&, spec](Worker& worker) {
       stop_if_interrupted(kRunsKept);
       const RunRecord r =
           worker.run(request_of(*spec, {options.device, plan.protocol, options.out, plan.rules.run_limit_s}));

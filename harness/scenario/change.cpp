@@ -33,16 +33,15 @@ Matrix matrix_of(const SceneChange& c) {
   return m;
 }
 
-/// Sets a rotated box's angles about the world's x, then y, then z axis. An axis may be reversed: the box is the same.
+/// Sets a rotated box's angles about the world's x, then y, then z axis.
 void turn_box(json& box, const SceneChange& c) {
   if (is_identity(c)) return;
   const Vec3 old = vec3(box["rotation_deg"]);
   using Turn = Eigen::AngleAxisd;
-  Matrix r = matrix_of(c) *
-             (Turn(old[2] / kDegrees, Eigen::Vector3d::UnitZ()) * Turn(old[1] / kDegrees, Eigen::Vector3d::UnitY()) *
-              Turn(old[0] / kDegrees, Eigen::Vector3d::UnitX()))
-                 .toRotationMatrix();
-  if (c.mirrors()) r.col(2) = -r.col(2);
+  const Matrix r = matrix_of(c) * (Turn(old[2] / kDegrees, Eigen::Vector3d::UnitZ()) *
+                                   Turn(old[1] / kDegrees, Eigen::Vector3d::UnitY()) *
+                                   Turn(old[0] / kDegrees, Eigen::Vector3d::UnitX()))
+                                      .toRotationMatrix();
   box["rotation_deg"] = {kDegrees * std::atan2(r(2, 1), r(2, 2)), -kDegrees * std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
                          kDegrees * std::atan2(r(1, 0), r(0, 0))};
 }
@@ -77,11 +76,9 @@ class Changer {
   void cloth(json& j) const {
     json& pose = j["pose"];
     if (pose.contains("over_table")) refuse("a sheet over a table");
-    if (c_.mirrors() && (pose.contains("drape") || pose.contains("span_m")))
-      refuse("a sheet that does not start flat, by a reflection,");
     if (j.contains("mesh") && !j["mesh"].contains("drawn")) refuse("a mesh of a file");
     scale_list(j.contains("mesh") ? j["mesh"]["drawn"]["size_m"] : j["size_m"], c_.length);
-    scale(j, "areal_density_kg_per_m2", c_.mass / (c_.length * c_.length));
+    scale(j, "areal_density_kg_per_m2", 1 / (c_.length * c_.length));
     pose["center_m"] = place(pose["center_m"]);
     for (const char* axis : {"axis_u", "axis_v"}) pose[axis] = c_.turned(vec3(pose[axis]));
     if (j.contains("self_collision")) scale(j["self_collision"], "thickness_m", c_.length);
@@ -92,9 +89,8 @@ class Changer {
   }
 
   void material(json& j) const {
-    const double energy = c_.mass * c_.length * c_.length / (c_.time * c_.time);
-    if (j["membrane_stiffness_N_per_m"].is_number())
-      scale(j, "membrane_stiffness_N_per_m", c_.mass / (c_.time * c_.time));
+    const double energy = c_.length * c_.length / (c_.time * c_.time);
+    if (j["membrane_stiffness_N_per_m"].is_number()) scale(j, "membrane_stiffness_N_per_m", 1 / (c_.time * c_.time));
     scale(j, "bending_rigidity_N_m", energy);
     scale(j, "damping_per_s", 1 / c_.time);
   }
@@ -110,22 +106,19 @@ class Changer {
       if (j.contains(key)) j[key] = c_.turned(vec3(j[key]));
     if (j.contains("size_m")) scale_list(j["size_m"], c_.length);
     if (type == "box") turn_box(j, c_);
-    if (type != "mesh") return;
-    for (json& p : j["positions_m"]) p = place(p);
-    if (c_.mirrors())
-      for (json& t : j["triangles"]) std::swap(t[1], t[2]);
+    if (type == "mesh")
+      for (json& p : j["positions_m"]) p = place(p);
   }
 
   const SceneChange& c_;
   const std::string& source_;
 };
 
-/// Irregular scenes are valid for one position, one size and one numbering only.
+/// Irregular scenes are valid for one position and one size only.
 void refuse_irregular(const json& s, const std::string& source) {
   const auto check = [&](const json& object, std::initializer_list<const char*> keys) {
     for (const char* key : keys)
-      if (object.contains(key))
-        throw Error(source + ": a scene with \"" + key + "\" cannot be moved, scaled or renumbered");
+      if (object.contains(key)) throw Error(source + ": a scene with \"" + key + "\" cannot be moved or scaled");
   };
   check(s["cloth"], {"spin_rad_per_s", "column_factors", "mass_factors", "start"});
   check(s["material"], {"regions"});
@@ -133,33 +126,7 @@ void refuse_irregular(const json& s, const std::string& source) {
   for (const json& grip : s["grips"]) check(grip, {"stop_s", "release_s", "jumps"});
   for (const json& collider : s["colliders"])
     if (collider["type"] == "capsule")
-      throw Error(source + ": a scene with a collider of type capsule cannot be moved, scaled or renumbered");
-}
-
-/// The new name of an edge or corner after renumbering.
-std::string renamed(const std::string& name, Renumbering by) {
-  std::string out = name;
-  if (by == Renumbering::Transpose) {
-    if (name.size() == 2) return std::string(name[0] == 'u' ? "v" : "u") + name[1];
-    return std::string("u") + name[3] + "v" + name[1];
-  }
-  const char axis = by == Renumbering::FlipU ? 'u' : 'v';
-  for (std::size_t k = 0; k + 1 < out.size(); k += 2)
-    if (out[k] == axis) out[k + 1] = out[k + 1] == '0' ? '1' : '0';
-  return out;
-}
-
-std::vector<std::uint32_t> numbers(int columns, int rows, Renumbering by) {
-  std::vector<std::uint32_t> out;
-  const bool transposed = by == Renumbering::Transpose;
-  for (int j = 0; j < (transposed ? columns : rows); ++j)
-    for (int i = 0; i < (transposed ? rows : columns); ++i) {
-      int u = transposed ? j : i, v = transposed ? i : j;
-      if (by == Renumbering::FlipU) u = columns - 1 - u;
-      if (by == Renumbering::FlipV) v = rows - 1 - v;
-      out.push_back(static_cast<std::uint32_t>(v * columns + u));
-    }
-  return out;
+      throw Error(source + ": a scene with a collider of type capsule cannot be moved or scaled");
 }
 
 }  // namespace
@@ -170,41 +137,9 @@ Vec3 SceneChange::turned(const Vec3& v) const {
   return out;
 }
 
-bool SceneChange::mirrors() const { return matrix_of(*this).determinant() < 0; }
-
 json change_scene(json scenario, const SceneChange& c, const std::string& source) {
   refuse_irregular(scenario, source);
   return Changer(c, source).changed(std::move(scenario));
-}
-
-json renumber_scene(json s, Renumbering by, const std::string& source, std::vector<std::uint32_t>& new_to_old) {
-  refuse_irregular(s, source);
-  json &cloth = s["cloth"], &pose = cloth["pose"];
-  for (const json& grip : s["grips"])
-    if (!grip.contains("edge")) throw Error(source + ": a sheet that a hand holds cannot be renumbered");
-  if (pose.contains("over_table") || pose.contains("drape") || pose.contains("span_m"))
-    throw Error(source + ": a sheet that does not start flat cannot be renumbered");
-  new_to_old = numbers(cloth["grid"][0].get<int>(), cloth["grid"][1].get<int>(), by);
-  std::vector<std::uint32_t> old_to_new(new_to_old.size());
-  for (std::size_t k = 0; k < new_to_old.size(); ++k) old_to_new[new_to_old[k]] = static_cast<std::uint32_t>(k);
-  if (by == Renumbering::Transpose) {
-    std::swap(cloth["grid"][0], cloth["grid"][1]);
-    std::swap(cloth["size_m"][0], cloth["size_m"][1]);
-    std::swap(pose["axis_u"], pose["axis_v"]);
-  } else {
-    json& axis = pose[by == Renumbering::FlipU ? "axis_u" : "axis_v"];
-    axis = scaled(-1, vec3(axis));
-  }
-  for (json& pin : s["pins"]) {
-    for (const char* key : {"edge", "clamp"})
-      if (pin.contains(key)) pin[key] = renamed(pin[key].get<std::string>(), by);
-    if (pin.contains("corners"))
-      for (json& name : pin["corners"]) name = renamed(name.get<std::string>(), by);
-    if (pin.contains("vertices"))
-      for (json& v : pin["vertices"]) v = old_to_new.at(v.get<std::size_t>());
-  }
-  for (json& grip : s["grips"]) grip["edge"] = renamed(grip["edge"].get<std::string>(), by);
-  return s;
 }
 
 }  // namespace clothbench

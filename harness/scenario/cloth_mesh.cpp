@@ -41,7 +41,7 @@ bool has_area(const std::array<Vec3, 3>& x) {
   return area_of(x) > kLeastArea * longest * longest;
 }
 
-/// "<source>: line 7": where a file has a vertex or a triangle; the source alone where it has no lines.
+/// "<source>: line 7": where a file has a vertex or a triangle; only the source if it has no lines.
 std::string place(const std::string& source, const std::vector<std::uint32_t>& lines, std::size_t k) {
   return lines.empty() ? source : fmt::format("{}: line {}", source, lines[k]);
 }

@@ -5,7 +5,7 @@
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "scenario/schemas.hpp"
+#include "scenario/scene_parts.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {

@@ -1,5 +1,3 @@
-#include "scenario/colliders.hpp"
-
 #include <fmt/format.h>
 
 #include <map>
@@ -10,6 +8,7 @@
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/moving_hand.hpp"
+#include "scenario/scene_parts.hpp"
 #include "scenario/table_pose.hpp"
 #include "scenario/vec3.hpp"
 
@@ -134,7 +133,7 @@ class StageReader {
     return g;
   }
 
-  /// Held vertices move rigidly with this frame: its origin is the pinch point, its rotation that of the palm.
+  /// Held vertices move rigidly with this frame: its origin is the pinch point, its rotation is the palm's.
   static assets::Frame pinch_frame(const assets::HandPose& pose) {
     assets::Frame f = assets::palm_frame(pose);
     f.translation() = assets::pinch_point(pose);

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "assets/hand.hpp"
-#include "scenario/drawn_values.hpp"
+#include "scenario/draw_contact.hpp"
 
 namespace clothbench {
 namespace {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 

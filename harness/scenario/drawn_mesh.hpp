@@ -10,11 +10,12 @@ namespace clothbench {
 /// A flat sheet of irregular triangles, drawn by number: refined at will, and at any angle to its lattice.
 struct DrawnSheet {
   double width_m = 1, height_m = 1;
-  int cells = 8;           ///< of the width; those of the height have nearly the same size
+  int cells = 8;           ///< along the width; cells along the height have nearly the same size
   double angle_rad = 0;    ///< of the lattice that inner vertices are of
   double share = 0;        ///< of a cell by which each of them is moved at most, 0 to 0.4
   std::uint32_t seed = 1;  ///< of those moves
-  bool clamp = false;      ///< a second line of vertices, a cell from x = 0: held with those of x = 0, it is a clamp
+  bool clamp =
+      false;  ///< a second line of vertices, a cell from x = 0: attached together with the line x = 0, it is a clamp
 };
 
 /// Delaunay triangles (Bowyer 1981; Watson 1981) of a sheet in the plane z = 0, x from 0 to width_m and y from 0 to

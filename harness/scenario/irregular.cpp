@@ -1,5 +1,3 @@
-#include "scenario/irregular.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
+#include "scenario/scene_parts.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {

@@ -14,10 +14,7 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/colliders.hpp"
-#include "scenario/irregular.hpp"
 #include "scenario/scene_parts.hpp"
-#include "scenario/schemas.hpp"
 #include "scenario/strict_contact.hpp"
 #include "scenario/vec3.hpp"
 

@@ -51,7 +51,7 @@ std::vector<Point> seen_along_normal(const std::vector<Vec3>& corners) {
   return out;
 }
 
-/// The first side that meets another one, where neighbours may share their corner alone; the number of sides if none.
+/// The first side that meets another one, where neighbours may share only their corner; the number of sides if none.
 std::size_t crossing_side(const std::vector<Point>& p) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -17,7 +17,7 @@ bool any_collider(const Scene& s) {
 
 bool touches(const Scene& s) { return !s.colliders.empty(); }
 bool always(const Scene&) { return true; }
-/// What a hand has stretched springs back when the hand lets go of it, and that is no fault.
+/// Cloth that a hand has stretched springs back when the hand releases it, and that is no fault.
 bool lets_go_of_nothing(const Scene& s) { return s.grips.vertices.empty(); }
 bool meets_itself(const Scene& s) { return s.needs.has(Feature::SelfCollision); }
 

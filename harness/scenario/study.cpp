@@ -11,8 +11,7 @@
 #include "base/words.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
-#include "scenario/schemas.hpp"
-#include "scenario/study_axes.hpp"
+#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {
@@ -84,7 +83,6 @@ class Builder {
                          assignments(s["set"]), s["tags"]};
       solver_names_.push_back(solver.name());
       named.push_back(solver.solver);
-      solver.timed = s["timed"].get<bool>();
       const std::string at = fmt::format("{}: /solvers/{}/ladder", source_, k);
       for (StudySolver& rung : climb(solver, s.contains("ladder") ? s["ladder"].get<Words>() : Words{}, at)) {
         stays_.push_back(stays(solver));
@@ -207,7 +205,6 @@ class Builder {
       const auto tags = item["tags"].get<Words>();
       v.tags.insert(v.tags.end(), tags.begin(), tags.end());
       v.tags.push_back(name + v.suffix);
-      v.timed = item["timed"].get<bool>();
       tags_.insert(v.tags.begin(), v.tags.end());
       add_forms(scenario, path.string(), v, pointer);
     }
@@ -228,7 +225,7 @@ class Builder {
         Scene scene = scene_from_json(scenario, path, all, options_.assets);
         scene.name += v.suffix;
         const int group = group_of(scene);
-        study_.scenes.push_back({std::move(scene), group, v.timed, {}});
+        study_.scenes.push_back({std::move(scene), group, {}});
       }
       Study::Item& item = study_.scenes[at->second];
       const bool is_first = names_.insert(item.scene.name + " " + solver.name()).second;

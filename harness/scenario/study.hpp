@@ -15,11 +15,10 @@ namespace clothbench {
 struct StudySolver {
   std::string solver, label;
   nlohmann::json settings;                        ///< as given; `complete_settings` adds the rest
-  std::vector<std::string> set;                   ///< changes to the scenes for this solver alone, `dotted.key=JSON`
+  std::vector<std::string> set;                   ///< changes to the scenes only for this solver, `dotted.key=JSON`
   nlohmann::json tags = nlohmann::json::array();  ///< of the scenes it runs; empty: all
   bool joined = false;                            ///< comes from StudyOptions::solvers, not from the study
   int work = 0;                                   ///< product of its ladder settings; 0: it is not on the ladder
-  bool timed = true;                              ///< false: only the accuracy pass runs
   std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 
@@ -41,19 +40,18 @@ struct StudyOptions {
   std::vector<std::string> solvers = {};
   /// Settings that the study's ladder, if any, varies for such a solver. One without an entry here is not varied.
   std::map<std::string, std::vector<std::string>> knobs = {};
-  /// Of protocol contact: the scenes of the seeds seed, seed + 1, ..., `count` of them. Defaults: 1, and the study's.
+  /// For protocol contact: the scenes of the seeds seed, seed + 1, ..., `count` of them. Defaults: 1, and the study's.
   std::optional<std::uint64_t> seed = {};
   int count = 0;  ///< 0: the study's
 };
 
-/// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps those of one grid,
-/// with others those of one scene.
+/// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps all runs on one grid,
+/// with others all runs of one scene.
 struct Study {
   /// One form of a scene, and the solvers that run it. A solver's own changes give another form of the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
-    bool timed = true;                 ///< false: only the accuracy pass runs
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
   };
   std::string name, why, protocol;
@@ -79,5 +77,22 @@ bool is_drawn(const Study&);
 bool is_study(const std::string& name_or_path);
 /// The same for a study of this protocol.
 bool is_study_of(const std::string& name_or_path, const std::string& protocol);
+
+/// Most runs of a study: each is a file, and all are planned before the first begins.
+inline constexpr std::size_t kMostRuns = 100000;
+
+/// One form of a scene of a study: a choice of a value on each axis.
+struct Variant {
+  std::string suffix;                        ///< of the scene's name: "-32-single"
+  std::vector<std::string> overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
+  bool merged = false;                       ///< an override fixes the value on an axis, for all that differed in it
+};
+
+/// Cartesian product of a scene's axes; the first varies slowest. Where one of `set` (`key=value`, as in `--set`) fixes
+/// an axis, that axis has this one value: under its own label if the axis lists it, else under the value as a label.
+/// It then has every label of the axis as a tag. Throws Error naming `source` and the JSON
+/// pointer if the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes.
+std::vector<Variant> expand(const nlohmann::json& axes, const std::string& pointer, const std::string& source,
+                            const std::vector<std::string>& set);
 
 }  // namespace clothbench

@@ -1,5 +1,3 @@
-#include "scenario/study_axes.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <optional>
 
 #include "clothbench/error.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
 namespace {

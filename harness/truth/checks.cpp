@@ -1,10 +1,9 @@
-#include "truth/checks.hpp"
-
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "clothbench/error.hpp"
+#include "truth/solutions.hpp"
 
 namespace clothbench::truth {
 namespace {

@@ -17,7 +17,7 @@ struct Face {
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. Of a box: the face below all four corners at the start and moved by
+/// The face of a collider under the sheet. For a box: the face below all four corners at the start and moved by
 /// `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
@@ -164,9 +164,6 @@ ReferenceCase incline(const Strip& s) {
     return out;
   };
   known.columns = [s, slope, at](int frame) { return at(slide_down(slope, s.time_s(frame)).distance_m); };
-  known.column_speeds = [s, slope, d](int frame) {
-    return Columns(static_cast<std::size_t>(s.links) + 1, slide_down(slope, s.time_s(frame)).speed_m_per_s * d);
-  };
   known.quantity = [s, d](const Columns& x) {
     double sum = 0;  // ends carry half a cell
     for (std::size_t i = 0; i < x.size(); ++i)

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "clothbench/error.hpp"
-#include "truth/checks.hpp"
+#include "truth/solutions.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -30,8 +30,6 @@ void same_size(std::size_t got, std::size_t expected, const char* argument) {
 
 /// Infinity counts as NaN: a mean with one infinite part says nothing.
 double finite_or_nan(double value) { return std::isfinite(value) ? value : kNan; }
-
-double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 double square_distance(std::span<const double> a, std::span<const double> b, std::size_t point) {
   double sum = 0;
@@ -123,14 +121,6 @@ double lattice_rms_error(const MaterialLattice& lattice, std::span<const double>
     area += lattice.areas_m2()[s];
   }
   return finite_or_nan(std::sqrt(sum / area) / scale);
-}
-
-double lattice_greatest_error(const MaterialLattice& lattice, std::span<const double> values,
-                              std::span<const double> truth, double scale) {
-  check(lattice, values, truth, scale);
-  double greatest = 0;
-  for (std::size_t s = 0; s < lattice.size(); ++s) greatest = max_or_nan(greatest, square_distance(values, truth, s));
-  return finite_or_nan(std::sqrt(greatest) / scale);
 }
 
 double time_rms(std::span<const double> times, std::span<const double> errors) {

@@ -29,9 +29,8 @@ std::vector<double> rest_uv(const Cloth& c) {
 }
 
 /// The case of a flat rectangle of triangles: the continuum at its vertices. Its columns are means over the rows of the
-/// material lattice, as those of a run, so that interpolation in triangles is no error.
+/// material lattice, as for a run, so that interpolation in triangles is no error.
 ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
-  known.column_speeds = nullptr;
   known.vertices = [s, continuum = known.continuum](int frame) {
     const Cloth& c = s.scene.cloth;
     std::vector<double> out;
@@ -126,17 +125,16 @@ std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values
 }
 
 std::vector<double> vertex_positions(const Cloth& c, const ReferenceCase& known, int frame) {
-  return known.vertices ? known.vertices(frame) : vertex_values(c, known.columns(frame), true);
+  return known.vertices ? known.vertices(frame) : vertex_values(c, known.columns(frame));
 }
 
-std::vector<double> vertex_values(const Cloth& c, const std::vector<Vec3>& columns, bool offset) {
+std::vector<double> vertex_values(const Cloth& c, const std::vector<Vec3>& columns) {
   if (columns.size() != static_cast<std::size_t>(c.columns))
     throw Error("argument columns: expected one for each column of the grid");
   std::vector<double> out;
   for (int j = 0; j < c.rows; ++j)
     for (const Vec3& x : columns)
-      for (std::size_t k = 0; k < 3; ++k)
-        out.push_back(x[k] + (offset ? (j * c.dv() - c.height_m / 2) * c.axis_v[k] : 0));
+      for (std::size_t k = 0; k < 3; ++k) out.push_back(x[k] + (j * c.dv() - c.height_m / 2) * c.axis_v[k]);
   return out;
 }
 

@@ -12,7 +12,8 @@ namespace clothbench::truth {
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
 /// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
 /// line of the sheet; a vertex lies at its column's position plus its offset along axis_v. A triangle mesh has no exact
-/// solution of its own: it has the continuum's at its vertices, and its columns are those of the material lattice.
+/// solution of its own: it has the continuum's at its vertices, and its columns are the columns of the material
+/// lattice.
 ///
 /// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh, or of a
@@ -23,13 +24,11 @@ struct ReferenceCase {
   bool by_quantity = false;  ///< runs are ranked by the quantity's error; otherwise by the distance of the positions
   bool smooth_law = false;   ///< `columns` move by the continuum's law, so their own mesh adds an error
   std::string quantity_name;
-  double quantity_scale = 1;       ///< divisor of errors of the quantity, same unit
-  double speed_scale_m_per_s = 1;  ///< the same for speeds
+  double quantity_scale = 1;  ///< divisor of errors of the quantity, same unit
 
-  std::function<std::vector<Vec3>(int frame)> columns;        ///< [m]
-  std::function<std::vector<double>(int frame)> vertices;     ///< [m], 3 each; null: `columns` say all
-  std::function<std::vector<Vec3>(int frame)> column_speeds;  ///< [m/s]; null if there is no solution
-  std::function<Vec3(double share, int frame)> continuum;     ///< at a share 0..1 of the width; null: as `columns`
+  std::function<std::vector<Vec3>(int frame)> columns;     ///< [m]
+  std::function<std::vector<double>(int frame)> vertices;  ///< [m], 3 each; null: `columns` say all
+  std::function<Vec3(double share, int frame)> continuum;  ///< at a share 0..1 of the width; null: as `columns`
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
 };
 
@@ -55,15 +54,14 @@ const std::vector<Tolerance>& tolerances();
 /// Throws Error if there is none of that name.
 const Tolerance& tolerance_of(const std::string& reference_case);
 
-/// Means over the rows of `values` (3 per vertex), one per column. Of a mesh: over the rows of the material lattice.
+/// Means over the rows of `values` (3 per vertex), one per column. For a mesh: over the rows of the material lattice.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);
 
 /// Positions of all vertices (3 each) of a reference case in a frame [m].
 std::vector<double> vertex_positions(const Cloth&, const ReferenceCase&, int frame);
 
-/// Vertex values (3 per vertex) from columns; `offset`: adds each row's position along axis_v (for positions, not
-/// speeds).
-std::vector<double> vertex_values(const Cloth&, const std::vector<Vec3>& columns, bool offset);
+/// Vertex positions (3 per vertex) from the middle of each column; each row adds its position along axis_v.
+std::vector<double> vertex_values(const Cloth&, const std::vector<Vec3>& columns);
 
 /// From a cloth's vertices to the material lattice. Throws Error if its triangles do not cover the rectangle.
 LatticeSampler sampler_of(const Cloth&);

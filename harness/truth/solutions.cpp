@@ -10,7 +10,6 @@
 #include <string>
 
 #include "clothbench/error.hpp"
-#include "truth/checks.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -111,15 +110,12 @@ class ChainMotion {
   std::vector<double> inverse_mass_, diagonal_, off_, tension_;
 };
 
-ChainState nodes_of(const SwingingChain& c, const State& state) {
+Nodes nodes_of(const SwingingChain& c, const State& state) {
   const auto n = static_cast<std::size_t>(c.links);
-  const double a = c.length_m / c.links, per_second = std::sqrt(c.gravity_m_per_s2 / c.length_m);
-  ChainState out{Nodes(n + 1), Nodes(n + 1)};
-  for (std::size_t j = 0; j < n; ++j) {
-    const double cosine = a * std::cos(state[j]), sine = a * std::sin(state[j]), w = state[n + j] * per_second;
-    out.position_m[j + 1] = {out.position_m[j][0] + cosine, out.position_m[j][1] - sine};
-    out.speed_m_per_s[j + 1] = {out.speed_m_per_s[j][0] - w * sine, out.speed_m_per_s[j][1] - w * cosine};
-  }
+  const double a = c.length_m / c.links;
+  Nodes out(n + 1);
+  for (std::size_t j = 0; j < n; ++j)
+    out[j + 1] = {out[j][0] + a * std::cos(state[j]), out[j][1] - a * std::sin(state[j])};
   return out;
 }
 
@@ -193,12 +189,6 @@ double fall_height_m(const FreeFall& f, double t) {
   return f.height_m + f.speed_m_per_s * t * p1(x) - f.gravity_m_per_s2 * t * t * p2(x);
 }
 
-double fall_speed_m_per_s(const FreeFall& f, double t) {
-  check(f, t);
-  const double x = f.damping_per_s * t;
-  return f.speed_m_per_s * std::exp(-x) - f.gravity_m_per_s2 * t * p1(x);
-}
-
 double pendulum_period_s(const Pendulum& p) {
   return 4 * boost::math::ellint_1(std::sin(p.amplitude_rad / 2)) / rate_of(p);
 }
@@ -209,14 +199,7 @@ double pendulum_angle_rad(const Pendulum& p, double t) {
   return 2 * std::asin(k * boost::math::jacobi_cd(k, rate * t));
 }
 
-double pendulum_angular_speed_rad_per_s(const Pendulum& p, double t) {
-  const double rate = rate_of(p), k = std::sin(p.amplitude_rad / 2);
-  t = std::fmod(non_negative(t, "time_s"), pendulum_period_s(p));
-  // d/du asin(k cd u) = -k k' sd u, since 1 - k^2 cd^2 = (k'/dn)^2.
-  return -2 * k * std::cos(p.amplitude_rad / 2) * rate * boost::math::jacobi_sd(k, rate * t);
-}
-
-std::vector<ChainState> swing(const SwingingChain& c, std::span<const double> times_s, double tolerance) {
+std::vector<Nodes> swing(const SwingingChain& c, std::span<const double> times_s, double tolerance) {
   at_least(c.links, 1, "links");
   positive(c.length_m, "length_m");
   positive(c.gravity_m_per_s2, "gravity_m_per_s2");
@@ -227,7 +210,7 @@ std::vector<ChainState> swing(const SwingingChain& c, std::span<const double> ti
   const auto n = static_cast<std::size_t>(c.links);
   State state(2 * n, 0);
   std::fill_n(state.begin(), n, c.start_angle_rad);
-  std::vector<ChainState> out;
+  std::vector<Nodes> out;
   ChainMotion motion(c.links, c.end_mass_ratio);
   double now = 0;
   for (const double t : times_s) {
@@ -279,8 +262,9 @@ Nodes cantilever_nodes(int links, double own_weight) {
   return nodes;
 }
 
-std::vector<PulledState> pull(const PulledChain& c, std::span<const double> times_s, std::span<const double> first_m,
-                              std::span<const double> last_m, double tolerance) {
+std::vector<std::vector<double>> pull(const PulledChain& c, std::span<const double> times_s,
+                                      std::span<const double> first_m, std::span<const double> last_m,
+                                      double tolerance) {
   const auto n = static_cast<std::size_t>(at_least(c.links, 2, "links"));
   const double cell = positive(c.length_m, "length_m") / c.links;
   const double speed = std::sqrt(positive(c.membrane_stiffness_N_per_m, "membrane_stiffness_N_per_m") /
@@ -291,12 +275,11 @@ std::vector<PulledState> pull(const PulledChain& c, std::span<const double> time
   // Time in units of a/c. State: displacements of the inner nodes, then their speeds.
   const double per_second = speed / cell;
   State state(2 * (n - 1), 0);
-  std::vector<PulledState> out;
+  std::vector<State> out;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
-    PulledState now{State(n + 1, 0), State(n + 1, 0)};
+    State now(n + 1, 0);
     if (k > 0) {
-      const double seconds = positive(times_s[k] - times_s[k - 1], "times_s (ascending)"),
-                   duration = seconds * per_second;
+      const double duration = positive(times_s[k] - times_s[k - 1], "times_s (ascending)") * per_second;
       const auto along = [](std::span<const double> end, std::size_t to, double share) {
         return end[to - 1] + share * (end[to] - end[to - 1]);
       };
@@ -310,15 +293,10 @@ std::vector<PulledState> pull(const PulledChain& c, std::span<const double> time
       };
       integrate("pulled chain", rate, state, 0.0, duration, std::min(1e-2, duration), tolerance * c.length_m,
                 tolerance);
-      now.speed_m_per_s.front() = (first_m[k] - first_m[k - 1]) / seconds;
-      now.speed_m_per_s.back() = (last_m[k] - last_m[k - 1]) / seconds;
     }
-    now.displacement_m.front() = first_m[k];
-    now.displacement_m.back() = last_m[k];
-    for (std::size_t i = 1; i < n; ++i) {
-      now.displacement_m[i] = state[i - 1];
-      now.speed_m_per_s[i] = state[n - 1 + i - 1] * per_second;
-    }
+    now.front() = first_m[k];
+    now.back() = last_m[k];
+    std::copy_n(state.begin(), n - 1, now.begin() + 1);
     out.push_back(std::move(now));
   }
   return out;

@@ -8,6 +8,7 @@
 // Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
 // All values are in SI units; tensions and loads are per width. A value outside its range throws an Error that names
 // the argument.
+
 namespace clothbench::truth {
 
 /// Points of a strip in its plane, from the held end on; x horizontal.
@@ -28,7 +29,6 @@ struct FreeFall {
   double damping_per_s = 0;
 };
 double fall_height_m(const FreeFall&, double time_s);
-double fall_speed_m_per_s(const FreeFall&, double time_s);  ///< upwards
 
 /// Plane pendulum released at rest: theta'' = -(g/l) sin theta, theta from the vertical.
 ///   T = 4 sqrt(l/g) K(k),  sin(theta/2) = k cd(sqrt(g/l) t, k),  k = sin(amplitude/2)
@@ -41,7 +41,6 @@ struct Pendulum {
 };
 double pendulum_period_s(const Pendulum&);
 double pendulum_angle_rad(const Pendulum&, double time_s);
-double pendulum_angular_speed_rad_per_s(const Pendulum&, double time_s);
 
 /// A straight strip of inextensible links without bending stiffness, held at one end and released at rest: the motion
 /// of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles. Tensions T_j follow
@@ -60,12 +59,9 @@ struct SwingingChain {
   double end_mass_ratio = 0.5;  ///< mass of the free end row over the mass of an inner row: 1/2 for lumped masses
   double start_angle_rad = 0;   ///< below the horizontal
 };
-struct ChainState {
-  Nodes position_m, speed_m_per_s;  ///< links + 1; second coordinate upwards
-};
-/// States at `times_s` (ascending, 0 or more). `tolerance`: error per step of angles, and of angular speeds in units of
-/// sqrt(g/L).
-std::vector<ChainState> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
+/// The links + 1 nodes [m] at `times_s` (ascending, 0 or more), second coordinate upwards. `tolerance`: error per step
+/// of angles, and of angular speeds in units of sqrt(g/L).
+std::vector<Nodes> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
 
 /// A strip of springs, T = Y (lambda - 1) per unit rest width, that hangs at rest from its upper edge (s = 0), under
 /// its weight and a load F on its lower edge: T(s) = rho g (L - s) + F, displacement u = (rho g/Y)(L s - s^2/2) + F
@@ -101,14 +97,11 @@ struct PulledChain {
   double areal_density_kg_per_m2 = 0.2;
   double membrane_stiffness_N_per_m = 1000;
 };
-/// Of all links + 1 nodes; the speed of an end is that of its last leg.
-struct PulledState {
-  std::vector<double> displacement_m, speed_m_per_s;
-};
-/// States at `times_s` (ascending from 0), from rest. The ends have the given displacements at these times and move
-/// linearly between them.
-std::vector<PulledState> pull(const PulledChain&, std::span<const double> times_s, std::span<const double> first_m,
-                              std::span<const double> last_m, double tolerance = 1e-13);
+/// Displacements [m] of all links + 1 nodes at `times_s` (ascending from 0), from rest. The ends have the given
+/// displacements at these times and move linearly between them.
+std::vector<std::vector<double>> pull(const PulledChain&, std::span<const double> times_s,
+                                      std::span<const double> first_m, std::span<const double> last_m,
+                                      double tolerance = 1e-13);
 
 /// The same pull without a mesh, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
 /// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after; the wave from each end adds a strain of v0/c.
@@ -172,5 +165,13 @@ struct SlidState {
 };
 std::vector<SlidState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
                                   std::span<const double> times_s);
+
+/// Each returns the value if it meets the condition in the function's name. Otherwise (also for NaN and infinity) it
+/// throws an Error that names the argument, the expected range, and the value.
+double positive(double value, const char* argument);
+double non_negative(double value, const char* argument);
+double within(double value, double least, double greatest, const char* argument);  ///< ends included
+double between(double value, double lower, double upper, const char* argument);    ///< ends excluded
+int at_least(int value, int least, const char* argument);
 
 }  // namespace clothbench::truth

@@ -71,7 +71,7 @@ struct Strip {
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
   }
   void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
-  /// Of the membrane: at most this share of the length by the strip's own weight.
+  /// The membrane stretches by at most this share of the length by the strip's own weight.
   void need_stiff(double strain, const std::string& text) const {
     const auto Y = scene.material.membrane_stiffness_N_per_m;
     need(!Y || scene.cloth.areal_density_kg_per_m2 * g * length_m / *Y <= strain,
@@ -107,7 +107,6 @@ struct Strip {
     ReferenceCase c;
     c.name = scene.reference_case;
     c.quantity_scale = length_m;
-    c.speed_scale_m_per_s = std::sqrt(g * length_m);
     return c;
   }
 

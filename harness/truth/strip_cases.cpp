@@ -47,11 +47,6 @@ ReferenceCase free_fall(const Strip& s) {
     for (int i = 0; i <= s.links; ++i) out.push_back(fallen(static_cast<double>(i) / s.links, frame));
     return out;
   };
-  known.column_speeds = [s, v0, body](int frame) {
-    const double t = s.time_s(frame);
-    const Vec3 v = fall_speed_m_per_s(body(1, 0), t) * v0 + fall_speed_m_per_s(body(0, s.g), t) * s.up;
-    return Columns(static_cast<std::size_t>(s.links) + 1, v);
-  };
   known.quantity = [s](const Columns& c) {
     double sum = 0;  // ends carry half a cell
     for (std::size_t i = 0; i < c.size(); ++i)
@@ -79,11 +74,6 @@ ReferenceCase pendulum(const Strip& s) {
     const double a = pendulum_angle_rad(p, s.time_s(frame));
     return Columns{s.start, s.at(s.length_m * std::sin(a), -s.length_m * std::cos(a))};
   };
-  known.column_speeds = [s, p](int frame) {
-    const double a = pendulum_angle_rad(p, s.time_s(frame)),
-                 w = s.length_m * pendulum_angular_speed_rad_per_s(p, s.time_s(frame));
-    return Columns{Vec3{}, w * std::cos(a) * s.along + w * std::sin(a) * s.up};
-  };
   known.quantity = [s](const Columns& c) {
     const Vec3 d = c.back() - s.start;
     return std::atan2(dot(d, s.along), -dot(d, s.up));
@@ -109,17 +99,11 @@ ReferenceCase swing_strip(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.quantity_name = "distance of the free end from the wall";
   known.quantity = tip(s.start, s.along);
-  using States = std::vector<ChainState>;
+  using States = std::vector<Nodes>;
   const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5, 0}, s.times_s()));
   known.columns = [s, states](int frame) {
     Columns out;
-    for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame)).position_m) out.push_back(s.at(x, z));
-    return out;
-  };
-  known.column_speeds = [s, states](int frame) {
-    Columns out;
-    for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame)).speed_m_per_s)
-      out.push_back(x * s.along + z * s.up);
+    for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame))) out.push_back(s.at(x, z));
     return out;
   };
   // Four times as many links are nearer to the continuum by 16; made only if asked for.
@@ -127,7 +111,7 @@ ReferenceCase swing_strip(const Strip& s) {
   known.continuum = [s, fine](double share, int frame) {
     if (fine->empty())
       *fine = swing({std::min((s.mesh() ? 8 : 4) * s.links, 512), s.length_m, s.g, 0.5, 0}, s.times_s(), 1e-9);
-    const auto [x, z] = node_position(fine->at(static_cast<std::size_t>(frame)).position_m, share);
+    const auto [x, z] = node_position(fine->at(static_cast<std::size_t>(frame)), share);
     return s.at(x, z);
   };
   return known;
@@ -138,7 +122,7 @@ namespace {
 /// Positions of a sheet that shears: away from its pinned edge it also narrows, by a third of its strain.
 std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Columns& columns) {
   const Cloth& c = s.scene.cloth;
-  std::vector<double> out = vertex_values(c, columns, true);
+  std::vector<double> out = vertex_values(c, columns);
   for (int j = 0; j < c.rows; ++j)
     for (int i = 1; i < c.columns; ++i) {
       const double below = strip.areal_density_kg_per_m2 * strip.gravity_m_per_s2 * (c.columns - 1 - i) * c.du(),
@@ -291,23 +275,16 @@ ReferenceCase two_hand_pull(const Strip& s) {
              last = displacement(rows, s.scene.motion[0].grip_position_m[rows]);
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
-  known.speed_scale_m_per_s = hands.hand_speed_m_per_s;
   known.quantity_name = "greatest strain";
   known.quantity_scale = hands.hand_speed_m_per_s / hands.wave_speed_m_per_s;
-  using States = std::vector<PulledState>;
+  using States = std::vector<std::vector<double>>;
   const auto states = std::make_shared<States>(
       pull({s.links, s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness()}, s.times_s(), first, last));
   known.columns = [s, states](int frame) {
     Columns out;
     for (int i = 0; i <= s.links; ++i)
-      out.push_back(s.at(s.length_m * i / s.links +
-                             states->at(static_cast<std::size_t>(frame)).displacement_m[static_cast<std::size_t>(i)],
-                         0));
-    return out;
-  };
-  known.column_speeds = [s, states](int frame) {
-    Columns out;
-    for (double v : states->at(static_cast<std::size_t>(frame)).speed_m_per_s) out.push_back(v * s.along);
+      out.push_back(
+          s.at(s.length_m * i / s.links + states->at(static_cast<std::size_t>(frame))[static_cast<std::size_t>(i)], 0));
     return out;
   };
   known.continuum = [s, hands](double share, int frame) {

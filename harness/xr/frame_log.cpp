@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "runner/jobs.hpp"
+#include "runner/environment.hpp"
 
 namespace clothbench::xr {
 namespace {

@@ -220,7 +220,7 @@ const SolverEntry& load(const std::string& given) {
   const std::string path = file.string();
   for (const Loaded& l : loaded())
     if (l.path == path) return l.entry;
-  if (!plugins_in_process()) probe(path);
+  if (!solvers_in_process()) probe(path);
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse(path, fmt::format("cannot be loaded: {}", dlerror()));
   const Entrance enter = entrance(library);

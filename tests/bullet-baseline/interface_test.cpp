@@ -1,5 +1,5 @@
 #include "clothbench/error.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 #include "sheets.hpp"
 
 namespace clothbench {

@@ -1,4 +1,4 @@
-// What people and machines read: the console, JUnit XML, workflow commands.
+// What people and machines read: the console, JUnit XML, JSON.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -29,12 +29,6 @@ Checked sample() {
   return c;
 }
 
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++n;
-  return n;
-}
-
 TEST(Junit, IsReadBackByAnXmlParser) {
   const fs::path dir = fs::temp_directory_path() / ("clothbench-junit-" + std::to_string(getpid()));
   fs::create_directories(dir);
@@ -52,20 +46,6 @@ TEST(Junit, IsReadBackByAnXmlParser) {
                               (dir / "expected.json").string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   fs::remove_all(dir);
-}
-
-TEST(Github, OneLineACommandWithEverythingEscaped) {
-  const std::string text = github_commands(sample(), "a:b,c/base.json");
-  EXPECT_EQ(count(text, "\n"), 3u) << text;
-  EXPECT_EQ(count(text, "::error "), 1u);
-  EXPECT_EQ(count(text, "::notice "), 2u);
-  EXPECT_EQ(count(text, "\r"), 0u);
-  EXPECT_EQ(text.rfind("::error file=a%3Ab%2Cc/base.json,title=desk__bad----ugly-__-k-=1 [npm]::FAILED: outcome: ", 0),
-            0u)
-      << text;
-  EXPECT_NE(text.find("100 %25: d]]>%0D%0Anext"), std::string::npos) << text;
-  EXPECT_NE(text.find("%0AFAILED: depth_max_m: 0.02, baseline 0.003, allowed ≤ 0.0036"), std::string::npos) << text;
-  EXPECT_EQ(github_commands({}, "x"), "");
 }
 
 TEST(Console, ShowsWhatDiffersAndAVerdict) {

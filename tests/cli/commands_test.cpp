@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "cli/command_line.hpp"
@@ -19,6 +20,7 @@ using Words = std::vector<std::string>;
 using testing_command::Answer;
 
 Answer in_this_process(const Words& words) {
+  setenv("CLOTHBENCH_IN_PROCESS", "1", 1);  // this program is no worker
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const int code = run_command_line(words);

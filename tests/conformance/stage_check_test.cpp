@@ -1,6 +1,6 @@
-#include "runner/stage_check.hpp"
-
 #include <gtest/gtest.h>
+
+#include "runner/solver_run.hpp"
 
 namespace clothbench {
 namespace {

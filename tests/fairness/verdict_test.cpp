@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "metrics/truth_dependence.hpp"
+#include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -9,7 +9,7 @@
 #include "clothbench/solver.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
-#include "scenario/schemas.hpp"
+#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {

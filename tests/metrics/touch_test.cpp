@@ -109,7 +109,6 @@ TEST(Touch, ACapsuleThatCarriesTheClothDoesNotSlip) {
   EXPECT_GT(series(pass, "touching_fraction")[5], 0);
   for (const double slid : series(pass, "slip_m")) EXPECT_NEAR(slid, 0, 1e-12);
   const auto s = summary_of(scene, pass);
-  EXPECT_NEAR(s.at("imposed_speed_m_per_s"), 1, 1e-9);
   EXPECT_EQ(s.at("pop_max_m"), 0) << "it touches to the end, and nothing pops";
 }
 

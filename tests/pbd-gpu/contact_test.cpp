@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "contact_scenes.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

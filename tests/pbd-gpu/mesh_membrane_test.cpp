@@ -9,7 +9,6 @@
 
 #include "contact_scenes.hpp"
 #include "drawn_sheet.hpp"
-#include "metrics/mesh_patch.hpp"
 #include "prediction.hpp"
 
 namespace clothbench::pbd_gpu {

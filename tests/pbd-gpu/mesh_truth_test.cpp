@@ -147,11 +147,11 @@ TEST_P(MeshTruth, AStripSwings) {
     truth::SwingingChain chain;
     chain.links = 200;
     const double at_end[] = {0.4};
-    const truth::ChainState right = truth::swing(chain, at_end, 1e-10).back();
+    const truth::Nodes right = truth::swing(chain, at_end, 1e-10).back();
     const std::vector<double> end = end_of(s, {{"substeps", 16}});
     double squares = 0;
     for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) {
-      const auto at = truth::node_position(right.position_m, s.cloth.mesh->vertices[v][0]);
+      const auto at = truth::node_position(right, s.cloth.mesh->vertices[v][0]);
       squares += std::pow(end[3 * v] - at[0], 2) + std::pow(end[3 * v + 1] - at[1], 2);
     }
     return std::sqrt(squares / static_cast<double>(s.cloth.vertex_count()));

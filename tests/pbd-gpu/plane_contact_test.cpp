@@ -10,8 +10,8 @@
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
 #include "plane_contact_reference.hpp"
-#include "runner/stage_check.hpp"
-#include "runner/whole_run.hpp"
+#include "runner/solver_run.hpp"
+#include "runner/worker.hpp"
 #include "substeps.hpp"
 
 namespace clothbench::pbd_gpu {

@@ -6,7 +6,7 @@
 #include "contact_scenes.hpp"
 #include "plane_contact.hpp"
 #include "recorded_access.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

@@ -4,7 +4,7 @@
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
 #include "plane_contact_reference.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench::pbd_gpu {

@@ -6,7 +6,7 @@
 
 #include "contact_scenes.hpp"
 #include "metrics/contact/contour.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench::pbd_gpu {

@@ -134,7 +134,7 @@ class Plugin(PluginTest):
             ("load", "error", "it was asked to fail"),
         ):
             words = ["run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--trials", "0", "--out", self.out]
-            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="1"), 1, self.text)
+            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_SOLVER_LIMIT_S="2"), 1, self.text)
             outcome = self.stored("gravity__faulty__default")[0]
             self.assertEqual(outcome["status"], status)
             self.assertIn(message, outcome["message"])
@@ -173,7 +173,7 @@ class Plugin(PluginTest):
     def test_a_crash_a_hang_and_an_exit_are_answers_of_conformance(self):
         words = ["conformance", self.faulty(), "ballistic", "--scene", "conformance/sheet", "--no-whole"]
         for fault, message in (("crash:5", "signal 11"), ("hang:5", "killed after 1"), ("exit:5", "exit status 0")):
-            bad, good = self.rows(*words, code=1, FAULT=fault, CLOTHBENCH_PLUGIN_LIMIT_S="1")
+            bad, good = self.rows(*words, code=1, FAULT=fault, CLOTHBENCH_SOLVER_LIMIT_S="1")
             self.assertEqual((bad["status"], good["status"]), ("FAIL", "pass"))
             self.assertIn(message, bad["faults"][0])
 

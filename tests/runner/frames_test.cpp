@@ -7,7 +7,7 @@
 #include "clothbench/record.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/reference.hpp"
-#include "runner/whole_run.hpp"
+#include "runner/worker.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -1,6 +1,4 @@
 // How many clothbench jobs share the machine.
-#include "runner/jobs.hpp"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,26 +8,21 @@
 #include <fstream>
 #include <string>
 
+#include "runner/environment.hpp"
+#include "with_folder.hpp"
+
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Jobs : public ::testing::Test {
+class Jobs : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-jobs-" + std::to_string(getpid()));
-    fs::create_directories(dir_);
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
   void process(int pid, const std::string& name, int parent, char state = 'S') {
     fs::create_directories(dir_ / std::to_string(pid));
     std::ofstream(dir_ / std::to_string(pid) / "stat")
         << pid << " (" << name << ") " << state << " " << parent << " 1 1 0";
   }
-
-  fs::path dir_;
 };
 
 TEST_F(Jobs, AreProcessesOfTheProgramBesideThisOne) {

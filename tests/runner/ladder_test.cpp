@@ -1,19 +1,10 @@
 // Ladders of settings: where they end for want of time, and what is stored of the rest; and trials that agree.
-#include "runner/ladder.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 #include <thread>
 
-#include "runner/study_runner.hpp"
-#include "scenario/load.hpp"
+#include "small_runs.hpp"
 
 namespace clothbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 RunSpec rung(const SolverEntry& e, int work) {
   RunSpec s;
@@ -53,59 +44,27 @@ TEST(LadderBudget, ATimeOutEndsTheLadderWithoutAnyLimit) {
   EXPECT_NE(budget.refused(rung(a, 256)).find("4 times the work of a setting that timed out"), std::string::npos);
 }
 
-/// Falls, each frame as many milliseconds long as `substeps` says.
-class Slow final : public ClothSolver {
- public:
-  Slow(std::unique_ptr<ClothSolver> inner, double frame_s) : inner_(std::move(inner)), frame_s_(frame_s) {}
-  const SolverInfo& info() const override { return inner_->info(); }
-  DeviceInfo device() const override { return inner_->device(); }
-  void load(const Scene& s) override { inner_->load(s); }
-  void reset() override { inner_->reset(); }
-  StepStatus step(const FrameInput& f) override {
-    std::this_thread::sleep_for(std::chrono::duration<double>(frame_s_));
-    return inner_->step(f);
-  }
-  void read_state(ClothState& s) const override { inner_->read_state(s); }
-  FrameCost last_cost() const override { return inner_->last_cost(); }
-  Plan plan() const override { return inner_->plan(); }
+class Ladder : public SmallRuns {};
 
- private:
-  std::unique_ptr<ClothSolver> inner_;
-  double frame_s_;
-};
-
-TEST(Ladder, WhatWouldTakeTooLongIsStoredWithItsReason) {
-  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
-  SolverEntry entry = find_solver("ballistic");
-  const auto fast = entry.make;
-  entry.make = [&](const nlohmann::json& s, const DeviceOptions& d) {
-    return std::make_unique<Slow>(fast(nlohmann::json::object(), d), 1e-3 * s["substeps"].get<int>());
-  };
-  RunPlan plan;
-  plan.protocol = "test";
-  plan.rules.trials = 4;
-  plan.rules.frames = 5;
-  plan.rules.warmup_s = 0;
-  plan.rules.accuracy_duration_s = 0.1;
+TEST_F(Ladder, WhatWouldTakeTooLongIsStoredWithItsReason) {
+  const SolverEntry entry = ballistic_with([](ClothSolver& inner, const nlohmann::json& s, const FrameInput& f) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(s["substeps"].get<int>()));
+    return inner.step(f);
+  });
+  std::vector<RunSpec> rungs;
+  for (const int substeps : {10, 20, 80, 160})
+    rungs.push_back({&scene_, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps});
+  RunPlan plan = plan_of(rungs, 4, 5, 0.1);
   plan.rules.ladder_limit_s = 0.5;
   plan.rules.agree = 0.5;  // a sleep is never that far off by itself
-  plan.groups.emplace_back();
-  for (const int substeps : {10, 20, 80, 160}) {
-    RunSpec s{&scene, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps};
-    plan.groups[0].push_back(s);
-  }
-  const fs::path out = fs::temp_directory_path() / ("clothbench-ladder-" + std::to_string(getpid()));
-  fs::create_directories(out);
-  RunOptions options;
-  options.out = out;
-  const RunResult result = execute_runs(plan, options);
+  const RunResult result = execute_runs(plan, options_);
   EXPECT_EQ(result.runs_ok, 2);
   EXPECT_EQ(result.runs_over_budget, 2);
   EXPECT_EQ(result.runs_failed, 0);
   EXPECT_TRUE(result.faults.empty());
   EXPECT_GT(result.seconds.at("ballistic"), 0.2);
   std::map<std::string, RunRecord> runs;
-  for (const fs::path& f : result.files) {
+  for (const std::filesystem::path& f : result.files) {
     RunRecord c = read_run(f);
     runs[c.header.setting] = std::move(c);
   }
@@ -115,27 +74,14 @@ TEST(Ladder, WhatWouldTakeTooLongIsStoredWithItsReason) {
   EXPECT_LT(runs.at("substeps=10").trials.size(), 4u) << "trials that agree are enough";
   EXPECT_GE(runs.at("substeps=10").trials.size(), 2u);
   EXPECT_GT(runs.at("substeps=20").summary.at("untimed_s"), 0.1);
-  fs::remove_all(out);
 }
 
-TEST(Ladder, AllTrialsRunUnlessAskedOtherwise) {
-  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
-  RunPlan plan;
-  plan.protocol = "test";
-  plan.rules.trials = 3;
-  plan.rules.frames = 5;
-  plan.rules.warmup_s = 0;
-  plan.rules.accuracy_duration_s = 0.05;
+TEST_F(Ladder, AllTrialsRunUnlessAskedOtherwise) {
   const SolverEntry& entry = find_solver("ballistic");
-  plan.groups = {{{&scene, &entry, nlohmann::json::object(), "default"}}};
-  const fs::path out = fs::temp_directory_path() / ("clothbench-trials-" + std::to_string(getpid()));
-  fs::create_directories(out);
-  RunOptions options;
-  options.out = out;
-  const RunRecord c = read_run(execute_runs(plan, options).files.at(0));
+  const RunRecord c =
+      read_run(execute_runs(plan_of({{&scene_, &entry, nlohmann::json::object()}}, 3, 5), options_).files.at(0));
   EXPECT_EQ(c.trials.size(), 3u);
   EXPECT_TRUE(std::isnan(c.trials[0].pipelined_wall_s)) << "not asked for, and the CPU waits anyway";
-  fs::remove_all(out);
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // A cached reference value is found again only by what it depends on, all of it.
-#include "runner/reference_cache.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "../scenario/scratch_folder.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
+#include "runner/reference.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -69,16 +68,6 @@ TEST(ReferenceCache, FindsWhatIsOfTheSameKeyAlone) {
   EXPECT_EQ(computed, 5);
   value({48, 8, 1e-9});
   EXPECT_EQ(computed, 6) << "another tolerance";
-}
-
-/// As files were named by scene, solver version and steps alone.
-TEST(ReferenceCache, DoesNotTakeFilesOfTheOldName) {
-  const ScratchFolder folder;
-  const Scene s = pendulum();
-  json old = {{"scale", 1}, {"least_substeps", 1}};
-  for (const auto& [name, unused] : ReferenceResult{}.scalars()) old[name] = 42;
-  folder.file(s.sha256 + "-" + find_solver("reference").info.version + "-512.json", old.dump());
-  EXPECT_NE(references({&s}, folder.path(), nullptr).at(s.sha256).value, 42);
 }
 
 }  // namespace

@@ -1,40 +1,22 @@
 // A folder is gone on with only if what it holds is of the same scene, settings and version of the solver.
-#include "runner/resume.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "clothbench/error.hpp"
-#include "runner/study_runner.hpp"
-#include "scenario/load.hpp"
+#include "small_runs.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Resume : public ::testing::Test {
+class Resume : public SmallRuns {
  protected:
   void SetUp() override {
-    options_.out = fs::temp_directory_path() / ("clothbench-resume-" + std::to_string(getpid()) +
-                                                ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    SmallRuns::SetUp();
     options_.resume = true;
-    fs::create_directories(options_.out);
     entry_.info.settings = {{"substeps", "4", "of a test"}};
   }
-  void TearDown() override { fs::remove_all(options_.out); }
 
   RunPlan plan(const Scene& scene, int substeps = 4) const {
-    RunPlan p;
-    p.protocol = "test";
-    p.rules.trials = 1;
-    p.rules.frames = 2;
-    p.rules.warmup_s = 0;
-    p.rules.accuracy_duration_s = 0.05;
-    p.groups = {{{&scene, &entry_, {{"substeps", substeps}}, "default"}}};
-    return p;
+    return plan_of({{&scene, &entry_, {{"substeps", substeps}}}}, 1, 2);
   }
   /// What going on is refused with, by a look before anything is written and by the run itself.
   std::string refusal(const RunPlan& p) const {
@@ -54,15 +36,9 @@ class Resume : public ::testing::Test {
     return looked;
   }
 
-  RunOptions options_;
-  SolverEntry entry_ = [] {
-    SolverEntry e = find_solver("ballistic");
-    const auto make = e.make;
-    e.make = [make](const nlohmann::json&, const DeviceOptions& d) { return make(nlohmann::json::object(), d); };
-    return e;
-  }();
-  const Scene scene_ = load_scene("paper/gravity", {"cloth.grid=[4,4]"}),
-              edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
+  SolverEntry entry_ =
+      ballistic_with([](ClothSolver& inner, const nlohmann::json&, const FrameInput& f) { return inner.step(f); });
+  const Scene edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
 };
 
 TEST_F(Resume, TheSameIsGoneOnWith) {

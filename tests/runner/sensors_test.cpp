@@ -1,5 +1,3 @@
-#include "runner/sensors.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 

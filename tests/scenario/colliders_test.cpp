@@ -10,7 +10,7 @@
 #include "clothbench/error.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/load.hpp"
-#include "scenario/schemas.hpp"
+#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {

@@ -125,15 +125,6 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
             std::string::npos);
 }
 
-TEST(Study, SceneFilesMayBeLeftUntimed) {
-  std::string text = study_text(R"([{"solver":"a"}])");
-  EXPECT_TRUE(study_of(text).scenes[0].timed);
-  const std::string shape = R"("tags":["shape"])";
-  const Study s = study_of(text.replace(text.find(shape), shape.size(), shape + R"(,"timed":false)"));
-  EXPECT_TRUE(s.scenes[0].timed);
-  EXPECT_FALSE(s.scenes.back().timed);
-}
-
 TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
   EXPECT_TRUE(std::isinf(study_of(study_text(R"([{"solver":"a"}])", "", "penetration")).accuracy_duration_s));
   EXPECT_EQ(study_of(study_text(R"([{"solver":"a"}])")).accuracy_duration_s, 0.5);

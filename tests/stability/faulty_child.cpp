@@ -4,11 +4,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <new>
 #include <thread>
 
 #include "clothbench/error.hpp"
-#include "runner/run_process.hpp"
+#include "runner/study_runner.hpp"
 
 namespace clothbench {
 namespace {
@@ -64,8 +65,9 @@ class Faulty final : public ClothSolver {
   std::vector<double> x_, v_;
 };
 
-const SolverEntry& look_up(const std::string& name) {
-  static SolverEntry entry;
+const SolverEntry* look_up(const std::string& name) {
+  static std::map<std::string, SolverEntry> all;
+  SolverEntry& entry = all[name];
   SolverInfo info;
   info.name = name;
   info.precision = "float64";
@@ -76,7 +78,7 @@ const SolverEntry& look_up(const std::string& name) {
     const double h = s.time.dt();
     return s.gravity_m_per_s2[1] * h * h * n * (n + 1) / 2;
   };
-  return entry;
+  return &entry;
 }
 
 }  // namespace
@@ -84,5 +86,8 @@ const SolverEntry& look_up(const std::string& name) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return 64;
-  return clothbench::run_child_main(argv[2], clothbench::look_up);
+  using namespace clothbench;
+  return run_child_main(argv[2], look_up, {{"plan", [](const nlohmann::json& request, const WorkerProgress& progress) {
+                                              return execute_plan(request, progress, look_up, nullptr);
+                                            }}});
 }

@@ -3,18 +3,25 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
+#include <cstdlib>
+#include <deque>
 #include <filesystem>
 
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
-#include "runner/run_process.hpp"
+#include "runner/study_runner.hpp"
+#include "scenario/load.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+const nlohmann::json kScenario =
+    nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
+      "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000},
+      "time": {"frame_rate_hz": 60, "duration_s": 0.5}, "stability": {"case": "S02", "judged": ["F0", "F1", "F2"]}})");
 
 class Process : public WithFolder {
  protected:
@@ -24,12 +31,9 @@ class Process : public WithFolder {
   }
 
   RunRecord run(const std::string& solver, double limit_s = 0, bool keep = true) {
-    if (!worker_) worker_ = std::make_unique<RunWorker>(FAULTY_CHILD, dir_ / "scratch");
+    if (!worker_) worker_ = std::make_unique<Worker>(FAULTY_CHILD, dir_ / "scratch");
     RunRequest r;
-    r.scenario =
-        nlohmann::json::parse(R"({"name": "fall", "why": "falls in a test", "cloth": {"grid": [3, 3], "size_m": [1, 1],
-      "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000},
-      "time": {"frame_rate_hz": 60, "duration_s": 0.5}, "stability": {"case": "S02", "judged": ["F0", "F1", "F2"]}})");
+    r.scenario = kScenario;
     r.source = "test";
     r.name = "fall-" + solver;
     r.solver = solver;
@@ -42,8 +46,42 @@ class Process : public WithFolder {
     return read_run_summary(fs::exists(dir_ / (run + ".h5")) ? dir_ / (run + ".h5") : dir_ / (run + ".cbor"));
   }
 
-  std::unique_ptr<RunWorker> worker_;
+  std::unique_ptr<Worker> worker_;
 };
+
+/// All solvers of a timed group live in one process, which one of them ends.
+TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
+  const char* const kLimit = "CLOTHBENCH_SOLVER_LIMIT_S";
+  setenv(kLimit, "4", 1);
+  const Scene scene = scene_from_json(kScenario, "test");
+  std::deque<SolverEntry> solvers;
+  RunPlan plan;
+  plan.groups.emplace_back();
+  plan.rules = {.trials = 2, .frames = 6, .warmup_s = 0, .drop_frames = 0, .accuracy_duration_s = 0};
+  for (const char* name : {"crashes", "falls", "hangs", "loses-device"}) {
+    solvers.emplace_back().info.name = name;
+    plan.groups[0].push_back({&scene, &solvers.back(), nlohmann::json::object(), "default"});
+  }
+  RunOptions options;
+  options.out = dir_;
+  options.program = FAULTY_CHILD;
+  const RunResult result = execute_in_worker(plan, options);
+  unsetenv(kLimit);
+  const auto stored = [&](const std::string& solver) {
+    return read_run(finished_file(dir_, "fall__" + solver + "__default"));
+  };
+  const RunRecord crashed = stored("crashes"), hung = stored("hangs"), fell = stored("falls");
+  EXPECT_EQ(crashed.outcome.status, "crashed");
+  EXPECT_NE(crashed.outcome.message.find("signal 11"), std::string::npos) << crashed.outcome.message;
+  EXPECT_NE(crashed.outcome.message.find("trial 1 of 2"), std::string::npos) << crashed.outcome.message;
+  EXPECT_EQ(hung.outcome.status, "timed_out") << hung.outcome.message;
+  EXPECT_EQ(stored("loses-device").outcome.status, "device_lost");
+  EXPECT_EQ(fell.outcome.status, "ok");
+  EXPECT_EQ(fell.trials.size(), 2u);
+  EXPECT_EQ(result.runs_ok, 1);
+  EXPECT_EQ(result.runs_failed, 3);
+  EXPECT_EQ(result.faults.size(), 3u) << "one sentence per solver that finished none of its runs";
+}
 
 TEST_F(Process, AWellBehavedSolverIsStable) {
   const RunRecord a = run("falls");
@@ -136,14 +174,6 @@ TEST_F(Process, LastWordsAreOfTheRunThatFailed) {
   const RunRecord a = run("hangs", 0.5, false);
   EXPECT_EQ(a.outcome.status, "timed_out");
   EXPECT_EQ(a.outcome.message.find("something else"), std::string::npos) << a.outcome.message;
-}
-
-TEST(Answer, KeepsInfinityOnItsWayThroughJson) {
-  RunRecord a;
-  a.summary = {{"stability_speed_max", INFINITY}, {"stability_energy_gain_max", kMissing}};
-  const RunRecord b = answer_from_json(nlohmann::json::parse(answer_to_json(a).dump()));
-  EXPECT_EQ(b.summary.at("stability_speed_max"), INFINITY);
-  EXPECT_TRUE(std::isnan(b.summary.at("stability_energy_gain_max")));
 }
 
 TEST(Child, AProgramThatIsNotThereIsAnError) {

@@ -1,12 +1,11 @@
 // What a scene with an exact solution expects by itself: the solution passes, one that is off on either side fails.
-#include "metrics/exact_bound.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
+#include "metrics/truth_errors.hpp"
 #include "runner/expect.hpp"
 #include "scenario/load.hpp"
 #include "truth/draw.hpp"

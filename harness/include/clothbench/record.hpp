@@ -54,8 +54,8 @@ struct TimedTrial {
   /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
   /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. It
-  /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread that of the stepping thread,
-  /// for others the sum over its threads.
+  /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread the time of the stepping
+  /// thread, for others the sum over its threads.
   std::vector<double> frame_cpu_s = {};
   /// System time at which the first timed frame began and the last one ended [s since 1970 UTC]. It matches the trial
   /// with samples that other programs took at that time.

@@ -23,7 +23,7 @@ enum class Solid {
 /// Measures contact of one cloth with one object, frame after frame. Frames do not depend on each other.
 ///
 /// A mesh is taken as it is: the contour is exact (contour.hpp), the depth is the largest distance from the surface of
-/// all vertices, edge midpoints and centroids that are inside. A vertex alone would miss a finger that comes up through
+/// all vertices, edge midpoints and centroids that are inside. Vertices only would miss a finger that comes up through
 /// the middle of a triangle. Capsules are triangles for the contour (capsule_mesh), which is at most kCapsuleError of
 /// the radius too far inside; what lies inside another capsule of the same object is left out. Their depth is exact: of
 /// the deepest point of a triangle in any single capsule.

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -34,13 +34,13 @@ MetricGroup contact_metrics() {
             [](const MetricFrame& f) { return f.contact->length_m; }, plotted("contour [m]", 1, 1)},
            {"depth_m", "m", "greatest depth in a collider, between the vertices too", kInside,
             [](const MetricFrame& f) { return f.contact->depth_m; }, plotted("depth [m]", 2, 2)}},
-          {{"contact_length_max_m", greatest("contact_length_m"), Yes, &kImpact, 40},
-           {"contact_length_settled_m", greatest_settled("contact_length_m"), Yes, &kAtRest, 50},
-           {"depth_max_m", greatest("depth_m"), Yes, &kDepth, 60},
+          {{"contact_length_max_m", greatest("contact_length_m"), Yes, &kImpact},
+           {"contact_length_settled_m", greatest_settled("contact_length_m"), Yes, &kAtRest},
+           {"depth_max_m", greatest("depth_m"), Yes, &kDepth},
            {"crossings_max",
             own({}, "points that pass through the cloth or a surface between two frames; greatest of all frames",
                 crossings, "1"),
-            Yes, &kPoints, 70}}};
+            Yes, &kPoints}}};
 }
 
 }  // namespace clothbench

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "clothbench/vector.hpp"
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -25,7 +25,7 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. What remains is
+/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. The rest is
 /// rounding and forces that should not be there.
 double free_fall_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;

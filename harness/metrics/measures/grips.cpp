@@ -4,7 +4,7 @@
 
 #include "clothbench/motion.hpp"
 #include "clothbench/vector.hpp"
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -74,22 +74,6 @@ double strain_released(const RunView& r) {
   return kMissing;
 }
 
-/// Speed [m/s] that the scene imposes: that of the sweep or pull that the scene gives to a hand ("speed_m_per_s"), else
-/// the greatest of any collider or grip between frames, else the cloth's initial speed.
-double imposed_speed(const RunView& r) {
-  const Scene& scene = r.scene;
-  if (scene.colliders.empty() && scene.grips.vertices.empty()) return kMissing;
-  const nlohmann::json j = nlohmann::json::parse(scene.json, nullptr, false);
-  double reported = 0;
-  for (const char* list : {"colliders", "grips"})
-    if (j.is_object() && j.contains(list))
-      for (const auto& item : j[list])
-        if (item.is_object()) reported = std::max(reported, item.value("speed_m_per_s", 0.0));
-  if (reported > 0) return reported;
-  const double seen = std::max(collider_speed_m_per_s(scene), grip_speed_m_per_s(scene));
-  return seen > 0 ? seen : length(scene.cloth.initial_velocity_m_per_s);
-}
-
 }  // namespace
 
 MetricGroup grips_metrics() {
@@ -100,24 +84,18 @@ MetricGroup grips_metrics() {
   constexpr Needs kHold{"hands that hold", [](const Scene& s) { return !s.grips.vertices.empty(); }};
   return {
       {{"grip_error_m", "m", "greatest distance of a held vertex from where it is held", kHold, grip_error}},
-      {{"grip_error_max_m", greatest("grip_error_m"), Yes, &kErrorGate, 310},
+      {{"grip_error_max_m", greatest("grip_error_m"), Yes, &kErrorGate},
        {"grip_edge_ratio_max",
         own({"stretch_max"},
             "longest structural edge over its rest length, over what the hands pull apart over their distance at the "
             "start, while they hold",
             edge_ratio, "1"),
-        Yes, &kEdge, 320},
+        Yes, &kEdge},
        {"strain_mean_released",
         own({"stretch_mean_positive"},
             "mean strain of the structural edges, those that are short counted as 0, 1 s after the last hand let go",
             strain_released, "1"),
-        Yes, &kLeft, 340},
-       {"imposed_speed_m_per_s",
-        own({},
-            "speed that the scene gives to hands or colliders, else the greatest of theirs, else the cloth's at the "
-            "start",
-            imposed_speed, "m s-1"),
-        No, nullptr, 350, nullptr, "", "", Better::Neither}}};
+        Yes, &kLeft}}};
 }
 
 }  // namespace clothbench

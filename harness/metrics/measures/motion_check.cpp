@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {

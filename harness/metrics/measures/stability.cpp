@@ -1,7 +1,7 @@
 // Outcome classes of a run and the quantities that decide them; StabilityJudge evaluates the frames.
 #include <cmath>
 
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 
 namespace clothbench {
@@ -47,7 +47,7 @@ MetricGroup stability_metrics() {
   g.series.push_back({"stability_classes", "1", "outcome classes of the frame: sum of 2^k over F0 to F2", kJudged,
                       [](const MetricFrame& f) { return static_cast<double>(f.stability->classes); }});
   const auto scalar = [&](const std::string& name, Reduction from) {
-    g.scalars.push_back({name, std::move(from), Expect::No, nullptr, 0, with_judge});
+    g.scalars.push_back({name, std::move(from), Expect::No, nullptr, with_judge});
   };
   scalar("stability_grade", own({"stability_classes"}, "0 stable, 1 degraded, 2 failed", grade, "1"));
   for (const Judged& j :

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "metrics/reduction.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -122,14 +122,12 @@ bool timed(const RunView& r) { return r.run != nullptr; }
 bool on_host(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_cpu_s).empty(); }
 bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
 
-Scalar reported(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
-                int column = 0) {
-  return {name, own({}, doc, std::move(value), units), Expect::No, nullptr, column, timed};
+Scalar reported(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value) {
+  return {name, own({}, doc, std::move(value), units), Expect::No, nullptr, timed};
 }
 
-Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list, int column) {
-  return reported(
-      name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); }, column);
+Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list) {
+  return reported(name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); });
 }
 
 Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*bytes, double Bandwidth::*value) {
@@ -192,14 +190,14 @@ MetricGroup timing_metrics() {
       reported("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
       reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
                [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
-      median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s, 410),
+      median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s),
       median_frame("frame_cpu_median_s", "CPU time of a frame of a solver on the host, summed over its threads, median",
-                   &T::frame_cpu_s, 415),
+                   &T::frame_cpu_s),
       reported("frame_pipelined_median_s", "s",
                "wall time of a frame that is not waited for, median of the trials' means",
                [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
-      median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s, 0),
-      median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s, 420),
+      median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s),
+      median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s),
       reported("read_B_per_frame", "B", "bytes that a frame's shaders read",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
       reported("write_B_per_frame", "B", "bytes that a frame's shaders write",

@@ -5,8 +5,8 @@
 
 namespace clothbench::stability {
 
-/// Physical bounds at the end of one frame, from the scene alone. All bounds are generous by design: a run that exceeds
-/// them by the factors of judge.hpp is not inaccurate but unstable.
+/// Physical bounds at the end of one frame, computed only from the scene. All bounds are generous by design: a run that
+/// exceeds them by the factors of judge.hpp is not inaccurate but unstable.
 struct Bounds {
   double speed_m_per_s = 0;  ///< v_char: max of free fall, hands, colliders, the start, and strain times wave speed
   double jump_speed_m_per_s =

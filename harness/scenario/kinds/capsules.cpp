@@ -1,4 +1,4 @@
-// Dynamic capsules: one on a path, or those of a hand.
+// Dynamic capsules: one on a path, or the capsules of a hand.
 #include "scenario/collider_kinds.hpp"
 #include "scenario/collider_reader.hpp"
 #include "scenario/moving_hand.hpp"

@@ -50,27 +50,16 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
   const auto cut = j["cut"].get<std::string>();
   std::optional<assets::Table> table;
   assets::TriangleMesh round_table;
-  if (j.contains("table") && j.contains("points_m"))
-    reader.refuse("/points_m", "expected either a table or six points");
-  if (j.contains("table") || j.contains("points_m")) {
-    assets::Box box;
-    if (j.contains("table")) {
-      table = assets::find_table(room, j["table"].get<std::string>());
-      c.name += "/" + j["table"].get<std::string>();
-      box = assets::box_of(assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>()));
-    } else {
-      std::array<assets::Vector, 6> points;
-      for (std::size_t k = 0; k < 6; ++k) points[k] = assets::Vector::Map(vec3(j["points_m"][k]).data());
-      const assets::Box picked = assets::box_of(points);
-      table = assets::table_in(picked);
-      const assets::Vector grow = assets::Vector::Constant(j.value("grow_m", 0.0));
-      box = assets::Box(picked.min() - grow, picked.max() + grow);
-    }
+  if (j.contains("table")) {
+    table = assets::find_table(room, j["table"].get<std::string>());
+    c.name += "/" + j["table"].get<std::string>();
+    const assets::Box box =
+        assets::box_of(assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>()));
     const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
     round_table = assets::cut(room.mesh, box, mode).mesh;
     if (round_table.triangles.empty()) reader.refuse("", "expected at least one triangle of the room in the box");
   } else if (cut != "none") {
-    reader.refuse("", fmt::format("\"table\" or \"points_m\" is missing; cut \"{}\" goes round one", cut));
+    reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
   }
   c.mesh = collider_mesh(cut == "none" ? room.mesh : round_table);
   // The cloth is placed over the cut mesh even if the collider is the whole room, whose ceiling is above the cloth.

@@ -10,7 +10,7 @@
 #include "base/child_process.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
-#include "runner/whole_run.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench {
 
@@ -43,6 +43,18 @@ void tell_parent(const std::string& line);
 /// Path of this program's executable, for running it again. Throws Error in an app.
 std::filesystem::path own_program();
 
+/// Rules of one untimed run.
+struct RunRules {
+  DeviceOptions device = {};
+  std::string protocol = {};
+  std::filesystem::path out = {};  ///< folder for the result file; empty: none is written
+  double limit_s = 0;              ///< a pass that takes more wall time is `timed_out`; 0 = no limit
+};
+
+/// A scene from beginning to end, untimed: positions, metrics, summary and the result of the scene's expectations.
+/// Throws Error as SolverRun does.
+RunRecord whole_run(const RunSpec&, const RunRules&);
+
 /// One run: a whole scene, untimed, for this process or another. It holds all data of the request file that a process
 /// is given.
 struct RunRequest {
@@ -67,19 +79,20 @@ RunRecord answer_from_json(const nlohmann::json&);
 void write_failed_run(const std::filesystem::path& out, const RunHeader&, const Outcome&,
                       const std::map<std::string, double>& summary);
 
-using SolverLookup = std::function<const SolverEntry&(const std::string&)>;
+/// Null or an Error if there is none of that name.
+using SolverLookup = std::function<const SolverEntry*(const std::string&)>;
 
-/// Executes the run in this process: the child's side of RunWorker. What a solver throws is the outcome `error`.
+/// Executes the run in this process: the child's side of Worker::run. An exception of a solver is the outcome `error`.
 RunRecord run_request(const RunRequest&, const SolverLookup&);
 
-/// What a worker does by name, beside runs: request -> answer.
+/// What a worker does by name: request -> answer.
 using WorkerProgress = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
 using WorkerFunction = std::function<nlohmann::json(const nlohmann::json& request, const WorkerProgress&)>;
 using WorkerFunctions = std::map<std::string, WorkerFunction>;
 
 /// Main function of `PROGRAM run-child FOLDER`: for every line n of its standard input, until it ends, executes
-/// FOLDER/request-n.json and writes FOLDER/answer-n.json.
-int run_child_main(const std::filesystem::path& folder, const SolverLookup&, const WorkerFunctions& = {});
+/// FOLDER/request-n.json and writes FOLDER/answer-n.json. A request names one of the functions, or "run" (RunRequest).
+int run_child_main(const std::filesystem::path& folder, const SolverLookup&, WorkerFunctions = {});
 
 /// An answer, or how the worker ended without one.
 struct WorkerAnswer {
@@ -87,19 +100,8 @@ struct WorkerAnswer {
   std::optional<ChildEnd> end = {};
 };
 
-/// Calls a function in a new worker process, with this process's output, and throws the Error that it throws. The
-/// worker is killed after `limit_s` (0 = never) without progress; `heard` receives progress and returns the limit from
-/// then on. On Ctrl-C it is killed too, and Error(`interrupted`, Interrupted) thrown.
-WorkerAnswer call_worker(
-    const std::string& function, const nlohmann::json& request, double limit_s, const char* interrupted,
-    const std::function<double(const std::string& what, std::size_t done, std::size_t total)>& heard = {});
-
-/// `work(request)` in this process, or for a plugin the function of that name in a worker.
-WorkerAnswer guarded(const SolverEntry&, const std::string& function, const nlohmann::json& request,
-                     const std::function<nlohmann::json(const nlohmann::json&)>& work);
-
-/// Longest time [s] that a plugin may run without progress: $CLOTHBENCH_PLUGIN_LIMIT_S, or 900.
-double plugin_limit_s();
+/// Longest time [s] that a solver may take for a frame or a load: $CLOTHBENCH_SOLVER_LIMIT_S, or 900.
+double solver_limit_s();
 
 nlohmann::json device_to_json(const DeviceOptions&);
 DeviceOptions device_from_json(const nlohmann::json&);
@@ -107,26 +109,42 @@ DeviceOptions device_from_json(const nlohmann::json&);
 /// The request of a planned run.
 RunRequest request_of(const RunSpec&, RunRules);
 
-/// Executes runs in a child process, `program run-child …`. One child executes many runs, since creating a Vulkan
-/// device costs as much as a small run; after a fault it is replaced. A child is killed at 1.2 times the run's limit
-/// plus 5 s. If it crashes, hangs or ends without an answer, the outcome is `crashed` or `timed_out` with class F3 and
-/// its last output; where results are kept, such a run gets a result file too. A crash in a child that had executed
-/// other runs only counts if it recurs in a fresh one. Not thread-safe.
-class RunWorker {
+/// A child process, `program run-child …`, that calls solvers for this one: the only way from a command to a solver.
+/// One child answers many requests, since creating a Vulkan device costs as much as a small run; after a fault it is
+/// replaced. Not thread-safe.
+class Worker {
  public:
-  /// `scratch`: a folder for the exchanged files, used by this worker alone.
-  RunWorker(std::filesystem::path program, std::filesystem::path scratch);
-  ~RunWorker();
+  /// `program`: this one if empty. `scratch`: a folder for the exchanged files, used by this worker only.
+  /// `keep_output`: the child's output goes to a file there, whose last line explains a crash; otherwise it is this
+  /// process's.
+  Worker(std::filesystem::path program, std::filesystem::path scratch, bool keep_output = true);
+  /// In a temporary folder, with this process's output.
+  explicit Worker(std::filesystem::path program = {});
+  ~Worker();
+
+  /// Calls a function of the child, and throws the Error that it throws. The child is killed after `limit_s` (0 =
+  /// never) without progress; `heard` receives progress and returns the limit from then on. On Ctrl-C it is killed too,
+  /// and Error(`interrupted`, Interrupted) thrown.
+  WorkerAnswer call(
+      const std::string& function, const nlohmann::json& request, double limit_s, const char* interrupted,
+      const std::function<double(const std::string& what, std::size_t done, std::size_t total)>& heard = {});
+  /// Executes a run. The child is killed at 1.2 times the run's limit plus 5 s. If it crashes, hangs or ends without an
+  /// answer, the outcome is `crashed` or `timed_out` with class F3 and its last output; where results are kept, such a
+  /// run gets a result file too. A crash in a child that had executed other runs only counts if it recurs in a fresh
+  /// one.
   RunRecord run(const RunRequest&);
   int children() const { return children_; }  ///< number of children started so far
 
  private:
-  std::optional<ChildEnd> ask(const RunRequest&);
-
   const std::filesystem::path program_, scratch_;
+  const bool keep_output_;
   std::unique_ptr<Child> child_;
   int number_ = 0, runs_ = 0, children_ = 0;
-  std::uintmax_t said_ = 0;  ///< bytes of the child's output before the run
+  std::uintmax_t said_ = 0;  ///< bytes of the child's output before the request
 };
+
+/// `work(request)` by the worker's function of that name, or in this process if --in-process asks for it.
+WorkerAnswer guarded(Worker&, const std::string& function, const nlohmann::json& request,
+                     const std::function<nlohmann::json(const nlohmann::json&)>& work);
 
 }  // namespace clothbench

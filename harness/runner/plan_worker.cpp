@@ -1,5 +1,3 @@
-#include "runner/plan_process.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "results/store.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/study_plan.hpp"
+#include "runner/worker.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -48,8 +47,7 @@ json to_json(const RunPlan& plan) {
                        {"solver", c.entry->info.name},
                        {"settings", c.settings},
                        {"setting", c.setting},
-                       {"work", c.work},
-                       {"timed", c.timed}});
+                       {"work", c.work}});
   }
   return j;
 }
@@ -68,15 +66,15 @@ const Scene& add_scene(OwnPlan& own, const json& spec) {
   return own.scenes.emplace_back(std::move(scene));
 }
 
-const SolverEntry* add_entry(RunPlan& plan, const std::string& name) {
-  if (const SolverEntry* e = known_solver(name)) return e;
+const SolverEntry* add_entry(RunPlan& plan, const std::string& name, const SolverLookup& lookup) {
+  if (const SolverEntry* e = lookup(name)) return e;
   auto absent = std::make_shared<SolverEntry>();
   absent->info.name = name;
   plan.not_built.push_back(absent);
   return absent.get();
 }
 
-void plan_from_json(const json& j, OwnPlan& own) {
+void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   RunPlan& plan = own.plan;
   j.at("protocol").get_to(plan.protocol);
   j.at("references").get_to(plan.references);
@@ -90,11 +88,10 @@ void plan_from_json(const json& j, OwnPlan& own) {
     for (const json& s : group) {
       RunSpec& spec = plan.groups.back().emplace_back();
       spec.scene = &add_scene(own, s);
-      spec.entry = add_entry(plan, s.at("solver"));
+      spec.entry = add_entry(plan, s.at("solver"), lookup);
       spec.settings = s.at("settings");
       spec.setting = s.at("setting");
       spec.work = s.at("work");
-      spec.timed = s.at("timed");
     }
   }
 }
@@ -137,28 +134,23 @@ void write_row(const RunSpec& c, const RunPlan& plan, const std::filesystem::pat
 
 }  // namespace
 
-bool needs_process(const RunPlan& plan) {
-  if (plan.apart || plugins_in_process()) return false;
-  for (const auto& group : plan.groups)
-    for (const RunSpec& c : group)
-      if (is_external(c.entry->info)) return true;
-  return false;
-}
+bool runs_in_worker(const RunPlan& plan) { return !plan.apart && !solvers_in_process(); }
 
-RunResult execute_in_process(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
+RunResult execute_in_worker(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
   json request = {{"plan", to_json(plan)},
                   {"out", options.out.string()},
                   {"device", device_to_json(options.device)},
                   {"eye", eye},
-                  {"resume", options.resume}};
+                  {"resume", options.resume},
+                  {"reference_cache", options.reference_cache.string()}};
+  Worker worker(options.program);
   for (std::size_t process = 0; process <= plan.size(); ++process) {  // one row per process at least
     std::string doing = "before the first run";
     const WorkerAnswer answer =
-        call_worker("plan", request, 0, kTrialsKept, [&](const std::string& what, std::size_t done, std::size_t total) {
+        worker.call("plan", request, 0, kTrialsKept, [&](const std::string& what, std::size_t done, std::size_t total) {
           doing = what;
           if (options.progress) options.progress(what, done, total);
-          const RunSpec* at = run_of(plan, what);
-          return at != nullptr && is_external(at->entry->info) ? plugin_limit_s() : 0;
+          return run_of(plan, what) != nullptr ? solver_limit_s() : 0;
         });
     if (!answer.end) return result_from_json(answer.value);
     const RunSpec* at = run_of(plan, doing);
@@ -173,16 +165,26 @@ RunResult execute_in_process(const RunPlan& plan, const RunOptions& options, con
   throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
 }
 
-json execute_plan(const json& request, const WorkerProgress& progress,
+json execute_plan(const json& request, const WorkerProgress& progress, const SolverLookup& lookup,
                   Rendering (*rendering_of)(const std::string& eye)) {
   OwnPlan own;
-  plan_from_json(request.at("plan"), own);
+  plan_from_json(request.at("plan"), lookup, own);
   if (const std::string eye = request.at("eye"); !eye.empty()) own.plan.rules.rendering = rendering_of(eye);
   RunOptions options;
   options.out = request.at("out").get<std::string>();
   options.resume = request.at("resume");
   options.device = device_from_json(request.at("device"));
-  options.progress = progress;
+  options.reference_cache = request.at("reference_cache").get<std::string>();
+  std::function<void()> repeat;
+  options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+    progress(what, done, total);
+    repeat = [=, &progress] { progress(what, done, total); };
+  };
+  // The parent ends a process that says nothing for too long: a solver that makes frames is not taken for one that
+  // hangs.
+  const FrameReports reports([&] {
+    if (repeat) repeat();
+  });
   return to_json(execute_runs(own.plan, options));
 }
 

@@ -1,6 +1,7 @@
-#include "runner/run_process.hpp"
+#include "runner/worker.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
 #ifdef __linux__
@@ -8,6 +9,7 @@
 #endif
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -19,9 +21,10 @@
 #include "clothbench/error.hpp"
 #include "metrics/registry.hpp"
 #include "results/part_file.hpp"
+#include "results/replay.hpp"
 #include "results/store.hpp"
+#include "runner/expect.hpp"
 #include "runner/interrupt.hpp"
-#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -84,6 +87,12 @@ json answer_of(const WorkerFunctions& functions, const json& request) {
   }
 }
 
+/// A new folder for a worker's files.
+fs::path scratch_folder() {
+  static std::atomic<int> made{0};
+  return fs::temp_directory_path() / fmt::format("clothbench-call-{}-{}", getpid(), ++made);
+}
+
 void send_parent(const std::string& text) {
   static_cast<void>(send(STDIN_FILENO, text.data(), text.size(), MSG_NOSIGNAL));
 }
@@ -137,6 +146,9 @@ void serve_parent(const std::function<void(const std::string&)>& answer) {
       line += c;
       continue;
     }
+    // A parent that was killed before prctl sends no signal any more, but its end of the socket is closed.
+    pollfd parent{STDIN_FILENO, POLLIN, 0};
+    if (poll(&parent, 1, 0) > 0 && (parent.revents & POLLHUP) != 0) return;
     answer(line);
     send_parent("\n");
     line.clear();
@@ -182,10 +194,38 @@ void write_failed_run(const fs::path& out, const RunHeader& header, const Outcom
   RunWriter(out, header).finish(outcome, summary);
 }
 
+RunRecord whole_run(const RunSpec& spec, const RunRules& rules) {
+  SolverRun run(spec, rules.device, rules.protocol);
+  RunRecord record;
+  record.header = run.header();
+  std::unique_ptr<RunWriter> writer;
+  if (!rules.out.empty()) writer = std::make_unique<RunWriter>(rules.out, run.header());
+  TrialRules pass;
+  pass.trials = 0;
+  pass.accuracy_duration_s = spec.scene->time.duration_s;
+  pass.run_limit_s = rules.limit_s;
+  if (run.alive()) record.accuracy = run.run_accuracy(pass);
+  record.outcome = run.outcome();
+  if (const int messages = run.validation_messages(); messages > 0)
+    record.outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
+  record.summary = summarise(run.spec(), run.plan(), record);
+  Verdict verdict = judge(*spec.scene, record.outcome, record.accuracy, record.summary);
+  record.outcome.expect = std::move(verdict.text);
+  record.summary.merge(verdict.scalars);
+  if (!writer) return record;
+  if (!record.accuracy.time_s.empty()) {
+    writer->write_replay(replay_of(*spec.scene));
+    writer->write_accuracy(record.accuracy);
+  }
+  writer->finish(record.outcome, record.summary);
+  return record;
+}
+
 RunRecord run_request(const RunRequest& r, const SolverLookup& lookup) {
   try {
     const Scene scene = scene_of(r);
-    const SolverEntry& entry = lookup(r.solver);
+    const SolverEntry* known = lookup(r.solver);
+    const SolverEntry& entry = known != nullptr ? *known : find_solver(r.solver);  // says what there is
     return whole_run({&scene, &entry, entry.make ? complete_settings(entry.info, r.settings) : r.settings, r.setting},
                      r.rules);
   } catch (const std::exception& e) {  // what a solver cannot load is a row of the table, whatever it throws
@@ -195,56 +235,21 @@ RunRecord run_request(const RunRequest& r, const SolverLookup& lookup) {
   }
 }
 
-int run_child_main(const fs::path& folder, const SolverLookup& lookup, const WorkerFunctions& functions) {
+int run_child_main(const fs::path& folder, const SolverLookup& lookup, WorkerFunctions functions) {
+  functions["run"] = [&](const json& request, const WorkerProgress&) {
+    return answer_to_json(run_request(request_from_json(request), lookup));
+  };
   serve_parent([&](const std::string& number) {
     const fs::path file = folder / ("request-" + number + ".json");
-    const json request = parse_json(read_text(file), file.string());
-    const json answer = request.contains("function") ? answer_of(functions, request)
-                                                     : answer_to_json(run_request(request_from_json(request), lookup));
+    const json answer = answer_of(functions, parse_json(read_text(file), file.string()));
     write_file_atomically(folder / ("answer-" + number + ".json"), answer.dump() + "\n");
   });
   return 0;
 }
 
-WorkerAnswer call_worker(const std::string& function, const json& request, double limit_s, const char* interrupted,
-                         const std::function<double(const std::string&, std::size_t, std::size_t)>& heard) {
-  struct Folder {
-    fs::path path = fs::temp_directory_path() / fmt::format("clothbench-call-{}", getpid());
-    Folder() { fs::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      fs::remove_all(path, ignored);
-    }
-  };
-  const Folder folder;
-  write_file_atomically(folder.path / "request-1.json",
-                        json{{"function", function}, {"request", request}}.dump() + "\n");
-  Child child({own_program().string(), "run-child", folder.path.string()}, "");
-  std::optional<ChildEnd> end = child.ask("1", limit_s, interrupted, [&](const std::string& line) {
-    std::istringstream words(line);
-    std::size_t done = 0, total = 0;
-    words >> done >> total;
-    std::string what;
-    std::getline(words >> std::ws, what);
-    return heard ? heard(what, done, total) : limit_s;
-  });
-  if (end) return {nullptr, end};
-  const fs::path file = folder.path / "answer-1.json";
-  const json answer = parse_json(read_text(file), file.string());
-  if (answer.contains("error"))
-    throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
-  return {answer["value"]};
-}
-
-WorkerAnswer guarded(const SolverEntry& entry, const std::string& function, const json& request,
-                     const std::function<json(const json&)>& work) {
-  if (!is_external(entry.info) || plugins_in_process()) return {work(request)};
-  return call_worker(function, request, plugin_limit_s(), "interrupted");
-}
-
-double plugin_limit_s() {
+double solver_limit_s() {
   constexpr double kUsual = 900;
-  const char* given = std::getenv("CLOTHBENCH_PLUGIN_LIMIT_S");
+  const char* given = std::getenv("CLOTHBENCH_SOLVER_LIMIT_S");
   const double s = given != nullptr ? std::atof(given) : kUsual;
   return s > 0 ? s : kUsual;
 }
@@ -273,56 +278,82 @@ RunRequest request_of(const RunSpec& spec, RunRules rules) {
   return r;
 }
 
-RunWorker::RunWorker(fs::path program, fs::path scratch) : program_(std::move(program)), scratch_(std::move(scratch)) {
-  fs::create_directories(scratch_);
+Worker::Worker(fs::path program, fs::path scratch, bool keep_output)
+    : program_(std::move(program)), scratch_(std::move(scratch)), keep_output_(keep_output) {}
+
+Worker::Worker(fs::path program) : Worker(std::move(program), scratch_folder(), false) {}
+
+Worker::~Worker() {
+  std::error_code ignored;
+  child_.reset();
+  if (!keep_output_) fs::remove_all(scratch_, ignored);
 }
 
-RunWorker::~RunWorker() = default;
-
-/// The child's answer is in its file, or this is how it ended.
-std::optional<ChildEnd> RunWorker::ask(const RunRequest& r) {
+WorkerAnswer Worker::call(const std::string& function, const json& request, double limit_s, const char* interrupted,
+                          const std::function<double(const std::string&, std::size_t, std::size_t)>& heard) {
   constexpr int kRunsAChild = 100;  // what drivers leak is theirs to keep for so long
-  const fs::path log = scratch_ / "output.txt";
+  const fs::path log = keep_output_ ? scratch_ / "output.txt" : fs::path();
   if (runs_ == kRunsAChild) child_.reset();
   if (!child_) {
-    child_ = std::make_unique<Child>(std::vector<std::string>{program_.string(), "run-child", scratch_.string()}, log);
+    fs::create_directories(scratch_);
+    const fs::path program = program_.empty() ? own_program() : program_;
+    child_ = std::make_unique<Child>(std::vector<std::string>{program.string(), "run-child", scratch_.string()}, log);
     ++children_;
     runs_ = 0;
   }
   std::error_code ignored;
-  said_ = runs_ == 0 ? 0 : fs::file_size(log, ignored);
+  said_ = runs_ == 0 || !keep_output_ ? 0 : fs::file_size(log, ignored);
   ++number_;
   ++runs_;
-  write_file_atomically(scratch_ / fmt::format("request-{}.json", number_), to_json(r).dump() + "\n");
-  return child_->ask(std::to_string(number_), r.rules.limit_s > 0 ? 1.2 * r.rules.limit_s + 5 : 0, kRunsKept);
+  const fs::path asked = scratch_ / fmt::format("request-{}.json", number_),
+                 answered = scratch_ / fmt::format("answer-{}.json", number_);
+  write_file_atomically(asked, json{{"function", function}, {"request", request}}.dump() + "\n");
+  const std::optional<ChildEnd> end = child_->ask(std::to_string(number_), limit_s, interrupted, [&](auto& line) {
+    std::istringstream words(line);
+    std::size_t done = 0, total = 0;
+    words >> done >> total;
+    std::string what;
+    std::getline(words >> std::ws, what);
+    return heard ? heard(what, done, total) : limit_s;
+  });
+  if (end) {
+    child_.reset();
+    return {nullptr, end};
+  }
+  const json answer = parse_json(read_text(answered), answered.string());
+  for (const fs::path& file : {asked, answered}) fs::remove(file, ignored);
+  if (answer.contains("error"))
+    throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
+  return {answer["value"]};
 }
 
-RunRecord RunWorker::run(const RunRequest& r) {
-  std::optional<ChildEnd> end = ask(r);
-  if (end && end->how != ChildEnd::How::TimedOut && runs_ > 1) {
-    child_.reset();
-    end = ask(r);
-  }
-  const fs::path answer = scratch_ / fmt::format("answer-{}.json", number_);
-  if (!end) {
-    const RunRecord a = answer_from_json(parse_json(read_text(answer), answer.string()));
-    std::error_code ignored;
-    fs::remove(answer, ignored);
-    fs::remove(scratch_ / fmt::format("request-{}.json", number_), ignored);
+RunRecord Worker::run(const RunRequest& r) {
+  const json request = to_json(r);
+  const double limit_s = r.rules.limit_s > 0 ? 1.2 * r.rules.limit_s + 5 : 0;
+  WorkerAnswer answer = call("run", request, limit_s, kRunsKept);
+  if (answer.end && answer.end->how != ChildEnd::How::TimedOut && runs_ > 1)
+    answer = call("run", request, limit_s, kRunsKept);
+  if (!answer.end) {
+    const RunRecord a = answer_from_json(answer.value);
     const std::string& status = a.outcome.status;
     if (status == "error" || status == "device_lost" || status == "timed_out") child_.reset();
     // A run that could not be loaded has written nothing.
     if (status == "error" && !r.rules.out.empty()) write_failure(r, a);
     return a;
   }
-  child_.reset();
   const std::string words = last_words(scratch_ / "output.txt", said_);
   RunRecord out;
-  out.outcome = {end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1,
-                 "its process: " + end->text() + (words.empty() ? "" : "; last output: " + words)};
+  out.outcome = {answer.end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1,
+                 "its process: " + answer.end->text() + (words.empty() ? "" : "; last output: " + words)};
   out.summary = scalars_of({scene_of(r), {}, out.outcome}, "stability_");
   if (!r.rules.out.empty()) write_failure(r, out);
   return out;
+}
+
+WorkerAnswer guarded(Worker& worker, const std::string& function, const json& request,
+                     const std::function<json(const json&)>& work) {
+  return solvers_in_process() ? WorkerAnswer{work(request)}
+                              : worker.call(function, request, solver_limit_s(), "interrupted");
 }
 
 }  // namespace clothbench
