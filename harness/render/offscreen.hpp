@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/scene_renderer.hpp"
-#include "runner/frame_drawer.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench::render {
 
