@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::uint32_t kBlock = 256;
 
+double rows_of(const std::vector<BendingSlice>& slices) {
+  double sum = 0;
+  for (const BendingSlice& s : slices) sum += s.width * BENDING_ROWS;
+  return sum;
+}
+
 }  // namespace
 
 Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool predicts, bool tension,
@@ -71,8 +77,10 @@ void Chains::add_families(const ChainCloth& cloth) {
   for (std::size_t f = 0; f < families.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(families[f], scene_, cloth, block_, f == 0);
     const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(families[f].longest() - 1));
-    families_.push_back(
-        {static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds, 0, 0});
+    const auto vertices =
+        std::count_if(more.begin(), more.end(), [](const ChainEntry& e) { return e.vertex != CHAIN_NO_VERTEX; });
+    families_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds,
+                         static_cast<double>(vertices)});
     entries_.insert(entries_.end(), more.begin(), more.end());
   }
 }
@@ -99,7 +107,7 @@ void Chains::add_bending() {
   const BendingMatrix K = bending_matrix(scene_);
   most_per_s2_ = K.most_per_s2;
   const SlicedRows<BendingEntry> table = bending_table(K);
-  slices_ = table.slices;
+  row_entries_ = rows_of(table.slices);
   frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
   frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
 }
@@ -108,10 +116,7 @@ void Chains::add_membrane() {
   if (!membrane_) return;
   most_per_s2_ += membrane_bound(scene_);
   const SlicedRows<MembraneCorner> table = membrane_table(scene_);
-  corner_slices_ = table.slices;
-  triangles_.assign(scene_.cloth.vertex_count(), 0);
-  for (const auto& triangle : scene_.cloth.mesh->triangles)
-    for (const std::uint32_t v : triangle) ++triangles_[v];
+  row_corners_ = rows_of(table.slices);
   frame_.add_buffer(BIND_MEMBRANE_SLICES, "triangle slices", table.slices);
   frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.entries);
 }
@@ -123,33 +128,11 @@ vulkan::Groups Chains::all_groups() const {
   return vulkan::groups_for(most, block_);
 }
 
-/// Counts the vertices on each family's chains, and how many of them are free in this frame.
-void Chains::count_vertices() {
-  const std::vector<float>& w = frame_.inverse_mass_now();
-  for (Family& f : families_) {
-    f.vertices = f.free = 0;
-    for (std::uint32_t k = f.first_entry; k < f.first_entry + f.entries; ++k) {
-      if (entries_[k].vertex == CHAIN_NO_VERTEX) continue;
-      f.vertices += 1;
-      f.free += w[entries_[k].vertex] > 0 ? 1 : 0;
-    }
-  }
-  free_ = free_entries_ = free_corners_ = free_triangles_ = 0;
-  for (std::size_t i = 0; (bends_ || membrane_) && i < w.size(); ++i) {
-    if (!(w[i] > 0)) continue;
-    free_ += 1;
-    if (bends_) free_entries_ += slices_[i / BENDING_ROWS].width;
-    if (!membrane_) continue;
-    free_corners_ += corner_slices_[i / BENDING_ROWS].width;
-    free_triangles_ += triangles_[i];
-  }
-}
-
 Traffic Chains::traffic(std::size_t family, bool integrates) const {
   const Family& f = families_[family];
   const double compensation = integrates ? 1 : 0, of_start = (predicts_ ? 64 : 32) * compensation;
-  return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.free,
-          (32 + of_start) * f.free};
+  return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.vertices,
+          (32 + of_start) * f.vertices};
 }
 
 /// The first iteration reads positions and no steps, and writes the right side, with triangles also positions; the last
@@ -159,10 +142,11 @@ Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iteration
   const bool last = iteration == iterations;
   const double steps = iteration == 1 ? 0 : iteration == 2 ? 2 : 3;
   const double slices = (bends_ ? 8 : 0) + (membrane_ ? 8 : 0);
-  const double read = 16 * n + (slices + 16 * steps + (last ? 16 : 0)) * free_ + 24 * free_entries_ +
-                      48 * free_corners_ + (iteration == 1 ? 32 : 64) * free_triangles_;
+  const double corners = 3.0 * (membrane_ ? static_cast<double>(scene_.cloth.mesh->triangles.size()) : 0);
+  const double read = (16 + slices + 16 * steps + (last ? 16 : 0)) * n + 24 * row_entries_ + 48 * row_corners_ +
+                      (iteration == 1 ? 32 : 64) * corners;
   const double found = membrane_ && iteration == 1 ? 16 * n : 0;
-  return {read, last ? 32 * free_ : 16 * n + found + (iteration == 1 ? 16 * free_ : 0)};
+  return {read, last ? 32 * n : 16 * n + found + (iteration == 1 ? 16 * n : 0)};
 }
 
 std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
@@ -175,7 +159,6 @@ std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
 }
 
 void Chains::record(int count, const TimeStep& step) {
-  count_vertices();
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_keep = static_cast<float>(1 / step.keep);
   c.families = membrane_ ? 0 : static_cast<std::uint32_t>(families_.size());

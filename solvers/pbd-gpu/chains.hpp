@@ -28,13 +28,12 @@ class Chains {
  private:
   struct Family {
     std::uint32_t first_entry, entries, rounds;
-    double vertices, free;  ///< on its chains; the first family has all vertices, with triangles it is the only one
+    double vertices;  ///< on its chains; the first family has all vertices, with triangles it is the only one
   };
   void add_families(const ChainCloth&);
   void add_bending();
   void add_membrane();
   ChainSpecialization specialization() const;
-  void count_vertices();
   Traffic traffic(std::size_t family, bool integrates) const;
   Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
   /// Number and traffic of a substep's passes: one that integrates and the iterations of bending, if there are any,
@@ -55,10 +54,7 @@ class Chains {
   bool bends_ = false;
   std::uint32_t bending_iterations_now_ = 0;  ///< of the last recorded substep
   double most_per_s2_ = 0;                    ///< at least the greatest eigenvalue of bending and triangles
-  std::vector<BendingSlice> slices_, corner_slices_;
-  std::vector<std::uint32_t> triangles_;  ///< round each vertex
-  /// Vertices that nothing holds in this frame, entries of their rows and of those of triangles, and their triangles.
-  double free_ = 0, free_entries_ = 0, free_corners_ = 0, free_triangles_ = 0;
+  double row_entries_ = 0, row_corners_ = 0;  ///< of all rows of bending and of triangles, with what pads them
 };
 
 }  // namespace clothbench::pbd_gpu

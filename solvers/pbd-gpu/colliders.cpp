@@ -108,32 +108,25 @@ MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool moving_one
   return result;
 }
 
-/// All capsules and one more entry, whose a0.x is the greatest displacement of any capsule end in the frame [m].
 std::vector<CapsuleShape> ColliderBuffers::capsules_between(const FrameMotion& start, const FrameMotion& end) const {
   std::vector<CapsuleShape> all;
-  double most = 0;
   for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
     const Collider& c = scene_.colliders[k];
     if (c.shape != Collider::Shape::Capsules) continue;
     for (std::size_t i = 0; i < c.capsules.size(); ++i) {
       const Capsule &s = start.colliders.at(k).capsules.at(i), &e = end.colliders.at(k).capsules.at(i);
-      for (const auto& [from, to] : {std::pair{s.a_m, e.a_m}, std::pair{s.b_m, e.b_m}})
-        most = std::max(most, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
       all.push_back({relative(s.a_m, origin_m_, static_cast<float>(e.radius_m)),
                      relative(s.b_m, origin_m_, static_cast<float>(c.margin_m)),
                      relative(e.a_m, origin_m_, static_cast<float>(e.radius_m + c.margin_m)),
                      relative(e.b_m, origin_m_, static_cast<float>(c.friction))});
     }
   }
-  constexpr double kRounding = 1 + 1e-6;
-  all.push_back({});
-  all.back().a0.x = static_cast<float>(kRounding * most);
   return all;
 }
 
 void ColliderBuffers::add_capsules() {
   const std::vector<CapsuleShape> all = capsules_between(at_, at_);
-  capsules.count = static_cast<std::uint32_t>(all.size()) - 1;
+  capsules.count = static_cast<std::uint32_t>(all.size());
   for (const Collider& c : scene_.colliders)
     capsules.friction |= c.shape == Collider::Shape::Capsules && c.friction > 0;
   capsules.buffer = &frame_.add_buffer(BIND_CAPSULES, "collider capsules", all);

@@ -95,8 +95,6 @@ class GripBuffer {
   void reset();
   /// As ColliderBuffers::write; true if other vertices are held than before.
   bool write(const FrameMotion* end);
-  /// Held during the frame last written, one per Scene::grips.vertices.
-  const std::vector<std::uint8_t>& held() const { return held_; }
 
  private:
   std::vector<GripVertex> entries(const FrameMotion& start, const FrameMotion& end) const;

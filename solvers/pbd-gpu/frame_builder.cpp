@@ -48,7 +48,6 @@ void FrameBuilder::begin(const Scene& scene) {
   scene_ = &scene;
   settings_ = given_settings_;
   for (auto* program : {&frame_, &upload_, &download_}) *program = std::make_unique<vulkan::Program>(device_);
-  inverse_mass_now_ = inverse_masses(scene);
 }
 
 void FrameBuilder::override_setting(const char* name, const nlohmann::json& value, const std::string& why) {
@@ -109,7 +108,7 @@ const FrameKernel* FrameBuilder::add_kernel(int stage, const std::string& name, 
 }
 
 void FrameBuilder::copy(int stage, const Buffer& from, const Buffer& to) {
-  if (!only_counting_) frame_->copy(stage, from, to);
+  frame_->copy(stage, from, to);
   const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
   count(stage, {bytes, bytes});
 }

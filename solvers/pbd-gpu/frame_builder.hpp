@@ -15,7 +15,8 @@ namespace clothbench::pbd_gpu {
 
 inline constexpr std::uint32_t kGroupSize = 64;
 
-/// Bytes of one dispatch, computed from the scene and the kernel's loops (no contention retries of atomics).
+/// Bytes of one dispatch, computed from the scene and the kernel's loops: pinned and held vertices count as written,
+/// and retries of atomics not at all.
 struct Traffic {
   double read_B = 0, write_B = 0;
   Traffic operator+(const Traffic& t) const { return {read_B + t.read_B, write_B + t.write_B}; }
@@ -92,14 +93,10 @@ class FrameBuilder {
   }
   template <class Constants>
   void dispatch_groups(const FrameKernel& k, vulkan::Groups groups, const Constants& constants, Traffic traffic) {
-    if (!only_counting_) frame_->dispatch(k.stage, k.kernel, groups, constants);
+    frame_->dispatch(k.stage, k.kernel, groups, constants);
     count(k.stage, traffic);
   }
   void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
-
-  /// Inverse masses of the scene's vertices in this frame [1/kg], 0 where pinned or held. When they change,
-  /// record_frame is called again to count the traffic only.
-  const std::vector<float>& inverse_mass_now() const { return inverse_mass_now_; }
 
  protected:
   void begin(const Scene&);
@@ -111,8 +108,6 @@ class FrameBuilder {
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;
   Plan plan_;
-  std::vector<float> inverse_mass_now_;
-  bool only_counting_ = false;
   const vulkan::Buffer* timed_out_ = nullptr;
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;

@@ -58,7 +58,6 @@ void GpuSolver::load(const Scene& scene) {
   take_messages();
   begin(scene);
   build();
-  device_->keep_pipelines();
   upload_->record(false);
   download_->record(false);
   record(scene.time.dt(), scene.time.dt());
@@ -69,7 +68,8 @@ void GpuSolver::record(double dt_s, double last_dt_s) {
   frame_->clear();
   dt_s_ = dt_s;
   last_dt_s_ = last_dt_s;
-  count_all();
+  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
+  record_frame(dt_s, last_dt_s);
   for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan is of a frame like the last
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
@@ -80,26 +80,6 @@ void GpuSolver::prepare(double dt_s) {
   const double last_dt_s = predicts_ ? done_dt_s_ : dt_s;
   const bool anew = repaced(dt_s);
   if (anew || dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
-}
-
-void GpuSolver::count_all() {
-  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
-  record_frame(dt_s_, last_dt_s_);
-}
-
-void GpuSolver::update_inverse_masses() {
-  inverse_mass_now_ = inverse_masses(*scene_);
-  const std::vector<double> mass = vertex_masses(*scene_);
-  for (std::size_t k = 0; k < grips_->held().size(); ++k) {
-    const std::uint32_t v = scene_->grips.vertices[k];
-    if (grips_->held()[k] == 0) inverse_mass_now_[v] = static_cast<float>(1 / mass[v]);
-  }
-  // Only counts the traffic again, for free vertices have more than held ones; the commands stay as recorded.
-  only_counting_ = true;
-  count_all();
-  only_counting_ = false;
-  // What was just let go has no last substep of its own.
-  done_dt_s_ = 0;
 }
 
 /// A failed call of Vulkan as the status of a step.
@@ -128,10 +108,7 @@ void GpuSolver::reset() {
   take_messages();
   done_dt_s_ = 0;
   if (colliders_) colliders_->reset();
-  if (grips_) {
-    grips_->reset();
-    update_inverse_masses();
-  }
+  if (grips_) grips_->reset();
   if (timed_out_ != nullptr) std::memset(timed_out_->mapped(), 0, sizeof(std::uint32_t));
   // A loss here is reported by the next step, or by a read of the state before it.
   ready_ = run(*upload_);
@@ -142,7 +119,8 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   take_messages();
   if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (colliders_) colliders_->write(frame.motion);
-  if (grips_ && grips_->write(frame.motion)) update_inverse_masses();
+  // What was just let go has no last substep of its own.
+  if (grips_ && grips_->write(frame.motion)) done_dt_s_ = 0;
   prepare(frame.dt_s);
   done_dt_s_ = frame.dt_s;
   return last_ = unless_timed_out(run(*frame_));

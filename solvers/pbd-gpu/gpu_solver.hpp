@@ -71,8 +71,6 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
  private:
   void record(double dt_s, double last_dt_s);
   void prepare(double dt_s);
-  void count_all();
-  void update_inverse_masses();
   StepStatus run(vulkan::Program& program) const;
   /// Contents of a buffer on the device, after everything submitted so far.
   template <class T>

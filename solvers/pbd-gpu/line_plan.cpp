@@ -52,16 +52,16 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
   const std::uint32_t first = vertices != 0 ? vertices : device.wide ? 2 : 4;
   for (const std::uint32_t k : {first, 4u, 8u, 16u}) {
     if (vertices != 0 && k != vertices) continue;
-    LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0, false};
-    s.shuffles = s.lanes <= device.subgroup;
+    LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0};
+    const bool fits_subgroup = s.lanes <= device.subgroup;
     // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of held vertices.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B = (request.couples ? 10 : 6) * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
-    // Twice the threads are faster with shuffles, not with barriers.
+    // Twice the threads are faster where lines exchange within a subgroup.
     const std::uint32_t most =
-        k < 4 && (s.shuffles || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
-    if (s.threads <= most && state_B + (s.shuffles ? 0 : 16 * s.threads) <= device.shared_B) return s;
+        k < 4 && (fits_subgroup || vertices != 0) ? device.most_threads : std::min(256u, device.most_threads);
+    if (s.threads <= most && state_B + (fits_subgroup ? 16 : 32 * s.threads) <= device.shared_B) return s;
   }
   return {};
 }
@@ -71,13 +71,9 @@ constexpr std::uint32_t kBarrier_B = 16;
 
 LineShape pass_shape(int length, const LineRequest& request, const LineDevice& device) {
   const auto n = static_cast<std::uint32_t>(length);
-  const bool choose = device.wide && device.subgroup > 0;
+  const bool choose = device.wide;
   const std::uint32_t vertices = request.vertices != 0 ? request.vertices : choose && n <= 384 ? 2 : 4;
-  const std::uint32_t beside = device.subgroup == 0  ? 1
-                               : request.beside != 0 ? request.beside
-                               : !choose || n <= 192 ? 1
-                               : n <= 384            ? 2
-                                                     : 4;
+  const std::uint32_t beside = request.beside != 0 ? request.beside : !choose || n <= 192 ? 1 : n <= 384 ? 2 : 4;
   // A requested number of threads is used in full; else the fewest that hold whole subgroups and lines.
   const std::uint32_t most = std::min(request.threads != 0 ? request.threads
                                       : choose             ? 1024u
@@ -87,10 +83,10 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
   for (const std::uint32_t k : {2u, 4u, 8u, 16u, 32u}) {
     const std::uint32_t lanes = std::bit_ceil((n + k - 1) / k);
     if (k < vertices || lanes * beside > most) continue;
-    LineShape s{lanes, k, std::max(lanes * beside, least), device.subgroup > 0, beside};
+    LineShape s{lanes, k, std::max(lanes * beside, least), beside};
     // Whole subgroups, so that thread and lane numbers agree.
-    if (s.shuffles) s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
-    const bool exchange = !s.shuffles || lanes * beside > device.subgroup;
+    s.threads = (s.threads + device.subgroup - 1) / device.subgroup * device.subgroup;
+    const bool exchange = lanes * beside > device.subgroup;
     if ((exchange ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
   }
   throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +

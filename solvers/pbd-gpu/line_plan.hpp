@@ -26,7 +26,7 @@ double substeps_to_couple(const Scene&);
 
 /// Properties of a device that decide how lines are spread over threads.
 struct LineDevice {
-  std::uint32_t subgroup = 0;  ///< lanes that exchange by shuffles; 0 = none
+  std::uint32_t subgroup = 32;  ///< lanes that exchange by shuffles
   std::uint32_t most_threads = 128, shared_B = 16384;
   /// Use two vertices a thread and workgroups of up to 1024 threads. On an H200 this is faster by 8 to 14 % up to
   /// 32 x 32 and by a quarter above; other devices may have too few registers.
@@ -36,7 +36,6 @@ struct LineDevice {
 /// How chains are spread over threads: `lanes` threads a chain, `vertices` a thread, `threads` a workgroup.
 struct LineShape {
   std::uint32_t lanes = 0, vertices = 0, threads = 0;
-  bool shuffles = false;
   std::uint32_t beside = 1;  ///< neighbouring chains whose threads take turns
   std::uint32_t chains_a_group() const { return threads / lanes; }
 };

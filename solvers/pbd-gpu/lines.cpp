@@ -19,9 +19,7 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tensio
       scene_(scene),
       tethers_(tethers_of(scene, frame.settings()["tethers"].get<bool>())),
       taut_(taut_chains(scene)),
-      iterations_(frame.settings()["iterations"].get<std::uint32_t>()),
       batch_(frame.settings()["batch"].get<std::uint32_t>()),
-      keep_(iterations_ > 1 && (scene.material.membrane_stiffness_N_per_m || scene.needs.has(Feature::Bend))),
       predicts_(predicts),
       tension_(tension),
       couples_(couples),
@@ -30,34 +28,24 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool predicts, bool tensio
   if (!scene.needs.has(Feature::Damping)) frame_.leave_out("damping", "the scene has none");
   if (!scene.needs.has(Feature::Shear)) frame_.leave_out("diagonals", "the scene has no shear stiffness");
   if (!scene.needs.has(Feature::Bend)) frame_.leave_out("bending", "the scene has no bending");
-  if (!keep_)
-    frame_.leave_out("multipliers", iterations_ > 1 ? "nothing is compliant"
-                                                    : "setting iterations=1: they would start at 0 and be dropped");
   const std::size_t n = scene.cloth.vertex_count();
-  keeps_links_ = keep_ && scene.material.membrane_stiffness_N_per_m;
-  keeps_hinges_ = keep_ && scene.needs.has(Feature::Bend);
-  if (keeps_links_) frame_.add_buffer(BIND_LINK_MULTIPLIERS, "link multipliers", families() * n * 4);
-  if (keeps_hinges_) frame_.add_buffer(BIND_HINGE_MULTIPLIERS, "hinge multipliers", 2 * n * sizeof(vec4));
   if (!couples_) return;
   frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", batch_ * n * sizeof(vec4));
-  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", batch_ * families() * n * sizeof(float));
+  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", batch_ * passes() * n * sizeof(float));
 }
 
 void Lines::add_kernels(bool any_masses) {
-  const bool one = frame_.settings()["one_dispatch"].get<bool>();
-  const LineShape whole = frame_shape(scene_.cloth.columns, scene_.cloth.rows, request(), device());
-  if (whole.threads > 0 && one && !any_masses)
+  const LineShape whole = whole_shape();
+  const bool in_one = whole.threads > 0 && !any_masses && scene_.cloth.mass_factors.empty();
+  if (batch_ > 1 && !(in_one && scene_.grips.vertices.empty() && scene_.colliders.empty()))
+    throw Error(
+        "solver xpbd: setting batch: expected cloths that each fit one workgroup (32 x 32 vertices of even masses) in "
+        "a "
+        "scene without hands and colliders");
+  if (in_one)
     add_whole(whole);
-  else if (batch_ > 1)
-    throw Error(
-        "solver xpbd: setting batch: expected cloths that each fit one workgroup (32 x 32 vertices, "
-        "one_dispatch)");
-  else if (!one || !add_persistent())
+  else if (!scene_.cloth.mass_factors.empty() || !add_persistent())
     add_passes();
-  if (batch_ > 1 && (keep_ || !scene_.grips.vertices.empty() || !scene_.colliders.empty()))
-    throw Error(
-        "solver xpbd: setting batch: expected a scene without hands and colliders, and one iteration per "
-        "substep if a constraint is compliant");
 }
 
 LineRequest Lines::request() const {
@@ -69,7 +57,7 @@ LineRequest Lines::request() const {
 LineDevice Lines::device() const {
   const vulkan::Device& d = *frame_.device();
   LineDevice line;
-  if (frame_.tuning()["shuffles"].get<bool>()) line.subgroup = d.shuffled_lanes();
+  line.subgroup = d.shuffled_lanes();
   line.most_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
   line.wide = d.is_discrete();
   line.shared_B =
@@ -88,6 +76,7 @@ std::uint32_t Lines::features() const {
   if (firm_) f |= LINES_FIRM;
   if (predicts_) f |= LINES_PREDICT;
   if (tension_) f |= LINES_TENSION;
+  if (couples_) f |= LINES_COUPLE;
   return f;
 }
 
@@ -109,16 +98,12 @@ LineSpecialization Lines::specialization(const LineShape& shape) const {
     *ends[k][0] = r.first_column | r.first_row << 16;
     *ends[k][1] = r.last_column | r.last_row << 16;
   }
-  s.SUBGROUP = std::max(1u, device().subgroup);
+  s.SUBGROUP = device().subgroup;
   s.BESIDE = shape.beside;
   const bool square =
       s.COLUMNS == s.ROWS && shape.lanes * shape.vertices == s.COLUMNS && s.COLUMNS % shape.chains_a_group() == 0;
   s.EXACT = square ? 1 : 0;
   return s;
-}
-
-std::string Lines::kernel(const char* name, bool shuffles) const {
-  return std::string(name) + (shuffles ? "_shuffle" : "") + (keep_ ? "_keep" : couples_ ? "_couple" : "");
 }
 
 LineSpecialization Lines::whole_specialization(const LineShape& shape) const {
@@ -137,8 +122,8 @@ void Lines::add_whole(const LineShape& shape) {
                           Feature::Damping, Feature::MovingPins, Feature::Pins};
   shape_[0] = shape_[1] = shape_[2] = shape;
   const LineSpecialization s = whole_specialization(shape);
-  whole_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), kernel("line_frame", shape.shuffles),
-                             sizeof(LineConstants), s.by_number(), shape.threads);
+  whole_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), "line_frame", sizeof(LineConstants),
+                             s.by_number(), shape.threads);
 }
 
 void Lines::add_regularisation() {
@@ -154,31 +139,31 @@ vulkan::Groups Lines::groups_of(const LineShape& shape) const {
   return vulkan::groups_for(chains, shape.chains_a_group());
 }
 
-LineShape Lines::frame_shape_with_contact(bool many) const {
-  const Cloth& c = scene_.cloth;
-  if (keep_ || (many && device().subgroup == 0)) return {};
-  if (!many) return frame_shape(c.columns, c.rows, request(), device());
-  LineRequest wanted = request();
-  if (wanted.threads == 0 && device().wide) wanted.threads = kThreadsWithContact;
-  return pass_shape(std::max(c.columns, c.rows), wanted, device());
+LineShape Lines::whole_shape() const {
+  return frame_shape(scene_.cloth.columns, scene_.cloth.rows, request(), device());
 }
 
-LineSpecialization Lines::specialization_with_contact(const LineShape& shape, bool many) {
+LineShape Lines::shape_with_contact() const {
+  LineRequest wanted = request();
+  if (wanted.threads == 0 && device().wide) wanted.threads = kThreadsWithContact;
+  return pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wanted, device());
+}
+
+LineSpecialization Lines::specialization_with_contact(const LineShape& shape) {
   shape_[0] = shape_[1] = shape_[2] = shape;
   LineSpecialization s = specialization(shape);
   s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
-  s.PERSISTENT = many ? 1 : 0;
+  s.PERSISTENT = 1;
   return s;
 }
 
 /// False where the device does not run all workgroups at once, or where that is unknown.
 bool Lines::add_persistent() {
-  if (device().subgroup == 0) return false;
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), request(), device());
   shape_[0] = shape_[1] = shape_[2] = shape;
   LineSpecialization s = specialization(shape);
   s.PERSISTENT = 1;
-  const std::string name = kernel("line_pass", true);
+  const std::string name = "line_pass";
   if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
   add_regularisation();
   const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
@@ -198,8 +183,8 @@ void Lines::add_passes() {
                                {Feature::Stretch, Feature::Bend},
                                {Feature::Shear}};
   for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k)
-    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], needs & serves[k]), kernel("line_pass", shape_[k].shuffles),
-                                 sizeof(LineConstants), specialization(shape_[k]).by_number(), shape_[k].threads);
+    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], needs & serves[k]), "line_pass", sizeof(LineConstants),
+                                 specialization(shape_[k]).by_number(), shape_[k].threads);
 }
 
 LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) const {
@@ -229,32 +214,7 @@ LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) 
   c.regularisation = f(kRegularisation);
   c.substep_part = f(1.0 / substeps);
   c.frames_per_s = f(1 / dt_s);
-  c.iterations = iterations_;
   return c;
-}
-
-Lines::Constraints Lines::count(std::uint32_t family) const {
-  const int columns = scene_.cloth.columns, rows = scene_.cloth.rows;
-  const int di = family == 0 || family == 2 ? 1 : family == 3 ? -1 : 0, dj = family == 0 ? 0 : 1;
-  const std::vector<float>& w = frame_.inverse_mass_now();
-  const auto at = [&](int i, int j) { return w[static_cast<std::size_t>(j * columns + i)]; };
-  Constraints n;
-  for (int j = 0; j + dj < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      if (i + di < 0 || i + di >= columns) continue;
-      n.links += at(i, j) + at(i + di, j + dj) > 0;
-      if (family > 1 || i + 2 * di >= columns || j + 2 * dj >= rows) continue;
-      n.hinges += at(i, j) + at(i + di, j + dj) + at(i + 2 * di, j + 2 * dj) > 0;
-    }
-  return n;
-}
-
-/// Kept multipliers are read twice and written once an iteration; the first iteration reads none.
-Traffic Lines::multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const {
-  if (!keep_) return {};
-  const Constraints n = count(family);
-  const double bytes = (keeps_links_ ? 4 * n.links : 0) + (keeps_hinges_ ? 16 * n.hinges : 0);
-  return {iteration > 0 ? 2 * bytes : 0, bytes};
 }
 
 /// The creep of every link of a family is read and written.
@@ -265,18 +225,16 @@ Traffic Lines::creep_traffic(std::uint32_t family) const {
   return {bytes, bytes};
 }
 
-/// Traffic of one pass of a substep: it reads every vertex and writes free ones; the first also reads tether ends.
+/// Traffic of one pass of a substep: it reads and writes every vertex; the first also reads tether ends.
 Traffic Lines::pass_traffic(std::uint32_t pass) const {
-  const std::vector<float>& w = frame_.inverse_mass_now();
-  const auto n = static_cast<double>(w.size());
-  const auto free = static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }));
+  const auto n = static_cast<double>(scene_.cloth.vertex_count());
   const std::uint32_t family = family_of(pass);
   const auto chains = static_cast<double>(family == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  const Traffic shifts = couples_ ? Traffic{16 * n, family < 2 ? 16 * free : 0} : Traffic{};
-  return multiplier_traffic(family, pass / families()) + creep_traffic(family) + shifts +
+  const Traffic shifts = couples_ ? Traffic{16 * n, family < 2 ? 16 * n : 0} : Traffic{};
+  return creep_traffic(family) + shifts +
          Traffic{32 * n + (firm_ ? 4.0 * shape_[std::min(family, 2u)].lanes * chains : 0) +
-                     (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * free : 0),
-                 32 * free};
+                     (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * n : 0),
+                 32 * n};
 }
 
 Traffic Lines::substep_traffic() const {
@@ -288,33 +246,28 @@ Traffic Lines::substep_traffic() const {
 /// Traffic of the rounding errors of compensated sums, and of what a prediction goes on from, in each dispatch that
 /// integrates.
 Traffic Lines::compensated_traffic() const {
-  const std::vector<float>& w = frame_.inverse_mass_now();
-  const double a_vertex_B = predicts_ ? 64 : 32;
-  return {a_vertex_B * static_cast<double>(w.size()),
-          a_vertex_B * static_cast<double>(std::count_if(w.begin(), w.end(), [](float w_i) { return w_i > 0; }))};
+  const double all_B = (predicts_ ? 64.0 : 32.0) * static_cast<double>(scene_.cloth.vertex_count());
+  return {all_B, all_B};
 }
 
 void Lines::record(int first, int count, int substeps, double dt_s, const TimeStep& step) {
   LineConstants c = constants(dt_s, substeps, step);
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
-  const std::uint32_t passes = iterations_ * families();
   if (whole_ == nullptr && persistent_ == nullptr) {
     c.passes = 1;
-    for (c.first_pass = 0; c.first_pass < passes; ++c.first_pass) record_pass(c);
+    for (c.first_pass = 0; c.first_pass < passes(); ++c.first_pass) record_pass(c);
     return;
   }
-  c.passes = c.substeps * passes;
+  c.passes = c.substeps * passes();
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
   const double a_vertex_B = (predicts_ ? 96 : 64) + (couples_ ? 16 : 0);
   Traffic t =
       persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n * batch_, a_vertex_B * n * batch_};
   if (whole_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
-  for (std::uint32_t k = 0; k < passes; ++k)
-    t = t + (whole_ != nullptr ? multiplier_traffic(family_of(k), k / families()) + creep_traffic(family_of(k)) * batch_
-                               : pass_traffic(k)) *
-                count;
+  for (std::uint32_t k = 0; k < passes(); ++k)
+    t = t + (whole_ != nullptr ? creep_traffic(family_of(k)) * batch_ : pass_traffic(k)) * count;
   if (whole_ != nullptr)
     frame_.dispatch_groups(*whole_, vulkan::groups_for(batch_, 1), c, t);
   else

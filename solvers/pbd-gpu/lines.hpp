@@ -19,18 +19,18 @@ class Lines {
   /// Adds its stages and kernels. With contact by planes vertices have any inverse mass while they are solved, which
   /// the kernel of a frame in one workgroup cannot do.
   void add_kernels(bool any_masses);
-  /// The kernel of lines and contact in one, where the cloth is to have one: its shape (threads 0 if cloth or device do
-  /// not fit it) of one workgroup or of many that run at once, and what it is specialized to.
-  LineShape frame_shape_with_contact(bool many) const;
-  LineSpecialization specialization_with_contact(const LineShape&, bool many);
-  /// What the kernel of a whole frame in one workgroup is specialized to; its shape is that of
-  /// frame_shape_with_contact.
+  /// The kernel of lines and contact in one: its shape, of workgroups that run at once, and what it is specialized to.
+  LineShape shape_with_contact() const;
+  LineSpecialization specialization_with_contact(const LineShape&);
+  /// Shape of the kernel that takes a whole frame in one workgroup (threads 0 if cloth or device do not fit it), and
+  /// what it is specialized to.
+  LineShape whole_shape() const;
   LineSpecialization whole_specialization(const LineShape&) const;
   vulkan::Groups groups_of(const LineShape&) const;
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   void add_regularisation();        ///< of kernels that have lines in memory
   Traffic substep_traffic() const;  ///< of all passes
-  std::uint32_t passes() const { return iterations_ * families(); }
+  std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
 
   /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
   /// not fit one dispatch takes one substep a call.
@@ -40,9 +40,6 @@ class Lines {
   bool moves_grips() const { return whole_ != nullptr; }
 
  private:
-  struct Constraints {
-    double links = 0, hinges = 0;  ///< those with a free vertex
-  };
   LineDevice device() const;
   std::uint32_t features() const;
   LineSpecialization specialization(const LineShape&) const;
@@ -52,13 +49,9 @@ class Lines {
   LineRequest request() const;
   Traffic pass_traffic(std::uint32_t pass) const;
   Traffic compensated_traffic() const;
-  std::uint32_t families() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
   /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
-  std::uint32_t family_of(std::uint32_t pass) const { return families() - 1 - pass % families(); }
+  std::uint32_t family_of(std::uint32_t pass) const { return passes() - 1 - pass; }
   vulkan::Groups all_groups() const { return groups_of(shape_[0]); }
-  std::string kernel(const char* name, bool shuffles) const;
-  Constraints count(std::uint32_t family) const;
-  Traffic multiplier_traffic(std::uint32_t family, std::uint32_t iteration) const;
   Traffic creep_traffic(std::uint32_t family) const;
   void record_pass(const LineConstants&);
 
@@ -66,10 +59,9 @@ class Lines {
   const Scene& scene_;
   const Tethers tethers_;
   const std::vector<std::uint8_t> taut_;
-  const std::uint32_t iterations_, batch_;
-  const bool keep_;  ///< multipliers are kept from one iteration to the next
+  const std::uint32_t batch_;
   const bool predicts_, tension_, couples_;
-  bool added_regularisation_ = false, firm_ = false, keeps_links_ = false, keeps_hinges_ = false;
+  bool added_regularisation_ = false, firm_ = false;
   const FrameKernel *whole_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
   std::array<LineShape, 3> shape_{};

@@ -59,12 +59,12 @@ void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes,
     passes_.push_back({kernel, {0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction}, 64, friction});
 }
 
-void PaperContact::record(std::uint32_t particles, std::int64_t free) {
-  const auto n = static_cast<double>(particles), f = static_cast<double>(free);
+void PaperContact::record(std::uint32_t particles) {
+  const auto n = static_cast<double>(particles);
   for (Pass& pass : passes_) {
     pass.constants.particles = particles;
     const double each = static_cast<double>(pass.constants.count) * pass.item_bytes + (pass.friction ? 16 : 0);
-    frame_.dispatch(*pass.kernel, particles, pass.constants, {16 * n + each * f, 16 * f});
+    frame_.dispatch(*pass.kernel, particles, pass.constants, {(16 + each) * n, 16 * n});
   }
 }
 

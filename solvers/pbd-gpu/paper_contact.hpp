@@ -13,8 +13,8 @@ class PaperContact {
   /// Adds one stage and kernel for each kind of collider in the scene. `mesh_depth_m` and `hand_depth_m`: greatest
   /// distance behind a triangle at which a particle still counts as touching it.
   PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m, float hand_depth_m);
-  /// Records the collisions of `particles`, of which `free` have an inverse mass above 0.
-  void record(std::uint32_t particles, std::int64_t free);
+  /// Records the collisions of so many particles.
+  void record(std::uint32_t particles);
 
  private:
   struct Pass {

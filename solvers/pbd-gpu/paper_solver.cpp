@@ -16,9 +16,6 @@ class Paper final : public GpuSolver {
  private:
   void build() override {
     refuse_mesh_bending(scene());
-    if (native() && !device_->has_float_atomics())
-      throw Error(
-          "solver paper: setting atomics=native: this device has no float atomics (VK_EXT_shader_atomic_float)");
     layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
     build_particles();
     build_constraints();
@@ -27,7 +24,6 @@ class Paper final : public GpuSolver {
     build_stages();
   }
 
-  bool native() const { return settings()["atomics"] == "native"; }
   std::uint64_t particles() const { return layers_ * scene().cloth.vertex_count(); }
 
   void build_particles() {
@@ -75,20 +71,6 @@ class Paper final : public GpuSolver {
     add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
 
-  /// Counts what one ProjectConstraintDeltas reads and writes, and how many particles are free.
-  void count_traffic() {
-    const std::vector<float>& w = inverse_mass_now();
-    const auto n = static_cast<std::uint32_t>(w.size());
-    free_ = layers_ * std::count_if(w.begin(), w.end(), [](float v) { return v > 0; });
-    traffic_ = {};
-    for_each_constraint([&](std::uint32_t a, std::uint32_t b, double, std::uint32_t) {
-      const int ends = (w[a % n] > 0 ? 1 : 0) + (w[b % n] > 0 ? 1 : 0);
-      // Constraint and both ends; per free end 3 sums and a count.
-      traffic_.read_B += 16 + 32 + ends * (native() ? 16.0 : 28.0);
-      traffic_.write_B += ends * 16.0;
-    });
-  }
-
   void build_stages() {
     const FeatureSet needs = scene().needs;
     const FeatureSet pins = needs & FeatureSet{Feature::Pins};
@@ -100,12 +82,8 @@ class Paper final : public GpuSolver {
       leave_out("DampVelocities", "the scene has no damping");
     euler_ = add(add_stage("ApplyExplicitEuler", pins), "apply_explicit_euler");
     const FeatureSet edges{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer};
-    project_ = add(add_stage("ProjectConstraintDeltas", needs & edges),
-                   native() ? "project_constraint_deltas_native" : "project_constraint_deltas");
-    PaperSpecialization atomics;
-    atomics.NATIVE = native() ? 1 : 0;
-    average_ = add_kernel(add_stage("AverageConstraintDeltas", {}), "average_constraint_deltas", sizeof(PaperConstants),
-                          atomics.by_number());
+    project_ = add(add_stage("ProjectConstraintDeltas", needs & edges), "project_constraint_deltas");
+    average_ = add(add_stage("AverageConstraintDeltas", {}), "average_constraint_deltas");
     if (grips() != nullptr) {
       hold_ = grips()->add_kernel(*x_);
       aim_ = grips()->add_kernel(*q_);
@@ -133,7 +111,6 @@ class Paper final : public GpuSolver {
     c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
     c.particles = static_cast<std::uint32_t>(particles());
     c.constraints = static_cast<std::uint32_t>(constraint_count_);
-    count_traffic();
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     const int substeps = settings()["substeps"].get<int>();
@@ -149,25 +126,24 @@ class Paper final : public GpuSolver {
   }
 
   void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
-    const auto n = static_cast<double>(particles()), f = static_cast<double>(free_);
+    const auto n = static_cast<double>(particles()), all = static_cast<double>(constraint_count_);
     // Vertices are held or released from the step's start on; the kernels that follow read it from the inverse mass.
     if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
-    dispatch(*forces_, particles(), c, {16 * n, 16 * f});
+    dispatch(*forces_, particles(), c, {16 * n, 16 * n});
     if (damp_ != nullptr) dispatch(*damp_, particles(), c, {16 * n, 16 * n});
     dispatch(*euler_, particles(), c, {32 * n, 16 * n});
     if (aim_ != nullptr) grips()->record_move(*aim_, static_cast<double>(step + 1) / steps, dt_s);
     for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
-      dispatch(*project_, constraint_count_, c, traffic_);
-      dispatch(*average_, particles(), c, {16 * n + 16 * f, 32 * f});
+      // Constraint and both ends; per end 3 sums and a count.
+      dispatch(*project_, constraint_count_, c, {(16 + 32 + 2 * 28) * all, 2 * 16 * all});
+      dispatch(*average_, particles(), c, {32 * n, 32 * n});
     }
-    if (contact_) contact_->record(static_cast<std::uint32_t>(particles()), free_);
+    if (contact_) contact_->record(static_cast<std::uint32_t>(particles()));
     dispatch(*update_, particles(), c, {32 * n, 32 * n});
   }
 
   int layers_ = 1;
-  std::int64_t free_ = 0;
   std::uint64_t constraint_count_ = 0;
-  Traffic traffic_;  ///< of one ProjectConstraintDeltas
   int stage_readback_ = -1;
   const vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
   const FrameKernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
@@ -198,7 +174,6 @@ SolverInfo paper_info() {
       {"substeps", "1", "substeps a frame (the paper has one)"},
       {"stiffness", "0.8", "PBD's k, 0 to 1"},
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
-      {"atomics", "\"cas\"", "cas | native: float sums by compare-and-swap, or by VK_EXT_shader_atomic_float"},
       {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
       {"hand_depth_m", "0.01", "the same for the mesh of a hand"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
@@ -207,7 +182,6 @@ SolverInfo paper_info() {
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
   require_one_of("paper", settings, "readback", {"none", "blocking"});
-  require_one_of("paper", settings, "atomics", {"cas", "native"});
   require_between("paper", settings, "iterations", 1, 100000);
   require_between("paper", settings, "substeps", 1, 4096);
   require_between("paper", settings, "stiffness", 0, 1);

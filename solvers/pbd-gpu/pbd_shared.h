@@ -16,19 +16,19 @@ struct uvec4 {
 
 // Binding numbers of the storage buffers, the same in every kernel.
 const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 2, BIND_VELOCITY_COMPENSATION = 3,
-          BIND_REGULARISATION = 4, BIND_LINK_MULTIPLIERS = 5, BIND_HINGE_MULTIPLIERS = 6, BIND_BARRIER = 7,
-          BIND_TIMED_OUT = 8, BIND_CHAIN_ENTRIES = 9, BIND_CHAIN_FAMILIES = 10, BIND_TETHER_ENDS = 11, BIND_WELDS = 12,
-          BIND_GRIPS = 13, BIND_SKIN = 14, BIND_JOINTS = 15, BIND_PLANES = 16, BIND_SPHERES = 17, BIND_BOXES = 18,
-          BIND_CAPSULES = 19, BIND_STANDING = 20, BIND_MOVING_START = 21, BIND_MOVING_END = 22, BIND_TRIANGLES = 23,
-          BIND_MESH_VERTICES = 24, BIND_REACHES = 25, BIND_WAYS = 26, BIND_STARTS = 27, BIND_PREDICTED = 28,
-          BIND_DELTAS = 29, BIND_CONSTRAINTS = 30, BIND_POINT_SOURCES = 31, BIND_POINTS = 32, BIND_PIECES = 33,
-          BIND_PIECE_BOXES = 34, BIND_ELEMENTS = 35, BIND_FANS = 36, BIND_RANGES = 37, BIND_PAIRS = 38,
-          BIND_PAIR_STATES = 39, BIND_LEDGER = 40, BIND_FAULTS = 41, BIND_COUNTER = 42, BIND_LAST_POSITIONS = 43,
-          BIND_LAST_VELOCITIES = 44, BIND_SELF_ORDER = 45, BIND_SELF_BOXES = 46, BIND_SELF_RANGES = 47,
-          BIND_SELF_PAIRS = 48, BIND_SELF_WAYS = 49, BIND_SELF_NEAR = 50, BIND_SELF_CONTACTS = 51,
-          BIND_SELF_PUSHES = 52, BIND_TOUCHED = 53, BIND_NEAR_BITS = 54, BIND_BENDING_SLICES = 55,
-          BIND_BENDING_ENTRIES = 56, BIND_BENDING_STEPS = 57, BIND_SHIFTS = 58, BIND_LINK_CREEP = 59,
-          BIND_MEMBRANE_SLICES = 60, BIND_MEMBRANE_CORNERS = 61, BIND_COUNT = 62;
+          BIND_REGULARISATION = 4, BIND_BARRIER = 5, BIND_TIMED_OUT = 6, BIND_CHAIN_ENTRIES = 7,
+          BIND_CHAIN_FAMILIES = 8, BIND_TETHER_ENDS = 9, BIND_WELDS = 10, BIND_GRIPS = 11, BIND_SKIN = 12,
+          BIND_JOINTS = 13, BIND_PLANES = 14, BIND_SPHERES = 15, BIND_BOXES = 16, BIND_CAPSULES = 17,
+          BIND_STANDING = 18, BIND_MOVING_START = 19, BIND_MOVING_END = 20, BIND_TRIANGLES = 21,
+          BIND_MESH_VERTICES = 22, BIND_REACHES = 23, BIND_WAYS = 24, BIND_STARTS = 25, BIND_PREDICTED = 26,
+          BIND_DELTAS = 27, BIND_CONSTRAINTS = 28, BIND_POINT_SOURCES = 29, BIND_POINTS = 30, BIND_PIECES = 31,
+          BIND_PIECE_BOXES = 32, BIND_ELEMENTS = 33, BIND_FANS = 34, BIND_RANGES = 35, BIND_PAIRS = 36,
+          BIND_PAIR_STATES = 37, BIND_LEDGER = 38, BIND_FAULTS = 39, BIND_COUNTER = 40, BIND_LAST_POSITIONS = 41,
+          BIND_LAST_VELOCITIES = 42, BIND_SELF_ORDER = 43, BIND_SELF_BOXES = 44, BIND_SELF_RANGES = 45,
+          BIND_SELF_PAIRS = 46, BIND_SELF_WAYS = 47, BIND_SELF_NEAR = 48, BIND_SELF_CONTACTS = 49,
+          BIND_SELF_PUSHES = 50, BIND_TOUCHED = 51, BIND_NEAR_BITS = 52, BIND_BENDING_SLICES = 53,
+          BIND_BENDING_ENTRIES = 54, BIND_BENDING_STEPS = 55, BIND_SHIFTS = 56, BIND_LINK_CREEP = 57,
+          BIND_MEMBRANE_SLICES = 58, BIND_MEMBRANE_CORNERS = 59, BIND_COUNT = 60;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -52,20 +52,20 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MOST_POINTS: of a piece. MOVING: 1
 // if any piece moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, NEAR_CAPACITY, TOUCHING_CAPACITY:
 // pairs, near pairs and those with contacts that its lists have place for; THICKNESS_BITS, SELF_FRICTION_BITS: floats.
-// TEAM: lanes that share a vertex.
+// TEAM: lanes that share a vertex. FILL: pairs are written, not counted. OF_SELF: the list is of the cloth with itself.
 #define PLANE_CONTACT_CONSTANTS(C) \
   C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MOST_POINTS, 3u) C(4, uint, MOVING, 0u) C(5, uint, SELF, 0u) \
   C(6, uint, SELF_CAPACITY, 0u) C(7, uint, NEAR_CAPACITY, 0u) C(8, uint, TOUCHING_CAPACITY, 0u) \
-  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, TEAM, 1u) C(12, bool, AGAIN, false)
+  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, TEAM, 1u) C(12, bool, AGAIN, false) \
+  C(13, bool, FILL, false) C(14, bool, OF_SELF, false)
 // The same, for the kernel of a whole frame, beside LINE_CONSTANTS. MARGIN_BITS: of the greatest margin, a float.
 #define PLANE_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MOST_POINTS, 3u) C(27, uint, MOVING, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, PIECES, 0u) C(32, uint, GROUPS, 0u) \
-  C(33, uint, MARGIN_BITS, 0u) C(34, uint, SELF, 0u) C(35, uint, SELF_CAPACITY, 0u) C(36, uint, NEAR_CAPACITY, 0u) \
-  C(37, uint, TOUCHING_CAPACITY, 0u) C(38, uint, THICKNESS_BITS, 0u) C(39, uint, SELF_FRICTION_BITS, 0u) C(40, uint, TEAM, 1u)
+  C(33, uint, MARGIN_BITS, 0u) C(34, uint, TEAM, 1u)
 // clang-format on
-// Kernels of `paper`. NATIVE: float atomics; the count is then a float too.
-#define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, NATIVE, 0u)
+// Collision kernels of `paper`.
+#define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u)
 #ifdef __cplusplus
 #define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
 #define CLOTHBENCH_PUT(number, type, name, standard) all.at(number) = name;
@@ -73,7 +73,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   struct Name {                               \
     LIST(CLOTHBENCH_MEMBER)                   \
     std::vector<uint> by_number() const {     \
-      std::vector<uint> all(41);              \
+      std::vector<uint> all(35);              \
       LIST(CLOTHBENCH_PUT)                    \
       return all;                             \
     }                                         \
@@ -123,6 +123,7 @@ struct PaperContactConstants {
 #define LINES_FIRM 32u      // chains pulled taut between two held vertices
 #define LINES_PREDICT 64u   // BDF2; else backward Euler
 #define LINES_TENSION 128u  // implicit tension
+#define LINES_COUPLE 256u   // families are coupled
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
@@ -141,14 +142,13 @@ struct LineConstants {
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
   float frames_per_s;
-  uint iterations;
-  uint first_pass, passes;  // of this dispatch; each substep has a pass an
-                            // iteration and family. Of plane_frame: PLANE_FRAME_LISTED, or 0
-  uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
-  float per_h;              // 1/h
-  float carry;              // share of the last substep's change that is predicted
-  float frame_s;            // with contact by planes, as is reach_m
-  float reach_m;            // of a vertex at rest
+  uint first_pass,
+      passes;          // of this dispatch; each substep has a pass a family. Of plane_frame: PLANE_FRAME_LISTED, or 0
+  uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
+  float per_h;         // 1/h
+  float carry;         // share of the last substep's change that is predicted
+  float frame_s;       // with contact by planes, as is reach_m
+  float reach_m;       // of a vertex at rest
 };
 
 /// A vertex of a chain and its link to the next entry; no link if `rest` is
@@ -288,7 +288,7 @@ static_assert(sizeof(JointMatrix) == 48);
 static_assert(sizeof(GripVertex) == 48);
 static_assert(sizeof(DistanceConstraint) == 16);
 static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 128);
+static_assert(sizeof(LineConstants) == 124);
 static_assert(sizeof(ChainEntry) == 16);
 static_assert(sizeof(TetherEnd) == 8);
 static_assert(sizeof(ChainRange) == 16);

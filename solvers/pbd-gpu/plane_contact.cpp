@@ -37,8 +37,7 @@ PlaneContact::PlaneContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_
   }
   if (moving_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
   add_elements(particle);
-  if (!frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>())
-    team_ = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMostTeam));
+  team_ = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMostTeam));
   if (scene.needs.has(Feature::SelfCollision)) {
     most_margin_m_ = std::max(most_margin_m_, 0.5 * scene.cloth.self_collision.thickness_m);
     self_ = std::make_unique<PlaneSelf>(frame, scene, particle);
@@ -113,7 +112,6 @@ PlaneFrameSpecialization PlaneContact::frame_specialization() const {
   s.PIECES = pieces_;
   s.GROUPS = groups_;
   s.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(most_margin_m_));
-  if (self_) self_->specialize(s);
   return s;
 }
 
@@ -123,23 +121,21 @@ FeatureSet PlaneContact::serves() const {
 }
 
 const FrameKernel* PlaneContact::add(int stage, const char* name, std::uint32_t threads) {
-  return frame_.add_kernel(stage, name, static_cast<std::uint32_t>(sizeof(PlaneContactConstants)),
-                           specialization().by_number(), threads);
-}
-
-void PlaneContact::add_self_list_kernels() {
-  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
-  reach_ = add(stage_pairs_, "plane_reach");
-  if (self_) self_->add_list_kernels(stage_pairs_, specialization().by_number());
+  return frame_.add_kernel(stage, name, sizeof(PlaneContactConstants), specialization().by_number(), threads);
 }
 
 void PlaneContact::add_kernels() {
-  add_self_list_kernels();
+  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("PlanePairs", serves(), true);
+  const std::uint32_t subgroups = std::max(kGroupSize, frame_.device()->shuffled_lanes());
+  reach_ = add(stage_pairs_, "plane_reach");
+  if (self_) self_->add_list_kernels(stage_pairs_, specialization());
   stage_ = frame_.add_stage("PlaneContact", serves(), true);
   if (pieces_ > 0) {
     count_ = add(stage_pairs_, "plane_list");
     scan_ = add(stage_pairs_, "plane_scan", kScanThreads);
-    fill_ = add(stage_pairs_, "plane_list_fill");
+    PlaneContactSpecialization fill = specialization();
+    fill.FILL = 1;
+    fill_ = frame_.add_kernel(stage_pairs_, "plane_list", sizeof(PlaneContactConstants), fill.by_number());
     near_ = add(stage_, "plane_near");
     query_ = add(stage_, "plane_query");
     respond_ = add(stage_, "plane_respond");
@@ -147,9 +143,9 @@ void PlaneContact::add_kernels() {
   }
   if (self_) self_->add_kernels(stage_, specialization().by_number());
   if (moving_points_ > 0) predict_ = add(stage_, "plane_predict");
-  gather_ = add(stage_, team_ > 1 ? "plane_gather_shuffle" : "plane_gather");
+  gather_ = add(stage_, "plane_gather", subgroups);
   settle_ = add(stage_, "plane_settle");
-  project_ = add(stage_, team_ > 1 ? "plane_project_shuffle" : "plane_project");
+  project_ = add(stage_, "plane_project", subgroups);
 }
 
 PlaneContactConstants PlaneContact::constants(int s, int substeps, double dt_s) const {
@@ -196,16 +192,11 @@ void PlaneContact::record_pieces(double dt_s, int substeps) {
                          {48.0 * moving_points_, 32.0 * moving_points_ + 32.0 * groups_});
 }
 
-void PlaneContact::record_self_list(double dt_s, int substeps) {
+void PlaneContact::record_list(double dt_s, int substeps) {
   const PlaneContactConstants c = constants(0, substeps, dt_s);
   vertices(reach_, c);
   if (self_) self_->record_list(c);
-}
-
-void PlaneContact::record_list(double dt_s, int substeps) {
-  record_self_list(dt_s, substeps);
   if (pieces_ == 0) return;
-  const PlaneContactConstants c = constants(0, substeps, dt_s);
   const std::uint32_t elements = c.triangles + c.vertices;
   frame_.dispatch(*count_, std::min(elements, kPairThreads), c, {32.0 * elements, 16.0 * elements});
   frame_.dispatch_groups(*scan_, {1, 1}, c, {16.0 * elements, 16.0 * elements});

@@ -11,10 +11,9 @@ namespace clothbench::pbd_gpu {
 
 /// Contact of `xpbd` by separating planes: PLANES.md. Every pair of a triangle of the cloth and a convex
 /// piece of a collider that may meet in a substep has a plane that parts both ends of the straight way, and no vertex
-/// ends a substep behind a plane of one of its triangles. Works on positions and velocities alone; what solves the
-/// constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the positions. Where
-/// PlaneFrame has the whole frame in one kernel, `record_pieces` and, for a cloth that touches itself,
-/// `record_self_list` alone are called.
+/// ends a substep behind a plane of one of its triangles. Works on positions and velocities alone;
+/// what solves the constraints comes between `record_before` and `record_after` and reads inverse masses in .w of the
+/// positions. Where PlaneFrame has the whole frame in one kernel, only `record_pieces` is called.
 class PlaneContact {
  public:
   /// Adds buffers, and what moving pieces need. `particle`: of each vertex, the vertex that it is welded to (or
@@ -25,15 +24,11 @@ class PlaneContact {
   /// Adds the stages PlanePairs and PlaneContact with a kernel a phase, for record_list, record_before and
   /// record_after.
   void add_kernels();
-  /// Adds the kernels that list pairs of the cloth with itself, for record_self_list. add_kernels adds them too.
-  void add_self_list_kernels();
 
   /// Where moving pieces are in this frame. Call at the start of a frame, after the colliders' record().
   void record_pieces(double dt_s, int substeps);
   /// The list of pairs. Call after record_pieces.
   void record_list(double dt_s, int substeps);
-  /// Reaches, and the list of pairs of the cloth with itself; a part of record_list.
-  void record_self_list(double dt_s, int substeps);
   /// Call in substep s after held vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);
   /// Call at the end of substep s. Calls `constraints` to record them once more between the responses, if they are to

@@ -6,12 +6,12 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Lines and contact by planes of a whole frame in one kernel (shaders/plane_frame.comp), with the bits of the kernels
-/// of the phases. It also moves held vertices.
+/// Lines and contact by planes of a whole frame in one kernel (shaders/plane_frame.comp), phase for phase as
+/// the kernels of the phases have it. It also moves held vertices.
 class PlaneFrame {
  public:
-  /// Null where cloth, device or settings do not allow it: one workgroup takes a cloth of at most 32 x 32 vertices; a
-  /// larger one takes a device that runs all its workgroups at once.
+  /// Null where the cloth touches itself, or where device or settings do not allow it: it takes a device that runs all
+  /// its workgroups at once.
   static std::unique_ptr<PlaneFrame> make(FrameBuilder& frame, Lines& lines, PlaneContact& contact);
 
   struct Steps {
@@ -24,11 +24,10 @@ class PlaneFrame {
  private:
   PlaneFrame(FrameBuilder& frame, Lines& lines, PlaneContact& contact)
       : frame_(frame), lines_(lines), contact_(contact) {}
-  bool add_kernel(bool many, std::uint32_t least_groups);
+  bool add_kernels();
   /// The kernel of frames in which no collider can be near: of one workgroup where that holds the cloth
-  /// (shaders/plane_far.glsl), else the kernel of this name, constants and threads without contact, which lists the
-  /// pairs too.
-  void add_far(const std::string& name, const std::vector<std::uint32_t>& constants, std::uint32_t threads);
+  /// (shaders/plane_far.glsl), else that of many without contact, which lists the pairs too.
+  void add_far(const std::vector<std::uint32_t>& constants, std::uint32_t threads);
 
   LineConstants constants(double dt_s, const Steps&, bool listed) const;
 

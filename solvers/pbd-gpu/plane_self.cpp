@@ -33,7 +33,7 @@ PlaneSelf::PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<
   const std::uint32_t groups = (triangles_ + PIECES_A_GROUP - 1) / PIECES_A_GROUP;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene), all).triangles);
   frame_.add_buffer(BIND_SELF_BOXES, "self-contact boxes", (triangles_ + groups) * sizeof(SelfBox));
-  frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", triangles_ * sizeof(uvec4));
+  ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", triangles_ * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{capacity_} * sizeof(SelfPair));
   frame_.add_buffer(BIND_SELF_WAYS, "self-contact ways", triangles_ * sizeof(vec4));
   frame_.add_buffer(BIND_SELF_NEAR, "self-contact near pairs", std::uint64_t{near_capacity_} * sizeof(SelfNear));
@@ -47,19 +47,20 @@ const FrameKernel* PlaneSelf::add(int stage, const char* name, const std::vector
   return frame_.add_kernel(stage, name, static_cast<std::uint32_t>(sizeof(PlaneContactConstants)), constants, threads);
 }
 
-void PlaneSelf::add_list_kernels(int stage, const std::vector<std::uint32_t>& constants) {
-  const bool shuffles = !frame_.counts_bytes() && frame_.tuning()["shuffles"].get<bool>();
-  sharers_ = shuffles ? std::max(1u, frame_.device()->shuffled_lanes()) : 1;
-  if (sharers_ > kGroupSize) sharers_ = 1;
-  boxes_ = add(stage, "plane_self_boxes", constants);
-  count_ = add(stage, sharers_ > 1 ? "plane_self_list_shuffle" : "plane_self_list", constants);
-  scan_ = add(stage, "plane_scan_self", constants, kSelfScanThreads);
-  fill_ = add(stage, sharers_ > 1 ? "plane_self_list_fill_shuffle" : "plane_self_list_fill", constants);
+void PlaneSelf::add_list_kernels(int stage, PlaneContactSpecialization s) {
+  sharers_ = frame_.device()->shuffled_lanes();
+  const std::uint32_t subgroups = std::max(kGroupSize, sharers_);
+  boxes_ = add(stage, "plane_self_boxes", s.by_number());
+  count_ = add(stage, "plane_self_list", s.by_number(), subgroups);
+  s.OF_SELF = s.FILL = 1;
+  scan_ = frame_.add_kernel(stage, "plane_scan", sizeof(PlaneContactConstants), s.by_number(), kSelfScanThreads,
+                            {{BIND_RANGES, ranges_}});
+  fill_ = add(stage, "plane_self_list", s.by_number(), subgroups);
 }
 
 void PlaneSelf::add_kernels(int stage, const std::vector<std::uint32_t>& constants) {
   ways_ = add(stage, "plane_self_ways", constants);
-  near_ = add(stage, sharers_ > 1 ? "plane_self_near_shuffle" : "plane_self_near", constants);
+  near_ = add(stage, "plane_self_near", constants, std::max(kGroupSize, sharers_));
   query_ = add(stage, "plane_self_query", constants);
   respond_ = add(stage, "plane_self_respond", constants);
   choose_ = add(stage, "plane_self_choose", constants);

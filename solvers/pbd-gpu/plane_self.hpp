@@ -9,14 +9,11 @@ class PlaneSelf {
  public:
   /// Adds buffers. `particle`: of each vertex, the vertex that it is welded to; empty: itself.
   PlaneSelf(FrameBuilder& frame, const Scene& scene, const std::vector<std::uint32_t>& particle);
-  void add_list_kernels(int stage, const std::vector<std::uint32_t>& constants);
-  /// Of a substep, where no kernel has the whole frame.
+  void add_list_kernels(int stage, PlaneContactSpecialization);
   void add_kernels(int stage, const std::vector<std::uint32_t>& constants);
 
-  /// Specialization constants of all kernels of contact by planes: PlaneContactSpecialization,
-  /// PlaneFrameSpecialization.
-  template <class Specialization>
-  void specialize(Specialization& s) const {
+  /// Specialization constants of all kernels of contact by planes.
+  void specialize(PlaneContactSpecialization& s) const {
     s.SELF = 1;
     s.SELF_CAPACITY = capacity_;
     s.NEAR_CAPACITY = near_capacity_;
@@ -39,7 +36,8 @@ class PlaneSelf {
   FrameBuilder& frame_;
   std::uint32_t triangles_ = 0, capacity_ = 0, near_capacity_ = 0, touching_capacity_ = 0, thickness_bits_ = 0,
                 friction_bits_ = 0;
-  std::uint32_t sharers_ = 1;  ///< threads that share a triangle's list
+  std::uint32_t sharers_ = 1;  ///< threads that share a triangle's list: a subgroup
+  const vulkan::Buffer* ranges_ = nullptr;
   const FrameKernel *boxes_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr, *ways_ = nullptr,
                     *near_ = nullptr, *query_ = nullptr, *respond_ = nullptr, *choose_ = nullptr;
 };

@@ -156,7 +156,6 @@ Choice tension_of(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "tension");
   if (membrane_of(scene, settings).on) return {true, ""};  // triangles are solved with theirs, whatever the setting
   if (wanted == "never") return {false, "setting tuning.tension=never"};
-  if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
   if (!touches_nothing(scene)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
@@ -216,7 +215,6 @@ Choice may_couple(const Scene& scene, const nlohmann::json& settings) {
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
   if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
   if (wants_chains(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
-  if (settings.value("iterations", 1) > 1) return {false, "setting iterations: multipliers start from the last ones"};
   if (!touches_nothing(scene)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
   if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};

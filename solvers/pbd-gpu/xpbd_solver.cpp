@@ -44,8 +44,8 @@ class Xpbd final : public GpuSolver {
 
  private:
   void build() override {
-    // The kernel of a whole frame assumes the masses of an even sheet.
-    if (!scene().cloth.mass_factors.empty()) override_setting("one_dispatch", false, "masses are scaled");
+    if (device_->shuffled_lanes() == 0)
+      throw Error("solver xpbd: this device has no subgroup shuffles in compute shaders (optional in Vulkan 1.1)");
     // The slack of tethers is computed from the weight of an even sheet.
     if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
       override_setting("tethers", false, "masses are scaled");
@@ -69,7 +69,7 @@ class Xpbd final : public GpuSolver {
           "solver xpbd: /cloth/mesh: vertex {} is on an edge shorter than a fiftieth of the mean; expected none in a "
           "cloth that bends",
           cloth.welded.front()));
-    const std::vector<float> w = welded(inverse_mass_now(), cloth);
+    const std::vector<float> w = welded(inverse_masses(scene()), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
     const std::vector<double> start_velocity = initial_velocities(scene());
     const Vec3 origin = scene().cloth.center_m;
@@ -150,15 +150,13 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
   }
 
-  /// Rejects or overrides what chains do not support: several iterations with kept multipliers, batches, bending of
-  /// anything but meshes whose edges all are links.
-  void restrict_to_chains() {
+  /// Rejects what chains do not support: batches, and bending of anything but meshes whose edges all are links.
+  void restrict_to_chains() const {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
           "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
           "neither; expected bending_rigidity_N_m 0");
     if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
-    override_setting("iterations", 1, "its links are not all alike: chains take one iteration");
   }
 
   /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
@@ -283,19 +281,14 @@ SolverInfo xpbd_info() {
        "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
       {"substeps", "0", "substeps a frame; 0: by quality"},
       {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
-      {"iterations", "1", "constraint iterations a substep; multipliers start at 0 in each substep"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
       {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
-      {"one_dispatch", "true",
-       "a whole frame in one dispatch where cloth and device allow it; false: one a family of lines"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
-      {"contact_frame", "\"auto\"",
-       "with contact, a whole frame in one dispatch: auto (on GPUs, and under a device profile), always, "
-       "never"},
+      {"contact_frame", "\"auto\"", "with contact, a whole frame in one dispatch: auto (on GPUs), always, never"},
       {"contact_groups", "0",
-       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 96 (264 "
-       "with self-collision) or those of the lines; one where only capsules touch and the device is no discrete GPU"},
+       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 96 or those of the "
+       "lines"},
       {"contact_pairs", "0", "with contact, pairs that the list has place for; 0: by the cloth's elements"},
       {"device_barrier", "\"auto\"",
        "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
@@ -312,7 +305,6 @@ SolverInfo xpbd_info() {
        "nothing is touched and 600 iterations a substep are enough), always, never"},
       {"solves_again", "\"auto\"",
        "with contact, whether chains are solved once more between the responses of a substep: auto (yes), never"},
-      {"shuffles", "true", "threads of a line exchange by subgroup shuffles where lines fit a subgroup"},
       {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
       {"threads_a_group", "0", "of one family's workgroups: 32 to 1024; 0: by line and device"},
       {"lines_beside", "0",
@@ -326,7 +318,6 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
   require_between("xpbd", settings, "time_order", 1, 2);
   require_between("xpbd", settings, "batch", 1, 262144);
-  require_between("xpbd", settings, "iterations", 1, 4096);
   const nlohmann::json& tuning = settings[kTuning];
   require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
   require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});

@@ -46,15 +46,6 @@ TEST(ChainPlan, HasEveryLinkOnceAndNoVertexTwiceInAFamily) {
     }
 }
 
-TEST(ChainPlan, TakesTheFourFamiliesOfAGridWhole) {
-  const Scene s = uneven(sheet(17, 9), 4, 0.3);
-  const std::vector<ChainFamily> families = plan_of(s, chain_cloth(s), 256);
-  ASSERT_EQ(families.size(), 4u);
-  EXPECT_EQ(families[3].chains.size(), 9u) << "rows are solved last";
-  EXPECT_EQ(families[3].longest(), 16u);
-  EXPECT_EQ(families[2].chains.size(), 17u);
-}
-
 TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
   const Scene wide = uneven(sheet(17, 9), 4, 0.3), thin = uneven(sheet(17, 9), 4, 1e-3);
   EXPECT_TRUE(chain_cloth(wide).welded.empty());
@@ -88,44 +79,6 @@ TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
     }
     EXPECT_EQ(seen.size() == s.cloth.vertex_count(), with_others);
   }
-}
-
-/// A ring stretches where it is cut, so neighbours hold it there.
-TEST(ChainPlan, CutsNeighbouringRingsInOtherPlaces) {
-  constexpr int kAround = 24, kAlong = 9;
-  Scene s = mesh_tube(kAround, kAlong);
-  s.material.membrane_stiffness_N_per_m.reset();
-  std::vector<int> cut(kAlong, -1);
-  for (const Strand& strand : strands(s, chain_cloth(s)))
-    if (strand.vertices.front() == strand.vertices.back())
-      cut[strand.vertices.front() / kAround] = static_cast<int>(strand.vertices.front() % kAround);
-  for (std::size_t j = 0; j < kAlong; ++j) ASSERT_GE(cut[j], 0) << "ring " << j << " is no strand";
-  for (std::size_t j = 1; j < kAlong; ++j) {
-    const int apart = std::abs(cut[j] - cut[j - 1]);
-    EXPECT_GE(std::min(apart, kAround - apart), kAround / 4) << j;
-  }
-}
-
-/// A long ring of elastic links is two chains that share the stiffness round its cut, without a jump.
-TEST(ChainPlan, OverlapsWhereItCutsLongRings) {
-  const Scene s = mesh_tube(40, 4);
-  const ChainCloth cloth = chain_cloth(s);
-  std::map<Ends, double> whole;
-  int shared = 0;
-  for (const ChainFamily& f : plan_of(s, cloth, 256))
-    for (const ChainEntry& e : entries_of(f, s, cloth, 256, false)) {
-      if (e.vertex == CHAIN_NO_VERTEX || e.rest < 0) continue;
-      const ChainEntry& next = *(&e + 1);
-      const double share = cloth.link(e.vertex, next.vertex).compliance_m_per_N / e.compliance;
-      whole[std::minmax(e.vertex, next.vertex)] += share;
-      shared += share < 1 - 1e-6 ? 1 : 0;
-    }
-  EXPECT_EQ(whole.size(), cloth.links.size());
-  for (const auto& [ends, sum] : whole) EXPECT_NEAR(sum, 1, 1e-5) << ends.first << " " << ends.second;
-  EXPECT_EQ(shared, 4 * 2 * 16) << "16 links of each ring, twice";
-  Scene rigid = s;
-  rigid.material.membrane_stiffness_N_per_m.reset();
-  for (const Strand& strand : strands(rigid, chain_cloth(rigid))) EXPECT_TRUE(strand.share.empty());
 }
 
 TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
@@ -247,14 +200,6 @@ TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
     ++agreed;
   }
   EXPECT_GE(agreed, 1);
-}
-
-TEST_F(Chained, RefuseWhatTheyDoNotDo) {
-  const auto solver = make("xpbd");
-  EXPECT_THROW(solver->load(with_bending(uneven(sheet(9, 7), 3, 0.3))), Error);
-  const Scene s = mesh_sheet(8);
-  const auto copies = make("xpbd", {{"batch", 2}});
-  EXPECT_THROW(copies->load(s), Error);
 }
 
 }  // namespace

@@ -129,21 +129,6 @@ TEST_F(PaperContacts, AgreeWithDoublePrecisionKindByKind) {
       }
 }
 
-TEST_F(PaperContacts, AgreeWithDoublePrecisionAllAtOnceAndLeavePinsAlone) {
-  for (const auto& [columns, rows] : {std::pair{9, 7}, {33, 17}, {50, 41}}) {
-    const Scene s = everything(with_pins(flying(columns, rows)));
-    Scene held = s;
-    // A sheet at rest whose pins stay behind has constraints to satisfy: only the pins themselves are compared.
-    EXPECT_GT(expect_as_in_double(everything(flying(columns, rows)), "all"), columns * rows / 20);
-    const auto solver = make("paper");
-    solver->load(held);
-    const ClothState state = after(*solver, held, 3);
-    const std::vector<double> x = initial_positions(held);
-    for (std::uint32_t p : held.pins.vertices)
-      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(state.position[3 * p + k], x[3 * p + k], 1e-7);
-  }
-}
-
 TEST_F(PaperContacts, CostNothingWhereTheSceneHasNone) {
   struct Kind {
     const char *stage, *buffer;
@@ -181,31 +166,6 @@ TEST_F(PaperContacts, CostNothingWhereTheSceneHasNone) {
       EXPECT_EQ(left, std::string(other.stage) != kind.stage) << other.stage << ": what is left out is said";
     }
   }
-}
-
-TEST_F(PaperContacts, TestEveryParticleOfBothLayersAgainstEveryTriangle) {
-  const Scene s = doubled(with_collider(sheet(9, 7), octahedron({0, 0, 0}, 0.1, false)));
-  const auto solver = make("paper");
-  solver->load(s);
-  for (const StagePlan& stage : solver->plan().stages)
-    if (stage.name == "SatisfyMeshCollisions") {
-      EXPECT_EQ(stage.read_B, 2 * 9 * 7 * (16 + 8 * (16 + 3 * 16)));
-      EXPECT_EQ(stage.write_B, 2 * 9 * 7 * 16);
-    }
-}
-
-TEST_F(PaperContacts, TakesWhatTheArticleHas) {
-  const SolverInfo info = paper_info();
-  const FeatureSet plain = {Feature::Stretch, Feature::Shear};
-  for (Feature mesh : {Feature::StaticMesh, Feature::MovingMesh}) {
-    EXPECT_EQ(unsupported(info, plain | FeatureSet{mesh}), FeatureSet{mesh})
-        << "Table 4: single-sided has no mesh contact";
-    EXPECT_TRUE(unsupported(info, plain | FeatureSet{mesh, Feature::DuplicatedLayer}).empty());
-  }
-  for (Feature f : {Feature::Plane, Feature::DoubleSided, Feature::SelfCollision})
-    EXPECT_EQ(unsupported(info, plain | FeatureSet{f}), FeatureSet{f});
-  for (Feature f : {Feature::Sphere, Feature::Box, Feature::Capsules, Feature::Friction, Feature::MovingPins})
-    EXPECT_TRUE(unsupported(info, plain | FeatureSet{f}).empty());
 }
 
 TEST_F(PaperContacts, AFallenSheetStaysOnAMesh) {

@@ -70,25 +70,5 @@ TEST_F(Gpu, AFastSheetStopsAtAThinMeshFromEitherSide) {
   }
 }
 
-TEST(Clusters, HoldEveryTriangleOnceAndFewAtATime) {
-  std::vector<double> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::uint32_t k = 0; k < 517; ++k) {
-    for (int c = 0; c < 3; ++c)
-      for (int axis = 0; axis < 3; ++axis) positions.push_back(std::sin(1.7 * k + 0.9 * axis) + 0.01 * c);
-    triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
-  }
-  const Clusters c = cluster(positions, triangles);
-  std::size_t all = 0;
-  for (std::uint32_t size : c.sizes) {
-    EXPECT_GT(size, 0u);
-    EXPECT_LE(size, Clusters::kClusterSize);
-    all += size;
-  }
-  EXPECT_EQ(all, 517u);
-  EXPECT_EQ(std::set<std::uint32_t>(c.triangles.begin(), c.triangles.end()).size(), 517u);
-  EXPECT_TRUE(cluster({}, {}).sizes.empty());
-}
-
 }  // namespace
 }  // namespace clothbench::pbd_gpu

@@ -59,15 +59,13 @@ class LineModel {
     if (method.tethered) tethers_ = tethers_of(s);
   }
 
-  void frame(int substeps, int iterations) {
+  void frame(int substeps) {
     const int families = s_.needs.has(Feature::Shear) ? 4 : 2;
     rate_ = std::min(0.04, 0.2 / substeps);
     for (int n = 0; n < substeps; ++n) {
       begin(s_.time.dt() / substeps);
       integrate();
-      multipliers_.clear();
-      for (int it = 0; it < iterations; ++it)
-        for (int turn = 0; turn < families; ++turn) family(families - 1 - turn);
+      for (int turn = 0; turn < families; ++turn) family(families - 1 - turn);
     }
   }
 
@@ -203,7 +201,6 @@ class LineModel {
       const double soft = std::max(alpha, yields ? std::max(1e-3, firm) * std::max(w(k), w(k + 1)) : 0.0);
       a[k][k] = w(k) + w(k + 1) + soft;
       b[k][0] = rest - length(e) + soft * pull[k] * length(e);
-      b[k][0] -= (strip ? soft : alpha) * multipliers_[{f, line[k]}][0];
       b[k][0] -= creep_[{f, line[k]}] + foreseen(f, line[k], line[k + 1]);
     }
     for (std::size_t k = 0; k + 1 < n; ++k) a[k][k + 1] = a[k + 1][k] = -w(k + 1) * dot(out.along[k], out.along[k + 1]);
@@ -245,7 +242,6 @@ class LineModel {
     for (std::size_t k = 0; k < all.size(); ++k) all[k] -= carried[k] * links.length[k];
     if (couples_) remember(f, line, whole, all);
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-      multipliers_[{f, line[k]}][0] += links.lambda[k];
       move(line[k], (-m_.w[line[k]] * links.lambda[k]) * links.along[k]);
       move(line[k + 1], (m_.w[line[k + 1]] * links.lambda[k]) * links.along[k]);
     }
@@ -266,12 +262,10 @@ class LineModel {
       if (k + 1 < n) a[k][k + 1] = a[k + 1][k] = -2 * (w(k + 1) + w(k + 2));
       if (k + 2 < n) a[k][k + 2] = a[k + 2][k] = w(k + 2);
       const V C = m_.x[line[k]] - 2.0 * m_.x[line[k + 1]] + m_.x[line[k + 2]];
-      b[k] = -1.0 * (C + alpha * multipliers_[{4 + f, line[k + 1]}]);
+      b[k] = -1.0 * C;
     }
     const std::vector<V> lambda = solved(a, b);
     for (std::size_t k = 0; k < n; ++k) {
-      V& kept = multipliers_[{4 + f, line[k + 1]}];
-      kept = kept + lambda[k];
       move(line[k], w(k) * lambda[k]);
       move(line[k + 1], -2 * w(k + 1) * lambda[k]);
       move(line[k + 2], w(k + 2) * lambda[k]);
@@ -286,7 +280,6 @@ class LineModel {
   std::vector<std::array<double, 4>> shift_;  ///< over h^2: along rows, along columns, and the filter's first stage
   std::map<std::pair<int, std::size_t>, double> creep_;
   double h_ = 0, carry_ = 0, keep_ = 1, loss_ = 0, rate_ = 0;
-  std::map<std::pair<int, std::size_t>, V> multipliers_;
 };
 
 }  // namespace clothbench::pbd_gpu

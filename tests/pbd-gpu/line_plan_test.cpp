@@ -35,13 +35,6 @@ TEST(Tethers, AreNoneWhereTheyWouldBeWrong) {
   EXPECT_EQ(tethers_of(stretched).why_not, "the cloth starts stretched");
 }
 
-TEST(Tethers, GiveElasticClothItsSlack) {
-  Scene s = with_pins(sheet(9, 7));
-  EXPECT_NEAR(tethers_of(s).stretch - 1, 5 * 0.2 * 9.81 * std::sqrt(2.0) / 1000, 1e-12);
-  s.material.membrane_stiffness_N_per_m.reset();
-  EXPECT_EQ(tethers_of(s).stretch, 1);
-}
-
 TEST(TautLines, AreThoseStraightBetweenHeldVertices) {
   Scene s = with_pins(sheet(9, 7));
   std::vector<std::uint8_t> expected(36, 0);
@@ -145,22 +138,19 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
 }
 
 TEST(Shapes, FitDevices) {
-  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768},
-      least{0, 128, 16384};
-  for (const LineDevice& d : {lavapipe, nvidia, adreno, least})
+  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768};
+  for (const LineDevice& d : {lavapipe, nvidia, adreno})
     for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
       for (const LineShape& s : {frame_shape(n, 2, {}, d), frame_shape(n, n, {}, d), pass_shape(n, {}, d)}) {
         if (s.threads == 0) {
-          EXPECT_TRUE(n > 32 || d.shared_B < 32768) << n;
+          EXPECT_GT(n, 32);
           continue;
         }
         EXPECT_LE(s.threads, std::min(d.wide ? 1024u : 256u, d.most_threads));
         EXPECT_GE(s.lanes * s.vertices, static_cast<std::uint32_t>(n));
         EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
         EXPECT_EQ(s.threads % (s.lanes * s.beside), 0u);
-        if (s.shuffles) {
-          EXPECT_EQ(s.threads % d.subgroup, 0u) << "whole subgroups";
-        }
+        EXPECT_EQ(s.threads % std::min(d.subgroup, s.threads), 0u) << "whole subgroups";
       }
     }
   EXPECT_EQ(frame_shape(32, 32, {}, nvidia).threads, 512u);
@@ -169,14 +159,6 @@ TEST(Shapes, FitDevices) {
   EXPECT_EQ(wide.beside * wide.lanes, 512u);
   EXPECT_EQ(pass_shape(64, {2, 128, 2}, nvidia).threads, 128u) << "requests are granted";
   EXPECT_THROW(pass_shape(8193, {}, nvidia), Error);
-}
-
-TEST(BendRounds, AreFewWhereBendingIsSoft) {
-  const LineShape shape{32, 4, 64, true};
-  EXPECT_EQ(bend_rounds(1e12, 1e4, shape), 0u);
-  EXPECT_EQ(bend_rounds(1, 1e4, shape), 5u);
-  for (double alpha = 1e12; alpha > 1; alpha /= 10)
-    EXPECT_LE(bend_rounds(alpha, 1e4, shape), bend_rounds(alpha / 10, 1e4, shape));
 }
 
 }  // namespace

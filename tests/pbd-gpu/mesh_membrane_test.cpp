@@ -111,65 +111,6 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
   }
 }
 
-/// Springs along edges are softer than stated, by how many substeps solve them: CHAINS.md says how much.
-TEST_F(MembraneOf, DrawnMeshesWithSpringsIsSofter) {
-  const Scene s = hanging(12, std::numbers::pi / 4, 0.3, 2);
-  const nlohmann::json settings = {{"substeps", 16}, {"tuning", {{"membrane", "never"}}}};
-  const IsotropicModuli m = hanging_moduli(s, end_of(s, "xpbd", settings));
-  EXPECT_GE(m.E, 0.7);
-  EXPECT_LE(m.E, 0.95) << "springs are near Y: touching cloth may be said to have it";
-}
-
-/// The lower half of a strip is a quarter as stiff: material.regions of a mesh.
-TEST_F(MembraneOf, RegionsIsTheirOwn) {
-  const Scene even = hanging(8, 0.5, 0.3, 4);
-  Scene s = even;
-  StiffnessRegion lower;
-  lower.membrane_stiffness_N_per_m = 250;
-  const ClothMesh& mesh = *s.cloth.mesh;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    if (std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
-                    [&](std::uint32_t v) { return mesh.vertices[v][0] >= 0.5; }))
-      lower.triangles.push_back(t);
-  s.material.regions = {lower};
-  s.needs.add(Feature::Regions);
-  const auto lowest = [](const std::vector<double>& x) {
-    double most = -1;
-    for (std::size_t k = 0; k < x.size(); k += 3) most = std::max(most, x[k]);
-    return most - 1;
-  };
-  const double right = lowest(end_of(s, "reference", {{"substeps", 1}})),
-               found = lowest(end_of(s, "xpbd", nlohmann::json::object()));
-  EXPECT_NEAR(found / right, 1, 0.02);
-  EXPECT_GE(right / lowest(end_of(even, "reference", {{"substeps", 1}})), 1.5) << "the region changes little";
-  const double springs = lowest(end_of(s, "xpbd", {{"substeps", 32}, {"tuning", {{"membrane", "never"}}}}));
-  EXPECT_NEAR(springs / right, 1, 0.15) << "springs are softer by what CHAINS.md says";
-}
-
-/// Where the setting asks for it, triangles make cloth that touches: over a ball, whose surface no vertex passes.
-TEST_F(MembraneOf, TouchingSheetsRestsOnABall) {
-  constexpr double kRadius = 0.15;
-  Scene s = drawn_sheet(0.6, 0.4, 5, 0.5, 0.3, 5);
-  s.pins.vertices.clear();
-  s.needs = s.needs - FeatureSet{Feature::Pins};
-  s.time = {60, 0.25};
-  Vec3 ball = s.cloth.center_m;
-  for (std::size_t k = 0; k < 3; ++k) ball[k] += 0.3 * s.cloth.axis_u[k] + 0.2 * s.cloth.axis_v[k];
-  ball[1] -= kRadius + 0.03;
-  s = with_collider(s, sphere(ball, kRadius, kContactFriction));
-  const auto solver = make("xpbd", {{"quality", "fast"}, {"tuning", {{"membrane", "always"}}}});
-  solver->load(s);
-  const std::vector<double> x = after(*solver, s, s.time.frames()).position;
-  double lowest = 0;
-  for (std::size_t v = 0; v < x.size(); v += 3) {
-    const double d = std::hypot(x[v] - ball[0], x[v + 1] - ball[1], x[v + 2] - ball[2]);
-    if (!(d >= kRadius)) ADD_FAILURE() << "vertex " << v / 3 << " is " << d << " m from the middle";
-    lowest = std::min(lowest, x[v + 1] - ball[1]);
-  }
-  EXPECT_LT(lowest, 0) << "the sheet hangs down beside the ball";
-  EXPECT_GT(lowest, -2 * kRadius) << "it fell off, or through";
-}
-
 /// Pulled to twice its length, with few substeps: the sheet comes to rest where the reference does.
 TEST_F(MembraneOf, FarStretchedSheetsComeToRest) {
   std::size_t number = 0;
@@ -219,38 +160,6 @@ TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
   }
   const double free = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), 6);
   EXPECT_NEAR(fall / mass, free, 3e-5 * std::abs(free));
-}
-
-/// Triangles have their tension in their own solve: no setting leaves it out, and a prediction may build on it.
-TEST_F(MembraneOf, DrawnSheetsHaveTensionWhateverTheSetting) {
-  const Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
-  for (const nlohmann::json& settings : {nlohmann::json{{"tuning", {{"tension", "never"}}}}, {{"iterations", 4}}}) {
-    EXPECT_EQ(tension_of(s, settings).why_not, "");
-    const auto solver = make("xpbd", settings);
-    solver->load(s);
-    for (const auto& part : solver->plan().left_out) EXPECT_NE(part.what, "implicit tension") << part.why;
-    EXPECT_EQ(prediction_of(s, settings).on, prediction_of(s, nlohmann::json::object()).on);
-  }
-}
-
-/// What the plan says of meshes that springs along edges solve.
-TEST_F(MembraneOf, OtherSheetsIsNotAndThePlanSaysWhy) {
-  const auto why = [](const Scene& s, const nlohmann::json& settings) { return membrane_of(s, settings).why_not; };
-  Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
-  const nlohmann::json none = nlohmann::json::object();
-  EXPECT_EQ(why(s, none), "");
-  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "never"}}}}), "setting tuning.membrane=never");
-  EXPECT_EQ(why(sheet(5, 5), none), "the cloth is a grid");
-  s.material.membrane_stiffness_N_per_m = 1e7;
-  EXPECT_NE(why(s, none).find("iterations"), std::string::npos);
-  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "always"}}}}), "");
-  const auto solver = make("xpbd");
-  solver->load(s);
-  const auto& left = solver->plan().left_out;
-  EXPECT_TRUE(std::any_of(left.begin(), left.end(),
-                          [](const auto& part) { return part.what == "triangles of constant strain"; }));
-  s.material.membrane_stiffness_N_per_m.reset();
-  EXPECT_EQ(why(s, none), "the cloth is inextensible");
 }
 
 }  // namespace

@@ -93,14 +93,6 @@ TEST_F(Gpu, HandsAreSkinnedAndCapsulesArriveRelativeToTheOrigin) {
   }
 }
 
-TEST_F(Gpu, MotionOfAnotherSceneIsRefused) {
-  const Scene s = hands();
-  const auto solver = make("paper");
-  solver->load(doubled(s));
-  const FrameMotion wrong;
-  EXPECT_THROW(solver->step({0, s.time.dt(), s.time.dt(), &wrong}), Error);
-}
-
 TEST_F(Gpu, HeldVerticesFollowTheHandAndDragTheRest) {
   for (int substeps : {1, 3})
     for (bool two_layers : {false, true}) {
@@ -126,43 +118,6 @@ TEST_F(Gpu, HeldVerticesFollowTheHandAndDragTheRest) {
           }
         }
     }
-}
-
-TEST_F(Gpu, LetGoTheyFlyOnAndFall) {
-  // All of a rigid sheet is held: let go, it has the hand's velocity and falls as the method's free fall does.
-  constexpr int kRelease = 4, kFlight = 12;
-  for (int substeps : {1, 3}) {
-    Scene s = sheet(5, 4);
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t v = 0; v < 20; ++v) all.push_back(v);
-    s = moving(s, all, kRelease);
-    const nlohmann::json settings = {{"substeps", substeps}};
-    const auto solver = make("paper", settings);
-    solver->load(s);
-    const std::vector<double> rest = initial_positions(s);
-    for (int lap = 0; lap < 2; ++lap, solver->reset()) {
-      const ClothState state = after(*solver, s, kRelease + kFlight);
-      const double fall = paper_free_fall_m(s, settings, kFlight);
-      const double frames = kRelease + kFlight;
-      for (std::size_t v = 0; v < all.size(); ++v) {
-        EXPECT_NEAR(state.position[3 * v], rest[3 * v] + 0.02 * frames, 1e-4) << substeps;
-        EXPECT_NEAR(state.position[3 * v + 1], rest[3 * v + 1] + 0.03 * frames + fall, 1e-4) << substeps;
-        EXPECT_NEAR(state.position[3 * v + 2], rest[3 * v + 2] - 0.01 * frames, 1e-4) << substeps;
-      }
-    }
-  }
-}
-
-TEST_F(Gpu, WithoutMotionWhatCouldMoveStandsStill) {
-  const Scene s = moving(sheet(5, 4), {0, 4});
-  const auto solver = make("paper");
-  solver->load(s);
-  const std::vector<double> rest = initial_positions(s);
-  ClothState state;
-  for (int f = 0; f < 5; ++f) EXPECT_EQ(solver->step({f, (f + 1) * s.time.dt(), s.time.dt()}), StepStatus::Ok);
-  solver->read_state(state);
-  for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_EQ(static_cast<float>(state.position[12 + k]), static_cast<float>(rest[12 + k]));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "line_plan.hpp"
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
-#include "plane_contact_reference.hpp"
 #include "runner/stage_check.hpp"
 #include "runner/whole_run.hpp"
 #include "substeps.hpp"
@@ -83,64 +82,6 @@ TEST_F(PlaneContacts, PartEveryPairAtEveryStep) {
       expect_all_parted(make("xpbd", {{"substeps", 1}}), falling_in_steps(collider, steps_per_s),
                         name + " at " + std::to_string(steps_per_s));
     }
-}
-
-TEST_F(PlaneContacts, PartEveryPairOfATriangleMesh) {
-  Scene s = with_collider(mesh_sheet(8), sphere({0.02, -0.72, 0.05}, 0.1, kContactFriction));
-  s.pins.vertices.clear();
-  s.needs = s.needs - FeatureSet{Feature::Pins};
-  s.cloth.sides = Sides::Double;
-  s.needs.add(Feature::DoubleSided);
-  s.cloth.initial_velocity_m_per_s = {0.1, -3, 0.2};
-  s.time = {400, 0.3};
-  expect_all_parted(make("xpbd", {{"substeps", 1}}), s, "mesh");
-}
-
-TEST_F(PlaneContacts, AgreeWithDoublePrecisionOver100Substeps) {
-  const std::vector<std::pair<std::string, Collider>> kinds = {
-      {"half-space", half_space({0, -0.2, 0}, {0.6, 0.8, 0}, kContactFriction)},
-      {"sphere", sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)},
-      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
-      {"capsules", capsules({-0.1, 0.04, 0}, kContactFriction)},
-      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
-      {"hand", octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)},
-      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
-  for (const auto& [name, collider] : kinds) {
-    Scene s = with_collider(sheet(9, 7), collider);
-    s.material.membrane_stiffness_N_per_m = 1e-12;  // nothing but contact moves a vertex
-    s.cloth.center_m = {0, 0.3, 0};
-    s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
-    s = moving(s);
-    PlaneContactReference reference(s, 10);
-    const auto solver = make("xpbd", {{"substeps", 10}});
-    solver->load(s);
-    double most = 0;
-    for (int f = 0; f < 10; ++f) {
-      reference.frame(f);
-      const ClothState state = after_frame(*solver, s, f);
-      for (std::size_t i = 0; i < reference.x.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-          most = std::max(most, std::abs(state.position[3 * i + k] - reference.x[i][static_cast<long>(k)]));
-    }
-    // Where two flat things meet, which of the points that are as near is taken is up to rounding.
-    const double tolerance = name == "box" || name == "open sheet" ? 3e-4 : 1e-5;
-    EXPECT_TRUE(most <= tolerance) << name << ": " << most << " m; " << reference.responses << " responses, "
-                                   << reference.projected << " projections";
-    EXPECT_GT(reference.responses, 0) << name;
-    EXPECT_EQ(reference.without_place, 0) << name;
-  }
-}
-
-TEST_F(PlaneContacts, StopAFallOnAHalfSpace) {
-  Scene s = with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction));
-  s.cloth.center_m = {0, 0.5, 0};
-  const auto solver = make("xpbd");
-  solver->load(s);
-  for (int f = 0; f < 60; ++f) {
-    const ClothState state = after_frame(*solver, s, f);
-    for (std::size_t i = 0; i < state.position.size(); i += 3)
-      ASSERT_GT(0.6 * state.position[i] + 0.8 * state.position[i + 1], 0) << "frame " << f;
-  }
 }
 
 /// A sheet slides on a slope by g (sin - friction cos) T^2 / 2, or is held, on `collider` of an angle.
@@ -232,44 +173,6 @@ TEST_F(PlaneContacts, DropNoPairInSilence) {
   }
 }
 
-TEST_F(PlaneContacts, SayWhereTheirSubstepsAreCapped) {
-  for (const auto& [speed, substeps, wanted] : {std::tuple{10.0, 16, 0}, {40.0, 59, 0}, {100.0, 96, 142}}) {
-    Scene s = with_collider(sheet(9, 7), sphere({0, -0.3, 0}, 0.1));
-    s.cloth.initial_velocity_m_per_s = {0, -speed, 0};
-    const nlohmann::json settings = complete_settings(xpbd_info(), nlohmann::json::object());
-    EXPECT_EQ(xpbd_substeps(s, settings), substeps)
-        << "a margin of 20 mm a substep at the speed after a fall of 0.2 m, or half of that where it is fast, at least "
-           "16 and at most 96";
-    EXPECT_EQ(substeps_over_budget(s, settings), wanted);
-    const auto solver = make("xpbd");
-    solver->load(s);
-    bool said = false;
-    for (const LeftOut& l : solver->plan().left_out) said = said || l.what == std::to_string(wanted) + " substeps";
-    EXPECT_EQ(said, wanted > 0);
-  }
-}
-
-/// A whole frame in one dispatch moves the cloth bit for bit as a dispatch a phase does; pbd_gpu_plane_frame_test has
-/// all kinds of colliders, which take a CPU device some ten seconds to compile.
-TEST_F(PlaneContacts, HaveTheSameBitsInOneDispatch) {
-  Scene s = with_damping(with_collider(sheet(9, 7), half_space({0, 0, 0}, {0.6, 0.8, 0}, kContactFriction)));
-  s.cloth.center_m = {0, 0.4, 0};
-  const auto run = [&](const char* in_one, int dispatches) {
-    nlohmann::json settings = {{"substeps", 6}};
-    settings[kTuning]["contact_frame"] = in_one;
-    const auto solver = make("xpbd", settings);
-    solver->load(s);
-    int all = 0;
-    for (const StagePlan& stage : solver->plan().stages) all += stage.dispatches;
-    EXPECT_EQ(all, dispatches);
-    return after(*solver, s, 20);
-  };
-  // A dispatch a phase: the reach; in each substep 4 of vertices and 4 of families.
-  const ClothState one = run("always", 1), many = run("never", 1 + 6 * (4 + 4));
-  EXPECT_EQ(one.position, many.position);
-  EXPECT_EQ(one.velocity, many.velocity);
-}
-
 TEST_F(PlaneContacts, TakeTheSameSubstepsAfterAReset) {
   // It lies at the end, with few substeps, and falls at the start.
   Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
@@ -316,26 +219,6 @@ TEST_F(PlaneContacts, AreLeftOutPieceByPiece) {
         EXPECT_FALSE(b.name.starts_with("contact") || b.name.starts_with("collider")) << b.name;
       }
   }
-}
-
-TEST_F(PlaneContacts, LetHeldVerticesPassAndNoFreeOnes) {
-  Scene s = with_collider(sheet(9, 7), sphere({0.2, -0.15, 0}, 0.1));
-  s.cloth.sides = Sides::Double;
-  s.needs.add(Feature::DoubleSided);
-  s = moving(s, {0, 8}, 4);
-  const auto solver = make("xpbd");
-  solver->load(s);
-  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
-  for (int f = 0; f < 20; ++f) {
-    const ClothState state = after_frame(*solver, s, f);
-    for (std::size_t k = 0; k < 2 && f < 4; ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(state.position[3 * s.grips.vertices[k] + axis],
-                    s.motion[static_cast<std::size_t>(f) + 1].grip_position_m[k][axis], 1e-6);
-    for (std::size_t i = 0; i < state.position.size(); i += 3)
-      EXPECT_GT(std::hypot(state.position[i] - 0.2, state.position[i + 1] + 0.15, state.position[i + 2]), 0.1);
-  }
-  EXPECT_EQ(solver->contact_faults().without_place, 0u);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 #include "plane_contact_check.hpp"
-#include "plane_contact_reference.hpp"
 #include "runner/stage_check.hpp"
 #include "scenario/load.hpp"
 
@@ -30,40 +29,6 @@ Scene fold_on_floor(int columns = 13, int rows = 7) {
 }
 
 class PlaneSelfContacts : public Gpu {};
-
-TEST_F(PlaneSelfContacts, AgreeWithDoublePrecisionOver100Substeps) {
-  Scene s = fold_on_floor(9, 5);
-  for (const double side : {-1.0, 1.0}) {  // and into a groove
-    Collider wall = floor_below();
-    wall.normal = {0.8 * side, 0.6, 0};
-    s = with_collider(s, wall);
-  }
-  s.cloth.initial_velocity_m_per_s = {0.3, -9, 0.2};  // so fast that planes must cut
-  s.material.membrane_stiffness_N_per_m = 1e-12;      // nothing but contact moves a vertex
-  s.time.frame_rate_hz *= 50;
-  // With a state that is rounded to single precision after each step it shows how far rounding takes the motion. The
-  // solver rounds in between too.
-  PlaneContactReference reference(s, 1), rounded(s, 1);
-  const auto solver = make("xpbd", with(1));
-  solver->load(s);
-  for (int f = 0; f < 100; ++f) {
-    reference.frame(f);
-    rounded.frame(f);
-    for (auto* state : {&rounded.x, &rounded.v})
-      for (auto& at : *state) at = at.cast<float>().cast<double>();
-    const ClothState state = after_frame(*solver, s, f);
-    double most = 0, parted = 0;
-    for (std::size_t i = 0; i < reference.x.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double at = reference.x[i][static_cast<long>(k)];
-        most = std::max(most, std::abs(state.position[3 * i + k] - at));
-        parted = std::max(parted, std::abs(rounded.x[i][static_cast<long>(k)] - at));
-      }
-    EXPECT_TRUE(most <= 1e-5 + 20 * parted) << "after " << f + 1 << " substeps " << most << " m, rounded " << parted;
-  }
-  EXPECT_GT(reference.self_responses, 0);
-  EXPECT_EQ(reference.without_place, 0);
-}
 
 void expect_all_parted(GpuSolver& solver, const Scene& s) {
   solver.load(s);
@@ -93,12 +58,6 @@ TEST_F(PlaneSelfContacts, PartEveryPairAtEveryStep) {
   expect_all_parted(*make("xpbd", with(1)), s);
 }
 
-TEST_F(PlaneSelfContacts, PartEveryPairWithMovingCapsules) {
-  Scene s = with_collider(fold_on_floor(), capsules({-0.5, -0.1, 0}, kContactFriction));
-  s.time = {500, 0.2};
-  expect_all_parted(*make("xpbd", with(1)), moving(s));
-}
-
 TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
   Scene s = with_collider(mesh_sheet(8), sphere({0.02, -0.72, 0.05}, 0.1, kContactFriction));
   s.pins.vertices.clear();
@@ -110,10 +69,6 @@ TEST_F(PlaneSelfContacts, PartEveryPairOfATriangleMesh) {
   s.cloth.initial_velocity_m_per_s = {0.1, -4, 0.2};
   s.time = {400, 0.25};
   expect_all_parted(*make("xpbd", with(1)), s);
-}
-
-TEST_F(PlaneSelfContacts, AreOfOneClothAlone) {
-  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(fold_on_floor()), Error);
 }
 
 TEST_F(PlaneSelfContacts, WithoutThemTheFoldPassesItself) {
@@ -144,21 +99,6 @@ TEST_F(PlaneSelfContacts, RepeatBitForBit) {
   EXPECT_EQ(a.velocity, b.velocity);
   one->reset();
   EXPECT_EQ(after(*one, s, 8).position, a.position);
-  // A thread a list in place of a subgroup.
-  const auto alone = make("xpbd", {{kTuning, {{"shuffles", false}}}});
-  alone->load(s);
-  EXPECT_EQ(after(*alone, s, 8).position, a.position);
-}
-
-TEST_F(PlaneSelfContacts, WorkWithoutACollider) {
-  Scene s = folded(sheet(13, 7), 0.12, kContactFriction);
-  s.time = {500, 0.1};
-  const auto solver = make("xpbd", with(1));
-  solver->load(s);
-  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
-  const ClothState state = after(*solver, s, 10);
-  EXPECT_EQ(check_self_pairs(s, initial_positions(s), state.position).pairs,
-            check_self_pairs(s, initial_positions(s), state.position).parted);
 }
 
 }  // namespace

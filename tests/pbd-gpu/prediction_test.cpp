@@ -156,47 +156,6 @@ TEST_F(Predicted, BeginsAnewWhereThereIsNoLastSubstep) {
   }
 }
 
-TEST_F(Predicted, FreeFallIsOfSecondOrder) {
-  const Scene s = sheet(3, 3);
-  for (const int substeps : {3, 6}) {
-    const double t = 36 * s.time.dt(), h = s.time.dt() / substeps;
-    EXPECT_LE(std::abs(xpbd_free_fall_m(s, predicting({{"substeps", substeps}}), 36) + 0.5 * 9.81 * t * t),
-              9.81 * h * h);
-  }
-}
-
-TEST_F(Predicted, IsOffWhereItIsNotSafeAndSaysWhy) {
-  EXPECT_EQ(why_not(sheet(9, 9)), "");
-  EXPECT_EQ(why_not(with_pins(sheet(33, 33))), "");
-  EXPECT_NE(why_not(with_collider(sheet(9, 9), sphere({0, -1, 0}, 0.2))).find("touches"), std::string::npos);
-  Scene stiff = with_pins(sheet(33, 33));
-  stiff.material.membrane_stiffness_N_per_m = 1e6;
-  EXPECT_NE(why_not(stiff).find("wave"), std::string::npos);
-  Scene firm = with_pins(sheet(33, 33));
-  firm.material.membrane_stiffness_N_per_m.reset();
-  EXPECT_EQ(why_not(firm), "");
-  nlohmann::json few = {{"tethers", false}, {"substeps", 8}, {"tuning", {{"tension", "never"}}}};
-  EXPECT_NE(why_not(firm, few).find("tethers"), std::string::npos);
-  few["substeps"] = 11;
-  EXPECT_EQ(why_not(firm, few), "");
-  EXPECT_EQ(why_not(firm, {{"tethers", false}, {"substeps", 8}}), "") << "implicit tension holds it";
-  // A collider out of reach changes nothing, and one that may be touched does.
-  EXPECT_EQ(why_not(with_collider(with_pins(sheet(9, 9)), sphere({100, 0, 0}, 1))), "");
-  const std::string pull = "paper/two-hand-stretch-";
-  EXPECT_EQ(why_not(load_scene(pull + "2mps")), "");
-  EXPECT_NE(why_not(load_scene(pull + "10mps")).find("half of their distance"), std::string::npos);
-  EXPECT_NEAR(grip_strain(load_scene("validation/two-hand-pull")), 0.3, 0.1);
-  EXPECT_NE(why_not(with_collider(with_pins(sheet(9, 9)), sphere({4, 0, 0}, 1))).find("touches"), std::string::npos);
-  // What is off has no buffers.
-  for (const bool off : {true, false}) {
-    const auto solver = make("xpbd", off ? by_euler({}) : nlohmann::json::object());
-    solver->load(firm);
-    int history = 0;
-    for (const BufferPlan& b : solver->plan().buffers) history += b.device_local && b.name.starts_with("last ");
-    EXPECT_EQ(history, off ? 0 : 2);
-  }
-}
-
 /// Strain of a strip of 33 x 2 vertices along its lines at the end; NaN if any position is.
 double strain(const Scene& s, const ClothState& state) {
   double most = 0;
@@ -241,59 +200,6 @@ TEST_F(Predicted, TensionHoldsLoadsAndWhatIsPulledTooFar) {
     EXPECT_TRUE(with >= row.low && with <= row.high) << row.what << ": strain " << with;
     EXPECT_FALSE(without >= row.low && without <= row.high) << row.what << ": or this tests nothing";
   }
-}
-
-/// A hundred and a thousand times the earth's gravity; scaled scenes have the same substeps, and those in contact no
-/// more.
-TEST_F(Predicted, SubstepsGrowWithTheRootOfGravity) {
-  Scene s = swing(sheet(33, 2, 1, 1.0 / 32));
-  s.needs = s.needs - FeatureSet{Feature::Shear};
-  s.material.membrane_stiffness_N_per_m.reset();
-  const auto at = [&](double times) {
-    Scene heavy = s;
-    heavy.gravity_m_per_s2 = {0, -9.81 * times, 0};
-    return heavy;
-  };
-  const auto substeps = [](const Scene& scene) { return xpbd_substeps(scene, predicting()); };
-  EXPECT_EQ(substeps(at(8)), substeps(s));
-  EXPECT_EQ(substeps_without_gravity(at(8), predicting()), 0);
-  EXPECT_NEAR(substeps(at(1000)), std::sqrt(10) * substeps(at(100)), 2);
-  EXPECT_EQ(substeps_without_gravity(at(100), predicting()), substeps(s));
-  Scene small = at(100);
-  small.cloth.width_m /= 64;
-  small.cloth.height_m /= 64;
-  small.time = {480, 0.05};
-  EXPECT_EQ(substeps(small), substeps(at(100)));
-  EXPECT_EQ(substeps(with_collider(at(100), sphere({0, -1, 0}, 0.2))),
-            substeps(with_collider(s, sphere({0, -1, 0}, 0.2))));
-  const auto most = [&](const Scene& scene, const nlohmann::json& given) {
-    double strained = 0;
-    for (const ClothState& state : motion(scene, "xpbd", given)) {
-      const double here = strain(scene, state);
-      if (!(here <= strained)) strained = here;
-    }
-    return strained;
-  };
-  for (const double times : {100, 1000}) {
-    EXPECT_LE(most(at(times), nlohmann::json::object()), 3e-2) << times;
-    EXPECT_FALSE(most(at(times), {{"substeps", 3}}) <= 3e-2) << times << ": or this tests nothing";
-  }
-}
-
-/// One workgroup, many, and a dispatch a family predict alike; and so do chains where links are all alike.
-TEST_F(Predicted, EveryKernelPredictsAlike) {
-  const Scene s = with_damping(with_pins(sheet(17, 9)));
-  const auto one = motion(s, "xpbd", predicting({{"substeps", 6}})),
-             many = motion(s, "xpbd", predicting({{"substeps", 6}, {"one_dispatch", false}}));
-  EXPECT_LE(rms(s, one, many), 2e-5);
-  Scene mesh = with_damping(mesh_sheet(8));
-  mesh.time = {60, 0.5};
-  mesh.material.membrane_stiffness_N_per_m = 300;
-  ASSERT_EQ(why_not(mesh, {{"substeps", 40}, {"tethers", false}}), "");
-  const auto right = motion(mesh, "reference", {{"substeps", 40}});
-  const double error = rms(mesh, motion(mesh, "xpbd", predicting({{"substeps", 40}, {"tethers", false}})), right),
-               euler = rms(mesh, motion(mesh, "xpbd", by_euler({{"substeps", 40}, {"tethers", false}})), right);
-  EXPECT_LE(error, 0.5 * euler);
 }
 
 }  // namespace

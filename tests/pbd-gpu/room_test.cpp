@@ -39,41 +39,5 @@ TEST_F(RoomOf, MeshesIsWhatTheirBuffersTake) {
     }
 }
 
-/// A sheet of so many squares, halved.
-Scene large_sheet(int cells) {
-  std::vector<Vec3> x;
-  std::vector<std::array<std::uint32_t, 3>> t;
-  const auto n = static_cast<std::uint32_t>(cells + 1);
-  for (std::uint32_t j = 0; j < n; ++j)
-    for (std::uint32_t i = 0; i < n; ++i) x.push_back({1.0 * i / cells, 1.0 * j / cells, 0});
-  for (std::uint32_t j = 0; j + 1 < n; ++j)
-    for (std::uint32_t i = 0; i + 1 < n; ++i) {
-      const std::uint32_t a = j * n + i, b = a + 1, c = a + n, d = c + 1;
-      t.push_back({a, b, d});
-      t.push_back({a, d, c});
-    }
-  return of_mesh(cloth_mesh(std::move(x), std::move(t), "sheet"), {0});
-}
-
-/// Of a device that binds at most 128 MiB at a time, the corners of a million triangles are more. What fits, runs.
-TEST_F(RoomOf, AMillionTrianglesIsThereOrAnError) {
-  Scene s = large_sheet(708);
-  s.source = "a million triangles";
-  const auto solver = make("xpbd", {{"tuning", {{"membrane", "always"}}}});
-  const auto needs = mesh_needs(s, true);
-  if (breach(needs, device_->limits().maxStorageBufferRange, device_->memory_B()).empty())
-    GTEST_SKIP() << "the device has room for them";
-  try {
-    solver->load(s);
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    const std::string text = e.what();
-    for (const char* part : {"a million triangles: /cloth/mesh: 502681 vertices and 1002528 triangles do not fit",
-                             "buffer \"triangle corners\" of at least", "its largest has"})
-      EXPECT_NE(text.find(part), std::string::npos) << text;
-  }
-  EXPECT_TRUE(solver->plan().buffers.empty()) << "something was allocated";
-}
-
 }  // namespace
 }  // namespace clothbench::pbd_gpu

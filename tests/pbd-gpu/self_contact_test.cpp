@@ -106,46 +106,5 @@ TEST_F(SelfContacts, FrictionHoldsALayerThatSlidesOnAnother) {
   EXPECT_LT(way[1], 0.04);
 }
 
-TEST_F(SelfContacts, FoldsFarApartMoveNothing) {
-  Scene with = folded(with_pins(sheet(17, 9)), 0.5), without = with;
-  without.cloth.self_collision = {};
-  without.needs = without.needs - FeatureSet{Feature::SelfCollision};
-  // A cloth that may touch itself takes first order in time.
-  const nlohmann::json settings = {{"substeps", 10}, {"time_order", 1}};
-  const auto a = make("xpbd", settings), b = make("xpbd", settings);
-  a->load(with);
-  b->load(without);
-  for (int f = 0; f < 6; ++f) {
-    const ClothState p = after_frame(*a, with, f), q = after_frame(*b, without, f);
-    ASSERT_EQ(p.position, q.position) << "frame " << f;
-    ASSERT_EQ(p.velocity, q.velocity) << "frame " << f;
-  }
-}
-
-TEST_F(SelfContacts, AHeapIsTheSameBitsAgain) {
-  const Scene s = load_scene("contact/self-crumple", {"cloth.grid=[16,16]", "cloth.pose.center_m=[0,0.31,0]"});
-  const auto one = make("xpbd"), other = make("xpbd");
-  one->load(s);
-  other->load(s);
-  ClothState first;
-  for (int f = 0; f < 30; ++f) {
-    first = after_frame(*one, s, f);
-    ASSERT_EQ(first.position, after_frame(*other, s, f).position) << "frame " << f;
-  }
-  other->reset();
-  for (int f = 0; f < 30; ++f) {
-    const ClothState again = after_frame(*other, s, f);
-    if (f == 29) {
-      EXPECT_EQ(again.position, first.position);
-    }
-  }
-}
-
-TEST_F(SelfContacts, RefusesWhatItDoesNotDo) {
-  Scene s = folded(sheet(9, 9));
-  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(s), Error);
-  EXPECT_TRUE(unsupported(xpbd_info(), s.needs).empty());
-}
-
 }  // namespace
 }  // namespace clothbench::pbd_gpu

@@ -78,24 +78,22 @@ void add_planes(std::vector<Fault>& f) {
   kernel("a tenth of the reach", "struck", "plane_reach.glsl", "STORE16(reaches, i, vec4(at.xyz, reach));",
          "STORE16(reaches, i, vec4(at.xyz, 0.1 * reach));");
   kernel("one pair in three not listed", "struck", "plane_list.glsl", "return n;", "return n - n / 3u;");
-  kernel("half of each element's pairs not found again", "struck", "plane_scan.glsl", "min(count, room), 0u",
+  kernel("half of each element's pairs not found again", "struck", "plane_scan.comp", "min(count, room), 0u",
          "min(count, room) / 2u, 0u");
   kernel("start of the substep not what it was", "struck", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
          "at.xyz += -9.0 * p.h * (vel ");
   kernel("bounds of distances do not lose the ways", "struck", "plane_near.glsl",
          "bound -= most_of(e, true) + piece_way(pair.y);", "bound -= 0.0;");
   kernel("approach to a half-space kept in the velocity", "ramp", "plane_gather.glsl",
-         "propose(m, (push + out_by - moving) * s.normal.xyz);",
-         "propose(vec3(0.0), m + (push + out_by - moving) * s.normal.xyz);");
-  kernel("no friction on half-spaces", "ramp", "plane_gather.glsl", "m -= min(1.0, s.friction * moving / l) * slip;",
-         "m -= 0.0 * slip;");
+         "propose(c.moving, c.out_by * s.normal.xyz);", "propose(vec3(0.0), c.moving + c.out_by * s.normal.xyz);");
+  kernel("no friction on half-spaces", "ramp", "plane_gather.glsl", "at.xyz - start, s.friction)",
+         "at.xyz - start, 0.0)");
   kernel("whatever is apart taken for far", "struck", "plane_near.glsl", "gap > approach_of(e, pair.y)", "gap > 0.0");
   kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
          "s.normal = vec4(-r.n, gap);");
-  kernel("friction along the slip", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
-         "by += min(1.0, piece.friction");
-  kernel("friction half as great", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
-         "by -= min(1.0, 0.5 * piece.friction");
+  kernel("friction along the slip", "wrapped", "friction.glsl", "by -= min(1.0, friction", "by += min(1.0, friction");
+  kernel("friction half as great", "wrapped", "friction.glsl", "by -= min(1.0, friction",
+         "by -= min(1.0, 0.5 * friction");
   kernel("responses taken from the velocity, not given to it", "wrapped", "plane_gather.glsl",
          "sum_moving += l * moving;", "sum_moving -= l * moving;");
   kernel("no responses of vertices", "wrapped", "plane_gather.glsl",
@@ -127,17 +125,17 @@ void add_self_planes(std::vector<Fault>& f) {
   };
   kernel("boxes of a tenth of the size", "self_box.glsl", "return b.low_0.xyz +",
          "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
-  kernel("triangles whose numbers differ by few not paired", "plane_self_list.glsl", "if (a[c] == b.x ",
+  kernel("triangles whose numbers differ by few not paired", "plane_self_list.comp", "if (a[c] == b.x ",
          "if (abs(int(a[c]) - int(b.x)) < 60 ");
-  kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "end = range.x + range.y;",
+  kernel("half of each triangle's pairs lost", "plane_self_near.comp", "end = range.x + range.y;",
          "end = range.x + range.y / 2u;");
-  kernel("bounds of distances grow", "plane_self_near.glsl", "pair[n].bound - own.x - way[n].x;",
+  kernel("bounds of distances grow", "plane_self_near.comp", "pair[n].bound - own.x - way[n].x;",
          "pair[n].bound + 10.0 * (own.x + way[n].x);");
   kernel("contacts pushed a centimetre too far", "plane_self_push.glsl", "s.normal.w - dot(n, apart)",
          "s.normal.w + 0.01 - dot(n, apart)");
-  kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
+  kernel("normal of the nearest points flipped", "plane_self_query.comp", "self_near[k].plane = normal;",
          "self_near[k].plane = vec4(-normal.xyz, normal.w);");
-  kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
+  kernel("planes of the second triangle on its wrong side", "plane_self_choose.comp", "vec4(-n, half_m - offset)",
          "vec4(-n, half_m - offset - 0.01)");
   kernel("planes of the cloth with itself forgotten", "plane_project.glsl", "if (!parts[m]) continue;",
          "if (true) continue;");

@@ -4,15 +4,13 @@
 layout(std430, binding = BIND_DELTAS) buffer Deltas { uvec4 d[]; };
 layout(std430, binding = BIND_PREDICTED) buffer Predicted { vec4 q[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
-PAPER_CONSTANTS(SPECIALIZE)
 
 void main() {
   uint i = item();
   if (i >= p.particles) return;
   uvec4 sum = LOAD16(d, i);
   if (sum.w == 0u) return;
-  float n = NATIVE == 1u ? uintBitsToFloat(sum.w) : float(sum.w);
   vec4 at = LOAD16(q, i);
-  STORE16(q, i, vec4(at.xyz + uintBitsToFloat(sum.xyz) / n, at.w));
+  STORE16(q, i, vec4(at.xyz + uintBitsToFloat(sum.xyz) / float(sum.w), at.w));
   STORE16(d, i, uvec4(0u));
 }

@@ -1,7 +1,7 @@
 // Included by every kernel. LOAD/STORE count bytes in the instrumented build, which the
 // test of the byte table runs; in the normal build they are plain accesses.
 #extension GL_EXT_control_flow_attributes : require
-#ifdef SHUFFLES
+#ifdef SUBGROUPS
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif

@@ -1,6 +1,8 @@
 // Coupling of families (INTEGRATION.md). Diagonals are solved before columns and rows, whose displacement of a substep
 // they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second order makes
 // of those of the last substeps. Links creep, without which that would feed oscillations.
+layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
+layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 const float kMostRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep
 const float kMostShift = 0.25;                      // of a cell
 const float kForeseen = 0.995;                      // share of shifts; with all, some flat sheets drift in a minute

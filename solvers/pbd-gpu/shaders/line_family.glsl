@@ -20,9 +20,7 @@ void pass(uint substep, bool first, bool last) {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     pos[k] = vel[k] = vec3(0.0);
-#ifdef COUPLE
-    shift[k] = vec4(0.0);
-#endif
+    if (kCouples) shift[k] = vec4(0.0);
     w[k] = 0.0;
     at[k] = 0u;
     if (!(EXACT || on_chain(i))) continue;
@@ -32,10 +30,10 @@ void pass(uint substep, bool first, bool last) {
     pos[k] = here.xyz;
     w[k] = here.w;
     vel[k] = v[at[k]].xyz;
-#ifdef COUPLE
-    vec4 by_lines = LOAD16(shifts, at[k]);
-    if (w[k] > 0.0) shift[k] = p.h * p.h * by_lines;
-#endif
+    if (kCouples) {
+      vec4 by_lines = LOAD16(shifts, at[k]);
+      if (w[k] > 0.0) shift[k] = p.h * p.h * by_lines;
+    }
     if (fetches) {
       rest_pos[k] = rx[at[k]].xyz;
       rest_vel[k] = rv[at[k]].xyz;
@@ -61,8 +59,6 @@ void pass(uint substep, bool first, bool last) {
     if (w[k] == 0.0) continue;
     STORE16(x, at[k], vec4(pos[k], w[k]));
     STORE16(v, at[k], vec4(vel[k], 0.0));
-#ifdef COUPLE
-    if (family < 2u) STORE16(shifts, at[k], p.per_h * p.per_h * shift[k]);
-#endif
+    if (kCouples && family < 2u) STORE16(shifts, at[k], p.per_h * p.per_h * shift[k]);
   }
 }

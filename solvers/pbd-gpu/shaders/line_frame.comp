@@ -1,7 +1,7 @@
 #version 450
 // Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
+#define SUBGROUPS
 #include "common.glsl"
-#define SINGLE_BUFFERED_EXCHANGE  // shared memory is for the state
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
@@ -9,19 +9,12 @@ layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation
 layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
 layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
-#ifdef KEEP_MULTIPLIERS
-layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
-layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
-#endif
-#ifdef COUPLE
-layout(std430, binding = BIND_SHIFTS) buffer Shifts { vec4 shifts[]; };  // over h^2
-layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
-#endif
 #ifdef FAR
 layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 layout(std430, binding = BIND_FAULTS) writeonly buffer Faults { ContactFaults faults; };
 layout(std430, binding = BIND_PIECE_BOXES) readonly buffer PieceBoxes { PieceBox boxes[]; };  // groups' after pieces'
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
+const uint SELF = 0u;
 #endif
 #include "lines.glsl"
 
@@ -30,9 +23,9 @@ const uint kStride = 34u;
 shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
 shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
 shared uint held[32];  // a bit a vertex, a word a row
-#ifdef COUPLE
 // Shifts over h^2. The filters' first stages are of one family alone.
-shared float su[kStride * ROWS], sv[kStride * ROWS], filter_u[kStride * ROWS], filter_v[kStride * ROWS];
+const uint kShifts = kCouples ? kStride * ROWS : 1u;
+shared float su[kShifts], sv[kShifts], filter_u[kShifts], filter_v[kShifts];
 
 void put_shift(uvec2 at, vec4 value) {
   uint o = at.y * kStride + at.x;
@@ -41,7 +34,6 @@ void put_shift(uvec2 at, vec4 value) {
   filter_u[o] = value.z;
   filter_v[o] = value.w;
 }
-#endif
 
 #ifdef FAR
 #define CLOTH_LOW cloth_low
@@ -83,19 +75,15 @@ void take() {
     pos[k] = vec3(px[o], py[o], pz[o]);
     vel[k] = vec3(vx[o], vy[o], vz[o]);
     w[k] = on_chain(i) ? inverse_mass(at) : 0.0;
-#ifdef COUPLE
-    shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
-#endif
+    if (kCouples) shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
   }
 }
 
 void give() {
   [[unroll]] for (uint k = 0u; k < K; ++k)
     if (w[k] > 0.0) put(vertex(lane * K + k), pos[k], vel[k]);
-#ifdef COUPLE
-  [[unroll]] for (uint k = 0u; k < K; ++k)
+  [[unroll]] for (uint k = 0u; kCouples && k < K; ++k)
     if (w[k] > 0.0 && family < 2u) put_shift(vertex(lane * K + k), p.per_h * p.per_h * shift[k]);
-#endif
 }
 
 void load() {
@@ -107,9 +95,7 @@ void load() {
     uint o = index_of(vertex(i));
     vec4 here = LOAD16(x, o);
     put(vertex(i), here.xyz, LOAD16(v, o).xyz);
-#ifdef COUPLE
-    put_shift(vertex(i), LOAD16(shifts, o));
-#endif
+    if (kCouples) put_shift(vertex(i), LOAD16(shifts, o));
     rest_pos[k] = LOAD16(rx, o).xyz;
     rest_vel[k] = LOAD16(rv, o).xyz;
     if (kPredicts) {
@@ -134,10 +120,8 @@ void store() {
     uint o = index_of(vertex(i));
     STORE16(x, o, vec4(pos[k], w[k]));
     STORE16(v, o, vec4(vel[k], 0.0));
-#ifdef COUPLE
     uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
-    STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
-#endif
+    if (kCouples) STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
     STORE16(rx, o, vec4(rest_pos[k], 0.0));
     STORE16(rv, o, vec4(rest_vel[k], 0.0));
     if (!kPredicts) continue;
@@ -177,21 +161,20 @@ void main() {
   barrier();  // what load() wrote before all read it
   for (uint s = 0u; s < p.substeps; ++s) {
     if (GRIPS > 0u) move_held(s);
-    for (iteration = 0u; iteration < p.iterations; ++iteration)
-      for (uint turn = 0u; turn < families; ++turn) {
-        family = families - 1u - turn;
-        take();
-        if (turn == 0u && iteration == 0u) integrate();
-        if (kBends && family < 2u) bend();
-        uint firm = family == 0u ? REGULAR_0 : family == 1u ? REGULAR_1 : family == 2u ? REGULAR_2 : REGULAR_3;
-        stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.regularisation : 0.0);
-        if (turn + 1u == families && iteration + 1u == p.iterations) limit_speed();
-        give();
+    for (uint turn = 0u; turn < families; ++turn) {
+      family = families - 1u - turn;
+      take();
+      if (turn == 0u) integrate();
+      if (kBends && family < 2u) bend();
+      uint firm = family == 0u ? REGULAR_0 : family == 1u ? REGULAR_1 : family == 2u ? REGULAR_2 : REGULAR_3;
+      stretch(chain < 32u && (firm >> chain & 1u) != 0u ? p.regularisation : 0.0);
+      if (turn + 1u == families) limit_speed();
+      give();
 #ifdef FAR
-        if (turn + 1u == families) look_out();
+      if (turn + 1u == families) look_out();
 #endif
-        barrier();  // this family's writes before the next one's reads
-      }
+      barrier();  // this family's writes before the next one's reads
+    }
   }
 #ifdef FAR
   if (near_any != 0u) return;

@@ -3,6 +3,7 @@
 // the last limits what it stores; every family has every vertex exactly once, so in place is in order.
 // A dispatch is one family, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one
 // another after each.
+#define SUBGROUPS
 #include "common.glsl"
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
@@ -11,14 +12,6 @@ layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCom
 layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
 layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // a number a chain, families in turn
-#ifdef KEEP_MULTIPLIERS
-layout(std430, binding = BIND_LINK_MULTIPLIERS) buffer LinkMultipliers { float link_multipliers[]; };
-layout(std430, binding = BIND_HINGE_MULTIPLIERS) buffer HingeMultipliers { vec4 hinge_multipliers[]; };
-#endif
-#ifdef COUPLE
-layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
-layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
-#endif
 #include "lines.glsl"
 
 /// Pinned vertices are never written, so reading them here races with nothing.
@@ -43,9 +36,7 @@ void main() {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % families;
     family = families - 1u - turn;
-    iteration = n / families % p.iterations;
-    pass(n / families / p.iterations, turn == 0u && iteration == 0u,
-         turn + 1u == families && iteration + 1u == p.iterations);
+    pass(n / families, turn == 0u, turn + 1u == families);
   }
   if (PERSISTENT) leave_grid_barrier();
 }

@@ -8,15 +8,10 @@ layout(push_constant) uniform Push { LineConstants p; };
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
 const bool kShears = (FEATURES & LINES_SHEAR) != 0u;
 const bool kElastic = (FEATURES & LINES_ELASTIC) != 0u;
-// Kept multipliers and contact by planes have no implicit tension.
-#if !defined(KEEP_MULTIPLIERS) && !defined(PLANE_FRAME)
-#define TENSION
 const bool kTension = (FEATURES & LINES_TENSION) != 0u;
-#else
-const bool kTension = false;
-#endif
+const bool kCouples = (FEATURES & LINES_COUPLE) != 0u;
 
-uint thread, lane, chain, family, iteration;
+uint thread, lane, chain, family;
 vec3 pos[K], vel[K];
 float w[K];
 
@@ -47,19 +42,12 @@ float border() { return family < 2u && (chain == 0u || chain + 1u == chain_count
 
 // What neighbours n threads away on the same chain hold; what is beyond a chain's ends is anything finite. By shuffles
 // within a subgroup, else through shared memory.
-#ifdef SHUFFLES
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
 const uint PART = LANES / PARTS;                                               // its threads in one of them
 const uint EXCHANGE_SIZE = PARTS > 1u ? 2u * THREADS : 1u;
 bool apart = false;  // the rows a thread holds concern its own subgroup alone
-#else
-void set_thread() { thread = gl_LocalInvocationIndex; }
-const uint PARTS = 1u, PART = LANES;
-const uint EXCHANGE_SIZE = 2u * THREADS;
-#endif
 
-#if defined(SHUFFLES) || !defined(SINGLE_BUFFERED_EXCHANGE)
 // Two pages in turn: while some threads still read one, others write the other.
 shared vec4 exchanged[EXCHANGE_SIZE];
 uint exchange_half = 0u;
@@ -70,25 +58,14 @@ uint publish(vec4 mine) {
   barrier();  // the writes before the neighbours' reads
   return here;
 }
-#else
-shared vec4 exchanged[THREADS];
-uint publish(vec4 mine) {
-  barrier();  // all reads of the last exchange before the writes of this one
-  exchanged[thread] = mine;
-  barrier();  // the writes before the neighbours' reads
-  return 0u;
-}
-#endif
 
 void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
-#ifdef SHUFFLES
   if (PARTS == 1u || apart) {
     uint self = gl_SubgroupInvocationID, at = lane % PART;
     below = subgroupShuffle(mine, at >= n ? self - n * BESIDE : self);
     above = subgroupShuffle(mine, at + n < PART ? self + n * BESIDE : self);
     return;
   }
-#endif
   uint here = publish(mine);
   below = exchanged[here + (lane >= n ? thread - n * BESIDE : thread)];
   above = exchanged[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
@@ -192,15 +169,11 @@ void move(uint k, vec3 step) {
   vel[k] += step * p.per_h;
 }
 
-#ifdef COUPLE
 #include "coupling.glsl"
-#endif
 
 vec3 direction[K], direction_below;  // of links; 0 where there is none
 float w_above;                       // inverse mass of the vertex after the thread's
-#ifdef TENSION
 float link_length[K], pull[K];  // tension over length that links carry already
-#endif
 
 /// Of the chain's links, over h^2.
 float compliance() { return (family == 0u ? p.alpha_u : family == 1u ? p.alpha_v : p.alpha_d) * border(); }
@@ -212,9 +185,7 @@ void link_equations(float least) {
   exchange(vec4(pos[0], w[0]), 1u, none, above);
   w_above = above.w;
   float alpha = compliance();
-#ifdef COUPLE
-  alpha *= at_once();
-#endif
+  if (kCouples) alpha *= at_once();
   float rest = family == 0u ? p.rest_u : family == 1u ? p.rest_v : p.rest_d;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     vec4 next = above;
@@ -235,26 +206,16 @@ void link_equations(float least) {
     float soft = max(alpha, firm * max(w[k], next.w));
     link_diagonal[k] = is ? sum + soft : 1.0;
     link_right[k] = is ? rest - l : 0.0;
-#ifdef TENSION
     link_length[k] = l;
     if (kTension && is) link_right[k] += soft * pull[k] * l;
-#endif
-#ifdef KEEP_MULTIPLIERS
-    if (kElastic && is && iteration > 0u)
-      link_right[k] -= (kShears ? alpha : soft) * LOAD4(link_multipliers, family * COLUMNS * ROWS + index_of(vertex(lane * K + k)));
-#endif
   }
   exchange(vec4(direction[K - 1u], 0.0), 1u, below, none);
-#ifdef COUPLE
-  exchange(vec4(direction[0], along_diagonal(0u)), 1u, none, above);
-  [[unroll]] for (uint k = 0u; k < K; ++k) {
+  exchange(vec4(direction[0], kCouples ? along_diagonal(0u) : 0.0), 1u, none, above);
+  [[unroll]] for (uint k = 0u; kCouples && k < K; ++k) {
     float next = above.w;
     if (k + 1u < K) next = along_diagonal(k + 1u);
     if (direction[k] != vec3(0.0)) link_right[k] -= creep[k] + next - along_diagonal(k);
   }
-#else
-  exchange(vec4(direction[0], 0.0), 1u, none, above);
-#endif
   direction_below = lane > 0u ? below.xyz : vec3(0.0);
   vec3 direction_above = lane + 1u < LANES ? above.xyz : vec3(0.0);
   [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -267,11 +228,8 @@ void link_equations(float least) {
   }
 }
 
-#ifdef TENSION
 #include "tension.glsl"
-#endif
 
-#ifdef COUPLE
 /// Of the thread's links and the one before them, in all: of implicit tension too.
 void remember_multipliers(float lambda_below) {
   float lambda[K];
@@ -286,39 +244,21 @@ void remember_multipliers(float lambda_below) {
   }
   remember(compliance(), lambda, lambda_below);
 }
-#endif
 
 void stretch(float least) {
-#ifdef COUPLE
-  load_creep();
-#endif
-#ifdef TENSION
+  if (kCouples) load_creep();
   if (kTension) turn_by_tension(least);
-#endif
   link_equations(least);
   float lambda_below;
   solve_links(32u, lambda_below);
-#ifdef COUPLE
-  remember_multipliers(lambda_below);
-#endif
+  if (kCouples) remember_multipliers(lambda_below);
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     vec3 step = lambda_below * direction_below;
     if (k > 0u) step = link_right[k - 1u] * direction[k - 1u];
     move(k, w[k] * (step - link_right[k] * direction[k]));
-#ifdef KEEP_MULTIPLIERS
-    if (kElastic && direction[k] != vec3(0.0)) {
-      uint at = family * COLUMNS * ROWS + index_of(vertex(lane * K + k));
-      float lambda = link_right[k];
-      if (iteration > 0u) lambda += LOAD4(link_multipliers, at);
-      STORE4(link_multipliers, at, lambda);
-    }
-#endif
   }
 }
 
-#ifdef KEEP_MULTIPLIERS
-bool is_hinge[K];
-#endif
 /// Bending along rows and columns: vector constraints C = x[i-1] - 2 x[i] + x[i+1] of the quadratic energy
 /// (B w / 2 a^3) |C|^2 (Bergou et al. 2006 on a line), compliance a^3 / (B w), gradients 1, -2, 1.
 void hinge_equations() {
@@ -344,11 +284,6 @@ void hinge_equations() {
       near_above[h] = is && i + 2u < n ? -2.0 * (w[k] + next.w) : 0.0;
       far_above[h] = is && i + 3u < n ? next.w : 0.0;
       right[h] = is ? 2.0 * pos[k] - last.xyz - next.xyz : vec3(0.0);
-#ifdef KEEP_MULTIPLIERS
-      is_hinge[k] = is;
-      if (is && iteration > 0u)
-        right[h] -= a * LOAD16(hinge_multipliers, family * COLUMNS * ROWS + index_of(vertex(i))).xyz;
-#endif
     }
     hinge_diagonal[r] = mat2(diagonal[0], near_below[1], near_above[0], diagonal[1]);
     hinge_lower[r] = mat2(far_below[0], 0.0, near_below[0], far_below[1]);
@@ -377,13 +312,5 @@ void bend() {
     if (k > 0u) last = lambda[k - 1u];
     if (k + 1u < K) next = lambda[k + 1u];
     move(k, w[k] * (last - 2.0 * lambda[k] + next));
-#ifdef KEEP_MULTIPLIERS
-    if (is_hinge[k]) {
-      uint at = family * COLUMNS * ROWS + index_of(vertex(lane * K + k));
-      vec3 sum = lambda[k];
-      if (iteration > 0u) sum += LOAD16(hinge_multipliers, at).xyz;
-      STORE16(hinge_multipliers, at, vec4(sum, 0.0));
-    }
-#endif
   }
 }

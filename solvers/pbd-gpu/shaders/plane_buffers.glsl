@@ -20,6 +20,36 @@ layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_s
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
 layout(std430, binding = BIND_ELEMENTS) readonly buffer Elements { uvec4 elements[]; };  // vertices, number of them
 
+// A kernel has those that it accesses; others are removed as it is compiled.
+#ifdef PLANE_FRAME
+#define STATE coherent
+#else
+#define STATE
+#endif
+layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
+layout(std430, binding = BIND_REACHES) STATE buffer Reaches { vec4 reaches[]; };
+layout(std430, binding = BIND_WAYS) STATE buffer Ways { float ways[]; };
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
+layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
+layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };  // first entry a vertex; 4 triangle + corner
+layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
+layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // of the first of them, w: pairs that are asked
+layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
+layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
+layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
+layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };
+layout(std430, binding = BIND_SELF_BOXES) STATE buffer SelfBoxes { SelfBox self_boxes[]; };
+layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };  // z: first near pair, w: near pairs
+layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
+layout(std430, binding = BIND_SELF_WAYS) STATE buffer SelfWays { vec4 self_ways[]; };
+layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
+layout(std430, binding = BIND_SELF_CONTACTS) STATE buffer SelfContacts { SelfContact self_contacts[]; };
+layout(std430, binding = BIND_SELF_PUSHES) STATE buffer SelfPushes { SelfPush self_pushes[]; };
+layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
+layout(std430, binding = BIND_NEAR_BITS) STATE buffer NearBits { uint near_bits[]; };
+
 #define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the reach by two to the power of it: a greater reach, larger steps
 const float kGuard_m = 2e-4;    // distance of planes from pieces
 const float kRecovered = 0.1;   // share of the margin by which what is too near is let out a substep

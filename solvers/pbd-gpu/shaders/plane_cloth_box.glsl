@@ -20,16 +20,12 @@ void widen(inout uvec3 from, inout uvec3 to, vec4 reach) {
 /// By the box of a thread's vertices.
 void widen_box(uvec3 from, uvec3 to) {
   barrier();  // all lanes have theirs
-#ifdef SHUFFLES
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) {
     from = min(from, subgroupShuffleXor(from, n));
     to = max(to, subgroupShuffleXor(to, n));
   }
-  bool speaks = gl_SubgroupInvocationID == 0u;
-#else
-  const bool speaks = true;
-#endif
-  for (uint c = 0u; speaks && c < 3u; ++c) {
+  if (gl_SubgroupInvocationID != 0u) return;
+  for (uint c = 0u; c < 3u; ++c) {
     atomicMin(cloth_low[c], from[c]);
     atomicMax(cloth_high[c], to[c]);
   }

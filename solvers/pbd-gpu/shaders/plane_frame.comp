@@ -1,51 +1,18 @@
 #version 450
 // A frame of cloth with contact by planes in one dispatch: the list of pairs, then every substep with its lines, phase for phase as
-// the kernels of the phases have it and with the same bits. One workgroup takes a cloth of at most 32 x 32 vertices; with
-// MANY_GROUPS any number of workgroups that run at once wait for one another (device_barrier.glsl).
+// the kernels of the phases have it. Any number of workgroups that run at once wait for one another (device_barrier.glsl).
 // FAR: the list, and the frame if the cloth meets no collider. It needs the lines alone.
-// WITH_ITSELF: also contact of the cloth with itself; dispatches before have made the list of its pairs.
+#define SUBGROUPS
 #include "common.glsl"
 #define PLANE_FRAME
-#ifdef MANY_GROUPS
-#define STATE coherent
-#else
-// One workgroup is on one multiprocessor: what its threads write before memoryBarrierBuffer() and barrier() they all see.
-#define STATE
-#endif
-layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
-layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_POSITION_COMPENSATION) STATE buffer PositionCompensation { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_COMPENSATION) STATE buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
-layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
-layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
-layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
-layout(std430, binding = BIND_REACHES) STATE buffer Reaches { vec4 reaches[]; };
-layout(std430, binding = BIND_WAYS) STATE buffer Ways { float ways[]; };
-layout(std430, binding = BIND_FANS) readonly buffer Fans { uint fans[]; };
-layout(std430, binding = BIND_NEAR_BITS) STATE buffer NearBits { uint near_bits[]; };
-layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
-layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };
-layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // of the first of them, w: pairs that are asked
-layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
-layout(std430, binding = BIND_LEDGER) STATE buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_FAULTS) STATE buffer Faults { ContactFaults faults; };
-#ifdef WITH_ITSELF
-layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };
-layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
-layout(std430, binding = BIND_SELF_PUSHES) STATE buffer SelfPushes { SelfPush self_pushes[]; };
-layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
-layout(std430, binding = BIND_SELF_WAYS) STATE buffer SelfWays { vec4 self_ways[]; };
-layout(std430, binding = BIND_SELF_CONTACTS) STATE buffer SelfContacts { SelfContact self_contacts[]; };
-#else
-layout(std430, binding = BIND_SELF_RANGES) readonly buffer SelfRanges { uvec4 self_ranges[]; };
-layout(std430, binding = BIND_SELF_NEAR) STATE buffer SelfNears { SelfNear self_near[]; };
-layout(std430, binding = BIND_SELF_PUSHES) readonly buffer SelfPushes { SelfPush self_pushes[]; };
-#endif
 
 PLANE_FRAME_CONSTANTS(SPECIALIZE)
 #define MARGIN_M uintBitsToFloat(MARGIN_BITS)
 #include "lines.glsl"
+#include "plane_buffers.glsl"
 vec3 anchor(uvec2 at, uint k) {
   if (w[k] > 0.0) COUNT_READ(16u)
   return x[index_of(at)].xyz;
@@ -53,8 +20,9 @@ vec3 anchor(uvec2 at, uint k) {
 #include "lines_integrate.glsl"
 #include "line_family.glsl"
 #include "grip.glsl"
-#include "plane_buffers.glsl"
-const bool AGAIN = false;  // of chains alone
+// Chains and cloth that touches itself have a kernel a phase.
+const bool AGAIN = false;
+const uint SELF = 0u;
 #include "plane_vertices.glsl"
 // The next substep's prediction, at this one's end. What hands hold is moved between the two.
 const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
@@ -72,29 +40,13 @@ const bool kPredictsEarly = MOVING != 0u && GRIPS == 0u;
 #include "plane_choose.glsl"
 #include "plane_project.glsl"
 #endif
-#ifdef WITH_ITSELF
-#include "plane_self_ways.glsl"
-#include "plane_self_near.glsl"
-#include "plane_self_push.glsl"
-#include "plane_self_query.glsl"
-#include "plane_self_choose.glsl"
-#endif
 
-#ifdef MANY_GROUPS
 #include "device_barrier.glsl"
 #define MEET if (!grid_barrier()) return
 #define MEET_OR_FAIL if (!grid_barrier()) return false
 #define COUNTED(t) ledger.asked[t]
 #define CLOTH_LOW ledger.cloth_low
 #define CLOTH_HIGH ledger.cloth_high
-#else
-#define MEET { groupMemoryBarrier(); barrier(); }
-#define MEET_OR_FAIL MEET
-shared uint asked[2];
-#define COUNTED(t) asked[t]
-#define CLOTH_LOW cloth_low
-#define CLOTH_HIGH cloth_high
-#endif
 // Within a workgroup, also for what its threads write to buffers.
 #define GROUP_MEET { groupMemoryBarrier(); barrier(); }
 #include "plane_cloth_box.glsl"
@@ -111,14 +63,10 @@ uint me, all_threads;  // this thread among those of all workgroups
 #ifndef FAR
 
 // All near pairs, a thread or a subgroup each.
-#ifdef MANY_GROUPS
 #define EACH_NEAR_PAIR(n, count)                                                                                       \
   by_subgroup = kPairsOfSubgroups;                                                                                     \
   for (uint n = by_subgroup ? me / THREADS * gl_NumSubgroups + gl_SubgroupID : me, end = count; n < end;               \
        n += by_subgroup ? all_threads / THREADS * gl_NumSubgroups : all_threads)
-#else
-#define EACH_NEAR_PAIR(n, count) EACH(n, count)
-#endif
 
 // A workgroup looks through its share of the pairs a few rounds at a time. Its threads share out those that remain after each question,
 // so that no thread waits for its neighbour's answer.
@@ -165,16 +113,13 @@ void end_lines(uint i, vec4 at) { settle(i, at); }
 
 bool solve_lines(uint substep) {
   const uint families = kShears ? 4u : 2u;
-  uint passes = families * p.iterations;
 #ifndef FAR
   forget_near(me, all_threads);
 #endif
-  for (uint n = 0u; n < passes && (!lines_in_a_group() || me == thread); ++n) {
-    uint which = n % families;
-    family = families - 1u - which;
-    iteration = n / families;
-    pass(substep, which == 0u && iteration == 0u, which + 1u == families && iteration + 1u == p.iterations);
-    if (n + 1u == passes) break;
+  for (uint n = 0u; n < families && (!lines_in_a_group() || me == thread); ++n) {
+    family = families - 1u - n;
+    pass(substep, n == 0u, n + 1u == families);
+    if (n + 1u == families) break;
     if (lines_in_a_group()) GROUP_MEET
     else MEET_OR_FAIL;  // this family's writes before the next one's reads
   }
@@ -216,9 +161,7 @@ bool frame() {
 #else
 /// Pairs that are near, and what their contacts propose.
 bool ask_near() {
-#ifdef MANY_GROUPS
   by_subgroup = false;
-#endif
   look_for_near();
   if (!kPairsOfSubgroups) return true;
   MEET_OR_FAIL;  // near pairs before they are shared out: neighbours in the list are near together
@@ -226,21 +169,6 @@ bool ask_near() {
   return true;
 }
 
-#ifdef WITH_ITSELF
-#define EACH_SELF_NEAR(k) for (uint k = me, count = min(ledger.self_near, NEAR_CAPACITY); k < count; k += all_threads)
-/// Nearest points of pairs of the cloth, and what contacts there propose.
-bool look_at_itself() {
-  EACH(t, TRIANGLES) ways_of_triangle(t);
-  MEET_OR_FAIL;  // ways before pairs are held against them
-  EACH_SHARED(t, TRIANGLES, collect_near(t);)
-  MEET_OR_FAIL;  // near pairs before they are asked
-  EACH_SELF_NEAR(k) {
-    query_self(k);
-    push_self(k);
-  }
-  return true;
-}
-#endif
 
 /// Responses before (turn 0) and after the lines.
 bool respond_to_contact(out uint near) {
@@ -252,22 +180,16 @@ bool respond_to_contact(out uint near) {
   }
   if (turn < 2u) {
     if (PIECES > 0u && !ask_near()) return false;
-#ifdef WITH_ITSELF
-    if (turn == 1u && !look_at_itself()) return false;
-#endif
     MEET_OR_FAIL;  // what contacts propose before vertices take it
   }
   near = COUNTED(min(turn, 1u));
   if (me == 0u && near > 0u) ledger.meets = 1u;
-  if (turn == 2u && (near > 0u || SELF != 0u)) {
+  if (turn == 2u && near > 0u) {
     EACH(n, near) respond(pairs[n].w);
-#ifdef WITH_ITSELF
-    EACH_SELF_NEAR(k) push_self(k);
-#endif
     MEET_OR_FAIL;  // as above
   }
   if (me == 0u && turn > 0u) COUNTED(0u) = 0u;
-  if (near == 0u && PLANES == 0u && SELF == 0u) return true;
+  if (near == 0u && PLANES == 0u) return true;
   gather_all(me, all_threads);
   MEET_OR_FAIL;  // vertices before what reads them
   return true;
@@ -282,17 +204,13 @@ bool substep_with(uint s) {
   if (!solve_lines(s)) return false;
   for (turn = 1u; turn < kTurns; ++turn)
     if (!respond_to_contact(near)) return false;
-  if (near > 0u || SELF != 0u) {
+  if (near > 0u) {
     EACH_NEAR_PAIR(n, near) choose(pairs[n].w);
-#ifdef WITH_ITSELF
-    EACH_SELF_NEAR(k) choose_self(k);
-#endif
     MEET_OR_FAIL;  // planes before vertices are put before them
   }
   project_all(me, all_threads);
   forget_pushes(me, all_threads);
   if (me == 0u) COUNTED(1u) = 0u;
-  if (SELF != 0u && me == 0u) ledger.self_near = ledger.self_touching = 0u;
   MEET_OR_FAIL;  // the substep's end before the next one
   return true;
 }
@@ -315,22 +233,18 @@ void main() {
   me = group * THREADS + thread;
   all_threads = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
-#ifdef MANY_GROUPS
   if (p.passes == 0u) {  // asked only whether all can
     MEET;
     leave_grid_barrier();
     return;
   }
-#endif
 #ifndef FAR
   if (ledger.far != 0u) return;  // the frame is done
 #endif
   if (!frame()) return;
-#ifdef MANY_GROUPS
   if (me < 3u) {
     ledger.cloth_low[me] = kLowNone;
     ledger.cloth_high[me] = kHighNone;
   }
   leave_grid_barrier();
-#endif
 }

@@ -13,13 +13,11 @@ void reach_and_widen(float carried) {
   uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
   EACH(i, VERTICES) widen(from, to, reach_of_vertex(i, carried));
   widen_box(from, to);
-#ifdef MANY_GROUPS
   barrier();  // the workgroup's box before that of all
   if (thread < 3u) {
     atomicMin(ledger.cloth_low[thread], cloth_low[thread]);
     atomicMax(ledger.cloth_high[thread], cloth_high[thread]);
   }
-#endif
 }
 
 shared uint listed, first_listed;  // of the workgroup
@@ -80,9 +78,6 @@ bool list_pairs() {
   if (thread == 0u) any_near = kFar;
   for (uint word = thread; word < GROUP_WORDS; word += THREADS) near_groups[word] = 0u;
   empty_box();
-#ifndef MANY_GROUPS
-  if (thread < 2u) COUNTED(thread) = 0u;
-#endif
   float carried = greatest_displacement();
   if (me == 0u) {
     ledger.carried = carried;

@@ -20,15 +20,8 @@ void from_half_spaces(vec4 at, vec3 start) {
   for (uint k = 0u; k < PLANES; ++k) {
     PlaneShape s = LOAD(32u, half_spaces, k);
     float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
-    float push = min(s.margin, before) - gap;
-    float out_by = turn < 2u ? clamp(s.margin - before, 0.0, kRecovered * s.margin) : 0.0;
-    if (!(push + out_by > 0.0)) continue;
-    float moving = max(0.0, push);
-    vec3 slip = at.xyz - start, m = moving * s.normal.xyz;
-    slip -= dot(slip, s.normal.xyz) * s.normal.xyz;
-    float l = length(slip);
-    if (l > 0.0 && moving > 0.0) m -= min(1.0, s.friction * moving / l) * slip;
-    propose(m, (push + out_by - moving) * s.normal.xyz);
+    Correction c = respond_along(s.normal.xyz, min(s.margin, before) - gap, recovery(s.margin - before, s.margin), at.xyz - start, s.friction);
+    if (c.moving != vec3(0.0) || c.out_by > 0.0) propose(c.moving, c.out_by * s.normal.xyz);
   }
 }
 

@@ -22,7 +22,7 @@ vec3 point_at(uint j, float t) {
 
 // Where pieces have many points and threads are many, a subgroup has a near pair for itself: its lanes share out the points, and all of
 // them compute the same. One of them writes.
-#if defined(MANY_GROUPS) && defined(SHUFFLES)
+#ifdef PLANE_FRAME
 const bool kPairsOfSubgroups = MOST_POINTS > 3u;
 bool by_subgroup = false;  // what the threads do now
 bool writes_pair() { return !by_subgroup || gl_SubgroupInvocationID == 0u; }

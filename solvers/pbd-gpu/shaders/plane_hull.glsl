@@ -85,7 +85,7 @@ bool reduce() {
   return true;
 }
 
-#if defined(MANY_GROUPS) && defined(SHUFFLES)
+#ifdef PLANE_FRAME
 /// The first of the piece's points that lie farthest along v.
 uint farthest_of_subgroup(vec3 v, float t) {
   float high = -1e30;

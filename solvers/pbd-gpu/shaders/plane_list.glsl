@@ -32,7 +32,7 @@ bool meets(PieceBox b) {
 
 // Lanes of a team, where there is one, look at boxes for the same element. Each looks at a few at a time: their loads do not wait for one
 // another. All lanes of a subgroup come along.
-#if defined(PLANE_FRAME) && defined(SHUFFLES)
+#ifdef PLANE_FRAME
 #define LIST_TEAM TEAM
 #define LIST_LANE team_lane()
 uint of_team(uint bits) {
@@ -95,7 +95,6 @@ uint groups_met(inout uint bits, uint word, uint part) {
           }                                                                                              \
         }
 
-#ifndef COUNT_ALONE
 void write_pair(uint at, uint element, uint of_piece) {
   STORE16(pairs, at, uvec4(element, of_piece, 0u, 0u))
   states[at].normal = vec4(0.0);
@@ -127,9 +126,7 @@ void list_touched(uint i) {
   if (pairs_of == 0u) return;
   STORE4(touched, atomicAdd(ledger.touched_vertices, 1u), i);
 }
-#endif
 
-#ifndef FILL_ALONE
 /// Pairs of element k where its vertices go no farther than a share of their reaches.
 uint pairs_at(uint k, float share) {
   box_for(LOAD16(elements, k), share);
@@ -137,4 +134,3 @@ uint pairs_at(uint k, float share) {
   EACH_PIECES_MET(n += uint(bitCount(met));)
   return n;
 }
-#endif

@@ -2,12 +2,6 @@
 // Once a substep, with what moves twice; a thread a pair.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_WAYS) readonly buffer Ways { float ways[]; };
-layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_PAIRS) buffer Pairs { uvec4 pairs[]; };
-layout(std430, binding = BIND_NEAR_BITS) buffer NearBits { uint near_bits[]; };
-layout(std430, binding = BIND_PAIR_STATES) buffer States { PairState states[]; };
 #include "plane_geometry.glsl"
 #define NEAR_COUNT ledger.asked[min(turn, 1u)]
 #include "plane_near.glsl"

@@ -1,5 +1,5 @@
-// What a contact proposes (Macklin et al. 2016, XPBD's position-level contact with zero compliance): its nearest point as far from the
-// piece as it should be, and Coulomb friction against the way relative to the piece.
+// What a contact with a piece proposes: its nearest point as far from the piece as it should be.
+#include "friction.glsl"
 
 /// Margin that the contact keeps. Edges and faces keep less from what stands: flat cloth would be lifted off its vertices.
 float kept_margin(uvec4 e, vec3 weights) {
@@ -21,15 +21,9 @@ vec4 push_of(uvec4 e, PairState s) {
     mass += at.w * b * b;
   }
   if (!(mass > 0.0)) return vec4(0.0);
-  float push = s.way.w - gap;
-  float out_by = turn < 2u ? clamp(kept_margin(e, s.weights.xyz) - s.way.w, 0.0, kRecovered * piece.margin) : 0.0;
-  if (!(push + out_by > 0.0)) return vec4(0.0);
-  float moving = max(0.0, push);
-  slip -= dot(slip, s.normal.xyz) * s.normal.xyz;
-  float l = length(slip);
-  vec3 by = moving * s.normal.xyz;
-  if (l > 0.0 && moving > 0.0) by -= min(1.0, piece.friction * moving / l) * slip;
-  return vec4(by, push + out_by - moving) / mass;
+  float recover = recovery(kept_margin(e, s.weights.xyz) - s.way.w, piece.margin);
+  Correction c = respond_along(s.normal.xyz, s.way.w - gap, recover, slip, piece.friction);
+  return vec4(c.moving, c.out_by) / mass;
 }
 
 /// Marks a pair whose contact proposes something, and its vertices, so that others need not be read.

@@ -2,14 +2,6 @@
 // Start of a frame, a thread a vertex.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
-layout(std430, binding = BIND_VELOCITIES) readonly buffer Velocities { vec4 v[]; };
-layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
-layout(std430, binding = BIND_PREDICTED) writeonly buffer Proposed { vec4 y[]; };
-layout(std430, binding = BIND_STARTS) writeonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_REACHES) writeonly buffer Reaches { vec4 reaches[]; };
-layout(std430, binding = BIND_WAYS) writeonly buffer Ways { float ways[]; };
-layout(std430, binding = BIND_LEDGER) buffer Ledger { ContactLedger ledger; };
 #include "plane_reach.glsl"
 
 void main() {

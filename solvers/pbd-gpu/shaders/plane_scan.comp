@@ -1,21 +1,48 @@
 #version 450
-// Start of a frame, one workgroup.
+// Start of a frame, one workgroup: the greatest share of the reaches whose pairs the list has place for, and where each element's pairs
+// begin. In: an element's pairs at each share; out: first, pairs. OF_SELF: `ranges` are those of the list of the cloth with itself.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-#ifdef SCAN_SELF
-layout(std430, binding = BIND_SELF_RANGES) buffer SelfRanges { uvec4 self_ranges[]; };
-#define SCAN_RANGES self_ranges
-#define SCAN_COUNT TRIANGLES
-#define SCAN_CAPACITY SELF_CAPACITY
-#else
-layout(std430, binding = BIND_RANGES) buffer Ranges { uvec4 ranges[]; };
-#define SCAN_RANGES ranges
-#define SCAN_COUNT (TRIANGLES + VERTICES)
-#define SCAN_CAPACITY CAPACITY
-#endif
-layout(std430, binding = BIND_LEDGER) writeonly buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_FAULTS) buffer Faults { ContactFaults faults; };
 const uint kThreads = 256u;
-#include "plane_scan.glsl"
+const uint kBlock = 32u;
+shared uvec4 sums[kThreads];
+shared uvec4 block_sums[1024u / kBlock];
 
-void main() { scan_ranges(gl_LocalInvocationIndex); }
+void main() {
+  uint t = gl_LocalInvocationIndex;
+  uint n = OF_SELF ? TRIANGLES : TRIANGLES + VERTICES, capacity = OF_SELF ? SELF_CAPACITY : CAPACITY, each = (n + kThreads - 1u) / kThreads;
+  uint begin = min(t * each, n), end = min(begin + each, n);
+  uvec4 sum = uvec4(0u);
+  for (uint k = begin; k < end; ++k) sum += LOAD16(ranges, k);
+  sums[t] = sum;
+  barrier();  // the threads' sums before those of blocks of threads
+  if (t % kBlock == 0u) {
+    uvec4 of_block = uvec4(0u);
+    for (uint k = 0u; k < kBlock; ++k) of_block += sums[t + k];
+    block_sums[t / kBlock] = of_block;
+  }
+  barrier();  // sums of blocks before all read them
+  uvec4 before = uvec4(0u), all = uvec4(0u);
+  for (uint b = 0u; b < kThreads / kBlock; ++b) {
+    if (b < t / kBlock) before += block_sums[b];
+    all += block_sums[b];
+  }
+  for (uint k = t / kBlock * kBlock; k < t; ++k) before += sums[k];
+  uint level = 0u;
+  while (level + 1u < PAIR_LEVELS && all[level] > capacity) ++level;
+  uint first = before[level];
+  for (uint k = begin; k < end; ++k) {
+    uint count = ranges[k][level], room = first < capacity ? capacity - first : 0u;
+    STORE16(ranges, k, uvec4(min(first, capacity), min(count, room), 0u, 0u));
+    first += count;
+  }
+  if (t > 0u) return;
+  float share = uintBitsToFloat((127u - CUT_BITS * level) << 23u);  // a power of two exactly
+  if (OF_SELF) {
+    ledger.self_reach = share;
+  } else {
+    ledger.pairs = min(all[level], capacity);
+    ledger.reach = share;
+  }
+  if (all[level] > capacity) faults.dropped += all[level] - capacity;
+}

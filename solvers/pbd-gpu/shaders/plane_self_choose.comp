@@ -2,11 +2,31 @@
 // Before a substep's end, a thread a near pair of triangles of the cloth.
 #include "common.glsl"
 #include "plane_buffers.glsl"
-layout(std430, binding = BIND_PREDICTED) readonly buffer Proposed { vec4 y[]; };
-layout(std430, binding = BIND_STARTS) readonly buffer Starts { vec4 starts[]; };
-layout(std430, binding = BIND_LEDGER) readonly buffer Ledger { ContactLedger ledger; };
-layout(std430, binding = BIND_SELF_NEAR) buffer SelfNears { SelfNear self_near[]; };
-#include "plane_self_choose.glsl"
+// The plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within the gap that
+// they have at the start. So staying satisfies all planes of the cloth with itself at once.
+void choose_self(uint k) {
+  if ((self_near[k].marks & SELF_PLANE) == 0u) return;
+  uint own = self_near[k].own, other = self_near[k].other;
+  uvec4 a = LOAD16(elements, min(own, other)), b = LOAD16(elements, max(own, other));
+  vec3 origin = starts[a.x].xyz, n = self_near[k].plane.xyz;
+  float start_a = 1e30, end_a = 1e30, held_a = 1e30, start_b = -1e30, end_b = -1e30, held_b = -1e30;
+  for (uint c = 0u; c < 3u; ++c) {
+    vec4 at_a = y[a[c]], at_b = y[b[c]];
+    float to_a = dot(n, at_a.xyz - origin), to_b = dot(n, at_b.xyz - origin);
+    start_a = min(start_a, dot(n, starts[a[c]].xyz - origin));
+    start_b = max(start_b, dot(n, starts[b[c]].xyz - origin));
+    end_a = min(end_a, to_a);
+    end_b = max(end_b, to_b);
+    if (at_a.w == 0.0) held_a = min(held_a, to_a);
+    if (at_b.w == 0.0) held_b = max(held_b, to_b);
+  }
+  float half_m = 0.5 * min(kGuard_m, start_a - start_b);
+  float middle = clamp(0.5 * (end_a + end_b), start_b + half_m, start_a - half_m);
+  // Held vertices go where they are put: the others make way.
+  middle = max(min(middle, held_a - half_m), held_b + half_m);
+  float offset = middle + dot(n, origin);
+  self_near[k].plane = own < other ? vec4(n, offset + half_m) : vec4(-n, half_m - offset);
+}
 
 void main() {
   uint count = min(ledger.self_near, NEAR_CAPACITY);

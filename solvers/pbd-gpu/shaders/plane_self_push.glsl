@@ -1,4 +1,5 @@
 // What the contacts of a near pair propose for the vertices of its own triangle, as plane_push.glsl has it for pieces; both sides move.
+#include "friction.glsl"
 SelfPush own_push[3];
 
 void propose_self(uint corner, float share, vec3 by, float out_by, vec3 normal) {
@@ -23,18 +24,10 @@ void push_of_contact(SelfContact s, uvec4 a, uvec4 b, bool own_is_a) {
   }
   if (!(mass > 0.0)) return;
   vec3 n = s.normal.xyz;
-  float push = s.normal.w - dot(n, apart);
-  float out_by = turn < 2u ? clamp(THICKNESS_M - s.normal.w, 0.0, kRecovered * THICKNESS_M) : 0.0;
-  if (!(push + out_by > 0.0)) return;
-  float moving = max(0.0, push);
-  slip -= dot(slip, n) * n;
-  float l = length(slip);
-  vec3 by = moving * n;
-  if (l > 0.0 && moving > 0.0) by -= min(1.0, SELF_FRICTION * moving / l) * slip;
-  out_by = push + out_by - moving;
+  Correction r = respond_along(n, s.normal.w - dot(n, apart), recovery(THICKNESS_M - s.normal.w, THICKNESS_M), slip, SELF_FRICTION);
   for (uint c = 0u; c < 3u; ++c) {
     float share = own_is_a ? s.first[c] * w_a[c] : -s.second[c] * w_b[c];
-    if (share != 0.0) propose_self(c, share / mass, by, out_by, n);
+    if (share != 0.0) propose_self(c, share / mass, r.moving, r.out_by, n);
   }
 }
 

@@ -21,7 +21,6 @@ float mass_of(uint i, float in_lines) {
   return in_lines == 0.0 || w == 0.0 ? in_lines : w;
 }
 
-#ifndef SETTLE_ALONE
 /// Where a vertex would be without links and contact. Tethers come with the lines.
 void predict(uint i) {
   vec4 at = LOAD16(x, i);
@@ -31,9 +30,7 @@ void predict(uint i) {
   STORE16(y, i, at);
   starts[i].w = farthest(i, at.xyz);
 }
-#endif
 
-#ifndef PREDICT_ALONE
 /// Where the lines have put a vertex, but no farther than `most` from where it began.
 vec3 within_most(uint i, vec3 to, float w, vec3 from, float most) {
   vec3 way = to - from;
@@ -59,4 +56,3 @@ void settle(uint i, vec4 at) {
   STORE16(y, i, vec4(to, w));
   if (!AGAIN || turn < 2u) starts[i].w = farthest(i, to);
 }
-#endif

@@ -2,24 +2,13 @@
 // Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends are added
 // up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics: integer
 // compare-and-swap on the bits, until it holds.
-#ifdef NATIVE_ATOMICS
-#extension GL_EXT_shader_atomic_float : require
-#endif
 #include "common.glsl"
 layout(std430, binding = BIND_CONSTRAINTS) readonly buffer Constraints { DistanceConstraint c[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Predicted { vec4 q[]; };
-#ifdef NATIVE_ATOMICS
-layout(std430, binding = BIND_DELTAS) buffer Deltas { float d[]; };  // x y z and a count, 4 a particle
-#else
-layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // the same as bits
-#endif
+layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // x y z as bits and a count, 4 a particle
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void add(uint at, float value) {
-#ifdef NATIVE_ATOMICS
-  COUNT_ATOMIC
-  atomicAdd(d[at], value);
-#else
   uint seen = LOAD4(d, at);
   COUNT_ATOMIC
   for (;;) {
@@ -27,7 +16,6 @@ void add(uint at, float value) {
     if (found == seen) return;
     seen = found;
   }
-#endif
 }
 
 void add_delta(uint particle, vec3 delta) {
@@ -35,11 +23,7 @@ void add_delta(uint particle, vec3 delta) {
   add(4u * particle + 1u, delta.y);
   add(4u * particle + 2u, delta.z);
   COUNT_ATOMIC
-#ifdef NATIVE_ATOMICS
-  atomicAdd(d[4u * particle + 3u], 1.0);
-#else
   atomicAdd(d[4u * particle + 3u], 1u);
-#endif
 }
 
 void main() {

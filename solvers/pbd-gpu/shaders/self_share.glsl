@@ -1,6 +1,5 @@
 // The threads that share a triangle's list take a pair, a piece or a group each in turn: a subgroup, or one where lanes cannot exchange
 // values.
-#ifdef SHUFFLES
 uint sharers() { return min(gl_SubgroupSize, 32u); }
 uint sharer() { return gl_SubgroupInvocationID; }
 /// Of all sharers, a bit each.
@@ -14,21 +13,9 @@ uvec4 sum_of_sharers(uvec4 value) {
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) value += subgroupShuffleXor(value, n);
   return value;
 }
-#else
-uint sharers() { return 1u; }
-uint sharer() { return 0u; }
-uint votes(bool mine) { return mine ? 1u : 0u; }
-uint from_first(uint value) { return value; }
-uvec4 sum_of_sharers(uvec4 value) { return value; }
-#endif
 
 /// The body once for each triangle `t`, with all threads that share it.
-#ifdef SHUFFLES
 #define EACH_SHARED(t, COUNT, BODY)                                                          \
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;                     \
   uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;                \
   for (uint t = group * gl_NumSubgroups + gl_SubgroupID; t < (COUNT); t += subgroups) BODY
-#else
-#define EACH_SHARED(t, COUNT, BODY) \
-  for (uint t = item(); t < (COUNT); t += stride()) BODY
-#endif

@@ -17,7 +17,6 @@ void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_b
     d = f * (d - a * d_below - c * d_above); \
     a = -(f * (a * a_below)); \
     c = -(f * (c * c_above));
-#ifdef SHUFFLES
   if (PARTS > 1u) {
     [[unroll]] for (uint n = 1u; n < PARTS; n <<= 1u) {
       if (rounds == 0u) break;
@@ -34,7 +33,6 @@ void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_b
     apart = false;
     FROM_PART(d, d_below);
   } else
-#endif
   {
     for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
     EXCHANGE_WITH(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
