@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "clothbench/vector.hpp"
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 #include "render/offscreen.hpp"
 
 namespace clothbench::render {

@@ -185,16 +185,16 @@ TEST_F(Barriers, NoneIsMissingAndNoneIsThereInVain) {
                           *down = &solver->download_program();
     const std::vector<Event> events = time_line({up, down, frame, frame, down, frame, up, frame, down});
     EXPECT_EQ(hazard(events), "") << run.solver << run.settings;
-    int dropped = 0;
+    int overflow = 0;
     for (const vulkan::Program* p : {up, frame, down}) {
       const auto& recorded = p->recorded();
       const auto barriers = std::count_if(recorded.begin(), recorded.end(), [](const auto& r) { return r.is_barrier; });
       ASSERT_GT(barriers, 0);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(barriers); ++k, ++dropped)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(barriers); ++k, ++overflow)
         EXPECT_NE(hazard(events, {p, k}), "")
             << run.solver << run.settings << ": without barrier " << k << " of " << barriers;
     }
-    EXPECT_GE(dropped, 4) << "before and after what each program does";
+    EXPECT_GE(overflow, 4) << "before and after what each program does";
   }
 }
 

@@ -30,7 +30,7 @@ std::vector<Row> rows() {
           {"paper", everything(sheet(33, 17), 0), {{"substeps", 2}}},
           {"xpbd", plain, {{"substeps", 2}}},
           {"xpbd", bent, {{"substeps", 2}}},
-          {"xpbd", sheet(33, 9), {{"substeps", 2}, {"tuning", {{"coupling", "always"}}}}},
+          {"xpbd", sheet(33, 9), {{"substeps", 2}, {"tuning", {{"splitting_correction", "always"}}}}},
           {"xpbd", with_pins(bent), {{"substeps", 2}}, false},
           {"xpbd", mesh, springs},
           {"xpbd", bending_mesh, springs},

@@ -73,19 +73,6 @@ TEST_F(Gpu, MessagesAreOfTheSolverThatCausedThem) {
   EXPECT_EQ(device->validation_messages(), before + 3);
 }
 
-TEST_F(Gpu, NothingIsLeftBehind) {
-  device_.reset();
-  const int before = vulkan::Device::validation_messages_ever();
-  for (const char* name : {"paper", "xpbd"}) {
-    const Scene s = with_bending(sheet(7, 5));
-    const auto solver = make(name);
-    solver->load(s);
-    after(*solver, s, 1);
-  }
-  // The last solver took its device with it, and the layer names every object that was not destroyed.
-  EXPECT_EQ(vulkan::Device::validation_messages_ever(), before);
-}
-
 TEST_F(Gpu, AFrameThatTakesTooLongIsTimedOutAndWaitedForLater) {
   vulkan::Program copy(device_);
   const vulkan::Buffer a(device_, "a", 1u << 26, vulkan::Buffer::Place::Device),
@@ -126,21 +113,6 @@ TEST_F(Gpu, BadSettingsAreRefused) {
   EXPECT_THROW(make("xpbd", {{"quality", "best"}}), Error);
   for (int vertices : {-1, 1, 3, 64})
     EXPECT_THROW(make("xpbd", {{"tuning", {{"vertices_a_thread", vertices}}}}), Error);
-}
-
-TEST_F(Gpu, GravityOnlyHasNoContactKernelNorBuffer) {
-  const Scene s = sheet(8, 8);
-  for (const char* name : {"paper", "xpbd"}) {
-    const auto solver = make(name);
-    solver->load(s);
-    const Plan plan = solver->plan();
-    for (const StagePlan& stage : plan.stages) EXPECT_TRUE((stage.serves & kColliderFeatures).empty()) << stage.name;
-    for (const char* word : {"ollision", "ollider", "ontact", "apsule", "amp", "end"}) {
-      for (const StagePlan& stage : plan.stages) EXPECT_EQ(stage.name.find(word), std::string::npos) << stage.name;
-      for (const BufferPlan& b : plan.buffers) EXPECT_EQ(b.name.find(word), std::string::npos) << b.name;
-    }
-    EXPECT_FALSE(plan.left_out.empty()) << "what is left out is said";
-  }
 }
 
 }  // namespace

@@ -54,19 +54,6 @@ TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
     }
 }
 
-TEST_F(Gpu, WhatTheHostTakesPartInIsWaitedFor) {
-  const Scene held = moving(sheet(9, 7), {0, 8});
-  const auto solver = make("xpbd", {{"substeps", 5}}), stepped = make("xpbd", {{"substeps", 5}});
-  solver->load(held);
-  stepped->load(held);
-  EXPECT_EQ(solver->frames_in_flight(), 1);
-  ASSERT_EQ(solver->run_frames(frames_of(held, 6)), StepStatus::Ok);
-  EXPECT_EQ(state_of(*solver).position, after(*stepped, held, 6).position);
-  const auto reads = make("paper", {{"readback", "blocking"}});
-  reads->load(sheet(9, 7));
-  EXPECT_EQ(reads->frames_in_flight(), 1);
-}
-
 TEST_F(Gpu, AClothGoesOnFromWhatWasReadOfIt) {
   const Scene s = with_pins(with_bending(sheet(9, 7)));
   for (const char* name : {"paper", "xpbd"}) {

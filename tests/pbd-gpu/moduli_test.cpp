@@ -43,7 +43,7 @@ TEST_P(Moduli, AreTheScenesAtDefaultAndFast) {
 }
 
 TEST_P(Moduli, WithoutCouplingAreFarOff) {
-  const std::map<std::string, double> m = measured({{"tuning", {{"coupling", "never"}}}});
+  const std::map<std::string, double> m = measured({{"tuning", {{"splitting_correction", "never"}}}});
   EXPECT_LE(m.at("E_0"), 0.9) << "the coupling does nothing";
 }
 

@@ -34,18 +34,6 @@ TEST_F(Profiles, CutLimitsAndRefuseLargerWorkgroups) {
   EXPECT_EQ(device->messages(), std::vector<std::string>{});
 }
 
-TEST_F(Profiles, TheEnvironmentForcesItWhereNothingElseIsSaid) {
-  ASSERT_EQ(setenv("CLOTHBENCH_DEVICE_PROFILE", "adreno-like", 1), 0);
-  const auto forced = vulkan::Device::get(options());
-  setenv("CLOTHBENCH_DEVICE_PROFILE", "no-such-profile", 1);
-  EXPECT_THROW(vulkan::Device::get(options()), Error);
-  EXPECT_EQ(vulkan::Device::get({-1, true, "adreno-like"}), forced) << "what is said comes first";
-  unsetenv("CLOTHBENCH_DEVICE_PROFILE");
-  ASSERT_NE(forced->profile(), nullptr);
-  EXPECT_EQ(forced->profile()->name, "adreno-like");
-  EXPECT_EQ(vulkan::Device::get(options()), device_);
-}
-
 /// More than 64 dispatches a frame, whatever a frame of the solver takes by itself.
 TEST_F(Profiles, LongFramesAreSplitAndComeOutTheSame) {
   const Scene s = with_pins(with_damping(with_bending(sheet(33, 7))));

@@ -86,11 +86,11 @@ std::vector<nlohmann::json> variants() {
 
 nlohmann::json chosen(const Method& m) {
   const auto always = [](bool on) { return on ? "always" : "never"; };
-  return {{"time_order", m.predicts ? 2 : 1},
+  return {{"time_order", m.uses_bdf2 ? 2 : 1},
           {"tuning",
-           {{"prediction", m.predicts ? "always" : "auto"},
+           {{"bdf2", m.uses_bdf2 ? "always" : "auto"},
             {"tension", always(m.tension)},
-            {"coupling", always(m.couples)}}}};
+            {"splitting_correction", always(m.corrects_splitting)}}}};
 }
 
 TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
@@ -195,19 +195,6 @@ TEST_F(Gpu, TethersAgreeWithDoublePrecision) {
         expect_close(m, after(*xpbd, s, 1), 4 / s.time.dt(),
                      std::to_string(columns) + "x" + std::to_string(rows) + settings.dump());
       }
-}
-
-TEST_F(Gpu, TheSecondLayerOfADoubledClothFollowsTheFirst) {
-  Scene s = with_pins(sheet(9, 7)), doubled = s;
-  doubled.cloth.sides = Sides::DoubleDuplicated;
-  doubled.needs.add(Feature::DuplicatedLayer);
-  const auto one = make("paper"), two = make("paper");
-  one->load(s);
-  two->load(doubled);
-  const ClothState a = after(*one, s, 10), b = after(*two, doubled, 10);
-  ASSERT_EQ(a.position.size(), b.position.size()) << "the state is the first layer";
-  for (std::size_t k = 0; k < b.position.size(); ++k) EXPECT_TRUE(std::isfinite(b.position[k]));
-  EXPECT_GT(two->plan().buffers.front().bytes, one->plan().buffers.front().bytes);
 }
 
 }  // namespace
