@@ -1,4 +1,4 @@
-// Coupling of colours (INTEGRATION.md): where it is off, why, and that it costs nothing there; what forgets its state.
+// Splitting-error correction: where it is off, why, and that it costs nothing there.
 #include <cmath>
 
 #include "contact_scenes.hpp"

@@ -120,10 +120,10 @@ struct PaperContactConstants {
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
 #define LINES_LIMIT_SPEED 16u
-#define LINES_REGULARISED 32u  // chains pulled taut between two attached vertices
+#define LINES_REGULARISED 32u  // chains pulled over-constrained between two attached vertices
 #define LINES_BDF2 64u         // BDF2; else backward Euler
 #define LINES_TENSION 128u     // implicit tension
-#define LINES_SPLITTING 256u   // colours are coupled
+#define LINES_SPLITTING 256u   // the splitting error is corrected
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {

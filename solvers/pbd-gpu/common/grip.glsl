@@ -1,5 +1,5 @@
 // Vertices that a hand attaches go where it takes them, on a straight line through the frame, and have no inverse mass.
-// Once let go they have theirs, and keep the position and velocity they had.
+// Once released they have theirs, and keep the position and velocity they had.
 void move_grip(uint k, float fraction, float per_frame_s) {
   GripVertex g = LOAD(48u, grips, k);
   vec4 at = LOAD16(x, g.vertex), vel = LOAD16(v, g.vertex);

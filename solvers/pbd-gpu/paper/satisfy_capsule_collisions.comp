@@ -5,12 +5,7 @@
 #include "paper/particle_contact.glsl"
 layout(std430, binding = BIND_CAPSULES) readonly buffer Capsules { CapsuleShape capsules[]; };
 
-void main() {
-  uint i = item();
-  if (i >= p.particles) return;
-  vec4 particle = LOAD16(q, i);
-  if (particle.w == 0.0) return;
-  vec3 at = particle.xyz, from = FRICTION == 1u ? LOAD16(x, i).xyz : vec3(0.0);
+vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) {
     vec4 a = LOAD16_OF(capsules[k].a1), b = LOAD16_OF(capsules[k].b1);
     vec3 ab = b.xyz - a.xyz;
@@ -18,5 +13,6 @@ void main() {
     float t = squared > 0.0 ? clamp(dot(at - a.xyz, ab) / squared, 0.0, 1.0) : 0.0;
     at = out_of_ball(at, from, a.xyz + t * ab, a.w, b.w);
   }
-  STORE16(q, i, vec4(at, particle.w));
+  return at;
 }
+#include "paper/each_particle.glsl"

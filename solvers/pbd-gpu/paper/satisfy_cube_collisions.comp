@@ -16,12 +16,8 @@ vec3 out_of_box(vec3 at, vec3 from, BoxShape b) {
   return touched(at, from, local.z < 0.0 ? -b.axis_z.xyz : b.axis_z.xyz, depth.z, b.friction);
 }
 
-void main() {
-  uint i = item();
-  if (i >= p.particles) return;
-  vec4 particle = LOAD16(q, i);
-  if (particle.w == 0.0) return;
-  vec3 at = particle.xyz, from = FRICTION == 1u ? LOAD16(x, i).xyz : vec3(0.0);
+vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) at = out_of_box(at, from, LOAD(80u, boxes, k));
-  STORE16(q, i, vec4(at, particle.w));
+  return at;
 }
+#include "paper/each_particle.glsl"

@@ -12,12 +12,7 @@ bool projects_into(vec3 d, vec3 ab, vec3 ac, vec3 normal) {
   return u >= 0.0 && v >= 0.0 && u + v <= dot(cross(ab, ac), normal);
 }
 
-void main() {
-  uint i = item();
-  if (i >= p.particles) return;
-  vec4 particle = LOAD16(q, i);
-  if (particle.w == 0.0) return;
-  vec3 at = particle.xyz, from = FRICTION == 1u ? LOAD16(x, i).xyz : vec3(0.0);
+vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) {
     uvec4 t = LOAD16(triangles, p.first + k);
     vec3 a = LOAD16(vertex, t.x).xyz, ab = LOAD16(vertex, t.y).xyz - a, ac = LOAD16(vertex, t.z).xyz - a;
@@ -29,5 +24,6 @@ void main() {
     if (height < p.margin && height > -p.depth && projects_into(d, ab, ac, normal))
       at = touched(at, from, normal, p.margin - height, p.friction);
   }
-  STORE16(q, i, vec4(at, particle.w));
+  return at;
 }
+#include "paper/each_particle.glsl"

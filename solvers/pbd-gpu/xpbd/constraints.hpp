@@ -17,9 +17,9 @@ namespace clothbench::pbd_gpu {
 /// Length of a vector.
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
-/// Least ratio of alpha to inverse mass in chains pulled taut between attached vertices: with 0 their system is
-/// singular in single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some cloths blow
-/// up.
+/// Least ratio of alpha to inverse mass in chains pulled over-constrained between attached vertices: with 0 their
+/// system is singular in single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some
+/// cloths blow up.
 constexpr double kRegularisation = 1e-3;
 
 /// At least the maximum eigenvalue of M^-1 A, A's entries not negative and M the diagonal of masses: the maximum of
@@ -35,7 +35,7 @@ struct SlicedRows {
   std::vector<BendingSlice> slices;
   std::vector<Entry> entries;
 };
-/// `length(i)` is of row i below `rows`; `entry(i, j)` is also asked for what pads a row, i up to a whole slice.
+/// `length(i)` is of row i below `rows`; `entry(i, j)` is also requested what pads a row, i up to a whole slice.
 template <class Entry, class Length, class At>
 SlicedRows<Entry> sliced(std::uint32_t rows, const Length& length, const At& entry) {
   SlicedRows<Entry> out;

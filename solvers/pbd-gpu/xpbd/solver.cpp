@@ -107,9 +107,6 @@ class Xpbd final : public GpuSolver {
     const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
     if (!splitting_correction.enabled)
       disable("splitting correction", splitting_correction.reason, soft ? "sheet_Y" : "");
-    if (const int calm = substeps_ignoring_gravity(scene(), settings()); calm > 0)
-      disable(std::to_string(calm) + " substeps",
-              "gravity takes the cloth far in a frame: " + std::to_string(xpbd_substeps(scene(), settings())));
     second_solve_ = touches && chained && !membrane.enabled && frame().tuning()["second_solve"] == "auto";
     if (touches)
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_);
@@ -121,7 +118,7 @@ class Xpbd final : public GpuSolver {
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
     // Friction of strips on edges needs all substeps even where they hardly move; so does a tangle, to come to rest.
-    // Where hands let go of the cloth, substeps that change make it snap.
+    // Where hands released the cloth, substeps that change make it snap.
     const bool adapts = touches && !contact_->has_kinematic_shapes() && grips() == nullptr &&
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
@@ -140,7 +137,7 @@ class Xpbd final : public GpuSolver {
       disable("self-contact", "the cloth of the scene does not touch itself");
   }
 
-  /// What a prediction goes on from: the state before the last substep.
+  /// What BDF2 goes on from: the state before the last substep.
   void add_history(std::size_t particles) {
     const FeatureDecision prediction = bdf2_decision(scene(), settings());
     set_uses_bdf2(prediction.enabled);

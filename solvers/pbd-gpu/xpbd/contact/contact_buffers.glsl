@@ -2,6 +2,7 @@
 // triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a pass has its counts as
 // push constants, the kernel of a frame in one dispatch as specialization constants of the same names.
 #ifndef FUSED_FRAME
+#include "common/common.glsl"
 layout(push_constant) uniform Push { ContactConstants p; };
 CONTACT_CONSTANTS(SPECIALIZE)
 #define VERTICES p.vertices
@@ -94,7 +95,7 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-/// How far the list of the cloth with itself moves in the frame [m].
+/// How far the list of self-contact pairs moves in the frame [m].
 #define drift_m() (SELF != 0u ? p.frame_s * length(vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])) : 0.0)
 
 uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }

@@ -52,7 +52,7 @@ struct ContactFrameState {
   float max_shape_displacement;      // maximum displacement of a point of any convex shape in the frame [m]
   uint active_pair_count[2];         // pairs active in this substep, before and after the lines
   uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of atomic_aabb.glsl
-  float self_bound_fraction;         // as motion bound, of the list of the cloth with itself
+  float self_bound_fraction;         // as motion bound, of the list of self-contact pairs
   uint self_active;                  // its pairs active in this substep
   uint self_contact_pairs;           // those of them that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
@@ -61,7 +61,7 @@ struct ContactFrameState {
   uint max_displacement;      // maximum displacement of a vertex in a frame [m], the bits of a float: this one
                               // at its end; until its list is made, the last one; 0: there was none
   uint counted[PAIR_LEVELS];  // pairs at each fraction of the motion bounds
-  float drift[3];             // velocity [m/s] that the list of the cloth with itself moves along with
+  float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with
   uint unused0[3];
 };
 

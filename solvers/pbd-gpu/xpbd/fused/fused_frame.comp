@@ -26,7 +26,7 @@ vec3 anchor(uvec2 at, uint k) {
 const bool SECOND_SOLVE = false;
 const uint SELF = 0u;
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
-// The next substep's prediction, at this one's end. What hands hold is moved between the two.
+// The next substep's prediction, at this one's end. What attachments hold is moved between the two.
 const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
 #include "xpbd/contact/subgroup_cluster.glsl"
@@ -235,7 +235,7 @@ void main() {
   global_thread = group * THREADS + thread;
   grid_stride = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
-  if (p.passes == 0u) {  // asked only whether all can
+  if (p.passes == 0u) {  // only a probe whether all can run
     GRID_BARRIER_OR_RETURN;
     leave_grid_barrier();
     return;

@@ -245,7 +245,7 @@ Traffic Lines::substep_traffic() const {
   return t;
 }
 
-/// Traffic of the rounding errors of compensated sums, and of what a prediction goes on from, in each dispatch that
+/// Traffic of the rounding errors of compensated sums, and of what BDF2 goes on from, in each dispatch that
 /// integrates.
 Traffic Lines::compensated_traffic() const {
   const double all_B = (uses_bdf2_ ? 64.0 : 32.0) * static_cast<double>(scene_.cloth.vertex_count());

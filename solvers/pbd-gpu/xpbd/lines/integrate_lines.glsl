@@ -11,7 +11,7 @@ uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
 }
 
-/// Without shear stiffness the cloth reaches along its threads only.
+/// Without shear stiffness the cloth reaches along warp and weft only.
 float reach_of(uvec2 at, uvec2 to) {
   vec2 across = abs(vec2(ivec2(at) - ivec2(to))) * vec2(p.rest_u, p.rest_v);
   return p.tether_stretch * (kShears ? length(across) : across.x + across.y);

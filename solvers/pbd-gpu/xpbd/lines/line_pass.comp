@@ -31,7 +31,7 @@ void main() {
           thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
   const uint colours = kShears ? 4u : 2u;
-  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // only a probe whether all can run
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % colours;

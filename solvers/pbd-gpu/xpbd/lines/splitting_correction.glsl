@@ -1,4 +1,4 @@
-// Coupling of colours (xpbd/time/README.md). Diagonals are solved before columns and rows, whose displacement of a substep
+// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, whose displacement of a substep
 // they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second order makes
 // of those of the last substeps. Links creep, without which that would feed oscillations.
 layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2

@@ -79,7 +79,7 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
-  // As in grid_lines.glsl: what is pulled taut between attached vertices yields, by what keeps it regular and its tension from
+  // As in grid_lines.glsl: what is pulled over-constrained between attached vertices yields, by what keeps it regular and its tension from
   // turning links farther than a substep resolves.
   float regularisation_ratio = entry.regularisation;
   if (kTension) regularisation_ratio = entry.compliance == 0.0 ? regularisation_ratio : 0.0;
@@ -259,7 +259,7 @@ void bend(uint i, uint k) {
 }
 
 void main() {
-  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // asked only whether all can
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // only a probe whether all can run
   uint block = item() / THREADS;
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;

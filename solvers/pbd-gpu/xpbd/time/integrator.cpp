@@ -50,7 +50,7 @@ double distance_to_vertices(const ColliderMesh& mesh, const Vec3& from) {
   return smallest;
 }
 
-/// Lower bound of the distance [m] from a point to a collider that stands.
+/// Lower bound of the distance [m] from a point to a static collider.
 double distance_to(const Collider& c, const Vec3& from) {
   const auto to = [&](const Vec3& p) { return norm(minus(p, from)); };
   switch (c.shape) {
@@ -104,7 +104,7 @@ bool may_be_pulled_apart(const Scene& scene) {
 bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
 /// True unless a stretch wave crosses more than kMaxOfCloth of an elastic cloth in a substep. Above, a horizontal
-/// sheet let go of by two corners gains up to seven times the energy that it gains under backward Euler, and below less
+/// sheet released by two corners gains up to seven times the energy that it gains under backward Euler, and below less
 /// (xpbd/time/README.md has the table). Inextensible cloth stores no energy in its links.
 bool resolves_waves(const Scene& scene, int substeps) {
   constexpr double kMaxOfCloth = 0.6;

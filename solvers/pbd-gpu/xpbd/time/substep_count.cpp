@@ -103,20 +103,13 @@ int uncapped_substeps_if_capped(const Scene& scene, const nlohmann::json& settin
   return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
 }
 
-int substeps_ignoring_gravity(const Scene& scene, const nlohmann::json& settings) {
-  Scene calm = scene;
-  calm.gravity_m_per_s2 = {};
-  const int substeps = xpbd_substeps(calm, settings);
-  return substeps < xpbd_substeps(scene, settings) ? substeps : 0;
-}
-
 double links_of_longer_side(const Cloth& c) {
   return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
 }
 
 namespace {
 
-/// By the rules of README, "Substeps"; `touches`: what touches the cloth in the frame asks for its share; `fast`: for
+/// By the rules of README, "Substeps"; `touches`: what touches the cloth in the frame needs its share; `fast`: for
 /// its speed too.
 int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
@@ -178,7 +171,7 @@ int contact_free_substeps(const Scene& scene, const nlohmann::json& settings) {
 }
 
 double TravelLimit::wanted(double max_displacement_m) const {
-  // From eight of the ways a substep on what goes farther counts as faster, from 8 `faster` of them on it is.
+  // From eight of the ways a substep on what moves farther counts as faster, from 8 `faster` of them on it is.
   constexpr double kFast = 8;
   const double vertex_displacement = max_displacement_m / travel_m;
   return std::ceil(std::max(vertex_displacement * std::clamp(vertex_displacement / kFast, 1.0, faster),

@@ -9,21 +9,18 @@ namespace clothbench::pbd_gpu {
 double links_of_longer_side(const Cloth&);
 
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps"). In a
-/// scene with contact the most that a frame takes.
+/// scene with contact the maximum of a frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
 /// Of a frame in which no collider can be near: those of the scene without colliders, and more where something moving
 /// may have left the cloth strained in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Substeps of the same scene without gravity where gravity asks for more, else 0.
-int substeps_ignoring_gravity(const Scene&, const nlohmann::json& settings);
-
-/// Substeps that the speed of colliders asks for, where that is more than they get: beyond, the cloth is overstretched
+/// Substeps that the speed of colliders needs, where that is more than they get: beyond, the cloth is overstretched
 /// for some frames, and nothing is passed. 0 where it is not.
 int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 
-/// Substeps by the way of what goes farthest in a frame.
+/// Substeps by the way of what moves farthest in a frame.
 struct TravelLimit {
   double travel_m = 0;  ///< in a substep, where things are slow; infinity without colliders
   double faster = 1;    ///< the way of what is fast is that much shorter

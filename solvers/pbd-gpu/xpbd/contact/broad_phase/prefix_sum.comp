@@ -1,7 +1,6 @@
 #version 450
 // Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs the list has place for, and where each primitive's pairs
-// begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are those of the list of the cloth with itself.
-#include "common/common.glsl"
+// begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are those of the list of self-contact pairs.
 #include "xpbd/contact/contact_buffers.glsl"
 const uint kThreads = 256u;
 const uint kBlock = 32u;

@@ -1,7 +1,6 @@
 #version 450
 // Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
 // motion bounds (share 1), each by half of the thickness, and the group's at share 1.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 // Boxes of triangles and of groups of them, for the list of the cloth's pairs with itself. Groups are 16 triangles in self_order, which
 // keeps neighbours together.

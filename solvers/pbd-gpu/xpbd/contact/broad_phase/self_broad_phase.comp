@@ -2,7 +2,6 @@
 // Candidate pairs of triangles of the cloth without a common vertex, once per frame; each is stored with both triangles. One subgroup per
 // triangle: counts its pairs at several fractions of the motion bounds; FILL writes them.
 #define SUBGROUPS
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 // Pairs of triangles of the cloth without a common vertex whose boxes overlap, each listed with both of its triangles. A box at a fraction of
 // the motion bounds lies between those at rest and at the whole motion bounds. Counted for several shares, then written, as contact_broad_phase.glsl does.

@@ -1,6 +1,5 @@
 #version 450
 // Clamps each vertex to its motion bound after the constraint solve. One thread per vertex.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
 

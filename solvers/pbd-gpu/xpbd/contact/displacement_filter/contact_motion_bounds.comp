@@ -1,6 +1,5 @@
 #version 450
 // Motion bounds of vertices. One thread per vertex, once per frame.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
 

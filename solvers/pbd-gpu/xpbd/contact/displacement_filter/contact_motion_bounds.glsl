@@ -1,6 +1,6 @@
 // Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices are clamped to it.
 
-// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands let go of. A vertex that would go
+// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A vertex that would go
 // farther is held back, and the momentum of the cloth changes with nothing near.
 #define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)  // lists of the cloth with itself have place for no more
 
@@ -23,7 +23,7 @@ float bound_at_rest() {
   return last > 0.0 ? min(p.bound_m, kFraction * p.bound_m + (1.0 - kFraction) * fall + kWays * last) : p.bound_m;
 }
 
-/// By the hand that goes farthest: it may take any vertex along.
+/// By the hand that moves farthest: it may take any vertex along.
 float pulled() {
   float largest = 0.0;
   for (uint k = 0u; k < GRIPS; ++k) {

@@ -1,7 +1,6 @@
 #version 450
 // Projection of vertices onto their separating planes, at a substep's end. A cluster of lanes per vertex.
 #define SUBGROUPS
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/subgroup_cluster.glsl"
 #include "xpbd/contact/displacement_filter/contact_project.glsl"

@@ -1,6 +1,5 @@
 #version 450
 // Separating plane of each active pair, before the projection. One thread per active pair.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/displacement_filter/contact_select_plane.glsl"

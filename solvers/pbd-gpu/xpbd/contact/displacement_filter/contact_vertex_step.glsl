@@ -15,7 +15,7 @@ void clear_correction_bits(uint first, uint at_once) {
   for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once) active_bits[CORRECTION_BITS + k] = 0u;
 }
 
-/// Inverse mass of a vertex that has `in_lines` there. Hands hold and let go between the two.
+/// Inverse mass of a vertex that has `in_lines` there. Hands hold and released between the two.
 float mass_of(uint i, float in_lines) {
   float w = LOAD16(y, i).w;
   return in_lines == 0.0 || w == 0.0 ? in_lines : w;

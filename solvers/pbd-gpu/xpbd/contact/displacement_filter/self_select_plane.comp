@@ -1,7 +1,6 @@
 #version 450
 // Plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within the gap at the start,
-// so that standing still satisfies all planes of the cloth with itself. One thread per active pair.
-#include "common/common.glsl"
+// so that are staticing still satisfies all planes of the cloth with itself. One thread per active pair.
 #include "xpbd/contact/contact_buffers.glsl"
 // The plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within the gap that
 // they have at the start. So staying satisfies all planes of the cloth with itself at once.

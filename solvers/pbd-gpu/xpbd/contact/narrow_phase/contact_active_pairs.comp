@@ -1,6 +1,5 @@
 #version 450
 // Active pairs, once per substep and twice with kinematic shapes. One thread per candidate pair.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]

@@ -1,6 +1,6 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// A triangle that stands is its own plane where that separates the pair: no nearest points are needed, and no contact but the
+/// A triangle that is static is its own plane where that separates the pair: no nearest points are needed, and no contact but the
 /// vertices'.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;

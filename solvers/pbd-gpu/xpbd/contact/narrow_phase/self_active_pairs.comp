@@ -2,7 +2,6 @@
 // Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's active pairs begin is in no
 // fixed order, and nothing depends on it; the pairs of one triangle are in the order of its list.
 #define SUBGROUPS
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 // Pairs of a triangle that are active in this substep. Where a triangle's begin is in no fixed order, and nothing depends on it; those of
 // one triangle are in the order of its list.

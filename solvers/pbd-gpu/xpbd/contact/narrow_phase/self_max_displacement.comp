@@ -1,7 +1,6 @@
 #version 450
 // Per triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this one. One thread per
 // triangle, once per substep.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 // Of a triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this one.
 void write_triangle_max_displacement(uint t) {

@@ -1,6 +1,5 @@
 #version 450
 // After the lines, one thread per active pair: nearest points at the substep's start, and what contacts there propose.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/self_correction.glsl"

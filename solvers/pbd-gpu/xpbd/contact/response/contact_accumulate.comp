@@ -1,7 +1,6 @@
 #version 450
 // End of a response round: vertices take the mean of their corrections. A cluster of lanes per vertex.
 #define SUBGROUPS
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/subgroup_cluster.glsl"
 #include "xpbd/contact/response/friction.glsl"

@@ -1,6 +1,5 @@
 #version 450
 // Predicted position of each vertex without constraints and contact. One thread per vertex, at a substep's start.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
 

@@ -1,6 +1,5 @@
 #version 450
 // A later round of response: corrections of contacts at the vertices' new positions. One thread per active pair.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 ConvexShape shape;
 #include "xpbd/contact/response/contact_correction.glsl"

@@ -1,6 +1,5 @@
 #version 450
 // A later round of response of the cloth with itself. One thread per active pair.
-#include "common/common.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/response/self_correction.glsl"
 
