@@ -18,7 +18,7 @@ class Mirror final : public GpuSolver {
   const T* seen(std::size_t k) const {
     return static_cast<const T*>(hosts_.at(k)->mapped());
   }
-  const MeshBuffers& hands() { return colliders()->moving; }
+  const MeshBuffers& hands() { return colliders()->kinematic_meshes; }
 
  private:
   void build() override {
@@ -26,8 +26,8 @@ class Mirror final : public GpuSolver {
     add_colliders(origin_, as_convex_shapes_);
     const vulkan::Buffer& state = add_buffer(BIND_POSITIONS, "state", vec4s(scene().cloth.vertex_count()));
     set_state(state, state, {});
-    sources_ = {colliders()->capsules.buffer, colliders()->moving.positions};
-    if (as_convex_shapes_) sources_.push_back(colliders()->moving.start_positions);
+    sources_ = {colliders()->capsules.buffer, colliders()->kinematic_meshes.positions};
+    if (as_convex_shapes_) sources_.push_back(colliders()->kinematic_meshes.start_positions);
     for (const vulkan::Buffer* b : sources_) hosts_.push_back(&add_host_buffer(b->name(), b->bytes()));
     stage_ = stage;
   }

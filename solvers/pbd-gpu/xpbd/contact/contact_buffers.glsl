@@ -81,8 +81,9 @@ const float kTiny = 1e-6;       // a weight below is none
 #define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
 uint response_round = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
-// Only kinematic shapes is responded to before the lines. Static shapes would take its friction from a displacement without the lines' pull: a strip
-// that hangs over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), and at 0.7 % less with one response.
+// Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
+// without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
+// 0.7 % less with one response.
 #define FIRST_ROUND (HAS_KINEMATIC != 0u ? 0u : 1u)
 uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame

@@ -39,7 +39,7 @@ bool cell_may_touch(uint cell) {
 }
 
 /// For all threads alike. Whether the frame is to be done with contact is in the frame state. Where the last one had contact, this one has it if
-/// a group of convex shapes is in motion bound: to look closer would cost a tenth of a frame on a desk.
+/// a group of convex shapes is within the motion bound: to look closer would cost a tenth of a frame on a desk.
 bool cannot_reach_any_collider() {
   bool tests_cells = frame_state.contact_possible == 0u && is_slow();
   if (thread == 0u) any_nearby = nearby_group_count = max_displacement = 0u;

@@ -5,7 +5,7 @@ const bool kTestsContactFree = true;  // whether the cloth may touch a convex sh
 const bool kTestsContactFree = false;
 #endif
 // Of the workgroup's primitives in this frame.
-const uint kOutOfReach = 0u, kNearby = 1u, kOverlaps = 2u;  // no group of convex shapes is in motion bound; one is; and would meet the cloth without contact
+const uint kOutOfReach = 0u, kNearby = 1u, kOverlaps = 2u;  // no group of convex shapes is within the motion bound; one is; one would meet the cloth without contact
 shared uint any_nearby;
 
 /// Motion bounds of all vertices, and the box of everywhere that the cloth may go in the frame.
