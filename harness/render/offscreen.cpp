@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "clothbench/vector.hpp"
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 #include "vulkan/make.hpp"
 
 namespace clothbench::render {

@@ -224,7 +224,7 @@ VkPipeline Pipelines::create(bool cloth, VkSampleCountFlagBits samples) const {
   info.layout = layout_;
   info.renderPass = pass_;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline),
+  check(vkCreateGraphicsPipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
         "vkCreateGraphicsPipelines");
   return pipeline;
 }

@@ -80,7 +80,6 @@ std::vector<std::uint32_t> mesh_words(const ClothMesh& m, double per_m) {
 
 SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat colour)
     : device_(drawing(std::move(device))), format_(colour), pipelines_(device_, colour, kSampleBit) {
-  device_->keep_pipelines();
   set_surfaces({});
 }
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "clothbench/vector.hpp"
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 #include "results/replay.hpp"
 #include "results/result_folder.hpp"
 #include "results/store.hpp"

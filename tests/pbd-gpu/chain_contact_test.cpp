@@ -60,11 +60,11 @@ class ChainContact : public Gpu {
   }
 };
 
-/// The strain that contact leaves is an error of the order in which families and contact are solved.
+/// The strain that contact leaves is an error of the order in which colours and contact are solved.
 TEST_F(ChainContact, IsSolvedAgainBetweenItsResponses) {
   for (const auto& [stiffness, speed] : {std::pair{1000.0, 0.5}, {5000.0, 1.0}}) {
     const Scene s = pushed_tube(stiffness, speed);
-    const double once = strain_of(s, {{"tuning", {{"solves_again", "never"}}}}),
+    const double once = strain_of(s, {{"tuning", {{"second_solve", "never"}}}}),
                  twice = strain_of(s, nlohmann::json::object());
     EXPECT_LE(twice, 0.8 * once) << stiffness << " N/m, " << speed << " m/s";
   }

@@ -5,24 +5,24 @@
 #include <numbers>
 #include <set>
 
-#include "chain_plan.hpp"
-#include "constraints.hpp"
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"
+#include "xpbd/constraints.hpp"
+#include "xpbd/mesh/edge_paths.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
 
 using Ends = std::pair<std::uint32_t, std::uint32_t>;
 
-std::vector<ChainFamily> plan_of(const Scene& s, const ChainCloth& cloth, std::uint32_t block) {
-  return families_of(strands(s, cloth), s.cloth.vertex_count(), block);
+std::vector<ChainColour> plan_of(const Scene& s, const ChainCloth& cloth, std::uint32_t block) {
+  return colours_of(edge_paths(s, cloth), s.cloth.vertex_count(), block);
 }
 
-/// Links of every chain, and whether no vertex of a family is on two.
-std::multiset<Ends> links_of(const std::vector<ChainFamily>& families, std::size_t vertices, std::uint32_t block) {
+/// Links of every chain, and whether no vertex of a colour is on two.
+std::multiset<Ends> links_of(const std::vector<ChainColour>& colours, std::size_t vertices, std::uint32_t block) {
   std::multiset<Ends> out;
-  for (const ChainFamily& f : families) {
+  for (const ChainColour& f : colours) {
     std::vector<int> seen(vertices, 0);
     for (const auto& chain : f.chains) {
       EXPECT_GE(chain.size(), 2u);
@@ -46,15 +46,6 @@ TEST(ChainPlan, HasEveryLinkOnceAndNoVertexTwiceInAFamily) {
     }
 }
 
-TEST(ChainPlan, TakesTheFourFamiliesOfAGridWhole) {
-  const Scene s = uneven(sheet(17, 9), 4, 0.3);
-  const std::vector<ChainFamily> families = plan_of(s, chain_cloth(s), 256);
-  ASSERT_EQ(families.size(), 4u);
-  EXPECT_EQ(families[3].chains.size(), 9u) << "rows are solved last";
-  EXPECT_EQ(families[3].longest(), 16u);
-  EXPECT_EQ(families[2].chains.size(), 17u);
-}
-
 TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
   const Scene wide = uneven(sheet(17, 9), 4, 0.3), thin = uneven(sheet(17, 9), 4, 1e-3);
   EXPECT_TRUE(chain_cloth(wide).welded.empty());
@@ -69,70 +60,16 @@ TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
   };
   EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1)))
       << "diagonals of a sliver are stiff, and so is what they become";
-  for (const ChainFamily& f : plan_of(thin, cloth, 256))
+  for (const ChainColour& f : plan_of(thin, cloth, 256))
     for (const auto& chain : f.chains)
       for (const std::uint32_t v : chain) EXPECT_EQ(cloth.particle[v], v);
-}
-
-TEST(ChainPlan, PacksChainsIntoBlocksAndFillsThemUp) {
-  const Scene s = mesh_sheet(20);
-  const ChainCloth cloth = chain_cloth(s);
-  const std::vector<ChainFamily> families = plan_of(s, cloth, 64);
-  for (const bool with_others : {false, true}) {
-    const std::vector<ChainEntry> entries = entries_of(families[0], s, cloth, 64, with_others);
-    ASSERT_EQ(entries.size() % 64, 0u);
-    std::set<std::uint32_t> seen;
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      EXPECT_TRUE(k % 64 != 63 || entries[k].rest < 0) << "a chain goes on into the next block";
-      EXPECT_TRUE(entries[k].vertex == CHAIN_NO_VERTEX || seen.insert(entries[k].vertex).second);
-    }
-    EXPECT_EQ(seen.size() == s.cloth.vertex_count(), with_others);
-  }
-}
-
-/// A ring stretches where it is cut, so neighbours hold it there.
-TEST(ChainPlan, CutsNeighbouringRingsInOtherPlaces) {
-  constexpr int kAround = 24, kAlong = 9;
-  Scene s = mesh_tube(kAround, kAlong);
-  s.material.membrane_stiffness_N_per_m.reset();
-  std::vector<int> cut(kAlong, -1);
-  for (const Strand& strand : strands(s, chain_cloth(s)))
-    if (strand.vertices.front() == strand.vertices.back())
-      cut[strand.vertices.front() / kAround] = static_cast<int>(strand.vertices.front() % kAround);
-  for (std::size_t j = 0; j < kAlong; ++j) ASSERT_GE(cut[j], 0) << "ring " << j << " is no strand";
-  for (std::size_t j = 1; j < kAlong; ++j) {
-    const int apart = std::abs(cut[j] - cut[j - 1]);
-    EXPECT_GE(std::min(apart, kAround - apart), kAround / 4) << j;
-  }
-}
-
-/// A long ring of elastic links is two chains that share the stiffness round its cut, without a jump.
-TEST(ChainPlan, OverlapsWhereItCutsLongRings) {
-  const Scene s = mesh_tube(40, 4);
-  const ChainCloth cloth = chain_cloth(s);
-  std::map<Ends, double> whole;
-  int shared = 0;
-  for (const ChainFamily& f : plan_of(s, cloth, 256))
-    for (const ChainEntry& e : entries_of(f, s, cloth, 256, false)) {
-      if (e.vertex == CHAIN_NO_VERTEX || e.rest < 0) continue;
-      const ChainEntry& next = *(&e + 1);
-      const double share = cloth.link(e.vertex, next.vertex).compliance_m_per_N / e.compliance;
-      whole[std::minmax(e.vertex, next.vertex)] += share;
-      shared += share < 1 - 1e-6 ? 1 : 0;
-    }
-  EXPECT_EQ(whole.size(), cloth.links.size());
-  for (const auto& [ends, sum] : whole) EXPECT_NEAR(sum, 1, 1e-5) << ends.first << " " << ends.second;
-  EXPECT_EQ(shared, 4 * 2 * 16) << "16 links of each ring, twice";
-  Scene rigid = s;
-  rigid.material.membrane_stiffness_N_per_m.reset();
-  for (const Strand& strand : strands(rigid, chain_cloth(rigid))) EXPECT_TRUE(strand.share.empty());
 }
 
 TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
   Scene s = mesh_sheet(9);
   s.material.membrane_stiffness_N_per_m.reset();
   const TetherTable t = tether_table(s);
-  ASSERT_EQ(t.a_vertex, 2u) << "two corners: " << t.why_not;
+  ASSERT_EQ(t.a_vertex, 2u) << "two corners: " << t.reason;
   for (std::uint32_t v = 0; v < s.cloth.vertex_count(); ++v)
     for (std::uint32_t k = 0; k < 2; ++k) {
       const TetherEnd& e = t.ends[2 * v + k];
@@ -216,45 +153,6 @@ TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {
       EXPECT_LE(gap, 1.1 * rest + 1e-9) << factor << ", row " << j;
     }
   }
-}
-
-/// As of lines: the same bits as a dispatch a family, or a refusal, or a frame that says it was lost. One workgroup
-/// has none to wait for.
-TEST_F(Chained, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
-  int agreed = 0;
-  for (const Scene& s :
-       {with_damping(mesh_sheet(12)), with_damping(mesh_sheet(20)), with_damping(with_bending(mesh_sheet(12)))}) {
-    const auto passes = make("xpbd", {{"tuning", {{"device_barrier", "never"}}}}),
-               persistent = make("xpbd", {{"tuning", {{"device_barrier", "always"}}}});
-    passes->load(s);
-    const ClothState expected = after(*passes, s, 5);
-    try {
-      persistent->load(s);
-    } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("device_barrier=always"), std::string::npos) << e.what();
-      continue;
-    }
-    EXPECT_EQ(persistent->plan().stages.at(0).dispatches, 1);
-    StepStatus status = StepStatus::Ok;
-    for (int f = 0; f < 5 && status == StepStatus::Ok; ++f)
-      status = persistent->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)});
-    if (status == StepStatus::TimedOut) continue;
-    ASSERT_EQ(status, StepStatus::Ok);
-    ClothState state;
-    persistent->read_state(state);
-    EXPECT_EQ(state.position, expected.position);
-    EXPECT_EQ(state.velocity, expected.velocity);
-    ++agreed;
-  }
-  EXPECT_GE(agreed, 1);
-}
-
-TEST_F(Chained, RefuseWhatTheyDoNotDo) {
-  const auto solver = make("xpbd");
-  EXPECT_THROW(solver->load(with_bending(uneven(sheet(9, 7), 3, 0.3))), Error);
-  const Scene s = mesh_sheet(8);
-  const auto copies = make("xpbd", {{"batch", 2}});
-  EXPECT_THROW(copies->load(s), Error);
 }
 
 }  // namespace

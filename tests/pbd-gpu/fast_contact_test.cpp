@@ -1,10 +1,10 @@
-// Contact of `xpbd` at any speed: nothing passes a thin sheet, from either side. And the clusters that pieces are made
-// of.
+// Contact of `xpbd` at any speed: nothing passes a thin sheet, from either side. And the clusters that convex shapes
+// are made of.
 #include <cmath>
 #include <set>
 
-#include "contact_pieces.hpp"
 #include "contact_scenes.hpp"
+#include "xpbd/contact/convex_shapes.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -53,41 +53,6 @@ TEST_F(Gpu, NothingPassesAThinSheetHoweverFastItComes) {
     }
     EXPECT_TRUE(pushed);
   }
-}
-
-TEST_F(Gpu, AFastSheetStopsAtAThinMeshFromEitherSide) {
-  for (double direction : {-1.0, 1.0}) {
-    Scene s = two_sided(with_collider(sheet(9, 7), open_sheet({0, 0, 0}, 1.5)));
-    s.cloth.center_m = {0, -0.1 * direction, 0};
-    s.cloth.initial_velocity_m_per_s = {0, 60 * direction, 0};
-    const auto solver = make("xpbd");
-    solver->load(s);
-    for (int f = 0; f < 10; ++f) {
-      const ClothState state = after_frame(*solver, s, f);
-      // The mesh rises by 1 cm from one corner to the other.
-      for (std::size_t i = 0; i < state.position.size(); i += 3) ASSERT_LT(direction * state.position[i + 1], 0.011);
-    }
-  }
-}
-
-TEST(Clusters, HoldEveryTriangleOnceAndFewAtATime) {
-  std::vector<double> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::uint32_t k = 0; k < 517; ++k) {
-    for (int c = 0; c < 3; ++c)
-      for (int axis = 0; axis < 3; ++axis) positions.push_back(std::sin(1.7 * k + 0.9 * axis) + 0.01 * c);
-    triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
-  }
-  const Clusters c = cluster(positions, triangles);
-  std::size_t all = 0;
-  for (std::uint32_t size : c.sizes) {
-    EXPECT_GT(size, 0u);
-    EXPECT_LE(size, Clusters::kClusterSize);
-    all += size;
-  }
-  EXPECT_EQ(all, 517u);
-  EXPECT_EQ(std::set<std::uint32_t>(c.triangles.begin(), c.triangles.end()).size(), 517u);
-  EXPECT_TRUE(cluster({}, {}).sizes.empty());
 }
 
 }  // namespace

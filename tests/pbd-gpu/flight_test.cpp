@@ -54,33 +54,6 @@ TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
     }
 }
 
-/// Its sums are atomic and come in any order: not the same bits even when stepped twice.
-TEST_F(Gpu, PipelinedFramesOfPaperAreTheSameMotion) {
-  const Scene s = with_pins(sheet(9, 7));
-  const auto stepped = make("paper"), flown = make("paper");
-  stepped->load(s);
-  flown->load(s);
-  EXPECT_EQ(flown->frames_in_flight(), 2);
-  const ClothState expected = after(*stepped, s, 10);
-  ASSERT_EQ(flown->run_frames(frames_of(s, 10)), StepStatus::Ok);
-  const ClothState found = state_of(*flown);
-  for (std::size_t k = 0; k < found.position.size(); ++k)
-    EXPECT_NEAR(found.position[k], expected.position[k], 1e-5 * s.cloth.width_m);
-}
-
-TEST_F(Gpu, WhatTheHostTakesPartInIsWaitedFor) {
-  const Scene held = moving(sheet(9, 7), {0, 8});
-  const auto solver = make("xpbd", {{"substeps", 5}}), stepped = make("xpbd", {{"substeps", 5}});
-  solver->load(held);
-  stepped->load(held);
-  EXPECT_EQ(solver->frames_in_flight(), 1);
-  ASSERT_EQ(solver->run_frames(frames_of(held, 6)), StepStatus::Ok);
-  EXPECT_EQ(state_of(*solver).position, after(*stepped, held, 6).position);
-  const auto reads = make("paper", {{"readback", "blocking"}});
-  reads->load(sheet(9, 7));
-  EXPECT_EQ(reads->frames_in_flight(), 1);
-}
-
 TEST_F(Gpu, AClothGoesOnFromWhatWasReadOfIt) {
   const Scene s = with_pins(with_bending(sheet(9, 7)));
   for (const char* name : {"paper", "xpbd"}) {

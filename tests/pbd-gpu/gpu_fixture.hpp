@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 
 namespace clothbench::pbd_gpu {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "line_plan.hpp"
+#include "xpbd/lines/line_layout.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -42,7 +42,7 @@ inline std::vector<V> solved(std::vector<std::vector<double>> a, std::vector<V> 
 inline double dot(V a, V b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 struct Method {
-  bool tethered, predicts, tension, couples = false;
+  bool tethered, uses_bdf2, tension, corrects_splitting = false;
 };
 
 /// XPBD on whole lines in double: both diagonals, columns with bending before stretch, rows likewise.
@@ -51,23 +51,21 @@ class LineModel {
   LineModel(const Scene& s, Model& m, Method method)
       : s_(s),
         m_(m),
-        predicts_(method.predicts),
+        uses_bdf2_(method.uses_bdf2),
         tension_(method.tension),
-        couples_(method.couples),
-        taut_(taut_chains(s)),
+        corrects_splitting_(method.corrects_splitting),
+        over_constrained_(over_constrained_lines(s)),
         shift_(m.x.size()) {
     if (method.tethered) tethers_ = tethers_of(s);
   }
 
-  void frame(int substeps, int iterations) {
-    const int families = s_.needs.has(Feature::Shear) ? 4 : 2;
+  void frame(int substeps) {
+    const int colours = s_.needs.has(Feature::Shear) ? 4 : 2;
     rate_ = std::min(0.04, 0.2 / substeps);
     for (int n = 0; n < substeps; ++n) {
       begin(s_.time.dt() / substeps);
       integrate();
-      multipliers_.clear();
-      for (int it = 0; it < iterations; ++it)
-        for (int turn = 0; turn < families; ++turn) family(families - 1 - turn);
+      for (int turn = 0; turn < colours; ++turn) colour(colours - 1 - turn);
     }
   }
 
@@ -82,11 +80,11 @@ class LineModel {
   /// Backward Euler, or BDF2 after a first substep of backward Euler: x'' from (3 v - 4 v_last + v_before) / 2 h.
   void begin(double h) {
     const double damping = s_.needs.has(Feature::Damping) ? s_.material.damping_per_s : 0;
-    const bool second = predicts_ && !before_.x.empty();
+    const bool second = uses_bdf2_ && !before_.x.empty();
     h_ = second ? 2 * h / 3 : h;
     carry_ = second ? 1.0 / 3 : 0;
-    keep_ = predicts_ ? 1 / (1 + damping * h_) : 1;
-    loss_ = predicts_ ? 1 - keep_ : -std::expm1(-damping * h_);
+    keep_ = uses_bdf2_ ? 1 / (1 + damping * h_) : 1;
+    loss_ = uses_bdf2_ ? 1 - keep_ : -std::expm1(-damping * h_);
     last_ = second ? before_ : m_;
     before_ = m_;
   }
@@ -111,7 +109,7 @@ class LineModel {
       }
   }
 
-  void family(int f) {
+  void colour(int f) {
     const Cloth& c = s_.cloth;
     const int di = f == 3 ? -1 : f == 1 ? 0 : 1, dj = f == 0 ? 0 : 1;
     for (int j = 0; j < c.rows; ++j)
@@ -127,7 +125,8 @@ class LineModel {
         const bool border = (f == 0 && (j == 0 || j == c.rows - 1)) || (f == 1 && (i == 0 || i == c.columns - 1));
         if (f < 2 && s_.needs.has(Feature::Bend)) bend(f, line, border);
         const auto most = static_cast<std::size_t>(std::max(c.columns, c.rows));
-        stretch(f, line, border, taut_[static_cast<std::size_t>(f) * most + static_cast<std::size_t>(chain)] != 0);
+        stretch(f, line, border,
+                over_constrained_[static_cast<std::size_t>(f) * most + static_cast<std::size_t>(chain)] != 0);
       }
   }
 
@@ -142,7 +141,7 @@ class LineModel {
 
   /// Share of the compliance that acts at once: 1 / (1 + K/3 / (K + s^2/21)), K = h^2 Y/m, over s links.
   double at_once() const {
-    if (!couples_) return 1;
+    if (!corrects_splitting_) return 1;
     const double mass = s_.cloth.areal_density_kg_per_m2 * s_.cloth.du() * s_.cloth.dv(),
                  waves = 4.0 / 3 / (mass * compliance(0) / (h_ * h_ * keep_)),
                  links = std::min(s_.cloth.columns, s_.cloth.rows) - 1;
@@ -150,8 +149,8 @@ class LineModel {
   }
 
   /// By how much what columns and rows will do lengthens a diagonal from vertex a to b, by smoothed displacements.
-  double foreseen(int f, std::size_t a, std::size_t b) const {
-    if (f < 2 || !couples_) return 0;
+  double predicted_lengthening(int f, std::size_t a, std::size_t b) const {
+    if (f < 2 || !corrects_splitting_) return 0;
     const double du = s_.cloth.du(), dv = s_.cloth.dv();
     const auto along = [&](std::size_t i) {
       return m_.w[i] > 0
@@ -183,7 +182,8 @@ class LineModel {
     std::vector<double> length, lambda;  ///< lambda: multipliers that solve them
   };
   /// Solves the links of a line that carry `pull` (tension over length) already, and moves nothing.
-  Links solved_links(int f, const std::vector<std::size_t>& line, double alpha, bool taut, std::vector<double> pull) {
+  Links solved_links(int f, const std::vector<std::size_t>& line, double alpha, bool over_constrained,
+                     std::vector<double> pull) {
     const double du = s_.cloth.du(), dv = s_.cloth.dv(), rest = f == 0 ? du : f == 1 ? dv : std::hypot(du, dv);
     const std::size_t n = line.size() - 1;
     std::vector<std::vector<double>> a(n, std::vector<double>(n, 0));
@@ -199,12 +199,11 @@ class LineModel {
       out.length[k] = length(e);
       out.along[k] = (1 / length(e)) * e;
       const double torn = length(e) / rest, firm = tension_ ? 0 : strip ? torn - 1 : elastic ? 0 : 4 * (torn - 5);
-      const bool yields = taut && !(tension_ && elastic);
+      const bool yields = over_constrained && !(tension_ && elastic);
       const double soft = std::max(alpha, yields ? std::max(1e-3, firm) * std::max(w(k), w(k + 1)) : 0.0);
       a[k][k] = w(k) + w(k + 1) + soft;
       b[k][0] = rest - length(e) + soft * pull[k] * length(e);
-      b[k][0] -= (strip ? soft : alpha) * multipliers_[{f, line[k]}][0];
-      b[k][0] -= creep_[{f, line[k]}] + foreseen(f, line[k], line[k + 1]);
+      b[k][0] -= creep_[{f, line[k]}] + predicted_lengthening(f, line[k], line[k + 1]);
     }
     for (std::size_t k = 0; k + 1 < n; ++k) a[k][k + 1] = a[k + 1][k] = -w(k + 1) * dot(out.along[k], out.along[k + 1]);
     const std::vector<V> lambda = solved(a, b);
@@ -235,17 +234,16 @@ class LineModel {
     return pull;
   }
 
-  void stretch(int f, const std::vector<std::size_t>& line, bool border, bool taut) {
+  void stretch(int f, const std::vector<std::size_t>& line, bool border, bool over_constrained) {
     if (line.size() < 2) return;
     const double whole = (border ? 2 : 1) * compliance(f) / (h_ * h_ * keep_), alpha = at_once() * whole;
     const std::vector<double> none(line.size() - 1, 0);
-    const auto carried = tension_ ? turn(line, solved_links(f, line, alpha, taut, none)) : none;
-    const Links links = solved_links(f, line, alpha, taut, carried);
+    const auto carried = tension_ ? turn(line, solved_links(f, line, alpha, over_constrained, none)) : none;
+    const Links links = solved_links(f, line, alpha, over_constrained, carried);
     std::vector<double> all = links.lambda;
     for (std::size_t k = 0; k < all.size(); ++k) all[k] -= carried[k] * links.length[k];
-    if (couples_) remember(f, line, whole, all);
+    if (corrects_splitting_) remember(f, line, whole, all);
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-      multipliers_[{f, line[k]}][0] += links.lambda[k];
       move(line[k], (-m_.w[line[k]] * links.lambda[k]) * links.along[k]);
       move(line[k + 1], (m_.w[line[k + 1]] * links.lambda[k]) * links.along[k]);
     }
@@ -266,12 +264,10 @@ class LineModel {
       if (k + 1 < n) a[k][k + 1] = a[k + 1][k] = -2 * (w(k + 1) + w(k + 2));
       if (k + 2 < n) a[k][k + 2] = a[k + 2][k] = w(k + 2);
       const V C = m_.x[line[k]] - 2.0 * m_.x[line[k + 1]] + m_.x[line[k + 2]];
-      b[k] = -1.0 * (C + alpha * multipliers_[{4 + f, line[k + 1]}]);
+      b[k] = -1.0 * C;
     }
     const std::vector<V> lambda = solved(a, b);
     for (std::size_t k = 0; k < n; ++k) {
-      V& kept = multipliers_[{4 + f, line[k + 1]}];
-      kept = kept + lambda[k];
       move(line[k], w(k) * lambda[k]);
       move(line[k + 1], -2 * w(k + 1) * lambda[k]);
       move(line[k + 2], w(k + 2) * lambda[k]);
@@ -280,13 +276,12 @@ class LineModel {
 
   const Scene& s_;
   Model &m_, last_{}, before_{};  ///< now; before the last substep; before this one
-  const bool predicts_, tension_, couples_;
-  const std::vector<std::uint8_t> taut_;
+  const bool uses_bdf2_, tension_, corrects_splitting_;
+  const std::vector<std::uint8_t> over_constrained_;
   Tethers tethers_;
   std::vector<std::array<double, 4>> shift_;  ///< over h^2: along rows, along columns, and the filter's first stage
   std::map<std::pair<int, std::size_t>, double> creep_;
   double h_ = 0, carry_ = 0, keep_ = 1, loss_ = 0, rate_ = 0;
-  std::map<std::pair<int, std::size_t>, V> multipliers_;
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -57,32 +57,6 @@ class LineScenes : public Gpu {
 
 class SlowLineScenes : public LineScenes {};
 
-/// Mean over the edges and frames of the last second, and the greatest; the emulation's values are about half of these.
-/// The greatest is of a few links and depends on how a device rounds: with 2 substeps 3.8 % on an H200, 7.3 % on
-/// lavapipe.
-TEST_F(SlowLineScenes, HangStretchesLittle) {
-  struct Row {
-    int n, substeps;
-    double mean, most;
-  };
-  for (const Row& row :
-       {Row{32, 2, 1.2e-4, 0.08}, Row{32, 3, 5e-5, 0.03}, Row{32, 5, 1.2e-5, 0.01}, Row{32, 10, 4e-6, 0.005},
-        Row{64, 3, 8e-5, 0.1}, Row{64, 5, 3e-5, 0.04}, Row{64, 6, 2e-5, 0.02}}) {
-    const Scene s =
-        load_scene("validation/hang", {"cloth.grid=[" + std::to_string(row.n) + "," + std::to_string(row.n) + "]"});
-    const Result r = run(s, {{"substeps", row.substeps}});
-    EXPECT_LE(r.last_second("stretch_mean_positive", false), row.mean) << row.n << " substeps " << row.substeps;
-    EXPECT_LE(r.last_second("stretch_max", true), row.most) << row.n << " substeps " << row.substeps;
-  }
-}
-
-TEST_F(SlowLineScenes, ElasticSheetStretchesAsMuchAsInManySubsteps) {
-  const Scene s = load_scene("validation/hang-elastic", {"cloth.grid=[32,32]"});
-  const double many = run(s, {{"substeps", 60}, {"tethers", false}}).last_second("stretch_mean_positive", false);
-  const double mean = run(s, {{"substeps", 10}}).last_second("stretch_mean_positive", false);
-  EXPECT_NEAR(mean, many, 0.25 * many);
-}
-
 TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
   struct Row {
     const char* scene;
@@ -119,48 +93,18 @@ TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
 }
 
 TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
-  for (const auto& [columns, rows] : {std::pair{2, 2}, {2, 33}, {33, 2}, {3, 31}, {31, 3}, {32, 32}, {5, 47}, {41, 40}})
-    for (const bool one_dispatch : {true, false}) {
-      Scene s = with_pins(sheet(columns, rows));
-      s.material.membrane_stiffness_N_per_m.reset();
-      const auto solver = make("xpbd", {{"one_dispatch", one_dispatch}});
-      solver->load(s);
-      const ClothState first = after(*solver, s, 8);
-      for (const double x : first.position) ASSERT_TRUE(std::isfinite(x)) << columns << "x" << rows;
-      for (int repeat = 1; repeat < (columns == 32 ? 20 : 3); ++repeat) {
-        solver->reset();
-        ASSERT_EQ(after(*solver, s, 8).position, first.position) << columns << "x" << rows << " repeat " << repeat;
-      }
-    }
-}
-
-/// Two edges held farther apart than an inextensible sheet is long: nothing is right, but nothing may blow up.
-TEST_F(LineScenes, InfeasiblePinsStayFinite) {
-  for (const bool shear : {true, false})
-    for (const bool one_dispatch : {true, false}) {
-      Scene s = with_damping(sheet(17, 9));
-      s.material.membrane_stiffness_N_per_m.reset();
-      if (!shear) s.needs = s.needs - FeatureSet{Feature::Shear};
-      s.cloth.axis_u = {1.05, 0, 0};
-      s.pins.vertices = edge_vertices(s.cloth, "u0");
-      for (const std::uint32_t v : edge_vertices(s.cloth, "u1")) s.pins.vertices.push_back(v);
-      s.needs.add(Feature::Pins);
-      const auto solver = make("xpbd", {{"one_dispatch", one_dispatch}});
-      solver->load(s);
-      const ClothState state = after(*solver, s, 72);
-      for (const double x : state.position) EXPECT_LT(std::abs(x), 2) << "of a sheet of 1 m";
-      for (const double v : state.velocity) EXPECT_LT(std::abs(v), 50);
-    }
-}
-
-TEST_F(LineScenes, HandsThatPullAStiffSheetApartLeaveItWhole) {
-  Scene s = moving(with_damping(sheet(17, 17)), {0, 16}, 20);
-  s.material.membrane_stiffness_N_per_m.reset();
-  const auto one = make("xpbd"), many = make("xpbd", {{"one_dispatch", false}});
-  for (const auto& solver : {one.get(), many.get()}) {
+  for (const auto& [columns, rows] :
+       {std::pair{2, 2}, {2, 33}, {33, 2}, {3, 31}, {31, 3}, {32, 32}, {5, 47}, {41, 40}}) {
+    Scene s = with_pins(sheet(columns, rows));
+    s.material.membrane_stiffness_N_per_m.reset();
+    const auto solver = make("xpbd");
     solver->load(s);
-    const ClothState state = after(*solver, s, 40);
-    for (const double x : state.position) EXPECT_LT(std::abs(x), 10);
+    const ClothState first = after(*solver, s, 8);
+    for (const double x : first.position) ASSERT_TRUE(std::isfinite(x)) << columns << "x" << rows;
+    for (int repeat = 1; repeat < (columns == 32 ? 20 : 3); ++repeat) {
+      solver->reset();
+      ASSERT_EQ(after(*solver, s, 8).position, first.position) << columns << "x" << rows << " repeat " << repeat;
+    }
   }
 }
 
@@ -181,9 +125,9 @@ TEST_F(LineScenes, CopiesOfAClothMoveAlike) {
   EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(moving(sheet(9, 9), {0}, 5)), Error);
 }
 
-/// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as a dispatch a family does,
-/// or is refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of its
-/// threads.
+/// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as one dispatch per colour
+/// does, or is refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of
+/// its threads.
 TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   Scene s = with_bending(with_damping(with_pins(sheet(33, 31))));
   int agreed = 0;
@@ -213,24 +157,6 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
     ++agreed;
   }
   EXPECT_GE(agreed, 1) << "one workgroup has none to wait for";
-}
-
-TEST_F(LineScenes, OneDispatchAFrameOrFourASubstep) {
-  const auto dispatches = [](const Scene& s, const nlohmann::json& settings) {
-    const auto solver = make("xpbd", settings);
-    solver->load(s);
-    int n = 0;
-    for (const StagePlan& stage : solver->plan().stages) n += stage.dispatches;
-    return n;
-  };
-  EXPECT_EQ(dispatches(with_bending(sheet(32, 32)), {{"substeps", 7}}), 1);
-  EXPECT_EQ(dispatches(with_bending(sheet(33, 32)), {{"substeps", 7}}), 28);
-  Scene strips = sheet(33, 32);
-  strips.needs = strips.needs - FeatureSet{Feature::Shear};
-  EXPECT_EQ(dispatches(strips, {{"substeps", 7}}), 14);
-  EXPECT_EQ(dispatches(with_collider(sheet(32, 32), box({0, 0, 0}, {0.1, 0.1, 0.1})), {{"substeps", 7}}),
-            4 + 7 * (4 + 8))
-      << "the list of pairs; the lines and the phases of contact";
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // Elastic triangle meshes are isotropic sheets: triangles of constant strain, in `xpbd` and in `reference`.
-#include "mesh_membrane.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -8,8 +6,9 @@
 #include <numbers>
 
 #include "contact_scenes.hpp"
-#include "drawn_sheet.hpp"
-#include "prediction.hpp"
+#include "random_sheet.hpp"
+#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -28,7 +27,7 @@ double of_material(double Y, const Eigen::Vector3d& e) {
 }
 
 TEST(MeshMembrane, TrianglesHaveTheEnergyOfAnIsotropicSheet) {
-  const Scene s = drawn_sheet(1, 0.5, 6, 0.4, 0.3, 1);
+  const Scene s = random_sheet(1, 0.5, 6, 0.4, 0.3, 1);
   const ClothMesh& mesh = *s.cloth.mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Eigen::Matrix3d K = matrix_of(triangle_stiffness(mesh, t, *s.material.membrane_stiffness_N_per_m));
@@ -49,37 +48,11 @@ TEST(MeshMembrane, TrianglesHaveTheEnergyOfAnIsotropicSheet) {
   }
 }
 
-/// At rest the bound is above the greatest eigenvalue, however the triangles are turned, with room to spare.
-TEST(MeshMembrane, ItsBoundIsAboveTheGreatestEigenvalue) {
-  for (const double share : {0.0, 0.2, 0.35}) {
-    const Scene s = drawn_sheet(1, 0.5, 8, 0.7, share, 3);
-    const ClothMesh& mesh = *s.cloth.mesh;
-    const auto n = static_cast<Eigen::Index>(mesh.vertices.size());
-    const std::vector<double> mass = vertex_masses(s);
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3, 2 * n);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-        const Eigen::Vector2d d =
-            Eigen::Vector2d(mesh.vertices[b][0] - mesh.vertices[a][0], mesh.vertices[b][1] - mesh.vertices[a][1])
-                .normalized();
-        G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * a) = -d.transpose() / std::sqrt(mass[a]);
-        G.block<1, 2>(static_cast<Eigen::Index>(k), 2 * b) = d.transpose() / std::sqrt(mass[b]);
-      }
-      A += G.transpose() * matrix_of(triangle_stiffness(mesh, t, *s.material.membrane_stiffness_N_per_m)) * G;
-    }
-    const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()[2 * n - 1];
-    EXPECT_GE(membrane_bound(s), 1.75 * most);
-    EXPECT_LE(membrane_bound(s), 3.5 * most) << "iterations grow with its square root";
-  }
-}
-
 class MembraneOf : public Gpu {
  protected:
   /// A strip 4 : 1 that hangs along the direction of its lattice turned by an angle, 1 % strain at its top, to rest.
   static Scene hanging(int cells, double angle, double share, unsigned seed) {
-    Scene s = with_damping(drawn_sheet(1, 0.25, cells, angle, share, seed));
+    Scene s = with_damping(random_sheet(1, 0.25, cells, angle, share, seed));
     s.gravity_m_per_s2 = {50, 0, 0};
     s.material.damping_per_s = 20;
     s.time = {60, 0.8};
@@ -99,7 +72,7 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
     if (!in_turn(k == 1 ? 0 : 1)) continue;
     const double angle = std::numbers::pi / 4 * static_cast<double>(k % 3), share = k < 3 ? 0.3 : 0.15;
     const Scene s = hanging(12, angle, share, seed);
-    ASSERT_TRUE(membrane_of(s, nlohmann::json::object()).on);
+    ASSERT_TRUE(membrane_decision(s, nlohmann::json::object()).enabled);
     for (const auto& [solver, settings] : {std::pair<std::string, nlohmann::json>{"xpbd", nlohmann::json::object()},
                                            {"xpbd", {{"quality", "fast"}}},
                                            {"reference", {{"substeps", 1}}}}) {
@@ -110,97 +83,9 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
   }
 }
 
-/// Springs along edges are softer than stated, by how many substeps solve them: CHAINS.md says how much.
-TEST_F(MembraneOf, DrawnMeshesWithSpringsIsSofter) {
-  const Scene s = hanging(12, std::numbers::pi / 4, 0.3, 2);
-  const nlohmann::json settings = {{"substeps", 16}, {"tuning", {{"membrane", "never"}}}};
-  const IsotropicModuli m = hanging_moduli(s, end_of(s, "xpbd", settings));
-  EXPECT_GE(m.E, 0.7);
-  EXPECT_LE(m.E, 0.95) << "springs are near Y: touching cloth may be said to have it";
-}
-
-/// The lower half of a strip is a quarter as stiff: material.regions of a mesh.
-TEST_F(MembraneOf, RegionsIsTheirOwn) {
-  const Scene even = hanging(8, 0.5, 0.3, 4);
-  Scene s = even;
-  StiffnessRegion lower;
-  lower.membrane_stiffness_N_per_m = 250;
-  const ClothMesh& mesh = *s.cloth.mesh;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    if (std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
-                    [&](std::uint32_t v) { return mesh.vertices[v][0] >= 0.5; }))
-      lower.triangles.push_back(t);
-  s.material.regions = {lower};
-  s.needs.add(Feature::Regions);
-  const auto lowest = [](const std::vector<double>& x) {
-    double most = -1;
-    for (std::size_t k = 0; k < x.size(); k += 3) most = std::max(most, x[k]);
-    return most - 1;
-  };
-  const double right = lowest(end_of(s, "reference", {{"substeps", 1}})),
-               found = lowest(end_of(s, "xpbd", nlohmann::json::object()));
-  EXPECT_NEAR(found / right, 1, 0.02);
-  EXPECT_GE(right / lowest(end_of(even, "reference", {{"substeps", 1}})), 1.5) << "the region changes little";
-  const double springs = lowest(end_of(s, "xpbd", {{"substeps", 32}, {"tuning", {{"membrane", "never"}}}}));
-  EXPECT_NEAR(springs / right, 1, 0.15) << "springs are softer by what CHAINS.md says";
-}
-
-/// Where the setting asks for it, triangles make cloth that touches: over a ball, whose surface no vertex passes.
-TEST_F(MembraneOf, TouchingSheetsRestsOnABall) {
-  constexpr double kRadius = 0.15;
-  Scene s = drawn_sheet(0.6, 0.4, 5, 0.5, 0.3, 5);
-  s.pins.vertices.clear();
-  s.needs = s.needs - FeatureSet{Feature::Pins};
-  s.time = {60, 0.25};
-  Vec3 ball = s.cloth.center_m;
-  for (std::size_t k = 0; k < 3; ++k) ball[k] += 0.3 * s.cloth.axis_u[k] + 0.2 * s.cloth.axis_v[k];
-  ball[1] -= kRadius + 0.03;
-  s = with_collider(s, sphere(ball, kRadius, kContactFriction));
-  const auto solver = make("xpbd", {{"quality", "fast"}, {"tuning", {{"membrane", "always"}}}});
-  solver->load(s);
-  const std::vector<double> x = after(*solver, s, s.time.frames()).position;
-  double lowest = 0;
-  for (std::size_t v = 0; v < x.size(); v += 3) {
-    const double d = std::hypot(x[v] - ball[0], x[v + 1] - ball[1], x[v + 2] - ball[2]);
-    if (!(d >= kRadius)) ADD_FAILURE() << "vertex " << v / 3 << " is " << d << " m from the middle";
-    lowest = std::min(lowest, x[v + 1] - ball[1]);
-  }
-  EXPECT_LT(lowest, 0) << "the sheet hangs down beside the ball";
-  EXPECT_GT(lowest, -2 * kRadius) << "it fell off, or through";
-}
-
-/// Pulled to twice its length, with few substeps: the sheet comes to rest where the reference does.
-TEST_F(MembraneOf, FarStretchedSheetsComeToRest) {
-  std::size_t number = 0;
-  for (const Vec3& g : {Vec3{100, 0, 0}, {0, -100, 0}, {-60, -60, 30}}) {
-    Scene s = with_damping(drawn_sheet(1, 0.25, 8, 0.5, 0.3, 8));
-    s.material.membrane_stiffness_N_per_m = 20;
-    s.material.damping_per_s = 8;
-    s.gravity_m_per_s2 = g;
-    s.time = {60, 3};
-    if (!in_turn(number++)) continue;
-    const std::vector<double> right = end_of(s, "reference", {{"substeps", 4}});
-    for (const int order : {1, 2}) {
-      const std::vector<double> found = end_of(s, "xpbd", {{"quality", "fast"}, {"time_order", order}});
-      double most = 0, longest = 0;
-      for (std::size_t k = 0; k < right.size(); ++k) {
-        const double d = std::abs(found[k] - right[k]);
-        most = d <= most ? most : d;
-      }
-      for (const Edge& e : s.cloth.mesh->edges) {
-        double square = 0;
-        for (std::size_t k = 0; k < 3; ++k) square += std::pow(found[3 * e.a + k] - found[3 * e.b + k], 2);
-        longest = std::max(longest, std::sqrt(square) / e.rest_m);
-      }
-      EXPECT_LE(most, 1e-3) << g[0] << " " << g[1] << ", order " << order;
-      EXPECT_GE(longest, 1.8) << "the test stretches little";
-    }
-  }
-}
-
 /// Bit for bit, momentum kept: a sheet that turns and falls.
 TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
-  Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
+  Scene s = random_sheet(1, 0.5, 8, 0.5, 0.3, 5);
   s.pins.vertices.clear();
   s.needs = s.needs - FeatureSet{Feature::Pins};
   s.cloth.spin_rad_per_s = {3, 0, 1};
@@ -218,38 +103,6 @@ TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
   }
   const double free = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), 6);
   EXPECT_NEAR(fall / mass, free, 3e-5 * std::abs(free));
-}
-
-/// Triangles have their tension in their own solve: no setting leaves it out, and a prediction may build on it.
-TEST_F(MembraneOf, DrawnSheetsHaveTensionWhateverTheSetting) {
-  const Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
-  for (const nlohmann::json& settings : {nlohmann::json{{"tuning", {{"tension", "never"}}}}, {{"iterations", 4}}}) {
-    EXPECT_EQ(tension_of(s, settings).why_not, "");
-    const auto solver = make("xpbd", settings);
-    solver->load(s);
-    for (const auto& part : solver->plan().left_out) EXPECT_NE(part.what, "implicit tension") << part.why;
-    EXPECT_EQ(prediction_of(s, settings).on, prediction_of(s, nlohmann::json::object()).on);
-  }
-}
-
-/// What the plan says of meshes that springs along edges solve.
-TEST_F(MembraneOf, OtherSheetsIsNotAndThePlanSaysWhy) {
-  const auto why = [](const Scene& s, const nlohmann::json& settings) { return membrane_of(s, settings).why_not; };
-  Scene s = drawn_sheet(1, 0.5, 8, 0.5, 0.3, 5);
-  const nlohmann::json none = nlohmann::json::object();
-  EXPECT_EQ(why(s, none), "");
-  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "never"}}}}), "setting tuning.membrane=never");
-  EXPECT_EQ(why(sheet(5, 5), none), "the cloth is a grid");
-  s.material.membrane_stiffness_N_per_m = 1e7;
-  EXPECT_NE(why(s, none).find("iterations"), std::string::npos);
-  EXPECT_EQ(why(s, {{"tuning", {{"membrane", "always"}}}}), "");
-  const auto solver = make("xpbd");
-  solver->load(s);
-  const auto& left = solver->plan().left_out;
-  EXPECT_TRUE(std::any_of(left.begin(), left.end(),
-                          [](const auto& part) { return part.what == "triangles of constant strain"; }));
-  s.material.membrane_stiffness_N_per_m.reset();
-  EXPECT_EQ(why(s, none), "the cloth is inextensible");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ TEST_P(Moduli, AreTheScenesAtDefaultAndFast) {
 }
 
 TEST_P(Moduli, WithoutCouplingAreFarOff) {
-  EXPECT_GE(error({{"tuning", {{"coupling", "never"}}}}), 0.1) << "the coupling does nothing";
+  EXPECT_GE(error({{"tuning", {{"splitting_correction", "never"}}}}), 0.1) << "the coupling does nothing";
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, Moduli, ::testing::Values("[17,3]", "[33,5]", "[65,9]"));

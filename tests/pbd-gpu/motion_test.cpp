@@ -10,24 +10,24 @@ namespace {
 /// Nothing but colliders, read back: what a method finds in its buffers during a frame.
 class Mirror final : public GpuSolver {
  public:
-  Mirror(bool as_pieces, Vec3 origin)
+  Mirror(bool as_convex_shapes, Vec3 origin)
       : GpuSolver(paper_info(), complete_settings(paper_info(), nlohmann::json::object()), {-1, true}, false),
-        as_pieces_(as_pieces),
+        as_convex_shapes_(as_convex_shapes),
         origin_(origin) {}
   template <class T>
   const T* seen(std::size_t k) const {
     return static_cast<const T*>(hosts_.at(k)->mapped());
   }
-  const MeshBuffers& hands() { return colliders()->moving; }
+  const MeshBuffers& hands() { return colliders()->kinematic_meshes; }
 
  private:
   void build() override {
     const int stage = add_stage("Mirror", {});
-    add_colliders(origin_, as_pieces_);
+    add_colliders(origin_, as_convex_shapes_);
     const vulkan::Buffer& state = add_buffer(BIND_POSITIONS, "state", vec4s(scene().cloth.vertex_count()));
     set_state(state, state, {});
-    sources_ = {colliders()->capsules.buffer, colliders()->moving.positions};
-    if (as_pieces_) sources_.push_back(colliders()->moving.start_positions);
+    sources_ = {colliders()->capsules.buffer, colliders()->kinematic_meshes.positions};
+    if (as_convex_shapes_) sources_.push_back(colliders()->kinematic_meshes.start_positions);
     for (const vulkan::Buffer* b : sources_) hosts_.push_back(&add_host_buffer(b->name(), b->bytes()));
     stage_ = stage;
   }
@@ -36,7 +36,7 @@ class Mirror final : public GpuSolver {
     for (std::size_t k = 0; k < sources_.size(); ++k) copy(stage_, *sources_[k], *hosts_[k]);
   }
 
-  const bool as_pieces_;
+  const bool as_convex_shapes_;
   const Vec3 origin_;
   int stage_ = -1;
   std::vector<const vulkan::Buffer*> sources_;
@@ -67,8 +67,8 @@ void expect_mesh(const vec4* seen, const Scene& s, const MeshBuffers& buffers, s
 TEST_F(Gpu, HandsAreSkinnedAndCapsulesArriveRelativeToTheOrigin) {
   const Scene s = hands();
   const Vec3 origin = {0.25, -0.5, 0.125};
-  for (bool as_pieces : {false, true}) {
-    Mirror mirror(as_pieces, origin);
+  for (bool as_convex_shapes : {false, true}) {
+    Mirror mirror(as_convex_shapes, origin);
     mirror.load(s);
     ASSERT_EQ(mirror.hands().ranges.size(), 2u);
     EXPECT_EQ(mirror.hands().ranges[1].collider, 3u);
@@ -76,7 +76,7 @@ TEST_F(Gpu, HandsAreSkinnedAndCapsulesArriveRelativeToTheOrigin) {
       for (std::size_t f = 0; f < 4; ++f) {
         after_frame(mirror, s, static_cast<int>(f));
         expect_mesh(mirror.seen<vec4>(1), s, mirror.hands(), f + 1, origin);
-        if (as_pieces) expect_mesh(mirror.seen<vec4>(2), s, mirror.hands(), f, origin);
+        if (as_convex_shapes) expect_mesh(mirror.seen<vec4>(2), s, mirror.hands(), f, origin);
         const auto* capsule = mirror.seen<CapsuleShape>(0);
         for (std::size_t k = 0; k < 2; ++k) {
           const Capsule &start = s.motion[f].colliders[2].capsules[k], &end = s.motion[f + 1].colliders[2].capsules[k];
@@ -91,14 +91,6 @@ TEST_F(Gpu, HandsAreSkinnedAndCapsulesArriveRelativeToTheOrigin) {
         }
       }
   }
-}
-
-TEST_F(Gpu, MotionOfAnotherSceneIsRefused) {
-  const Scene s = hands();
-  const auto solver = make("paper");
-  solver->load(doubled(s));
-  const FrameMotion wrong;
-  EXPECT_THROW(solver->step({0, s.time.dt(), s.time.dt(), &wrong}), Error);
 }
 
 TEST_F(Gpu, HeldVerticesFollowTheHandAndDragTheRest) {
@@ -126,43 +118,6 @@ TEST_F(Gpu, HeldVerticesFollowTheHandAndDragTheRest) {
           }
         }
     }
-}
-
-TEST_F(Gpu, LetGoTheyFlyOnAndFall) {
-  // All of a rigid sheet is held: let go, it has the hand's velocity and falls as the method's free fall does.
-  constexpr int kRelease = 4, kFlight = 12;
-  for (int substeps : {1, 3}) {
-    Scene s = sheet(5, 4);
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t v = 0; v < 20; ++v) all.push_back(v);
-    s = moving(s, all, kRelease);
-    const nlohmann::json settings = {{"substeps", substeps}};
-    const auto solver = make("paper", settings);
-    solver->load(s);
-    const std::vector<double> rest = initial_positions(s);
-    for (int lap = 0; lap < 2; ++lap, solver->reset()) {
-      const ClothState state = after(*solver, s, kRelease + kFlight);
-      const double fall = paper_free_fall_m(s, settings, kFlight);
-      const double frames = kRelease + kFlight;
-      for (std::size_t v = 0; v < all.size(); ++v) {
-        EXPECT_NEAR(state.position[3 * v], rest[3 * v] + 0.02 * frames, 1e-4) << substeps;
-        EXPECT_NEAR(state.position[3 * v + 1], rest[3 * v + 1] + 0.03 * frames + fall, 1e-4) << substeps;
-        EXPECT_NEAR(state.position[3 * v + 2], rest[3 * v + 2] - 0.01 * frames, 1e-4) << substeps;
-      }
-    }
-  }
-}
-
-TEST_F(Gpu, WithoutMotionWhatCouldMoveStandsStill) {
-  const Scene s = moving(sheet(5, 4), {0, 4});
-  const auto solver = make("paper");
-  solver->load(s);
-  const std::vector<double> rest = initial_positions(s);
-  ClothState state;
-  for (int f = 0; f < 5; ++f) EXPECT_EQ(solver->step({f, (f + 1) * s.time.dt(), s.time.dt()}), StepStatus::Ok);
-  solver->read_state(state);
-  for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_EQ(static_cast<float>(state.position[12 + k]), static_cast<float>(rest[12 + k]));
 }
 
 }  // namespace

@@ -31,16 +31,6 @@ TEST_F(Gpu, FreeFallOfXpbdIsExactToTwoMillionths) {
   }
 }
 
-TEST_F(Gpu, FreeFallOfATiltedSheetIsExactToo) {
-  Scene s = sheet(16, 16);
-  const double c = std::sqrt(0.5);
-  s.cloth.axis_u = {c, c, 0};
-  s.cloth.axis_v = {-0.5, 0.5, c};
-  const auto solver = make("xpbd", {{"substeps", 10}});
-  solver->load(s);
-  EXPECT_LE(free_fall_error(*solver, s, kHalfSecond, xpbd_free_fall_m(s, {{"substeps", 10}}, kHalfSecond)), 2e-6);
-}
-
 TEST_F(Gpu, FreeFallOfPaperIsExactToATenThousandth) {
   for (const auto& [n, substeps] : {std::pair{8, 1}, {33, 1}, {64, 1}, {17, 3}}) {
     const Scene s = with_damping(with_bending(sheet(n, n)));
@@ -77,13 +67,13 @@ TEST_F(Gpu, XpbdRepeatsBitForBit) {
 
 /// A sheet that was stretched and let go, without gravity: what its centre of mass does.
 TEST_F(Gpu, XpbdKeepsMomentum) {
-  for (int iterations : {1, 3}) {
-    Scene s = with_bending(sheet(33, 17));
+  for (const int columns : {17, 33}) {
+    Scene s = with_bending(sheet(columns, 17));
     s.cloth.axis_u = {1.05, 0, 0};
     s.cloth.axis_v = {0, 0.2, 1};
     s.cloth.initial_velocity_m_per_s = {0.3, -0.2, 0.1};
     s.gravity_m_per_s2 = {};
-    const auto solver = make("xpbd", {{"substeps", 20}, {"iterations", iterations}});
+    const auto solver = make("xpbd", {{"substeps", 20}});
     solver->load(s);
     const ClothState state = after(*solver, s, 36);
     const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
@@ -99,8 +89,8 @@ TEST_F(Gpu, XpbdKeepsMomentum) {
     }
     EXPECT_GT(fastest, 0.1) << "the sheet does swing";
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(p[k] / total, s.cloth.initial_velocity_m_per_s[k], 1e-5 * fastest) << iterations;
-      EXPECT_NEAR(moved[k] / total, 0.5 * s.cloth.initial_velocity_m_per_s[k], 1e-5 * s.cloth.width_m) << iterations;
+      EXPECT_NEAR(p[k] / total, s.cloth.initial_velocity_m_per_s[k], 1e-5 * fastest) << columns;
+      EXPECT_NEAR(moved[k] / total, 0.5 * s.cloth.initial_velocity_m_per_s[k], 1e-5 * s.cloth.width_m) << columns;
     }
   }
 }
@@ -115,25 +105,6 @@ TEST_F(Gpu, PinnedVerticesStay) {
     for (std::uint32_t v : s.pins.vertices)
       for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(state.position[3 * v + k], start[3 * v + k], 1e-7) << name;
   }
-}
-
-TEST_F(Gpu, XpbdHangsWithBoundedStretch) {
-  Scene s = with_damping(with_pins(sheet(16, 16)));
-  s.material.membrane_stiffness_N_per_m = 1e4;
-  const auto solver = make("xpbd", {{"substeps", 20}});
-  solver->load(s);
-  const ClothState state = after(*solver, s, 144);
-  double most = 0, sum = 0;
-  const auto all = edges(s.cloth, EdgeKind::Structural);
-  for (const Edge& e : all) {
-    const auto d = [&](std::size_t k) { return state.position[3 * e.a + k] - state.position[3 * e.b + k]; };
-    const double strain = std::hypot(d(0), d(1), d(2)) / e.rest_m - 1;
-    ASSERT_TRUE(std::isfinite(strain));
-    most = std::max(most, strain);
-    sum += std::abs(strain);
-  }
-  EXPECT_LT(most, 0.2);
-  EXPECT_LT(sum / static_cast<double>(all.size()), 0.02);
 }
 
 TEST_F(Gpu, UniaxialStiffnessIsYOnSquareAndOblongCells) {

@@ -46,17 +46,18 @@ void add_kernels(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("one family of lines skipped", "pulled", "line_frame.comp", "family = families - 1u - turn;",
-         "family = max(families - 1u - turn, 1u);");
-  kernel("stretch compliance of the border as inside", "heavy", "lines.glsl",
+  kernel("one family of lines skipped", "pulled", "xpbd/lines/line_frame.comp", "colour = colours - 1u - turn;",
+         "colour = max(colours - 1u - turn, 1u);");
+  kernel("stretch compliance of the border as inside", "heavy", "xpbd/lines/grid_lines.glsl",
          "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;");
-  kernel("bending with the wrong sign", "cantilever", "lines.glsl", "w[k] * (last - 2.0 * lambda[k] + next)",
-         "w[k] * (2.0 * lambda[k] - last - next)");
-  kernel("damping halved in the kernel", "fall", "substep.glsl", "gain -= p.loss * (velocity + change);",
-         "gain -= 0.5 * p.loss * (velocity + change);");
-  kernel("gravity 1 % weak in the kernel", "fall", "substep.glsl", "vec3 gain = p.gravity_h.xyz,",
+  kernel("bending with the wrong sign", "cantilever", "xpbd/lines/grid_lines.glsl",
+         "w[k] * (last - 2.0 * lambda[k] + next)", "w[k] * (2.0 * lambda[k] - last - next)");
+  kernel("damping halved in the kernel", "fall", "xpbd/time/substep.glsl",
+         "gain -= p.damping_fraction * (velocity + change);",
+         "gain -= 0.5 * p.damping_fraction * (velocity + change);");
+  kernel("gravity 1 % weak in the kernel", "fall", "xpbd/time/substep.glsl", "vec3 gain = p.gravity_h.xyz,",
          "vec3 gain = 0.99 * p.gravity_h.xyz,");
-  kernel("grips forgotten by the kernel", "pulled", "line_frame.comp", "if (GRIPS > 0u) move_held(s);",
+  kernel("grips forgotten by the kernel", "pulled", "xpbd/lines/line_frame.comp", "if (GRIPS > 0u) move_held(s);",
          "if (GRIPS > 999999u) move_held(s);");
 }
 
@@ -68,28 +69,30 @@ void add_planes(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("points of pieces stand still within the frame", "struck", "plane_pieces.comp", "PiecePoint(c.b0, c.b1)",
-         "PiecePoint(c.b0, c.b0)");
-  kernel("a tenth of the reach", "struck", "plane_reach.glsl", "STORE16(reaches, i, vec4(at.xyz, reach));",
-         "STORE16(reaches, i, vec4(at.xyz, 0.1 * reach));");
-  kernel("one pair in three not listed", "struck", "plane_list.glsl", "return n;", "return n - n / 3u;");
-  kernel("half of each element's pairs not found again", "struck", "plane_scan.glsl", "min(count, room), 0u",
-         "min(count, room) / 2u, 0u");
-  kernel("start of the substep not what it was", "struck", "plane_vertices.glsl", "at.xyz += p.h * (vel ",
-         "at.xyz += -9.0 * p.h * (vel ");
-  kernel("no friction on half-spaces", "ramp", "plane_gather.glsl", "m -= min(1.0, s.friction * moving / l) * slip;",
-         "m -= 0.0 * slip;");
-  kernel("normal of the nearest points flipped", "struck", "plane_query.glsl", "s.normal = vec4(r.n, gap);",
-         "s.normal = vec4(-r.n, gap);");
-  kernel("friction along the slip", "wrapped", "plane_push.glsl", "by -= min(1.0, piece.friction",
-         "by += min(1.0, piece.friction");
-  kernel("what was struck fixed in the lines", "struck", "plane_gather.glsl", "at.w / (1.0 + held)", "0.0");
-  kernel("a hull that misses a corner", "struck", "plane_geometry.glsl", "uint first = 0u; first < piece.count;",
-         "uint first = 1u; first < piece.count;");
-  kernel("planes a millimetre inside the piece", "struck", "plane_choose.glsl", "dot(n, around) + least);",
-         "dot(n, around) + least - 1e-3);");
-  kernel("planes forgotten", "struck", "plane_project.glsl",
-         "if (proposed.w > 0.0 && !(least >= 0.0)) at = placed(at, from.w);", "");
+  kernel("points of pieces stand still within the frame", "struck",
+         "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)");
+  kernel("a tenth of the reach", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
+         "STORE16(motion_bounds, i, vec4(at.xyz, bound));", "STORE16(motion_bounds, i, vec4(at.xyz, 0.1 * bound));");
+  kernel("one pair in three not listed", "struck", "xpbd/contact/broad_phase/contact_broad_phase.glsl", "return n;",
+         "return n - n / 3u;");
+  kernel("half of each element's pairs not found again", "struck", "xpbd/contact/broad_phase/prefix_sum.comp",
+         "min(count, room), 0u", "min(count, room) / 2u, 0u");
+  kernel("start of the substep not what it was", "struck", "xpbd/contact/displacement_filter/contact_vertex_step.glsl",
+         "at.xyz += p.h * (vel ", "at.xyz += -9.0 * p.h * (vel ");
+  kernel("no friction on half-spaces", "ramp", "xpbd/contact/response/contact_accumulate.glsl",
+         "at.xyz - start, s.friction)", "at.xyz - start, 0.0)");
+  kernel("normal of the nearest points flipped", "struck", "xpbd/contact/narrow_phase/contact_nearest_points.glsl",
+         "s.normal = vec4(r.n, gap);", "s.normal = vec4(-r.n, gap);");
+  kernel("friction along the slip", "wrapped", "xpbd/contact/response/friction.glsl", "by -= min(1.0, friction",
+         "by += min(1.0, friction");
+  kernel("what was struck fixed in the lines", "struck", "xpbd/contact/response/contact_accumulate.glsl",
+         "at.w / (1.0 + held)", "0.0");
+  kernel("a hull that misses a corner", "struck", "xpbd/contact/narrow_phase/contact_distance.glsl",
+         "uint first = 0u; first < shape.count;", "uint first = 1u; first < shape.count;");
+  kernel("planes a millimetre inside the piece", "struck", "xpbd/contact/displacement_filter/contact_select_plane.glsl",
+         "dot(n, around) + smallest);", "dot(n, around) + smallest - 1e-3);");
+  kernel("planes forgotten", "struck", "xpbd/contact/displacement_filter/contact_project.glsl",
+         "if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);", "");
 }
 
 /// The same of the cloth's contact with itself.
@@ -99,20 +102,20 @@ void add_self_planes(std::vector<Fault>& f) {
     fault.shader = ShaderFault{file, is, is_to_be};
     f.push_back(std::move(fault));
   };
-  kernel("boxes of a tenth of the size", "self_box.glsl", "return b.low_0.xyz +",
+  kernel("boxes of a tenth of the size", "xpbd/contact/broad_phase/self_aabb.glsl", "return b.low_0.xyz +",
          "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
-  kernel("triangles whose numbers differ by few not paired", "plane_self_list.glsl", "if (a[c] == b.x ",
-         "if (abs(int(a[c]) - int(b.x)) < 60 ");
-  kernel("half of each triangle's pairs lost", "plane_self_near.glsl", "end = range.x + range.y;",
-         "end = range.x + range.y / 2u;");
-  kernel("contacts pushed a centimetre too far", "plane_self_push.glsl", "s.normal.w - dot(n, apart)",
-         "s.normal.w + 0.01 - dot(n, apart)");
-  kernel("normal of the nearest points flipped", "plane_self_query.glsl", "self_near[k].plane = normal;",
-         "self_near[k].plane = vec4(-normal.xyz, normal.w);");
-  kernel("planes of the second triangle on its wrong side", "plane_self_choose.glsl", "vec4(-n, half_m - offset)",
-         "vec4(-n, half_m - offset - 0.01)");
-  kernel("planes of the cloth with itself forgotten", "plane_project.glsl", "if (!parts[m]) continue;",
-         "if (true) continue;");
+  kernel("triangles whose numbers differ by few not paired", "xpbd/contact/broad_phase/self_broad_phase.comp",
+         "if (a[c] == b.x ", "if (abs(int(a[c]) - int(b.x)) < 60 ");
+  kernel("half of each triangle's pairs lost", "xpbd/contact/narrow_phase/self_active_pairs.comp",
+         "end = range.x + range.y;", "end = range.x + range.y / 2u;");
+  kernel("contacts pushed a centimetre too far", "xpbd/contact/response/self_correction.glsl",
+         "s.normal.w - dot(n, apart)", "s.normal.w + 0.01 - dot(n, apart)");
+  kernel("normal of the nearest points flipped", "xpbd/contact/narrow_phase/self_nearest_points.comp",
+         "self_active[k].plane = normal;", "self_active[k].plane = vec4(-normal.xyz, normal.w);");
+  kernel("planes of the second triangle on its wrong side", "xpbd/contact/displacement_filter/self_select_plane.comp",
+         "vec4(-n, half_m - offset)", "vec4(-n, half_m - offset - 0.01)");
+  kernel("planes of the cloth with itself forgotten", "xpbd/contact/displacement_filter/contact_project.glsl",
+         "if (!has_plane[m]) continue;", "if (true) continue;");
 }
 
 void add_inputs(std::vector<Fault>& f) {

@@ -2,10 +2,8 @@
 // run and the same run of a healthy run as its baseline.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 
 #include "check/compare.hpp"
@@ -47,20 +45,7 @@ std::string caught_by(const RunRecord& was, const RunRecord& is) {
   }
 }
 
-class Planted : public ::testing::Test {
- protected:
-  // Kernels with faults go into no pipeline cache but this one.
-  static void SetUpTestSuite() { ::setenv("CLOTHBENCH_CACHE", cache().c_str(), 1); }
-  static void TearDownTestSuite() {
-    std::error_code ignored;
-    std::filesystem::remove_all(cache(), ignored);
-  }
-
- private:
-  static std::filesystem::path cache() {
-    return std::filesystem::temp_directory_path() / ("clothbench-planted-cache-" + std::to_string(::getpid()));
-  }
-};
+class Planted : public ::testing::Test {};
 
 TEST_F(Planted, AHealthyRunPassesTwice) {
   for (const Stage& s : stages()) {

@@ -92,16 +92,19 @@ ShaderVariant::ShaderVariant(const ShaderFault& fault) {
   Active a;
   a.folder = fs::temp_directory_path() / ("clothbench-planted-" + std::to_string(::getpid()));
   fs::remove_all(a.folder);
-  fs::create_directories(a.folder);
-  fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / "shaders", a.folder / "shaders", fs::copy_options::recursive);
-  for (const char* shared : {"pbd_shared.h", "plane_shared.h"})
-    fs::copy(fs::path(CLOTHBENCH_KERNEL_SOURCES) / shared, a.folder / shared);
-  const fs::path file = a.folder / "shaders" / fault.file;
+  for (const auto& f : fs::recursive_directory_iterator(CLOTHBENCH_KERNEL_SOURCES)) {
+    const fs::path to = a.folder / fs::relative(f.path(), CLOTHBENCH_KERNEL_SOURCES);
+    const std::string kind = f.path().extension().string();
+    if (kind != ".comp" && kind != ".glsl" && kind != ".h") continue;
+    fs::create_directories(to.parent_path());
+    fs::copy(f.path(), to);
+  }
+  const fs::path file = a.folder / fault.file;
   const Code code = read(file);
   std::string text(code.begin(), code.end());
   const std::size_t at = text.find(fault.is);
   if (at == std::string::npos || text.find(fault.is, at + 1) != std::string::npos)
-    throw std::runtime_error("solvers/pbd-gpu/shaders/" + fault.file + ": expected exactly once: " + fault.is);
+    throw std::runtime_error("solvers/pbd-gpu/" + fault.file + ": expected exactly once: " + fault.is);
   text.replace(at, fault.is.size(), fault.is_to_be);
   std::ofstream(file) << text;
   active = std::move(a);

@@ -6,7 +6,7 @@ namespace clothbench {
 
 /// One place of a kernel's source that is exchanged.
 struct ShaderFault {
-  std::string file;          ///< below solvers/pbd-gpu/shaders
+  std::string file;          ///< below solvers/pbd-gpu
   std::string is, is_to_be;  ///< text that stands there exactly once
 };
 

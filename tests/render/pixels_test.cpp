@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 #include "render/offscreen.hpp"
 #include "scenario/as_mesh.hpp"
 #include "scenario/load.hpp"

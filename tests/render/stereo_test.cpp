@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "gpu_solver.hpp"
+#include "common/gpu_solver.hpp"
 #include "render/offscreen.hpp"
 #include "results/store.hpp"
 #include "runner/solver_run.hpp"

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "vulkan/device_info.hpp"
-#include "vulkan/pipeline_cache.hpp"
 
 namespace clothbench::vulkan {
 namespace {
@@ -248,25 +247,6 @@ void Device::create_device(Maker* maker) {
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
 
-  // Only the setting `atomics` of `paper` uses float atomics; everything else is Vulkan 1.1 core.
-  VkPhysicalDeviceShaderAtomicFloatFeaturesEXT atomics{};
-  atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
-  const char* atomic_extension = VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME;
-  const auto names = extensions(physical_);
-  const bool may_use_atomics = profile_ == nullptr || profile_->float_atomics;
-  if (may_use_atomics && std::find(names.begin(), names.end(), atomic_extension) != names.end()) {
-    VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &atomics, {}};
-    vkGetPhysicalDeviceFeatures2(physical_, &features);
-    float_atomics_ = atomics.shaderBufferFloat32AtomicAdd == VK_TRUE;
-  }
-  if (float_atomics_) {
-    atomics = {};
-    atomics.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
-    atomics.shaderBufferFloat32AtomicAdd = VK_TRUE;
-    info.pNext = &atomics;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &atomic_extension;
-  }
   check(maker != nullptr ? maker->create_device(physical_, info, &device_)
                          : vkCreateDevice(physical_, &info, nullptr, &device_),
         "vkCreateDevice");
@@ -277,22 +257,6 @@ void Device::create_device(Maker* maker) {
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = family_;
   check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
-  const std::vector<std::uint8_t> kept = read_pipeline_cache(pipeline_cache_file(properties_), properties_);
-  VkPipelineCacheCreateInfo cache{};
-  cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
-  cache.initialDataSize = kept.size();
-  cache.pInitialData = kept.data();
-  check(vkCreatePipelineCache(device_, &cache, nullptr, &cache_), "vkCreatePipelineCache");
-  check(vkGetPipelineCacheData(device_, cache_, &cache_kept_B_, nullptr), "vkGetPipelineCacheData");
-}
-
-void Device::keep_pipelines() {
-  std::size_t bytes = 0;
-  if (vkGetPipelineCacheData(device_, cache_, &bytes, nullptr) != VK_SUCCESS || bytes == cache_kept_B_) return;
-  std::vector<std::uint8_t> data(bytes);
-  if (vkGetPipelineCacheData(device_, cache_, &bytes, data.data()) != VK_SUCCESS) return;
-  data.resize(bytes);
-  if (write_pipeline_cache(pipeline_cache_file(properties_), data)) cache_kept_B_ = bytes;
 }
 
 Device::~Device() { release(); }
@@ -300,7 +264,6 @@ Device::~Device() { release(); }
 void Device::release() {
   if (device_ != VK_NULL_HANDLE) {
     vkDeviceWaitIdle(device_);
-    vkDestroyPipelineCache(device_, cache_, nullptr);
     vkDestroyCommandPool(device_, pool_, nullptr);
     vkDestroyDevice(device_, nullptr);
   }
@@ -319,7 +282,6 @@ DeviceInfo Device::info() const {
   info.name += " [" + profile_->name + "]";
   nlohmann::json j = nlohmann::json::parse(info.properties_json);
   j["device_profile"] = profile_->name;
-  j["limits_under_profile"] = limits_json(properties_.limits);
   info.properties_json = j.dump();
   return info;
 }

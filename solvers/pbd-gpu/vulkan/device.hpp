@@ -58,14 +58,10 @@ class Device {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return family_; }
   VkCommandPool command_pool() const { return pool_; }
-  VkPipelineCache pipeline_cache() const { return cache_; }
-  /// Writes the pipeline cache to this user's file if pipelines were made since the last write. Failure is no error.
-  void keep_pipelines();
   /// Limits of the device, reduced to the profile's if there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const Profile* profile() const { return profile_; }  ///< null: the device as it is
   std::uint32_t dispatches_per_submit() const { return profile_ != nullptr ? profile_->dispatches_per_submit : ~0u; }
-  bool has_float_atomics() const { return float_atomics_; }  ///< VK_EXT_shader_atomic_float, buffer float32 add
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Lanes of a subgroup that compute shaders can shuffle values between; 0 where they cannot.
   std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }
@@ -113,9 +109,6 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t family_ = 0, timestamp_bits_ = 0;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  VkPipelineCache cache_ = VK_NULL_HANDLE;
-  std::size_t cache_kept_B_ = 0;
-  bool float_atomics_ = false;
   std::uint32_t shuffled_lanes_ = 0;
   std::atomic<bool> lost_{false};
   mutable std::mutex messages_mutex_;

@@ -12,8 +12,7 @@ namespace clothbench::vulkan {
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
                const Buffers& buffers, std::uint32_t push_bytes)
     : device_(std::move(device)), name_(std::move(name)), code_(code) {
-  const ShaderNeeds needs = needs_of(code_, specialization);
-  for (const auto& [number, access] : needs.bindings) {
+  for (const auto& [number, access] : accesses_of(code_)) {
     const auto found = buffers.find(number);
     if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
     const Buffer& b = *found->second;
@@ -22,9 +21,9 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
                               b.bytes(), device_->limits().maxStorageBufferRange));
     bindings_.push_back({number, &b, access});
   }
-  if (const Profile* profile = device_->profile())
-    if (const std::string why = breach(*profile, needs); !why.empty())
-      throw Error(fmt::format("kernel {}: does not run under device profile {}: {}", name_, profile->name, why));
+  if (const std::uint32_t most = device_->limits().maxComputeWorkGroupInvocations; specialization.at(0) > most)
+    throw Error(fmt::format("kernel {}: its workgroups of {} are larger than this device's or its profile's {}", name_,
+                            specialization[0], most));
   try {
     create_layout(push_bytes);
     create_set();
@@ -95,8 +94,7 @@ void Kernel::create_pipeline(const std::vector<std::uint32_t>& specialization) {
   info.stage.module = module;
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &constants;
-  const VkResult result =
-      vkCreateComputePipelines(device_->handle(), device_->pipeline_cache(), 1, &info, nullptr, &pipeline_);
+  const VkResult result = vkCreateComputePipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
   vkDestroyShaderModule(device_->handle(), module, nullptr);
   check(result, ("vkCreateComputePipelines(" + name_ + ")").c_str());
 }

@@ -12,14 +12,14 @@ namespace clothbench::vulkan {
 /// Buffers by binding number, in set 0.
 using Buffers = std::map<std::uint32_t, const Buffer*>;
 
-/// A kernel's access to a buffer, as its code declares it: readonly, writeonly or neither.
+/// A kernel's access to a buffer.
 struct Binding {
   std::uint32_t number;
   const Buffer* buffer;
   Access access;
 };
 
-/// One compute pipeline, bound to those of `buffers` that its code declares. Throws Error if one of them is missing.
+/// One compute pipeline, bound to those of `buffers` that its code accesses. Throws Error if one of them is missing.
 class Kernel {
  public:
   Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,

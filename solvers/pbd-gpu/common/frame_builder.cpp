@@ -1,0 +1,135 @@
+#include "common/frame_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "clothbench/error.hpp"
+
+namespace clothbench::pbd_gpu {
+
+using vulkan::Buffer;
+
+std::vector<float> inverse_masses(const Scene& scene) {
+  std::vector<float> w;
+  for (double m : vertex_masses(scene)) w.push_back(static_cast<float>(1 / m));
+  for (std::uint32_t v : scene.pins.vertices) w[v] = 0;
+  for (std::uint32_t v : scene.grips.vertices) w[v] = 0;
+  return w;
+}
+
+std::string breach(const std::vector<BufferNeed>& needs, std::uint64_t largest_B, std::uint64_t memory_B) {
+  constexpr double kMiB = 1024.0 * 1024;
+  std::uint64_t all = 0;
+  for (const BufferNeed& n : needs) {
+    if (n.bytes > largest_B)
+      return fmt::format("buffer \"{}\" of at least {:.1f} MiB, and its largest has {:.1f} MiB", n.name, n.bytes / kMiB,
+                         largest_B / kMiB);
+    all += n.bytes;
+  }
+  if (all <= memory_B) return "";
+  return fmt::format("buffers of at least {:.1f} MiB, and it has {:.1f} MiB", all / kMiB, memory_B / kMiB);
+}
+
+void FrameBuilder::require_room(const std::vector<BufferNeed>& needs) const {
+  const std::string why = breach(needs, device_->limits().maxStorageBufferRange, device_->memory_B());
+  if (why.empty()) return;
+  const Cloth& c = scene_->cloth;
+  throw Error(fmt::format("{}: {}: {} vertices{} do not fit {}: they need {}", scene_->source,
+                          c.mesh ? "/cloth/mesh" : "/cloth/grid", c.vertex_count(),
+                          c.mesh ? fmt::format(" and {} triangles", c.mesh->triangles.size()) : std::string(),
+                          device_->info().name, why));
+}
+
+FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
+    : given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+
+void FrameBuilder::begin(const Scene& scene) {
+  scene_ = &scene;
+  settings_ = given_settings_;
+  for (auto* program : {&frame_, &upload_, &download_}) *program = std::make_unique<vulkan::Program>(device_);
+}
+
+void FrameBuilder::override_setting(const char* name, const nlohmann::json& value, const std::string& why) {
+  if (settings_.at(name) == value) return;
+  settings_[name] = value;
+  disable(std::string("setting ") + name, why);
+}
+
+const Buffer& FrameBuilder::add_buffer(int binding, const std::string& name, std::uint64_t bytes, const void* initial,
+                                       std::size_t initial_bytes) {
+  require_room({{name, bytes}});
+  buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Device));
+  const Buffer& buffer = *buffers_.back();
+  if (binding != kUnbound) bound_[static_cast<std::uint32_t>(binding)] = &buffer;
+  plan_.buffers.push_back({name, bytes, true});
+  const Buffer& staging = add_host_buffer(name + " (initial)", bytes);
+  if (initial_bytes > 0) std::memcpy(staging.mapped(), initial, std::min<std::size_t>(initial_bytes, bytes));
+  upload_->copy(0, staging, buffer);
+  return buffer;
+}
+
+const Buffer& FrameBuilder::add_host_buffer(const std::string& name, std::uint64_t bytes, int binding) {
+  buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Host));
+  const Buffer& buffer = *buffers_.back();
+  std::memset(buffer.mapped(), 0, bytes);
+  if (binding != kUnbound) bound_[static_cast<std::uint32_t>(binding)] = &buffer;
+  plan_.buffers.push_back({name, bytes, false});
+  return buffer;
+}
+
+int FrameBuilder::add_stage(const std::string& name, FeatureSet serves, bool at_least) {
+  plan_.stages.push_back({name, serves, 0, 0, 0, at_least});
+  counters_.push_back(count_bytes_ ? &add_buffer(kUnbound, "bytes counted in " + name, 8) : nullptr);
+  return static_cast<int>(plan_.stages.size()) - 1;
+}
+
+vulkan::Buffers FrameBuilder::buffers_with(vulkan::Buffers own) const {
+  own.insert(bound_.begin(), bound_.end());
+  if (const auto positions = own.find(BIND_POSITIONS); positions != own.end())
+    for (std::uint32_t k = 0; k < BIND_COUNT; ++k) own.try_emplace(k, positions->second);
+  return own;
+}
+
+const FrameKernel* FrameBuilder::add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
+                                            std::vector<std::uint32_t> constants, std::uint32_t group_size,
+                                            const vulkan::Buffers& own) {
+  const Shader& s = shader(name);
+  const vulkan::SpirV code = count_bytes_ ? s.counted : s.code;
+  if (code.words == nullptr)
+    throw SolverError("bytes cannot be counted, because this program was built without tests (BUILD_TESTING)");
+  vulkan::Buffers buffers = buffers_with(own);
+  if (count_bytes_) buffers[BIND_COUNTER] = counters_[static_cast<std::size_t>(stage)];
+  constants.resize(std::max<std::size_t>(1, constants.size()));
+  constants[0] = group_size;
+  kernels_.push_back(std::unique_ptr<FrameKernel>(
+      new FrameKernel{stage, group_size, vulkan::Kernel(device_, name, code, constants, buffers, push_bytes)}));
+  return kernels_.back().get();
+}
+
+void FrameBuilder::copy(int stage, const Buffer& from, const Buffer& to) {
+  frame_->copy(stage, from, to);
+  const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
+  count(stage, {bytes, bytes});
+}
+
+void FrameBuilder::count(int stage, Traffic traffic) {
+  StagePlan& s = plan_.stages[static_cast<std::size_t>(stage)];
+  s.read_B += traffic.read_B;
+  s.write_B += traffic.write_B;
+}
+
+namespace {
+
+#include "kernels.inc"  // generated by CMake: an array of 32-bit words for each kernel, and KERNELS
+
+}  // namespace
+
+const Shader& shader(const std::string& name) {
+  static const std::vector<Shader> all = {KERNELS};
+  for (const Shader& s : all)
+    if (s.name == name) return s;
+  throw Error("no kernel " + name);
+}
+
+}  // namespace clothbench::pbd_gpu

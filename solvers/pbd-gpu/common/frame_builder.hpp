@@ -1,0 +1,131 @@
+#pragma once
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "clothbench/solver.hpp"
+#include "common/gpu_types.h"
+#include "vulkan/program.hpp"
+
+namespace clothbench::pbd_gpu {
+
+inline constexpr std::uint32_t kGroupSize = 64;
+
+/// A kernel's code: as it runs, and with byte counters. The latter is null in builds without BUILD_TESTING.
+struct Shader {
+  std::string name;
+  vulkan::SpirV code, counted;
+};
+
+/// Finds a kernel by name: its file's, plus the variant's suffix from CMakeLists.txt. Throws Error if there is none.
+const Shader& shader(const std::string& name);
+
+/// Bytes of one dispatch, computed from the scene and the kernel's loops: pinned and attached vertices count as
+/// written, and retries of atomics not at all.
+struct Traffic {
+  double read_B = 0, write_B = 0;
+  Traffic operator+(const Traffic& t) const { return {read_B + t.read_B, write_B + t.write_B}; }
+  Traffic operator*(double times) const { return {times * read_B, times * write_B}; }
+};
+
+/// A kernel, and the stage of its dispatches.
+struct FrameKernel {
+  int stage;
+  std::uint32_t group_size;
+  vulkan::Kernel kernel;
+};
+
+/// A buffer that a scene needs at least.
+struct BufferNeed {
+  std::string name;
+  std::uint64_t bytes;
+};
+/// Why buffers do not fit a device: one is larger than the largest that it binds, or all together are larger than its
+/// memory. Empty if they fit.
+std::string breach(const std::vector<BufferNeed>&, std::uint64_t largest_B, std::uint64_t memory_B);
+
+/// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
+/// with its plan and its traffic.
+class FrameBuilder {
+ public:
+  FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+  FrameBuilder(const FrameBuilder&) = delete;
+  FrameBuilder& operator=(const FrameBuilder&) = delete;
+
+  const Scene& scene() const { return *scene_; }
+  const nlohmann::json& settings() const { return settings_; }
+  const nlohmann::json& tuning() const { return settings_[kTuning]; }
+  /// Replaces, for this scene only, a setting that the scene cannot be run with.
+  void override_setting(const char* name, const nlohmann::json& value, const std::string& why);
+  const std::shared_ptr<vulkan::Device>& device() const { return device_; }
+  bool counts_bytes() const { return count_bytes_; }
+
+  /// Throws Error naming the scene, what is needed and what the device has, unless the buffers fit it.
+  void require_room(const std::vector<BufferNeed>&) const;
+
+  static constexpr int kUnbound = -1;
+  /// A device buffer that `reset` fills with `initial` and zeros after it. Kernels refer to it by its number (BIND_...,
+  /// gpu_types.h).
+  const vulkan::Buffer& add_buffer(int binding, const std::string& name, std::uint64_t bytes,
+                                   const void* initial = nullptr, std::size_t initial_bytes = 0);
+  template <class T>
+  const vulkan::Buffer& add_buffer(int binding, const std::string& name, const std::vector<T>& items) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return add_buffer(binding, name, items.size() * sizeof(T), items.data(), items.size() * sizeof(T));
+  }
+  /// A buffer in host memory, filled with zeros.
+  const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
+
+  /// `at_least`: the stage's traffic depends on the shape of the cloth; the declared bytes are the least in a frame.
+  int add_stage(const std::string& name, FeatureSet serves, bool at_least = false);
+  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over those of
+  /// add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound instead.
+  /// `constants` by number.
+  const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
+                                std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
+                                const vulkan::Buffers& own = {});
+  vulkan::Buffers buffers_with(vulkan::Buffers own) const;
+  void disable(const std::string& what, const std::string& why, const std::string& no_parameter = "") {
+    plan_.left_out.push_back({what, why, no_parameter});
+  }
+  void set_contact_margins(std::vector<double> margins_m) { plan_.contact_margins_m = std::move(margins_m); }
+  /// A word in host memory that a kernel sets if a barrier over all workgroups times out. The frame is then TimedOut.
+  void set_timed_out(const vulkan::Buffer& word) { timed_out_ = &word; }
+
+  template <class Constants>
+  void dispatch(const FrameKernel& k, std::uint64_t items, const Constants& constants, Traffic traffic) {
+    dispatch_groups(k, vulkan::groups_for(items, k.group_size), constants, traffic);
+  }
+  template <class Constants>
+  void dispatch_groups(const FrameKernel& k, vulkan::Groups groups, const Constants& constants, Traffic traffic) {
+    frame_->dispatch(k.stage, k.kernel, groups, constants);
+    count(k.stage, traffic);
+  }
+  void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
+
+ protected:
+  void begin(const Scene&);
+  void count(int stage, Traffic);
+
+  const nlohmann::json given_settings_;
+  nlohmann::json settings_;  ///< the same, with the overrides for this scene
+  const bool count_bytes_;
+  std::shared_ptr<vulkan::Device> device_;
+  const Scene* scene_ = nullptr;
+  Plan plan_;
+  const vulkan::Buffer* timed_out_ = nullptr;
+  // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
+  std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
+  vulkan::Buffers bound_;
+  std::vector<const vulkan::Buffer*> counters_;  ///< one a stage
+  std::vector<std::unique_ptr<FrameKernel>> kernels_;
+  std::unique_ptr<vulkan::Program> frame_, upload_, download_;
+};
+
+/// Inverse masses [1/kg] of the scene's vertices at the start, 0 where pinned or gripped.
+std::vector<float> inverse_masses(const Scene&);
+
+}  // namespace clothbench::pbd_gpu

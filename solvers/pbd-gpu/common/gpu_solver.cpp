@@ -1,0 +1,258 @@
+#include "common/gpu_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "clothbench/record.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// A frame that takes longer counts as lost. Software devices are slow; real ones reset themselves after some 2 s.
+constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
+
+/// As in an application that shows one frame while the next is computed.
+constexpr int kFramesInFlight = 2;
+
+}  // namespace
+
+void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
+  if (const auto x = settings[key].get<double>(); !(x >= low && x <= high))
+    throw Error(fmt::format("solver {}: setting {}: expected {} to {}; found {}", solver, key, low, high, x));
+}
+
+void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
+                    const std::vector<nlohmann::json>& known) {
+  if (std::find(known.begin(), known.end(), settings[key]) == known.end())
+    throw Error(fmt::format("solver {}: setting {}: expected one of {}; found {}", solver, key,
+                            nlohmann::json(known).dump(), settings[key].dump()));
+}
+
+GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
+    : FrameBuilder(settings, device, count_bytes), info_(std::move(info)) {
+  take_messages();
+}
+
+void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
+  origin_m_ = origin_m;
+  position_ = &position;
+  velocity_ = &velocity;
+  const std::uint64_t bytes = scene().cloth.vertex_count() * sizeof(vec4);
+  read_position_ = &add_host_buffer("read position", bytes);
+  read_velocity_ = &add_host_buffer("read velocity", bytes);
+  download_->copy(0, position, *read_position_);
+  download_->copy(0, velocity, *read_velocity_);
+}
+
+void GpuSolver::add_colliders(Vec3 origin_m, bool as_convex_shapes) {
+  if (!scene_->colliders.empty())
+    colliders_ = std::make_unique<ColliderBuffers>(frame(), *scene_, origin_m, as_convex_shapes);
+}
+
+void GpuSolver::add_grips(Vec3 origin_m, std::uint32_t layers) {
+  if (!scene_->grips.vertices.empty()) grips_ = std::make_unique<GripBuffer>(frame(), *scene_, origin_m, layers);
+}
+
+void GpuSolver::load(const Scene& scene) {
+  take_messages();
+  begin(scene);
+  build();
+  upload_->record(false);
+  download_->record(false);
+  record(scene.time.dt(), scene.time.dt());
+  reset();
+}
+
+void GpuSolver::record(double dt_s, double last_dt_s) {
+  frame_->clear();
+  dt_s_ = dt_s;
+  last_dt_s_ = last_dt_s;
+  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
+  record_frame(dt_s, last_dt_s);
+  for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan is of a frame like the last
+    plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
+  frame_->record(settings_.value("stage_times", false));
+}
+
+/// Records the next frame unless what is recorded serves.
+void GpuSolver::prepare(double dt_s) {
+  const double last_dt_s = uses_bdf2_ ? done_dt_s_ : dt_s;
+  const bool anew = update_substep_count(dt_s);
+  if (anew || dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
+}
+
+/// A failed call of Vulkan as the status of a step.
+template <class Fn>
+StepStatus GpuSolver::guarded(Fn submit_or_wait) const {
+  try {
+    submit_or_wait();
+  } catch (const vulkan::Failure& failure) {
+    if (failure.result() == VK_TIMEOUT) return StepStatus::TimedOut;
+    if (failure.result() == VK_ERROR_DEVICE_LOST) {
+      device_->mark_lost();
+      return StepStatus::DeviceLost;
+    }
+    throw;
+  }
+  return StepStatus::Ok;
+}
+
+double GpuSolver::timeout_s() const { return device_->is_software() ? kSoftwareTimeout_s : kTimeout_s; }
+
+StepStatus GpuSolver::run(vulkan::Program& program) const {
+  return guarded([&] { program.run(timeout_s()); });
+}
+
+void GpuSolver::reset() {
+  take_messages();
+  done_dt_s_ = 0;
+  if (colliders_) colliders_->reset();
+  if (grips_) grips_->reset();
+  if (timed_out_ != nullptr) std::memset(timed_out_->mapped(), 0, sizeof(std::uint32_t));
+  // A loss here is reported by the next step, or by a read of the state before it.
+  ready_ = run(*upload_);
+  last_ = StepStatus::Ok;
+}
+
+StepStatus GpuSolver::step(const FrameInput& frame) {
+  take_messages();
+  if (ready_ != StepStatus::Ok) return last_ = ready_;
+  if (colliders_) colliders_->write(frame.motion);
+  // What was just released has no last substep of its own.
+  if (grips_ && grips_->write(frame.motion)) done_dt_s_ = 0;
+  prepare(frame.dt_s);
+  done_dt_s_ = frame.dt_s;
+  return last_ = unless_timed_out(run(*frame_));
+}
+
+StepStatus GpuSolver::unless_timed_out(StepStatus status) const {
+  if (status != StepStatus::Ok || timed_out_ == nullptr) return status;
+  std::uint32_t timed_out = 0;
+  std::memcpy(&timed_out, timed_out_->mapped(), sizeof timed_out);
+  return timed_out == 0 ? StepStatus::Ok : StepStatus::TimedOut;
+}
+
+/// Data that the host writes or reads every frame has a single buffer, so the previous frame must have finished.
+int GpuSolver::frames_in_flight() const {
+  const bool host_takes_part = grips_ != nullptr || reads_back_ ||
+                               (colliders_ != nullptr && colliders_->written_each_frame()) ||
+                               settings_.value("readback", "none") != "none";
+  return host_takes_part ? 1 : kFramesInFlight;
+}
+
+StepStatus GpuSolver::run_frames(const std::vector<FrameInput>& frames) {
+  take_messages();
+  const bool alike = std::all_of(frames.begin(), frames.end(), [&](const FrameInput& f) { return f.dt_s == dt_s_; });
+  if (!alike || frames_in_flight() == 1) return ClothSolver::run_frames(frames);
+  if (ready_ != StepStatus::Ok) return ready_;
+  if (uses_bdf2_ && done_dt_s_ != dt_s_ && !frames.empty()) {
+    const StepStatus status = step(frames.front());
+    if (status != StepStatus::Ok || frames.size() == 1) return status;
+    return run_frames({frames.begin() + 1, frames.end()});
+  }
+  prepare(dt_s_);
+  return last_ = unless_timed_out(guarded([&] {
+           frame_->need_copies(kFramesInFlight);
+           for (std::size_t k = 0; k < frames.size(); ++k) {
+             frame_->wait(k % kFramesInFlight, timeout_s());
+             frame_->submit(k % kFramesInFlight);
+           }
+           // Waits for the oldest first, so that last_cost is the last frame's.
+           for (std::size_t k = frames.size(); k < frames.size() + kFramesInFlight; ++k)
+             frame_->wait(k % kFramesInFlight, timeout_s());
+         }));
+}
+
+void GpuSolver::read_state(ClothState& state) const {
+  take_messages();
+  const std::size_t n = scene_->cloth.vertex_count();
+  state.position.assign(3 * n, kMissing);
+  state.velocity.assign(3 * n, kMissing);
+  if (run(*download_) != StepStatus::Ok) {
+    // A lost device has no state. A loss that was not reported yet must throw here; otherwise undefined numbers would
+    // count as the solver's state.
+    if (last_ != StepStatus::Ok) return;
+    throw Error("solver " + info_.name + ": the device was lost or timed out while its state was read",
+                ExitCode::CheckFailed);
+  }
+  const auto* x = static_cast<const float*>(read_position_->mapped());
+  const auto* v = static_cast<const float*>(read_velocity_->mapped());
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      state.position[3 * i + k] = origin_m_[k] + static_cast<double>(x[4 * i + k]);
+      state.velocity[3 * i + k] = static_cast<double>(v[4 * i + k]);
+    }
+}
+
+/// The rounding errors of compensated sums restart at 0, a prediction begins anew, and contact has the sides of the
+/// scene's start.
+bool GpuSolver::restart(const ClothState& state) {
+  take_messages();
+  const bool more_layers = position_->bytes() > read_position_->bytes();
+  if (!scene_->motion.empty() || more_layers) return false;
+  reset();
+  // Reads back first: .w of the positions are the inverse masses.
+  if (ready_ != StepStatus::Ok || run(*download_) != StepStatus::Ok) return false;
+  auto* x = static_cast<float*>(read_position_->mapped());
+  auto* v = static_cast<float*>(read_velocity_->mapped());
+  for (std::size_t i = 0; i < scene_->cloth.vertex_count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[4 * i + k] = static_cast<float>(state.position.at(3 * i + k) - origin_m_[k]);
+      v[4 * i + k] = static_cast<float>(state.velocity.at(3 * i + k));
+    }
+  vulkan::Program put(device_);
+  put.copy(0, *read_position_, *position_);
+  put.copy(0, *read_velocity_, *velocity_);
+  put.record(false);
+  return run(put) == StepStatus::Ok;
+}
+
+FrameCost GpuSolver::last_cost() const {
+  FrameCost cost;
+  cost.device_s = frame_->device_s();
+  cost.stage_device_s = frame_->stage_s(static_cast<int>(plan_.stages.size()));
+  for (const StagePlan& s : plan_.stages) {
+    cost.stage_read_B.push_back(s.read_B);
+    cost.stage_write_B.push_back(s.write_B);
+  }
+  return cost;
+}
+
+template <class T>
+std::vector<T> GpuSolver::fetched(const vulkan::Buffer& buffer) const {
+  vulkan::Buffer host(device_, "fetched", buffer.bytes(), vulkan::Buffer::Place::Host);
+  vulkan::Program fetch(device_);
+  fetch.copy(0, buffer, host);
+  fetch.record(false);
+  run(fetch);
+  std::vector<T> all(host.bytes() / sizeof(T));
+  std::memcpy(all.data(), host.mapped(), host.bytes());
+  return all;
+}
+
+std::vector<float> GpuSolver::device_positions() const { return fetched<float>(*position_); }
+
+std::vector<Traffic> GpuSolver::counted() {
+  std::vector<Traffic> all;
+  for (const vulkan::Buffer* counter : counters_) {
+    const auto bytes = fetched<std::uint32_t>(*counter);
+    all.push_back({static_cast<double>(bytes[0]), static_cast<double>(bytes[1])});
+  }
+  return all;
+}
+
+}  // namespace clothbench::pbd_gpu
+
+namespace clothbench {
+
+void register_pbd_gpu(std::vector<SolverEntry>& out) {
+  using namespace pbd_gpu;
+  out.push_back({paper_info(), [](const nlohmann::json& s, const DeviceOptions& d) { return make_paper(s, d); },
+                 paper_free_fall_m, vulkan::Device::list});
+  out.push_back({xpbd_info(), [](const nlohmann::json& s, const DeviceOptions& d) { return make_xpbd(s, d); },
+                 xpbd_free_fall_m, vulkan::Device::list});
+}
+
+}  // namespace clothbench

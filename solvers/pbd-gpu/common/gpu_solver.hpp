@@ -1,0 +1,110 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "clothbench/solver.hpp"
+#include "common/colliders.hpp"
+#include "common/frame_builder.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// What both methods share: one recorded frame that is submitted repeatedly, reading back the state, and costs. A
+/// method adds its buffers and its frame.
+class GpuSolver : public ClothSolver, protected FrameBuilder {
+ public:
+  GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+
+  const SolverInfo& info() const override { return info_; }
+  DeviceInfo device() const override { return device_->info(); }
+  void load(const Scene& scene) override;
+  void reset() override;
+  StepStatus step(const FrameInput&) override;
+  int frames_in_flight() const override;
+  StepStatus run_frames(const std::vector<FrameInput>&) override;
+  void read_state(ClothState&) const override;
+  bool restart(const ClothState&) override;
+  FrameCost last_cost() const override;
+  Plan plan() const override { return plan_; }
+  int validation_messages() const override { return *messages_; }
+
+  /// Bytes that the instrumented kernels of each stage counted since the last call; needs `count_bytes`.
+  std::vector<Traffic> counted();
+  /// Positions on the device, of every copy or layer of the cloth, relative to the method's origin; for tests.
+  std::vector<float> device_positions() const;
+  /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
+  /// vec4 each, relative to `origin_m()`. The solver must be loaded.
+  const vulkan::Buffer& position_buffer() const { return *position_; }
+  const Vec3& origin_m() const { return origin_m_; }
+  /// What contact by separating planes could not do since loading; all 0 where a method has none.
+  virtual ContactDiagnostics contact_diagnostics() const { return {}; }
+  /// The programs of set-up, a frame and reading back, for the test of the barriers.
+  const vulkan::Program& upload_program() const { return *upload_; }
+  const vulkan::Program& frame_program() const { return *frame_; }
+  const vulkan::Program& download_program() const { return *download_; }
+
+ protected:
+  FrameBuilder& frame() { return *this; }
+  using vec4s = std::vector<vec4>;
+
+  /// Adds the buffers and kernels of this scene.
+  virtual void build() = 0;
+  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: after none, or after one that
+  /// ended with another cloth or other attached vertices. `last_dt_s` is `dt_s` unless the method predicts.
+  virtual void record_frame(double dt_s, double last_dt_s) = 0;
+  /// Whether the next frame is to be recorded anew though its duration is the last one's. Asked once before each frame.
+  virtual bool update_substep_count(double /*dt_s*/) { return false; }
+  /// For a method whose frames depend on what the host reads of the frame before: one frame in flight.
+  void set_reads_back() { reads_back_ = true; }
+  /// For a method that predicts from the last substep: its frames depend on the frame before.
+  void set_uses_bdf2(bool uses_bdf2) { uses_bdf2_ = uses_bdf2; }
+  bool uses_bdf2() const { return uses_bdf2_; }
+
+  /// Sets what read_state reads back: the first `vertex_count` vec4 of each buffer.
+  void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
+  /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
+  void add_colliders(Vec3 origin_m, bool as_convex_shapes);
+  void add_grips(Vec3 origin_m, std::uint32_t layers);
+  ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
+  GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none
+
+ private:
+  void record(double dt_s, double last_dt_s);
+  void prepare(double dt_s);
+  StepStatus run(vulkan::Program& program) const;
+  /// Contents of a buffer on the device, after everything submitted so far.
+  template <class T>
+  std::vector<T> fetched(const vulkan::Buffer&) const;
+  StepStatus unless_timed_out(StepStatus status) const;
+  /// Counts messages of the validation layer for this solver until another solver uses the device.
+  void take_messages() const { device_->count_messages_in(messages_); }
+  template <class Fn>
+  StepStatus guarded(Fn submit_or_wait) const;
+  double timeout_s() const;
+
+  const SolverInfo info_;
+  const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
+  bool uses_bdf2_ = false, reads_back_ = false;
+  double dt_s_ = 0, last_dt_s_ = 0;    ///< of the recorded frame, and of the one that it follows
+  double done_dt_s_ = 0;               ///< of the last frame done; 0: none that a prediction may go on from
+  StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
+  StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
+  Vec3 origin_m_{};
+  const vulkan::Buffer *position_ = nullptr, *velocity_ = nullptr, *read_position_ = nullptr, *read_velocity_ = nullptr;
+  std::unique_ptr<ColliderBuffers> colliders_;
+  std::unique_ptr<GripBuffer> grips_;
+};
+
+/// Throw Error naming the setting unless it is from `low` to `high`, or one of `known`.
+void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high);
+void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
+                    const std::vector<nlohmann::json>& known);
+
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
+std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
+SolverInfo paper_info();
+SolverInfo xpbd_info();
+double paper_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
+double xpbd_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
+
+}  // namespace clothbench::pbd_gpu

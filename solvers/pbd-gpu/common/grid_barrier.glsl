@@ -1,0 +1,33 @@
+// A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried at
+// loading (`p.passes` = 0), and waiting is bounded: a thread that waits in vain sets a flag for the host and returns.
+layout(std430, binding = BIND_BARRIER) coherent volatile buffer BarrierCounter { uint arrived, left; };
+layout(std430, binding = BIND_TIMED_OUT) coherent volatile writeonly buffer TimedOut { uint timed_out; };  // in host memory
+shared bool all_arrived;
+
+/// Writes of all threads before the barrier are visible to all after it. False if a workgroup did not arrive within
+/// `p.timeout_polls` polls.
+/// The writers' memoryBarrierBuffer() makes coherent writes visible to any later coherent read of any invocation (GLSL
+/// 4.60, 8.17); readers need none, and one would cost a tenth of the frame.
+bool grid_barrier() {
+  memoryBarrierBuffer();
+  barrier();  // this workgroup's writes before its arrival
+  if (gl_LocalInvocationIndex == 0u) {
+    uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y, seen = atomicAdd(arrived, 1u) + 1u;
+    uint all = (seen + groups - 1u) / groups * groups;
+    // What was seen last counts, not the looks left: lavapipe ends every loop of its own after 65535.
+    for (uint looks = 0u; looks < p.timeout_polls && seen < all; ++looks) seen = arrived;
+    all_arrived = seen >= all;
+    if (!all_arrived) timed_out = 1u;
+  }
+  barrier();  // the others' arrival before this workgroup's reads
+  return all_arrived;
+}
+
+/// The last one out leaves the count as it was found.
+void leave_grid_barrier() {
+  if (gl_LocalInvocationIndex != 0u) return;
+  uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  if (atomicAdd(left, 1u) + 1u < groups) return;
+  arrived = 0u;
+  left = 0u;
+}

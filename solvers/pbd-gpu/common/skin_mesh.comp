@@ -1,0 +1,31 @@
+#version 450
+// Linear blend skinning: x = sum_k w_k M_k rest. Weights of 0 are not skipped: every vertex reads the same bytes.
+// KEEP_START is the variant that keeps where the vertex was at the frame's start.
+#include "common/common.glsl"
+layout(std430, binding = BIND_SKIN) readonly buffer Skin { SkinVertex skin[]; };
+layout(std430, binding = BIND_JOINTS) readonly buffer Joints { JointMatrix joints[]; };
+#ifdef KEEP_START
+layout(std430, binding = BIND_KINEMATIC_END) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_KINEMATIC_START) writeonly buffer StartPositions { vec4 x0[]; };
+#else
+layout(std430, binding = BIND_KINEMATIC_END) writeonly buffer Positions { vec4 x[]; };
+#endif
+layout(push_constant) uniform Push { SkinConstants p; };
+
+vec3 moved(JointMatrix m, vec3 at) {
+  return vec3(dot(m.row0.xyz, at) + m.row0.w, dot(m.row1.xyz, at) + m.row1.w, dot(m.row2.xyz, at) + m.row2.w);
+}
+
+void main() {
+  uint i = item();
+  if (i >= p.vertices) return;
+  SkinVertex v = LOAD(48u, skin, i);
+  vec3 at = v.weights.x * moved(LOAD(48u, joints, v.joints.x), v.rest.xyz);
+  at += v.weights.y * moved(LOAD(48u, joints, v.joints.y), v.rest.xyz);
+  at += v.weights.z * moved(LOAD(48u, joints, v.joints.z), v.rest.xyz);
+  at += v.weights.w * moved(LOAD(48u, joints, v.joints.w), v.rest.xyz);
+#ifdef KEEP_START
+  STORE16(x0, i, LOAD16(x, i));
+#endif
+  STORE16(x, i, vec4(at, 0.0));
+}

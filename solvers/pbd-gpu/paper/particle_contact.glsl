@@ -1,0 +1,21 @@
+// What the collision kernels of `paper` share. Bindings: 0 what is touched, 1 predicted positions, 2 positions at the
+// step's start (friction alone reads them), 3 vertices of a mesh.
+layout(std430, binding = BIND_PREDICTED) buffer Bdf2 { vec4 q[]; };
+layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
+layout(push_constant) uniform Push { PaperContactConstants p; };
+PAPER_CONSTANTS(SPECIALIZE)
+
+/// Moves `at` by `push` along `normal` and takes the share `friction` off its tangential displacement since `from`.
+vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {
+  at += push * normal;
+  if (FRICTION == 0u) return at;
+  vec3 displacement = at - from;
+  return at - min(friction, 1.0) * (displacement - dot(displacement, normal) * normal);
+}
+
+/// Out of the ball of radius `reach` round `center`; its very centre has no direction and stays.
+vec3 out_of_ball(vec3 at, vec3 from, vec3 center, float reach, float friction) {
+  vec3 d = at - center;
+  float l = length(d);
+  return l < reach && l > 0.0 ? touched(at, from, d / l, reach - l, friction) : at;
+}

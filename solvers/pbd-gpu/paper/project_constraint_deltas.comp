@@ -1,0 +1,42 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends are added
+// up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics: integer
+// compare-and-swap on the bits, until it holds.
+#include "common/common.glsl"
+layout(std430, binding = BIND_CONSTRAINTS) readonly buffer Constraints { DistanceConstraint c[]; };
+layout(std430, binding = BIND_PREDICTED) readonly buffer Bdf2 { vec4 q[]; };
+layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // x y z as bits and a count, 4 a particle
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void add(uint at, float value) {
+  uint seen = LOAD4(d, at);
+  COUNT_ATOMIC
+  for (;;) {
+    uint found = atomicCompSwap(d[at], seen, floatBitsToUint(uintBitsToFloat(seen) + value));
+    if (found == seen) return;
+    seen = found;
+  }
+}
+
+void add_delta(uint particle, vec3 delta) {
+  add(4u * particle, delta.x);
+  add(4u * particle + 1u, delta.y);
+  add(4u * particle + 2u, delta.z);
+  COUNT_ATOMIC
+  atomicAdd(d[4u * particle + 3u], 1u);
+}
+
+void main() {
+  uint k = item();
+  if (k >= p.constraints) return;
+  DistanceConstraint e = LOAD16(c, k);
+  vec4 a = LOAD16(q, e.a), b = LOAD16(q, e.b);
+  float w = a.w + b.w;
+  if (w == 0.0) return;
+  vec3 d_ab = b.xyz - a.xyz;
+  float l = length(d_ab);
+  // Coincident ends have no direction: they count, and move nothing.
+  vec3 s = l > 0.0 ? d_ab * (p.stiffness * (l - e.rest_m) / (l * w)) : vec3(0.0);
+  if (a.w > 0.0) add_delta(e.a, a.w * s);
+  if (b.w > 0.0) add_delta(e.b, -b.w * s);
+}

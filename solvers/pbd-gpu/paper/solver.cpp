@@ -1,0 +1,288 @@
+// The paper's solver, kernel for kernel: Kim, Ma & Hong, Appl. Sci. 2025, 15(12), 6611, Algorithm 1 and section 3.2.3.
+#include <algorithm>
+#include <cmath>
+
+#include "clothbench/unsupported_scene.hpp"
+#include "common/gpu_solver.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Collisions of `paper` as published: every particle against every sphere, box, capsule and triangle, on predicted
+/// positions, at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4.
+class PaperContact {
+ public:
+  /// Adds one stage and kernel for each kind of collider in the scene. `mesh_depth_m` and `hand_depth_m`: greatest
+  /// distance behind a triangle at which a particle still counts as touching it.
+  PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m, float hand_depth_m);
+  /// Records the collisions of so many particles.
+  void record(std::uint32_t particles);
+
+ private:
+  struct Pass {
+    const FrameKernel* kernel;
+    PaperContactConstants constants;
+    std::uint32_t item_bytes;  ///< read by a particle for each shape or triangle it is tested against
+    bool friction;
+  };
+  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel, std::uint32_t item_bytes);
+  void add_meshes(const char* stage, const MeshBuffers&, Feature, float depth_m);
+
+  FrameBuilder& frame_;
+  std::vector<Pass> passes_;
+};
+
+FeatureSet with_friction(Feature kind, bool friction) {
+  FeatureSet serves = {kind};
+  if (friction) serves.add(Feature::Friction);
+  return serves;
+}
+
+std::vector<std::uint32_t> with_friction(bool friction) {
+  PaperSpecialization s;
+  s.FRICTION = friction ? 1 : 0;
+  return s.by_number();
+}
+
+PaperContact::PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m,
+                           float hand_depth_m)
+    : frame_(frame) {
+  add_shapes("SatisfySphereCollisions", colliders.spheres, Feature::Sphere, "satisfy_sphere_collisions",
+             sizeof(SphereShape));
+  add_shapes("SatisfyCubeCollisions", colliders.boxes, Feature::Box, "satisfy_cube_collisions", sizeof(BoxShape));
+  add_meshes("SatisfyMeshCollisions", colliders.static_meshes, Feature::StaticMesh, mesh_depth_m);
+  add_meshes("SatisfyHandMeshCollisions", colliders.kinematic_meshes, Feature::MovingMesh, hand_depth_m);
+  // Only the capsule at the frame's end is read: two of the four vec4.
+  add_shapes("SatisfyCapsuleCollisions", colliders.capsules, Feature::Capsules, "satisfy_capsule_collisions", 32);
+}
+
+void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name,
+                              std::uint32_t item_bytes) {
+  if (shapes.count == 0) {
+    frame_.disable(stage_name, "the scene has no " + std::string(name_of(kind)));
+    return;
+  }
+  const int stage = frame_.add_stage(stage_name, with_friction(kind, shapes.friction));
+  const FrameKernel* kernel =
+      frame_.add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
+  passes_.push_back({kernel, {0, 0, shapes.count, 0, 0, 0}, item_bytes, shapes.friction});
+}
+
+void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
+  if (meshes.ranges.empty()) {
+    frame_.disable(stage_name, "the scene has no " + std::string(name_of(kind)));
+    return;
+  }
+  const bool friction =
+      std::any_of(meshes.ranges.begin(), meshes.ranges.end(), [](const MeshRange& r) { return r.friction > 0; });
+  const int stage = frame_.add_stage(stage_name, with_friction(kind, friction));
+  const FrameKernel* kernel =
+      frame_.add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), with_friction(friction),
+                        kGroupSize, {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
+  for (const MeshRange& r : meshes.ranges)
+    passes_.push_back({kernel, {0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction}, 64, friction});
+}
+
+void PaperContact::record(std::uint32_t particles) {
+  const auto n = static_cast<double>(particles);
+  for (Pass& pass : passes_) {
+    pass.constants.particles = particles;
+    const double each = static_cast<double>(pass.constants.count) * pass.item_bytes + (pass.friction ? 16 : 0);
+    frame_.dispatch(*pass.kernel, particles, pass.constants, {(16 + each) * n, 16 * n});
+  }
+}
+
+class Paper final : public GpuSolver {
+ public:
+  using GpuSolver::GpuSolver;
+
+ private:
+  void build() override {
+    refuse_mesh_bending(scene());
+    layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
+    build_particles();
+    build_constraints();
+    add_colliders({}, false);
+    add_grips({}, static_cast<std::uint32_t>(layers_));
+    build_stages();
+  }
+
+  std::uint64_t particles() const { return layers_ * scene().cloth.vertex_count(); }
+
+  void build_particles() {
+    const std::vector<double> start = initial_positions(scene());
+    const std::vector<float> w = inverse_masses(scene());
+    const std::vector<double> start_velocity = initial_velocities(scene());
+    vec4s position, velocity;
+    for (int layer = 0; layer < layers_; ++layer)
+      for (std::size_t i = 0; i < w.size(); ++i) {
+        const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k]); };
+        const auto speed = [&](std::size_t k) {
+          return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f;
+        };
+        position.push_back({at(0), at(1), at(2), w[i]});
+        velocity.push_back({speed(0), speed(1), speed(2), w[i]});
+      }
+    x_ = &add_buffer(BIND_POSITIONS, "positions", position);
+    v_ = &add_buffer(BIND_VELOCITIES, "velocities", velocity);
+    q_ = &add_buffer(BIND_PREDICTED, "predicted positions", position.size() * sizeof(vec4));
+    add_buffer(BIND_DELTAS, "constraint deltas", position.size() * sizeof(vec4));
+    set_state(*x_, *v_, {});
+  }
+
+  /// Calls fn(a, b, rest length, kind) for each constraint, in the order of the buffer.
+  template <class Fn>
+  void for_each_constraint(Fn fn) const {
+    const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
+    std::vector<EdgeKind> kinds = {EdgeKind::Structural};
+    if (scene().needs.has(Feature::Shear)) kinds.push_back(EdgeKind::Shear);
+    if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
+    for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
+      for (EdgeKind kind : kinds)
+        for (const Edge& e : edges(scene().cloth, kind))
+          fn(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
+    if (layers_ == 2)
+      for (std::uint32_t i = 0; i < n; ++i) fn(i, n + i, 0.0, 3u);
+  }
+
+  void build_constraints() {
+    std::vector<DistanceConstraint> all;
+    for_each_constraint([&](std::uint32_t a, std::uint32_t b, double rest, std::uint32_t kind) {
+      all.push_back({a, b, static_cast<float>(rest), kind});
+    });
+    constraint_count_ = all.size();
+    add_buffer(BIND_CONSTRAINTS, "constraints", all);
+  }
+
+  void build_stages() {
+    const FeatureSet needs = scene().needs;
+    const FeatureSet pins = needs & FeatureSet{Feature::Pins};
+    const auto add = [&](int stage, const char* name) { return add_kernel(stage, name, sizeof(PaperConstants)); };
+    forces_ = add(add_stage("ApplyExternalForces", {}), "apply_external_forces");
+    if (needs.has(Feature::Damping))
+      damp_ = add(add_stage("DampVelocities", {Feature::Damping}), "damp_velocities");
+    else
+      disable("DampVelocities", "the scene has no damping");
+    euler_ = add(add_stage("ApplyExplicitEuler", pins), "apply_explicit_euler");
+    const FeatureSet edges{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer};
+    project_ = add(add_stage("ProjectConstraintDeltas", needs & edges), "project_constraint_deltas");
+    average_ = add(add_stage("AverageConstraintDeltas", {}), "average_constraint_deltas");
+    if (grips() != nullptr) {
+      hold_ = grips()->add_kernel(*x_);
+      aim_ = grips()->add_kernel(*q_);
+    }
+    if (colliders() != nullptr)
+      contact_ = std::make_unique<PaperContact>(frame(), *colliders(), settings()["mesh_depth_m"].get<float>(),
+                                                settings()["hand_depth_m"].get<float>());
+    update_ = add(add_stage("UpdatePositions", {}), "update_positions");
+    if (settings()["readback"] == "blocking") {
+      stage_readback_ = add_stage("Readback", {});
+      host_x_ = &add_host_buffer("positions on the host", x_->bytes());
+      host_v_ = &add_host_buffer("velocities on the host", v_->bytes());
+    } else {
+      disable("Readback", "setting readback=none");
+    }
+    if (!needs.has(Feature::Shear)) disable("diagonal distance constraints", "the scene has no shear stiffness");
+    if (!needs.has(Feature::Bend)) disable("skip-one distance constraints", "the scene has no bending");
+    if ((needs & kColliderFeatures).empty()) disable("SatisfyCollisions", "the scene has no collider");
+    if (!needs.has(Feature::DuplicatedLayer)) disable("second layer", "the cloth is not double-duplicated");
+  }
+
+  void record_frame(double dt_s, double) override {
+    const Vec3 g = scene().gravity_m_per_s2;
+    PaperConstants c{};
+    c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
+    c.particles = static_cast<std::uint32_t>(particles());
+    c.constraints = static_cast<std::uint32_t>(constraint_count_);
+    if (colliders() != nullptr) colliders()->record();
+    if (grips() != nullptr) grips()->record_upload();
+    const int substeps = settings()["substeps"].get<int>();
+    const double h = dt_s / substeps;
+    c.h = static_cast<float>(h);
+    c.stiffness = settings()["stiffness"].get<float>();
+    c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * h));
+    for (int s = 0; s < substeps; ++s) record_step(c, s, substeps, dt_s);
+    if (stage_readback_ >= 0) {
+      copy(stage_readback_, *x_, *host_x_);
+      copy(stage_readback_, *v_, *host_v_);
+    }
+  }
+
+  void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
+    const auto n = static_cast<double>(particles()), all = static_cast<double>(constraint_count_);
+    // Vertices are held or released from the step's start on; the kernels that follow read it from the inverse mass.
+    if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
+    dispatch(*forces_, particles(), c, {16 * n, 16 * n});
+    if (damp_ != nullptr) dispatch(*damp_, particles(), c, {16 * n, 16 * n});
+    dispatch(*euler_, particles(), c, {32 * n, 16 * n});
+    if (aim_ != nullptr) grips()->record_move(*aim_, static_cast<double>(step + 1) / steps, dt_s);
+    for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
+      // Constraint and both ends; per end 3 sums and a count.
+      dispatch(*project_, constraint_count_, c, {(16 + 32 + 2 * 28) * all, 2 * 16 * all});
+      dispatch(*average_, particles(), c, {32 * n, 32 * n});
+    }
+    if (contact_) contact_->record(static_cast<std::uint32_t>(particles()));
+    dispatch(*update_, particles(), c, {32 * n, 32 * n});
+  }
+
+  int layers_ = 1;
+  std::uint64_t constraint_count_ = 0;
+  int stage_readback_ = -1;
+  const vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
+  const FrameKernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
+                    *update_ = nullptr, *hold_ = nullptr, *aim_ = nullptr;
+  std::unique_ptr<PaperContact> contact_;
+};
+
+}  // namespace
+
+SolverInfo paper_info() {
+  SolverInfo info;
+  info.name = "paper";
+  info.folder = "solvers/pbd-gpu";
+  info.summary = "the paper's kernels, one by one: averaged Jacobi PBD with atomic accumulation";
+  info.version = "1";
+  info.precision = "float32";
+  info.on_gpu = true;
+  info.supports = {Feature::Stretch,         Feature::Shear,      Feature::Bend,
+                   Feature::Damping,         Feature::Pins,       Feature::MovingPins,
+                   Feature::Sphere,          Feature::Box,        Feature::Capsules,
+                   Feature::StaticMesh,      Feature::MovingMesh, Feature::Friction,
+                   Feature::DuplicatedLayer, Feature::UnevenGrid, Feature::Spin,
+                   Feature::ClothMesh};
+  // Table 4 of the article: a single-sided cloth does not touch meshes.
+  info.only_with = {{Feature::StaticMesh, Feature::DuplicatedLayer}, {Feature::MovingMesh, Feature::DuplicatedLayer}};
+  info.settings = {
+      {"iterations", "5", "constraint iterations per substep"},
+      {"substeps", "1", "substeps per frame (the paper has one)"},
+      {"stiffness", "0.8", "PBD's k, 0 to 1"},
+      {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
+      {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
+      {"hand_depth_m", "0.01", "the same for the mesh of a hand"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  return info;
+}
+
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
+  require_one_of("paper", settings, "readback", {"none", "blocking"});
+  require_between("paper", settings, "iterations", 1, 100000);
+  require_between("paper", settings, "substeps", 1, 4096);
+  require_between("paper", settings, "stiffness", 0, 1);
+  for (const char* key : {"mesh_depth_m", "hand_depth_m"}) require_between("paper", settings, key, 0, 1000);
+  return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
+}
+
+/// v <- (v + g h) keep, x <- x + h v, every substep; damping comes after the forces.
+double paper_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+  const int substeps = settings["substeps"].get<int>();
+  const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
+  const double keep = scene.needs.has(Feature::Damping) ? std::max(0.0, 1 - scene.material.damping_per_s * h) : 1;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0;
+  for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
+    v = (v + g * h) * keep;
+    x += v * h;
+  }
+  return x;
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,16 @@
+#version 450
+// Kim, Ma & Hong 2025, 3.2.3: v = (q - x) / h, x = q.
+#include "common/common.glsl"
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) writeonly buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_PREDICTED) readonly buffer Bdf2 { vec4 q[]; };
+layout(push_constant) uniform Push { PaperConstants p; };
+
+void main() {
+  uint i = item();
+  if (i >= p.particles) return;
+  vec4 to = LOAD16(q, i);
+  vec4 from = LOAD16(x, i);
+  STORE16(v, i, vec4((to.xyz - from.xyz) / p.h, to.w));
+  STORE16(x, i, to);
+}

@@ -1,0 +1,94 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+#include "common/gpu_types.h"
+
+namespace clothbench::pbd_gpu {
+
+// What lines and chains both say of the constraints of a scene. Springs are those of clothbench/scene.hpp.
+
+/// Length of a vector.
+inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
+
+/// Least ratio of alpha to inverse mass in chains pulled over-constrained between attached vertices: with 0 their
+/// system is singular in single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some
+/// cloths blow up.
+constexpr double kRegularisation = 1e-3;
+
+/// At least the maximum eigenvalue of M^-1 A, A's entries not negative and M the diagonal of masses: the maximum of
+/// (A v)_i / (m_i v_i) for any positive v (Collatz 1942; Wielandt 1950), here after some steps of the power iteration.
+/// `times(v, to)` puts A v into `to`.
+double eigenvalue_bound(const std::vector<double>& mass,
+                        const std::function<void(const std::vector<double>& v, std::vector<double>& to)>& times);
+
+/// Rows of a sparse matrix in slices of BENDING_ROWS, each as long as the slice's longest: the first entries of all
+/// rows of the slice, then the second ones.
+template <class Entry>
+struct SlicedRows {
+  std::vector<BendingSlice> slices;
+  std::vector<Entry> entries;
+};
+/// `length(i)` is of row i below `rows`; `entry(i, j)` is also requested what pads a row, i up to a whole slice.
+template <class Entry, class Length, class At>
+SlicedRows<Entry> sliced(std::uint32_t rows, const Length& length, const At& entry) {
+  SlicedRows<Entry> out;
+  for (std::uint32_t begin = 0; begin < rows; begin += BENDING_ROWS) {
+    std::uint32_t width = 0;
+    for (std::uint32_t i = begin; i < std::min(rows, begin + BENDING_ROWS); ++i)
+      width = std::max(width, static_cast<std::uint32_t>(length(i)));
+    out.slices.push_back({static_cast<std::uint32_t>(out.entries.size()), width});
+    for (std::uint32_t j = 0; j < width; ++j)
+      for (std::uint32_t i = begin; i < begin + BENDING_ROWS; ++i) out.entries.push_back(entry(i, j));
+  }
+  return out;
+}
+
+/// Pinned vertices that fill a rectangle of the grid, first and last included: a corner, an edge, a clamp.
+struct PinnedRectangle {
+  std::uint32_t first_column, first_row, last_column, last_row;
+  bool operator==(const PinnedRectangle&) const = default;
+};
+
+/// Tethers of a scene (Kim, Chentanez & Müller 2012): the distance of a vertex from the nearest pinned vertex of each
+/// rectangle is at most `stretch` times their distance through the cloth at rest.
+struct Tethers {
+  static constexpr std::size_t kMax = 4;
+  std::vector<PinnedRectangle> to;  ///< at most kMax
+  double stretch = 1;
+  std::string reason;  ///< reason if `to` is empty
+};
+/// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less: an
+/// inextensible cloth, or one whose springs stretch far less than the slack, 5 rho g L / Y for its own weight and
+/// 2 v0 / c for its speed. `wanted`: by the settings.
+Tethers tethers_of(const Scene&, bool wanted = true);
+
+/// The same vertex by vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
+struct TetherTable {
+  std::uint32_t a_vertex = 0;  ///< entries per vertex, 0 to Tethers::kMax
+  std::vector<TetherEnd> ends;
+  std::string reason;  ///< reason if there are no tethers
+};
+/// In a grid or a flat mesh with a convex border, reach is the distance at rest. Else it is the path length along
+/// edges, which is longer than that through triangles, so these tethers are a little looser.
+TetherTable tether_table(const Scene&, bool wanted = true);
+
+/// True if tethers keep every vertex within reach of pinned ones.
+bool is_tethered(const Scene&, const nlohmann::json& settings);
+
+/// True if the cloth starts with a structural link shorter than 0.5 or longer than 1.5 times its rest length: crumpled,
+/// squashed, coincident, pulled out of shape. No physical cloth starts so; the solver only has to recover from it.
+bool starts_crumpled(const Scene&);
+
+/// Moves every free vertex of a crumpled start by less than a thousandth of a cell a coordinate, the same in every run.
+/// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold within it. `x`
+/// [m], xyz.
+void break_symmetry(const Scene&, const std::vector<float>& inverse_mass, std::vector<double>& x);
+
+}  // namespace clothbench::pbd_gpu

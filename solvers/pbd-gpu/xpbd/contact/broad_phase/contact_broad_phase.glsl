@@ -1,0 +1,136 @@
+// Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds of its vertices. Pairs are
+// counted first, for the largest fraction of the bounds whose pairs fit the list, then written.
+vec3 low, high;
+void box_for(uvec4 e, float fraction) {
+  low = vec3(1e30);
+  high = vec3(-1e30);
+  float drifts = drift_m();
+  for (uint c = 0u; c < e.w; ++c) {
+    vec4 r = LOAD16(motion_bounds, e[c]);
+    low = min(low, r.xyz - fraction * (r.w + drifts));
+    high = max(high, r.xyz + fraction * (r.w + drifts));
+  }
+}
+#ifdef FUSED_FRAME
+vec3 contact_free_low, contact_free_high;  // in a frame in which the cloth touches no collider
+void contact_free_aabb_for(uvec4 e) {
+  contact_free_low = vec3(1e30);
+  contact_free_high = vec3(-1e30);
+  for (uint c = 0u; c < e.w; ++c) {
+    vec4 r = starts[e[c]];
+    contact_free_low = min(contact_free_low, r.xyz - r.w);
+    contact_free_high = max(contact_free_high, r.xyz + r.w);
+  }
+}
+bool overlaps_contact_free(ShapeAabb b) {
+  return all(lessThanEqual(contact_free_low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, contact_free_high));
+}
+#endif
+bool aabb_overlaps(ShapeAabb b) {
+  return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
+}
+
+// Lanes of a cluster, where there is one, look at boxes for the same primitive. Each looks at a few at a time: their loads do not wait for one
+// another. Control flow is subgroup-uniform.
+#ifdef FUSED_FRAME
+#define LANES_PER_PRIMITIVE LANES_PER_VERTEX
+#define PRIMITIVE_LANE cluster_lane()
+uint cluster_or(uint bits) {
+  for (uint n = LANES_PER_VERTEX >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
+  return bits;
+}
+#define ANY_IN_SUBGROUP(bits) (LANES_PER_VERTEX > 1u ? subgroup_max(bits) != 0u : (bits) != 0u)
+#else
+#define LANES_PER_PRIMITIVE 1u
+#define PRIMITIVE_LANE 0u
+uint cluster_or(uint bits) { return bits; }
+#define ANY_IN_SUBGROUP(bits) ((bits) != 0u)
+#endif
+const uint kAabbUnroll = 4u, kAabbsPerStep = kAabbUnroll * LANES_PER_PRIMITIVE;
+/// A bit for each of the convex shapes from `first` on, and before `end`, whose box overlaps the primitive's; `own`: of those that this lane looked at.
+uint overlapping_shapes(uint first, uint end, out uint own) {
+  own = 0u;
+  [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
+    uint of = n * LANES_PER_PRIMITIVE + PRIMITIVE_LANE;
+    if (aabb_overlaps(LOAD(32u, boxes, min(first + of, SHAPES - 1u))) && first + of < end) own |= 1u << of;
+  }
+  return cluster_or(own);
+}
+
+// A bit stands for one group, and for several of them where there are very many.
+#define MOST_GROUP_WORDS 1024u
+#define GROUPS_A_BIT ((GROUPS + 32u * MOST_GROUP_WORDS - 1u) / (32u * MOST_GROUP_WORDS))
+#define GROUP_WORDS ((GROUPS + 31u) / 32u < MOST_GROUP_WORDS ? (GROUPS + 31u) / 32u : MOST_GROUP_WORDS)
+#ifdef FUSED_FRAME
+shared uint nearby_groups[GROUP_WORDS + 1u];
+#define NEARBY_GROUPS(word) nearby_groups[word]
+#else
+#define NEARBY_GROUPS(word) ~0u
+#endif
+/// The next few of the groups with a bit that meet the primitive; the bits looked at are cleared.
+uint overlapping_groups(inout uint bits, uint word, uint part) {
+  uint overlapping = 0u, last = bits;
+  for (uint n = 0u; n < kAabbsPerStep && last != 0u; ++n) last &= last - 1u;
+  uint step_bits = bits ^ last;
+  bits = last;
+  for (uint n = 0u; n < PRIMITIVE_LANE; ++n) step_bits &= step_bits - 1u;
+  [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
+    uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(step_bits))) + part;
+    if (step_bits != 0u && g < GROUPS && aabb_overlaps(LOAD(32u, boxes, SHAPES + g))) overlapping |= step_bits & -step_bits;
+    for (uint k = 0u; k < LANES_PER_PRIMITIVE; ++k) step_bits &= step_bits - 1u;
+  }
+  return cluster_or(overlapping);
+}
+// Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from there on; `own`: those of this lane.
+#define FOR_EACH_OVERLAPPING_SHAPES(BODY)                                                                              \
+  for (uint part = 0u; part < GROUPS_A_BIT; ++part)                                                       \
+    for (uint word = 0u; word < GROUP_WORDS; ++word)                                                     \
+      for (uint bits = NEARBY_GROUPS(word); bits != 0u;)                                                   \
+        for (uint groups = overlapping_groups(bits, word, part); ANY_IN_SUBGROUP(groups); groups &= groups - 1u) { \
+          uint first = SHAPES_PER_GROUP * (GROUPS_A_BIT * (32u * word + uint(max(findLSB(groups), 0))) + part); \
+          uint last = groups != 0u ? min(first + SHAPES_PER_GROUP, SHAPES) : 0u;                           \
+          for (uint step = 0u; step < SHAPES_PER_GROUP; step += kAabbsPerStep) {                             \
+            uint q = first + step, own, overlapping = overlapping_shapes(q, last, own);                                  \
+            BODY                                                                                         \
+          }                                                                                              \
+        }
+
+void write_pair(uint at, uint primitive, uint of_shape) {
+  STORE16(pairs, at, uvec4(primitive, of_shape, 0u, 0u))
+  states[at].normal = vec4(0.0);
+  states[at].correction = vec4(0.0);
+}
+
+/// Place of a convex shape among those of a turn.
+uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((1u << bit) - 1u))); }
+
+/// Writes the `count` first pairs of primitive k, from place `at` on.
+void fill_pairs(uint k, float fraction, uint at, uint count) {
+  box_for(LOAD16(primitives, k), fraction);
+  uint end = at + count;
+  FOR_EACH_OVERLAPPING_SHAPES(
+    for (; own != 0u; own &= own - 1u) {
+      uint bit = uint(findLSB(own));
+      uint to = at + slot_in(overlapping, bit);
+      if (to < end) write_pair(to, k, q + bit);
+    }
+    at += uint(bitCount(overlapping));
+  )
+}
+
+/// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.
+void list_touched_vertices(uint i) {
+  uint pairs_of = LOAD16(ranges, TRIANGLES + i).y;
+  for (uint f = LOAD4(vertex_triangles, i), end = LOAD4(vertex_triangles, i + 1u); f < end; ++f) pairs_of += LOAD16(ranges, LOAD4(vertex_triangles, f) / 4u).y;
+  STORE4(touched, PAIR_COUNT(i), pairs_of);
+  if (pairs_of == 0u) return;
+  STORE4(touched, atomicAdd(frame_state.touched_vertices, 1u), i);
+}
+
+/// Pairs of primitive k where its vertices go no farther than a fraction of their motion bounds.
+uint pairs_at(uint k, float fraction) {
+  box_for(LOAD16(primitives, k), fraction);
+  uint n = 0u;
+  FOR_EACH_OVERLAPPING_SHAPES(n += uint(bitCount(overlapping));)
+  return n;
+}

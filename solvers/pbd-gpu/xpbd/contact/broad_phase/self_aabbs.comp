@@ -1,0 +1,56 @@
+#version 450
+// Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
+// motion bounds (share 1), each by half of the thickness, and the group's at share 1.
+#include "xpbd/contact/contact_buffers.glsl"
+// Boxes of triangles and of groups of them, for the list of the cloth's pairs with itself. Groups are 16 triangles in self_order, which
+// keeps neighbours together.
+#include "xpbd/contact/broad_phase/self_aabb.glsl"
+#include "xpbd/contact/broad_phase/atomic_aabb.glsl"
+const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;
+shared uint group_low[3u * kGroups], group_high[3u * kGroups];
+
+SelfAabb box_of(uvec4 e) {
+  SelfAabb box = SelfAabb(vec4(1e30), vec4(-1e30), vec4(1e30), vec4(-1e30));
+  float half_m = 0.5 * THICKNESS_M;
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+    vec4 r = LOAD16(motion_bounds, e[c]);
+    box.low_0.xyz = min(box.low_0.xyz, r.xyz - half_m);
+    box.high_0.xyz = max(box.high_0.xyz, r.xyz + half_m);
+    box.low_1.xyz = min(box.low_1.xyz, r.xyz - (half_m + r.w));
+    box.high_1.xyz = max(box.high_1.xyz, r.xyz + (half_m + r.w));
+  }
+  return box;
+}
+
+/// Of triangle `q` in self_order, by a thread; control flow is workgroup-uniform.
+void write_boxes(uint q) {
+  uint thread = gl_LocalInvocationIndex, group = thread / SHAPES_PER_GROUP;
+  for (uint n = thread; n < 3u * kGroups; n += gl_WorkGroupSize.x) {
+    group_low[n] = kLowNone;
+    group_high[n] = kHighNone;
+  }
+  barrier();  // empty boxes before they are widened
+  if (q < TRIANGLES) {
+    SelfAabb box = box_of(LOAD16(primitives, LOAD4(self_order, q)));
+    STORE64(self_aabbs, q, box);
+    vec3 low = low_at(box, 1.0), high = high_at(box, 1.0);
+    for (uint c = 0u; c < 3u; ++c) {
+      atomicMin(group_low[3u * group + c], ordered(low[c]));
+      atomicMax(group_high[3u * group + c], ordered(high[c]));
+    }
+  }
+  barrier();  // the groups' boxes before they are written
+  if (q >= TRIANGLES || q % SHAPES_PER_GROUP != 0u) return;
+  SelfAabb of_group;
+  for (uint c = 0u; c < 3u; ++c) {
+    of_group.low_0[c] = of_ordered(group_low[3u * group + c]);
+    of_group.high_0[c] = of_ordered(group_high[3u * group + c]);
+  }
+  of_group.low_0.w = 1e30;
+  of_group.high_0.w = -1e30;
+  of_group.low_1 = of_group.low_0;  // so that rounding does not part it from a triangle of its own
+  of_group.high_1 = of_group.high_0;
+  STORE64(self_aabbs, TRIANGLES + q / SHAPES_PER_GROUP, of_group);
+}
+
+void main() { write_boxes(item()); }

@@ -1,0 +1,84 @@
+#version 450
+// Candidate pairs of triangles of the cloth without a common vertex, once per frame; each is stored with both triangles. One subgroup per
+// triangle: counts its pairs at several fractions of the motion bounds; FILL writes them.
+#define SUBGROUPS
+#include "xpbd/contact/contact_buffers.glsl"
+// Pairs of triangles of the cloth without a common vertex whose boxes overlap, each listed with both of its triangles. A box at a fraction of
+// the motion bounds lies between those at rest and at the whole motion bounds. Counted for several shares, then written, as contact_broad_phase.glsl does.
+const float kRoundingFactor = 0.9999;  // so that rounding makes no bound too great
+bool share_a_vertex(uvec4 a, uvec4 b) {
+  for (uint c = 0u; c < 3u; ++c)
+    if (a[c] == b.x || a[c] == b.y || a[c] == b.z) return true;
+  return false;
+}
+
+#include "xpbd/contact/broad_phase/self_aabb.glsl"
+bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
+  return all(lessThanEqual(low_at(a, fraction), high_at(b, fraction))) && all(lessThanEqual(low_at(b, fraction), high_at(a, fraction)));
+}
+
+#include "xpbd/contact/lanes_per_triangle.glsl"
+// Triangles in groups that meet the box, a few at a time: `q` is this thread's, and `mine` says whether its box overlaps the other at the
+// share. Control flow is uniform among the lanes of a triangle.
+#define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY)                                                                                     \
+  for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) {                                             \
+    uint g = begin + triangle_lane();                                                                                                \
+    bool overlaps_group = triangle_lane() < lanes_per_triangle() && g * SHAPES_PER_GROUP < TRIANGLES;                                                \
+    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, LOAD(64u, self_aabbs, TRIANGLES + g), 1.0);                                \
+    for (uint groups = ballot_bits(overlaps_group); groups != 0u; groups &= groups - 1u) {                                             \
+      uint first = SHAPES_PER_GROUP * (begin + uint(findLSB(groups))), last = min(first + SHAPES_PER_GROUP, TRIANGLES);           \
+      for (uint part = first; part < last; part += lanes_per_triangle()) {                                                               \
+        uint q = part + triangle_lane();                                                                                             \
+        bool mine = triangle_lane() < lanes_per_triangle() && q < last;                                                                         \
+        if (mine) mine = aabbs_overlap(BOX, LOAD(64u, self_aabbs, q), SHARE);                                                    \
+        BODY                                                                                                                  \
+      }                                                                                                                       \
+    }                                                                                                                         \
+  }
+
+/// Of two triangles from their boxes at the frame's start.
+float min_distance(SelfAabb a, SelfAabb b) {
+  vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + THICKNESS_M;
+  return kRoundingFactor * length(max(apart, 0.0));
+}
+
+void fill_self_pairs_of(uint slot) {
+  uint own = LOAD4(self_order, slot);
+  uvec4 range = LOAD16(self_ranges, own), e = LOAD16(primitives, own);
+  SelfAabb box = LOAD(64u, self_aabbs, slot);
+  uint at = range.x, end = range.x + range.y;
+  FOR_EACH_NEIGHBOUR(box, frame_state.self_bound_fraction,
+    uint other = mine ? LOAD4(self_order, q) : 0u;
+    mine = mine && !share_a_vertex(e, LOAD16(primitives, other));
+    uint bits = ballot_bits(mine);
+    uint to = at + uint(bitCount(bits & ((1u << triangle_lane()) - 1u)));
+    if (mine && to < end) self_pairs[to] = SelfPair(other, min_distance(box, LOAD(64u, self_aabbs, q)));
+    at += uint(bitCount(bits));
+  )
+}
+
+void count_self_pairs_of(uint slot) {
+  uint own = LOAD4(self_order, slot);
+  uvec4 e = LOAD16(primitives, own), n = uvec4(0u);
+  SelfAabb box = LOAD(64u, self_aabbs, slot);
+  FOR_EACH_NEIGHBOUR(box, 1.0,
+    if (mine && !share_a_vertex(e, LOAD16(primitives, LOAD4(self_order, q)))) {
+      SelfAabb other = LOAD(64u, self_aabbs, q);
+      float fraction = 1.0;
+      for (uint l = 0u; l < PAIR_LEVELS && aabbs_overlap(box, other, fraction); ++l) {
+        ++n[l];
+        fraction /= float(1u << CUT_BITS);
+      }
+    }
+  )
+  n = sum_over_lanes(n);
+  if (triangle_lane() == 0u) STORE16(self_ranges, own, n);
+}
+
+void main() {
+  if (FILL) {
+    FOR_EACH_TRIANGLE(q, TRIANGLES, fill_self_pairs_of(q);)
+  } else {
+    FOR_EACH_TRIANGLE(q, TRIANGLES, count_self_pairs_of(q);)
+  }
+}

@@ -1,0 +1,70 @@
+// Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices are clamped to it.
+
+// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A vertex that would go
+// farther is held back, and the momentum of the cloth changes with nothing near.
+#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)  // lists of the cloth with itself have place for no more
+
+/// Maximum displacement of a point of any convex shape in the frame.
+float max_displacement_of_shapes() {
+  float max_shape_displacement = 0.0;
+  for (uint g = 0u; HAS_KINEMATIC != 0u && g < GROUPS; ++g) max_shape_displacement = max(max_shape_displacement, LOAD16_OF(boxes[SHAPES + g].low).w);
+  return max_shape_displacement;
+}
+
+/// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each frame that is active a
+/// collider: an impact strains it, and that grows with fewer.
+bool is_slow() { return uintBitsToFloat(frame_state.max_displacement) <= 2.0 * p.bound_m; }
+
+/// Motion bound of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame, lists are short. Without a
+/// frame before, it is the maximum.
+float bound_at_rest() {
+  const float kFraction = 0.2, kWays = 2.0;
+  float fall = length(p.gravity_h.xyz) * float(p.substeps) * p.frame_s, last = uintBitsToFloat(frame_state.max_displacement);
+  return last > 0.0 ? min(p.bound_m, kFraction * p.bound_m + (1.0 - kFraction) * fall + kWays * last) : p.bound_m;
+}
+
+/// By the hand that moves farthest: it may take any vertex along.
+float pulled() {
+  float largest = 0.0;
+  for (uint k = 0u; k < GRIPS; ++k) {
+    GripVertex grip = LOAD(48u, grips, k);
+    if (grip.held != 0u) largest = max(largest, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
+  }
+  return largest;
+}
+
+/// Mean velocity of a few vertices of cloth that touches itself: what all of it does brings no two triangles together. Every velocity is
+/// right, for vertices keep to a motion bound around it.
+vec3 drift() {
+  vec3 all = vec3(0.0);
+  for (uint k = 0u; SELF != 0u && k < 4u; ++k) all += 0.25 * LOAD16(v, (2u * k + 1u) * VERTICES / 8u).xyz;
+  return all;
+}
+
+/// The motion bound of a vertex by its speed.
+float motion_bound(float speed, float rest, float max_shape_displacement, float by_hands) {
+  return BOUND_FACTOR * (rest + 1.5 * speed * p.frame_s) + max_shape_displacement + by_hands;
+}
+/// The same in a frame in which it touches no collider.
+float contact_free_bound(float speed, float rest, float by_hands) {
+  return BOUND_FACTOR * (min(rest, 0.5 * p.bound_m) + 1.25 * speed * p.frame_s) + by_hands;
+}
+
+#if !defined(CONTACT_FREE) || defined(FUSED_FRAME)
+/// The same in .w of its place, and kept for the frame.
+vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
+  vec4 at = LOAD16(x, i);
+  vec3 along = drift();
+  float speed = length(LOAD16(v, i).xyz - along), rest = bound_at_rest(), by_hands = pulled();
+  float bound = motion_bound(speed, rest, max_shape_displacement, by_hands);
+#ifdef FUSED_FRAME
+  STORE16(starts, i, vec4(at.xyz, contact_free_bound(speed, rest, by_hands)));
+#else
+  STORE16(starts, i, vec4(at.xyz, 0.0));
+#endif
+  STORE16(y, i, at);
+  STORE16(motion_bounds, i, vec4(at.xyz, bound));
+  STORE4(vertex_displacement, i, 0.0);
+  return vec4(at.xyz, bound + length(along) * p.frame_s);
+}
+#endif

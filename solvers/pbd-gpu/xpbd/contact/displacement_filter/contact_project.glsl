@@ -1,0 +1,230 @@
+// Last pass of a substep. Projects each vertex onto the intersection of the half-spaces given by the separating planes of its triangles:
+// the feasible point nearest to the predicted position, within the vertex's displacement limit.
+// Method: Hildreth's (1957) dual coordinate descent. If it does not converge to a feasible point, the vertex moves from a known feasible
+// point (its start, or its start carried along by a kinematic shape) towards the prediction until it reaches the first plane. If even the
+// start violates a plane, the least violating point is used and counted in diagnostics.infeasible_vertices.
+const uint kSweeps = 30u;
+const float kFeasibilityTolerance_m = 2e-6;  // that a vertex may lack before its planes, by rounding
+uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;
+vec3 start;
+
+/// Offset of a half-space of the scene in this substep; what starts behind it goes no deeper.
+float half_space(PlaneShape s) {
+  return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, kMinSeparation_m);
+}
+
+// Every plane of the vertex: `n`, `s` and `k`, its pair.
+#define FOR_EACH_PLANE(BODY)                                                     \
+  for (uint f = first_vertex_triangle; f < end_vertex_triangle; f += vertex_triangle_step) {       \
+    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u;                                   \
+    FOR_EACH_PAIR_OF(ACTIVE_BITS, ranges[vertex_triangle / 4u],                                \
+      if ((pairs[k].z & PAIR_PLANE) == 0u) continue;                         \
+      vec4 plane = states[k].displacement_or_plane;                                            \
+      vec3 n = plane.xyz;                                                    \
+      float s = plane.w;                                                     \
+      BODY                                                                   \
+    )                                                                        \
+  }
+
+// The same of the planes between its triangles and others of the cloth; `k`: the active pair. They are looked at a few at a time: their
+// loads do not wait for one another.
+const uint kSelfPlaneUnroll = 4u;
+#define FOR_EACH_SELF_PLANE(BODY)                                                \
+  for (uint f = first_vertex_triangle; SELF != 0u && f < end_vertex_triangle; f += vertex_triangle_step) {       \
+    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u;                                   \
+    uvec2 range = self_ranges[vertex_triangle / 4u].zw;                                  \
+    for (uint begin = range.x, end = begin + range.y; begin < end; begin += kSelfPlaneUnroll) { \
+      vec4 planes[kSelfPlaneUnroll];                                        \
+      bool has_plane[kSelfPlaneUnroll];                                         \
+      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) {             \
+        uint of = min(begin + m, end - 1u);                                  \
+        planes[m] = self_active[of].plane;                                     \
+        has_plane[m] = (self_active[of].marks & SELF_PLANE) != 0u && begin + m < end; \
+      }                                                                      \
+      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) {             \
+        if (!has_plane[m]) continue;                                             \
+        uint k = begin + m;                                                  \
+        vec3 n = planes[m].xyz;                                              \
+        float s = planes[m].w;                                               \
+        BODY                                                                 \
+      }                                                                      \
+    }                                                                        \
+  }
+
+/// The least distance before any plane.
+float min_plane_distance(vec3 at) {
+  float smallest = 1e30;
+  for (uint h = 0u; h < PLANES; ++h) smallest = min(smallest, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
+  FOR_EACH_PLANE(smallest = min(smallest, dot(n, at) - s);)
+  FOR_EACH_SELF_PLANE(smallest = min(smallest, dot(n, at) - s);)
+  return smallest;
+}
+
+vec3 project_on_planes(vec3 at) {
+  float of_half_spaces[PLANES + 1u];
+  for (uint h = 0u; h < PLANES; ++h) of_half_spaces[h] = 0.0;
+  for (uint sweep = 0u; sweep < kSweeps; ++sweep) {
+    float largest = 0.0;
+    for (uint h = 0u; h < PLANES; ++h) {
+      vec3 n = half_spaces[h].normal.xyz;
+      float by = max(-of_half_spaces[h], half_space(half_spaces[h]) + kRounding_m - dot(n, at));
+      of_half_spaces[h] += by;
+      at += by * n;
+      largest = max(largest, abs(by));
+    }
+    FOR_EACH_PLANE(
+      float old = states[k].correction[corner];
+      float by = max(-old, s + kRounding_m - dot(n, at));
+      if (by != 0.0) {
+        states[k].correction[corner] = old + by;
+        at += by * n;
+        largest = max(largest, abs(by));
+      }
+    )
+    FOR_EACH_SELF_PLANE(
+      float old = self_active[k].multipliers[corner];
+      float by = max(-old, s + kRounding_m - dot(n, at));
+      if (by != 0.0) {
+        self_active[k].multipliers[corner] = old + by;
+        at += by * n;
+        largest = max(largest, abs(by));
+      }
+    )
+    if (largest < 0.5 * kRounding_m) break;
+  }
+  return at;
+}
+
+/// Displacement of a convex shape in this substep, its points' mean: what it carries along stays free of it.
+vec3 shape_mean_displacement(uint k) {
+  ConvexShape q = shapes[k];
+  vec3 displacement = vec3(0.0);
+  for (uint j = 0u; j < q.count; ++j) {
+    ShapePoint at = points[q.first + j];
+    displacement += at.end.xyz - at.start.xyz;
+  }
+  return displacement * p.substep_part / float(q.count);
+}
+
+/// From a feasible position as far towards `to` as planes and `room` let it.
+vec3 back_from(vec3 to, float room) {
+  vec3 free = start;
+  float best = min_plane_distance(start);
+  FOR_EACH_PLANE(
+    if (best < -kRounding_m && shapes[pairs[k].y].is_kinematic != 0u && s == s) {
+      vec3 there = start + shape_mean_displacement(pairs[k].y);
+      float is = min_plane_distance(there);
+      if (is > best) {
+        best = is;
+        free = there;
+      }
+    }
+  )
+  if (best < -kRounding_m) {
+    float at_end = min_plane_distance(to);
+    if (at_end > best && distance(to, start) <= room) {
+      best = at_end;
+      free = to;
+    }
+    if (best < -kFeasibilityTolerance_m) atomicAdd(diagnostics.infeasible_vertices, 1u);
+    return free;
+  }
+  atomicAdd(diagnostics.returned, 1u);
+  float part = 1.0;
+  for (uint h = 0u; h < PLANES; ++h) {
+    float s = half_space(half_spaces[h]), from = dot(half_spaces[h].normal.xyz, free) - s, end = dot(half_spaces[h].normal.xyz, to) - s;
+    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
+  }
+  FOR_EACH_PLANE(
+    float from = dot(n, free) - s;
+    float end = dot(n, to) - s;
+    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
+  )
+  FOR_EACH_SELF_PLANE(
+    float from = dot(n, free) - s;
+    float end = dot(n, to) - s;
+    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
+  )
+  vec3 displacement = part * (to - free);
+  float left = max(0.0, room - distance(free, start)), l = length(displacement);
+  return free + (l > left ? left / l : 1.0) * displacement;
+}
+
+/// As near to `at` as planes let a vertex come.
+vec3 project_to_feasible(vec3 at, float room) {
+  at = project_on_planes(at);
+  if (min_plane_distance(at) >= -kRounding_m && distance(at, start) <= room) return at;
+  return back_from(at, room);
+}
+
+vec3 within(vec3 to, float room) {
+  vec3 displacement = to - start;
+  float l = length(displacement);
+  return l > room ? start + (room / l) * displacement : to;
+}
+
+#include "xpbd/contact/displacement_filter/max_displacement.glsl"
+
+void end_substep(uint i, vec4 proposed, vec3 at) {
+  if (proposed.w > 0.0) {
+    if (at != proposed.xyz) STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), 0.0));
+    if (substep_now + 1u == p.substeps) record_displacement(i, at);
+    STORE16(x, i, vec4(at, proposed.w));
+  }
+  STORE4(vertex_displacement, i, distance(at, start));
+  STORE16(starts, i, vec4(at, 0.0));
+#ifdef FUSED_FRAME
+  if (kPredictsNextSubstep && substep_now + 1u < p.substeps) predict(i);
+#endif
+}
+
+/// Of a vertex without planes.
+void project_free(uint i) {
+  vec4 proposed = LOAD16(y, i), from = LOAD16(starts, i);
+  start = from.xyz;
+  end_substep(i, proposed, proposed.w > 0.0 ? within(proposed.xyz, from.w) : proposed.xyz);
+}
+
+/// Every lane of a cluster comes along; one of them goes on where planes are in the displacement.
+void project(uint i, bool valid) {
+  vec4 proposed = vec4(0.0), from = vec4(0.0);
+  float smallest = 1e30;
+  if (valid) {
+    proposed = LOAD16(y, i);
+    from = LOAD16(starts, i);
+  }
+  start = from.xyz;
+  vec3 at = proposed.xyz;
+  if (proposed.w > 0.0) {
+    at = within(at, from.w);
+  }
+  bool behind = PLANES > 0u || SELF != 0u || (SHAPES > 0u && valid && LOAD4(touched, NEEDS_PROJECTION(i)) != 0u);
+  if (proposed.w > 0.0 && (behind || at != proposed.xyz)) {
+    uint first = LOAD4(vertex_triangles, i);
+    end_vertex_triangle = LOAD4(vertex_triangles, i + 1u);
+    first_vertex_triangle = first + cluster_lane();
+    vertex_triangle_step = LANES_PER_VERTEX;
+    smallest = min_plane_distance(at);
+    first_vertex_triangle = first;
+    vertex_triangle_step = 1u;
+  }
+  smallest = cluster_min(smallest);
+  if (!valid || cluster_lane() != 0u) return;
+  if (behind && SHAPES > 0u) STORE4(touched, NEEDS_PROJECTION(i), 0u);
+  if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);
+  end_substep(i, proposed, at);
+}
+
+/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices.
+void project_all(uint first, uint at_once) {
+  bool all_of_them = PLANES > 0u || SELF != 0u;
+  for (uint i = first; !all_of_them && i < VERTICES; i += at_once)
+    if (SHAPES == 0u || LOAD4(touched, PAIR_COUNT(i)) == 0u) project_free(i);
+  uint count = all_of_them ? VERTICES : SHAPES == 0u ? 0u : frame_state.touched_vertices;
+  for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
+    bool valid = n < count;
+    uint i = n;
+    if (valid && !all_of_them) i = LOAD4(touched, n);
+    project(i, valid);
+  }
+}

@@ -1,0 +1,50 @@
+// Selects the plane of a pair: across the start's normal if the proposed end is on its side, otherwise across any direction that separates
+// both ends. Vertices move on straight lines, so a plane that separates a pair at both ends separates it in between.
+const float kUnsure_m = 1e-6;  // distances that rounding decides
+vec3 starting[3], proposed[3];
+
+float highest_of_shape(vec3 n) { return highest_point(n, t_end) + shape.radius; }
+float gap_at_start(vec3 n) { return gap_along(n, starting[0], starting[1], starting[2], t_begin) - shape.radius; }
+float gap_at_end(vec3 n) { return gap_along(n, proposed[0], proposed[1], proposed[2], t_end) - shape.radius; }
+
+/// The normal at the end, or half-displacement to it.
+bool find_alternative_normal(vec3 old, float smallest, out vec3 n) {
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = proposed[c];
+  corners = 3u;
+  Nearest r = nearest_at(t_end, t_end, vec3(0.0));
+  if (!(r.gap > shape.radius)) return false;
+  const float kBlends[4] = float[4](1.0, 0.5, 0.75, 0.25);
+  for (uint k = 0u; k < 4u; ++k) {
+    n = mix(old, r.n, kBlends[k]);
+    float l = length(n);
+    if (!(l > 0.2)) continue;
+    n /= l;
+    if (gap_at_start(n) >= smallest && gap_at_end(n) >= smallest) return true;
+  }
+  return false;
+}
+
+void select_plane(uint k) {
+  uvec4 pair = LOAD16(pairs, k);
+  if ((pair.z & PAIR_PLANE) == 0u) return;
+  uvec4 e = LOAD16(primitives, pair.x);
+  shape = shapes[pair.y];
+  vec4 normal = states[k].normal;
+  around = starts[e.x].xyz;
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+    starting[c] = starts[e[c]].xyz - around;
+    proposed[c] = y[e[c]].xyz - around;
+  }
+  vec3 n = normal.xyz, other;
+  float smallest = min(normal.w, kMinSeparation_m);  // below 0: inside a radius, and no deeper
+  if (gap_at_end(n) < smallest && find_alternative_normal(n, smallest, other)) {
+    n = other;
+    if (writes_pair()) states[k].normal.xyz = n;
+  }
+  vec4 plane = vec4(n, highest_of_shape(n) + dot(n, around) + smallest);
+  if (!writes_pair()) return;
+  states[k].displacement_or_plane = plane;
+  states[k].correction = vec4(0.0);  // multipliers of contact_project
+  [[unroll]] for (uint c = 0u; c < 3u; ++c)
+    if (!(dot(n, y[e[c]].xyz) - plane.w > kUnsure_m)) touched[NEEDS_PROJECTION(e[c])] = 1u;
+}

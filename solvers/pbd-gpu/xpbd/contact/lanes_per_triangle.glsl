@@ -1,0 +1,21 @@
+// The threads that share a triangle's list take a pair, a convex shape or a group each in turn: a subgroup, or one where lanes cannot exchange
+// values.
+uint lanes_per_triangle() { return min(gl_SubgroupSize, 32u); }
+uint triangle_lane() { return gl_SubgroupInvocationID; }
+/// Of all sharers, a bit each.
+uint ballot_bits(bool mine) {
+  uint bits = mine ? 1u << triangle_lane() : 0u;
+  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
+  return bits;
+}
+uint from_first_lane(uint value) { return subgroupShuffle(value, 0u); }
+uvec4 sum_over_lanes(uvec4 value) {
+  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) value += subgroupShuffleXor(value, n);
+  return value;
+}
+
+/// The body once for each triangle `t`, with all threads that share it.
+#define FOR_EACH_TRIANGLE(t, COUNT, BODY)                                                          \
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;                     \
+  uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;                \
+  for (uint t = group * gl_NumSubgroups + gl_SubgroupID; t < (COUNT); t += subgroups) BODY

@@ -1,0 +1,144 @@
+#version 450
+// After the lines, one thread per active pair: nearest points at the substep's start, and what contacts there propose.
+#include "xpbd/contact/contact_buffers.glsl"
+#include "xpbd/contact/narrow_phase/contact_distance.glsl"
+#include "xpbd/contact/response/self_correction.glsl"
+// Nearest points of two triangles of the cloth at a substep's start. Both copies of a pair compute the same, the triangle of the lower
+// number first, so that their normals are opposite bit for bit.
+vec3 first_at[3], second_at[3];
+
+bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
+
+/// A vertex and a triangle are the contact of one pair of the vertex' triangles: the first that has no vertex of the other.
+bool owns(uint v, uint own, uvec4 other) {
+  uint end = LOAD4(vertex_triangles, v + 1u);
+  for (uint f = LOAD4(vertex_triangles, v); f < end; ++f) {
+    uint t = LOAD4(vertex_triangles, f) / 4u;
+    uvec4 e = LOAD16(primitives, t);
+    if (!(has_vertex(other, e.x) || has_vertex(other, e.y) || has_vertex(other, e.z))) return t == own;
+  }
+  return false;
+}
+
+/// Gap along n, from the second to the first, of what nearest_feature() has looked at.
+float feature_gap(vec3 n) {
+  float low = 1e30, high = -1e30;
+  for (uint c = 0u; c < corners; ++c) low = min(low, dot(n, cloth[c]));
+  for (uint c = 0u; c < shape.count; ++c) high = max(high, dot(n, shape_points[c]));
+  return low - high;
+}
+
+/// The nearest points of what is in `cloth` and `shape_points`; w: their gap.
+vec4 best_normal(Feature f) {
+  vec4 best = vec4(0.0, 0.0, 0.0, -1e30);
+  float l = length(f.apart);
+  if (l > 0.0) best = vec4(f.apart / l, feature_gap(f.apart / l));
+  // Of what nearly touches the difference of the nearest points has lost its digits; across the features it has not.
+  float across = length(f.normal);
+  if (f.square < 1e-6 && across > 0.0) {
+    vec3 n = (dot(f.normal, f.apart) < 0.0 ? -1.0 : 1.0) / across * f.normal;
+    float gap = feature_gap(n);
+    if (gap > best.w) best = vec4(n, gap);
+  }
+  return best;
+}
+
+// The contacts of a pair that are found, before it is known where there is place for them.
+SelfContact found[SELF_CONTACTS];
+uint contacts;
+
+void keep_contact(uint c, vec4 normal, vec3 first, vec3 second) {
+  if (!(normal.w > 0.0)) return;
+  contacts |= 1u << c;
+  found[c] = SelfContact(vec4(normal.xyz, min(THICKNESS_M, normal.w)), vec4(first, 0.0), vec4(second, 0.0));
+}
+
+void vertex_contacts(uint own, uvec4 e, uvec4 other, float bound, bool is_first) {
+  corners = 1u;
+  shape.count = 3u;
+  for (uint c = 0u; c < 3u; ++c) shape_points[c] = is_first ? second_at[c] : first_at[c];
+  for (uint c = 0u; c < 3u; ++c) {
+    if (!owns(e[c], own, other)) continue;
+    for (uint i = 0u; i < 3u; ++i) cloth[i] = is_first ? first_at[c] : second_at[c];
+    Feature f = nearest_feature();
+    if (!(f.square <= bound * bound)) continue;
+    vec4 n = best_normal(f);
+    vec3 one = vec3(0.0);
+    one[c] = 1.0;
+    if (is_first)
+      keep_contact(1u + c, n, one, f.on_shape);
+    else
+      keep_contact(4u + c, vec4(-n.xyz, n.w), f.on_shape, one);
+  }
+}
+
+/// Maximum distance by which two triangles may approach, each going to its proposed end.
+float approach(uvec4 a, uvec4 b, vec3 origin) {
+  vec3 way_a[3], way_b[3], middle_a = vec3(0.0), middle_b = vec3(0.0);
+  for (uint c = 0u; c < 3u; ++c) {
+    way_a[c] = y[a[c]].xyz - origin - first_at[c];
+    way_b[c] = y[b[c]].xyz - origin - second_at[c];
+    middle_a += way_a[c] / 3.0;
+    middle_b += way_b[c] / 3.0;
+  }
+  float around_a = 0.0, around_b = 0.0;
+  for (uint c = 0u; c < 3u; ++c) {
+    around_a = max(around_a, distance(way_a[c], middle_a));
+    around_b = max(around_b, distance(way_b[c], middle_b));
+  }
+  return distance(middle_a, middle_b) + around_a + around_b;
+}
+
+/// Keeps what was found. Where it lies is in no fixed order, and nothing depends on it.
+void store_contacts(uint k) {
+  uint at = atomicAdd(frame_state.self_contact_pairs, 1u);
+  if (at >= CONTACT_CAPACITY) {
+    atomicAdd(diagnostics.overflow, 1u);
+    contacts = 0u;
+    return;
+  }
+  self_active[k].link = at;
+  for (uint c = 0u; c < SELF_CONTACTS; ++c)
+    if ((contacts & (1u << c)) != 0u) self_contacts[SELF_CONTACTS * at + c] = found[c];
+}
+
+void query_self(uint k) {
+  uint first = min(self_active[k].own, self_active[k].other), second = max(self_active[k].own, self_active[k].other);
+  uvec4 a = LOAD16(primitives, first), b = LOAD16(primitives, second);
+  vec3 origin = starts[a.x].xyz;
+  float max_a = 0.0, max_b = 0.0;
+  for (uint c = 0u; c < 3u; ++c) {
+    vec4 at_a = starts[a[c]], at_b = starts[b[c]];
+    cloth[c] = first_at[c] = at_a.xyz - origin;
+    shape_points[c] = second_at[c] = at_b.xyz - origin;
+    max_a = max(max_a, at_a.w);
+    max_b = max(max_b, at_b.w);
+  }
+  corners = 3u;
+  shape.count = 3u;
+  Feature f = nearest_feature();
+  vec4 normal = best_normal(f);
+  self_active[k].multipliers = vec4(0.0);
+  self_active[k].plane = normal;
+  self_pairs[self_active[k].link].bound = max(normal.w, 0.0);
+  contacts = 0u;
+  bool separated = normal.w > 0.0 && normal.w <= max_a + max_b;
+  float bound = approach(a, b, origin) + THICKNESS_M;
+  if (separated && normal.w <= bound) {
+    keep_contact(0u, normal, f.on_cloth, f.on_shape);
+    vertex_contacts(first, a, b, bound, true);
+    vertex_contacts(second, b, a, bound, false);
+    store_contacts(k);
+  }
+  if (!(normal.w > 0.0) && self_active[k].own == first) atomicAdd(diagnostics.inside, 1u);
+  self_active[k].marks = contacts | (separated ? SELF_PLANE : 0u);
+}
+
+void main() {
+  response_round = p.response_round;
+  uint count = min(frame_state.self_active, ACTIVE_CAPACITY);
+  for (uint k = item(); k < count; k += stride()) {
+    query_self(k);
+    correct_self(k);
+  }
+}

@@ -1,0 +1,123 @@
+// Accumulates corrections (Jacobi averaging): each vertex takes the mean of what its contacts propose, weighted by length. Before the
+// constraint solve corrections go into velocity and position, and the inverse mass of a vertex that kinematic shapes moved is reduced.
+// The sum has a fixed order, whatever the number of lanes that share it: kPartialSums partial sums, of the vertex's own pairs and of
+// every kPartialSums-th triangle, added one after another.
+const uint kPartialSums = 8u;
+bool any_pairs = true;  // that push the vertex
+vec3 sum, sum_velocity_part;
+float lengths;
+
+void propose(vec3 velocity_part, vec3 depenetration) {
+  vec3 all = velocity_part + depenetration;
+  float l = length(all);
+  sum += l * all;
+  sum_velocity_part += l * velocity_part;
+  lengths += l;
+}
+
+void from_half_spaces(vec4 at, vec3 start) {
+  if (response_round == 0u) return;
+  for (uint k = 0u; k < PLANES; ++k) {
+    PlaneShape s = LOAD(32u, half_spaces, k);
+    float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
+    Correction c = respond_along(s.normal.xyz, min(s.margin, before) - gap, recovery(s.margin - before, s.margin), at.xyz - start, s.friction);
+    if (c.velocity_part != vec3(0.0) || c.depenetration > 0.0) propose(c.velocity_part, c.depenetration * s.normal.xyz);
+  }
+}
+
+void from_pairs(uint primitive, uint corner, float w) {
+  FOR_EACH_PAIR_OF(CORRECTION_BITS, LOAD16(ranges, primitive), {
+    vec4 correction = LOAD16_OF(states[k].correction);
+    float share = w * states[k].weights[corner];
+    propose(share * correction.xyz, share * correction.w * states[k].normal.xyz);
+  })
+}
+
+// Pairs of a triangle are looked at a few at a time: the loads are issued together.
+const uint kSelfPairUnroll = 4u, kNoCorrection = ~0u;
+/// From the pairs of the vertex' triangles with others of the cloth.
+void from_self(uint primitive, uint corner) {
+  uvec4 range = LOAD16(self_ranges, primitive);
+  for (uint first = range.z, end = range.z + range.w; first < end; first += kSelfPairUnroll) {
+    uint at[kSelfPairUnroll];
+    vec4 all[kSelfPairUnroll], velocity_part[kSelfPairUnroll];
+    [[unroll]] for (uint n = 0u; n < kSelfPairUnroll; ++n) {
+      uint k = min(first + n, end - 1u);
+      bool has = first + n < end && (self_active[k].marks & ~SELF_PLANE) != 0u;
+      at[n] = has ? 3u * self_active[k].link + corner : kNoCorrection;
+    }
+    [[unroll]] for (uint n = 0u; n < kSelfPairUnroll; ++n) {
+      uint from = at[n] == kNoCorrection ? 0u : at[n];
+      all[n] = LOAD16_OF(self_corrections[from].all);
+      velocity_part[n] = LOAD16_OF(self_corrections[from].velocity_part);
+    }
+    [[unroll]] for (uint n = 0u; n < kSelfPairUnroll; ++n) {
+      if (at[n] == kNoCorrection || all[n].w == 0.0) continue;
+      sum += all[n].xyz;
+      sum_velocity_part += velocity_part[n].xyz;
+      lengths += all[n].w;
+    }
+  }
+}
+
+void accumulate_part(uint i, vec4 at, uint part) {
+  if (part + 1u == kPartialSums) {
+    from_half_spaces(at, LOAD16(starts, i).xyz);
+    if (any_pairs) from_pairs(TRIANGLES + i, 0u, at.w);
+  }
+  uint first = LOAD4(vertex_triangles, i) + part, end = LOAD4(vertex_triangles, i + 1u);
+  for (uint k = first; k < end; k += kPartialSums) {
+    uint vertex_triangle = LOAD4(vertex_triangles, k);
+    if (any_pairs) from_pairs(vertex_triangle / 4u, vertex_triangle % 4u, at.w);
+    if (SELF != 0u && response_round > 0u) from_self(vertex_triangle / 4u, vertex_triangle % 4u);
+  }
+}
+
+/// The sums of all parts in their order, in every lane of the cluster.
+void accumulate_parts(uint i, vec4 at, bool live) {
+  vec3 of_all = vec3(0.0), velocity_part_of_all = vec3(0.0);
+  float lengths_of_all = 0.0;
+  [[unroll]] for (uint k = 0u; k < kPartialSums; k += LANES_PER_VERTEX) {
+    sum = sum_velocity_part = vec3(0.0);
+    lengths = 0.0;
+    if (live) accumulate_part(i, at, k + cluster_lane());
+    [[unroll]] for (uint n = 0u; n < LANES_PER_VERTEX; ++n) {
+      of_all += FROM_LANE(sum, n);
+      velocity_part_of_all += FROM_LANE(sum_velocity_part, n);
+      lengths_of_all += FROM_LANE(lengths, n);
+    }
+  }
+  sum = of_all;
+  sum_velocity_part = velocity_part_of_all;
+  lengths = lengths_of_all;
+}
+
+void accumulate(uint i, bool valid) {
+  vec4 at = valid ? LOAD16(y, i) : vec4(0.0);
+  any_pairs = valid && SHAPES > 0u && LOAD4(touched, CORRECTED(i)) != 0u;
+  accumulate_parts(i, at, at.w != 0.0 && (any_pairs || PLANES > 0u || SELF != 0u));
+  if (cluster_lane() != 0u) return;
+  if (any_pairs) STORE4(touched, CORRECTED(i), 0u);
+  if (!(lengths > 0.0)) return;
+  vec3 by = sum / lengths, velocity_part = sum_velocity_part / lengths;
+  STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * velocity_part, 0.0));
+  if (response_round > 0u) {
+    STORE16(y, i, vec4(at.xyz + by, at.w));
+    if (SECOND_SOLVE && response_round == 1u) STORE16(x, i, vec4(at.xyz + by, at.w));
+    return;
+  }
+  float held = dot(by, by) / (kImpactMassFactor * MARGIN_M * kImpactMassFactor * MARGIN_M);
+  STORE16(x, i, vec4(LOAD16(x, i).xyz + by - velocity_part, at.w / (1.0 + held)));
+}
+
+/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices that contact may move.
+void accumulate_all(uint first, uint at_once) {
+  bool all_of_them = PLANES > 0u || SELF != 0u;
+  uint count = all_of_them ? VERTICES : frame_state.touched_vertices;
+  for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
+    bool valid = n < count;
+    uint i = n;
+    if (valid && !all_of_them) i = LOAD4(touched, n);
+    accumulate(i, valid);
+  }
+}

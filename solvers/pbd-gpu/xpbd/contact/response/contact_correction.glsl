@@ -1,0 +1,37 @@
+// Correction of a contact with a convex shape: its nearest point is moved to the contact offset.
+#include "xpbd/contact/response/friction.glsl"
+
+/// Margin that the contact keeps. Edges and faces keep less from static shapes: flat cloth would be lifted off its vertices.
+float kept_margin(uvec4 e, vec3 weights) {
+  bool inner = e.w == 3u && max(weights.x, max(weights.y, weights.z)) < 1.0 - kTiny;
+  return shape.margin * (inner && shape.is_kinematic == 0u ? kStaticMarginFactor : 1.0);
+}
+
+/// Proposed correction of a contact over the inverse mass of its point; w: its part along the normal that is no velocity.
+vec4 contact_correction(uvec4 e, PairState s) {
+  if (response_round == 0u && shape.is_kinematic == 0u) return vec4(0.0);
+  float gap = -s.weights.w, mass = 0.0;
+  vec3 slip = -s.displacement_or_plane.xyz;
+  [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+    if (c >= e.w) continue;
+    vec4 at = y[e[c]];
+    float b = s.weights[c];
+    gap += b * dot(s.normal.xyz, at.xyz);
+    slip += b * (at.xyz - starts[e[c]].xyz);
+    mass += at.w * b * b;
+  }
+  if (!(mass > 0.0)) return vec4(0.0);
+  float recover = recovery(kept_margin(e, s.weights.xyz) - s.displacement_or_plane.w, shape.margin);
+  Correction c = respond_along(s.normal.xyz, s.displacement_or_plane.w - gap, recover, slip, shape.friction);
+  return vec4(c.velocity_part, c.depenetration) / mass;
+}
+
+/// Marks a pair whose contact proposes something, and its vertices, so that others need not be read.
+void mark_correction(uint k, uvec4 e, bool proposes, bool proposed) {
+  if (proposes) {
+    [[unroll]] for (uint c = 0u; c < 3u; ++c) touched[CORRECTED(e[min(c, e.w - 1u)])] = 1u;
+    if (!proposed) atomicOr(active_bits[CORRECTION_BITS + k / 32u], 1u << k % 32u);
+  } else if (proposed) {
+    atomicAnd(active_bits[CORRECTION_BITS + k / 32u], ~(1u << k % 32u));
+  }
+}

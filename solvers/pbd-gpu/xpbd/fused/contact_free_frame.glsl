@@ -1,0 +1,98 @@
+// Contact-free fast path. A frame takes it if no collider shape overlaps the cloth's conservative motion bound. Such a frame runs the
+// constraint solve only and is bit-identical to a frame of the same scene without colliders.
+// The bound is an estimate of how far the cloth moves, not a guarantee. check_motion_bound() tests it after every substep. If a vertex
+// leaves its bound, the frame's result is discarded and the contact kernel simulates the frame from its start.
+const uint kMaxNearbyGroups = 32u;  // of convex shapes; where more are active, some meet the cloth
+shared uint nearby_groups[kMaxNearbyGroups], nearby_group_count, max_displacement;
+vec3 box_low, box_high;
+float rest, by_hands;
+
+/// How far a vertex may go, in .w of where it is.
+vec4 contact_free_position(uint i) {
+  vec4 at = LOAD16(x, i);
+  return vec4(at.xyz, contact_free_bound(length(LOAD16(v, i).xyz), rest, by_hands));
+}
+
+bool overlaps_shapes(uint group, vec3 low, vec3 high) {
+  ShapeAabb of = LOAD(32u, boxes, SHAPES + group);
+  if (!(all(lessThanEqual(low, of.high.xyz)) && all(lessThanEqual(of.low.xyz, high)))) return false;
+  uint first = SHAPES_PER_GROUP * group, end = min(first + SHAPES_PER_GROUP, SHAPES);
+  for (uint q = first; q < end; ++q) {
+    ShapeAabb b = LOAD(32u, boxes, q);
+    if (all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high))) return true;
+  }
+  return false;
+}
+
+/// Whether the convex shape of cloth between four neighbouring vertices may meet a convex shape of a near group.
+bool cell_may_touch(uint cell) {
+  uint i = cell / (COLUMNS - 1u) * COLUMNS + cell % (COLUMNS - 1u);
+  vec3 low = vec3(1e30), high = vec3(-1e30);
+  for (uint c = 0u; c < 4u; ++c) {
+    vec4 at = contact_free_position(i + c % 2u + c / 2u * COLUMNS);
+    low = min(low, at.xyz - at.w);
+    high = max(high, at.xyz + at.w);
+  }
+  for (uint n = 0u; n < nearby_group_count && any_nearby == 0u; ++n)
+    if (overlaps_shapes(nearby_groups[n], low, high)) return true;
+  return false;
+}
+
+/// For all threads alike. Whether the frame is to be done with contact is in the frame state. Where the last one had contact, this one has it if
+/// a group of convex shapes is within the motion bound: to look closer would cost a tenth of a frame on a desk.
+bool cannot_reach_any_collider() {
+  bool tests_cells = frame_state.contact_possible == 0u && is_slow();
+  if (thread == 0u) any_nearby = nearby_group_count = max_displacement = 0u;
+  empty_box();
+  barrier();  // an empty box before it is widened
+  float max_shape_displacement = max_displacement_of_shapes();
+  rest = bound_at_rest();
+  by_hands = pulled();
+  uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
+  for (uint i = thread; i < COLUMNS * ROWS; i += THREADS) {
+    vec4 at = LOAD16(x, i);
+    widen(from, to, vec4(at.xyz, motion_bound(length(LOAD16(v, i).xyz), rest, max_shape_displacement, by_hands)));
+  }
+  widen_box(from, to);
+  barrier();  // the box before convex shapes are looked for in it
+  for (uint g = thread; g < GROUPS; g += THREADS) {
+    if (!overlaps_cloth(LOAD(32u, boxes, SHAPES + g))) continue;
+    uint n = atomicAdd(nearby_group_count, 1u);
+    if (n < kMaxNearbyGroups) nearby_groups[n] = g;
+    if (n >= kMaxNearbyGroups || !tests_cells) any_nearby = 1u;
+  }
+  box_low = vec3(of_ordered(cloth_low[0]), of_ordered(cloth_low[1]), of_ordered(cloth_low[2]));
+  box_high = vec3(of_ordered(cloth_high[0]), of_ordered(cloth_high[1]), of_ordered(cloth_high[2]));
+  barrier();  // the near groups before cells are held against them
+  for (uint cell = thread; nearby_group_count > 0u && cell < (COLUMNS - 1u) * (ROWS - 1u) && any_nearby == 0u; cell += THREADS)
+    if (cell_may_touch(cell)) any_nearby = 1u;
+  barrier();  // every thread's look before the answer
+  if (thread == 0u) frame_state.contact_free = 0u;
+  return any_nearby == 0u;
+}
+
+/// After a substep: what has gone farther than it may can meet a convex shape.
+void check_motion_bound() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (!on_chain(i)) continue;
+    bool stays = all(greaterThanEqual(pos[k], box_low)) && all(lessThanEqual(pos[k], box_high));
+    if (stays && nearby_group_count > 0u) {
+      vec4 at = contact_free_position(index_of(vertex(i)));
+      stays = distance(pos[k], at.xyz) <= at.w;
+    }
+    if (!stays) any_nearby = 1u;
+  }
+}
+
+/// What the next frame goes by.
+void record_max_displacement() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (on_chain(i)) atomicMax(max_displacement, floatBitsToUint(distance(pos[k], LOAD16(x, index_of(vertex(i))).xyz)));
+  }
+  barrier();  // all displacements before the farthest is read
+  if (thread != 0u) return;
+  diagnostics.max_displacement = max_displacement;
+  frame_state.max_displacement = max_displacement;
+}

@@ -1,0 +1,252 @@
+#version 450
+// Simulates one frame in a single dispatch: broad phase, then in each substep the constraint solve and all contact passes. It calls
+// the same functions as the path with one kernel per pass; on a software device results are bit-identical to that path.
+// All workgroups must run at once (grid_barrier.glsl). Grid barriers per substep: 9 with kinematic shapes, 8 otherwise.
+// CONTACT_FREE: dispatched first. Runs the broad phase; if no collider is within the cloth's motion bound, it simulates the frame with
+// constraints only and sets frame_state.contact_free, so that the kernel with contact exits.
+#define SUBGROUPS
+#include "common/common.glsl"
+#define FUSED_FRAME
+layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
+
+FUSED_FRAME_CONSTANTS(SPECIALIZE)
+#define MARGIN_M uintBitsToFloat(MARGIN_BITS)
+#include "xpbd/lines/grid_lines.glsl"
+#include "xpbd/contact/contact_buffers.glsl"
+vec3 anchor(uvec2 at, uint k) {
+  if (w[k] > 0.0) COUNT_READ(16u)
+  return x[index_of(at)].xyz;
+}
+#include "xpbd/lines/integrate_lines.glsl"
+#include "xpbd/lines/line_colour.glsl"
+#include "common/grip.glsl"
+// Chains and cloth that touches itself have one kernel per pass.
+const bool SECOND_SOLVE = false;
+const uint SELF = 0u;
+#include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
+// The next substep's prediction, at this one's end. What attachments hold is moved between the two.
+const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
+#include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
+#include "xpbd/contact/subgroup_cluster.glsl"
+#include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
+#ifdef CONTACT_FREE
+#include "xpbd/contact/displacement_filter/max_displacement.glsl"
+#else
+#include "xpbd/contact/narrow_phase/contact_distance.glsl"
+#include "xpbd/contact/response/contact_correction.glsl"
+#include "xpbd/contact/narrow_phase/contact_nearest_points.glsl"
+#include "xpbd/contact/response/contact_respond.glsl"
+#include "xpbd/contact/response/contact_accumulate.glsl"
+#include "xpbd/contact/displacement_filter/contact_select_plane.glsl"
+#include "xpbd/contact/displacement_filter/contact_project.glsl"
+#endif
+
+#include "common/grid_barrier.glsl"
+#define GRID_BARRIER_OR_RETURN if (!grid_barrier()) return
+#define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
+#define COUNTED(t) frame_state.active_pair_count[t]
+#define CLOTH_LOW frame_state.cloth_low
+#define CLOTH_HIGH frame_state.cloth_high
+// Within a workgroup, also for what its threads write to buffers.
+#define WORKGROUP_BARRIER { groupMemoryBarrier(); barrier(); }
+#include "xpbd/contact/broad_phase/cloth_aabb.glsl"
+#ifndef CONTACT_FREE
+#define ACTIVE_COUNT COUNTED(min(response_round, 1u))
+#include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
+#endif
+
+const uint kResponseRounds = 3u;
+uint global_thread, grid_stride;  // this thread among those of all workgroups
+#define FOR_EACH_STRIDED(i, count) for (uint i = global_thread; i < (count); i += grid_stride)
+
+#include "xpbd/fused/fused_broad_phase.glsl"
+#ifndef CONTACT_FREE
+
+// All active pairs, a thread or a subgroup each.
+#define FOR_EACH_ACTIVE_PAIR(n, count)                                                                                       \
+  by_subgroup = kPairsOfSubgroups;                                                                                     \
+  for (uint n = by_subgroup ? global_thread / THREADS * gl_NumSubgroups + gl_SubgroupID : global_thread, end = count; n < end;               \
+       n += by_subgroup ? grid_stride / THREADS * gl_NumSubgroups : grid_stride)
+
+// A workgroup looks through its fraction of the pairs a few rounds at a time. Its threads share out those that remain after each question,
+// so that no thread waits for its neighbour's answer.
+const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
+shared uint tested[kRounds * THREADS], active_found[kRounds * THREADS], tested_count, found_count, slot;
+void find_active_pairs() {
+  uint count = frame_state.pairs;  // read once, for a coherent read goes to the second-level cache
+  for (uint base = global_thread - thread; base < count; base += kRounds * grid_stride) {
+    if (thread == 0u) tested_count = found_count = 0u;
+    barrier();  // before they are counted
+    for (uint r = 0u; r < kRounds; ++r) {
+      uint k = base + r * grid_stride + thread;
+      if (k < count && may_be_active(k)) tested[atomicAdd(tested_count, 1u)] = k;
+    }
+    WORKGROUP_BARRIER;  // all that may be near are known, and their bounds
+    for (uint n = thread; n < tested_count; n += THREADS)
+      if (is_active(tested[n])) active_found[atomicAdd(found_count, 1u)] = tested[n];
+    WORKGROUP_BARRIER;  // all that are active are known, and their normals
+    if (thread == 0u && found_count > 0u) slot = atomicAdd(ACTIVE_COUNT, found_count);
+    barrier();  // where they are listed
+    for (uint n = thread; n < found_count; n += THREADS) {
+      append_active(active_found[n], slot + n);
+      if (!kPairsOfSubgroups) process_pair(active_found[n]);
+    }
+    barrier();  // before the next rounds
+  }
+}
+
+#endif
+// Where one workgroup holds all lines, colours wait for their own workgroup only.
+bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >= ROWS; }
+
+#ifdef CONTACT_FREE
+/// All that is left of contact in a substep: how far a vertex may go in the frame.
+void end_lines(uint i, vec4 at) {
+  vec4 free = LOAD16(starts, i);
+  vec3 to = any_nearby != kOutOfReach ? clamp_to(i, at.xyz, at.w, free.xyz, free.w) : clamp_to_bounds(i, at.xyz, at.w);
+  if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
+  if (substep_now + 1u == p.substeps) record_displacement(i, to);
+}
+#else
+void end_lines(uint i, vec4 at) { clamp_to_motion_bound(i, at); }
+#endif
+
+bool solve_lines(uint substep) {
+  const uint colours = kShears ? 4u : 2u;
+#ifndef CONTACT_FREE
+  clear_active_bits(global_thread, grid_stride);
+#endif
+  for (uint n = 0u; n < colours && (!lines_in_a_group() || global_thread == thread); ++n) {
+    colour = colours - 1u - n;
+    pass(substep, n == 0u, n + 1u == colours);
+    if (n + 1u == colours) break;
+    if (lines_in_a_group()) WORKGROUP_BARRIER
+    else GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
+  }
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if ((!lines_in_a_group() || global_thread == thread) && on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
+  }
+  GRID_BARRIER_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
+  return true;
+}
+
+bool move_grips(uint s) {
+  if (GRIPS == 0u) return true;
+  FOR_EACH_STRIDED(g, GRIPS) move_grip(g, float(s + 1u) / float(p.substeps), p.frames_per_s);
+  GRID_BARRIER_OR_FAIL;  // attached vertices before all read them
+  return true;
+}
+
+/// By one thread: what the host goes by.
+void end_frame() { diagnostics.max_displacement = frame_state.max_displacement; }
+
+#ifdef CONTACT_FREE
+bool substep_with(uint s) {
+  begin_substep(s);
+  return move_grips(s) && solve_lines(s);
+}
+
+/// The list, and the frame in one dispatch if the cloth touches no collider.
+bool frame() {
+  bool may_be_contact_free = is_slow();
+  if (!broad_phase()) return false;
+  bool contact_free = may_be_contact_free && frame_state.pairs == 0u;
+  if (global_thread == 0u) frame_state.contact_free = contact_free ? 1u : 0u;
+  for (uint s = 0u; contact_free && s < p.substeps; ++s)
+    if (!substep_with(s)) return false;
+  if (contact_free && global_thread == 0u) end_frame();
+  return true;
+}
+#else
+/// Pairs that are active, and what their contacts propose.
+bool narrow_phase() {
+  by_subgroup = false;
+  find_active_pairs();
+  if (!kPairsOfSubgroups) return true;
+  GRID_BARRIER_OR_FAIL;  // active pairs before they are shared out: neighbours in the list are active together
+  FOR_EACH_ACTIVE_PAIR(n, COUNTED(min(response_round, 1u))) process_pair(pairs[n].w);
+  return true;
+}
+
+
+/// Responses before (round 0) and after the lines.
+bool respond_to_contact(out uint active_count) {
+  active_count = 0u;
+  if (response_round == 0u && (substep_now == 0u || !kPredictsNextSubstep)) {
+    FOR_EACH_STRIDED(i, VERTICES) predict(i);
+    clear_active_bits(global_thread, grid_stride);
+    GRID_BARRIER_OR_FAIL;  // proposals before pairs read them
+  }
+  if (response_round < 2u) {
+    if (SHAPES > 0u && !narrow_phase()) return false;
+    GRID_BARRIER_OR_FAIL;  // the corrections that contacts propose before vertices take it
+  }
+  active_count = COUNTED(min(response_round, 1u));
+  if (global_thread == 0u && active_count > 0u) frame_state.contact_possible = 1u;
+  if (response_round == 2u && active_count > 0u) {
+    FOR_EACH_STRIDED(n, active_count) respond(pairs[n].w);
+    GRID_BARRIER_OR_FAIL;  // as above
+  }
+  if (global_thread == 0u && response_round > 0u) COUNTED(0u) = 0u;
+  if (active_count == 0u && PLANES == 0u) return true;
+  accumulate_all(global_thread, grid_stride);
+  GRID_BARRIER_OR_FAIL;  // vertices before what reads them
+  return true;
+}
+
+bool substep_with(uint s) {
+  begin_substep(s);
+  if (!move_grips(s)) return false;
+  uint active_count = 0u;
+  response_round = 0u;
+  if (HAS_KINEMATIC != 0u && !respond_to_contact(active_count)) return false;
+  if (!solve_lines(s)) return false;
+  for (response_round = 1u; response_round < kResponseRounds; ++response_round)
+    if (!respond_to_contact(active_count)) return false;
+  if (active_count > 0u) {
+    FOR_EACH_ACTIVE_PAIR(n, active_count) select_plane(pairs[n].w);
+    GRID_BARRIER_OR_FAIL;  // planes before vertices are put before them
+  }
+  project_all(global_thread, grid_stride);
+  clear_correction_bits(global_thread, grid_stride);
+  if (global_thread == 0u) COUNTED(1u) = 0u;
+  GRID_BARRIER_OR_FAIL;  // the substep's end before the next one
+  return true;
+}
+
+/// The frame, unless it is done without contact. In two dispatches the first has made the list.
+bool frame() {
+  if (p.first_pass != BROAD_PHASE_DONE && !broad_phase()) return false;
+  for (uint s = 0u; s < p.substeps; ++s)
+    if (!substep_with(s)) return false;
+  if (global_thread == 0u) end_frame();
+  return true;
+}
+#endif
+
+void main() {
+  set_thread();
+  lane = thread / BESIDE % LANES;
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  global_thread = group * THREADS + thread;
+  grid_stride = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
+  if (p.passes == 0u) {  // only a probe whether all can run
+    GRID_BARRIER_OR_RETURN;
+    leave_grid_barrier();
+    return;
+  }
+#ifndef CONTACT_FREE
+  if (frame_state.contact_free != 0u) return;  // the frame is done
+#endif
+  if (!frame()) return;
+  if (global_thread < 3u) {
+    frame_state.cloth_low[global_thread] = kLowNone;
+    frame_state.cloth_high[global_thread] = kHighNone;
+  }
+  leave_grid_barrier();
+}

@@ -1,0 +1,103 @@
+#include "xpbd/fused/fused_frame.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "xpbd/grid_barrier.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Workgroups are of so many threads or a multiple, so that lanes that share a vertex are all there.
+constexpr std::uint32_t kThreadsTogether = 32;
+/// Workgroups: those beyond the lines' have pairs and vertices only. One takes a sixth longer where capsules sweep,
+/// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
+constexpr std::uint32_t kWorkgroups = 96;
+
+/// The two have no number in common.
+std::vector<std::uint32_t> both(const LineSpecialization& lines, const FusedFrameSpecialization& planes) {
+  std::vector<std::uint32_t> all = lines.by_number();
+  const std::vector<std::uint32_t> more = planes.by_number();
+  std::transform(more.begin(), more.end(), all.begin(), all.begin(), std::bit_or<>());
+  return all;
+}
+
+constexpr FeatureSet kOfLines{Feature::Stretch, Feature::Shear, Feature::Bend,
+                              Feature::Damping, Feature::Pins,  Feature::MovingPins};
+
+}  // namespace
+
+std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
+  const std::string wanted = frame.tuning()["contact_frame"];
+  if (wanted == "never" || contact.with_itself() || !frame.scene().cloth.mass_factors.empty()) return nullptr;
+  // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
+  if (wanted == "auto" && frame.device()->is_software()) return nullptr;
+  std::unique_ptr<FusedFrame> made(new FusedFrame(frame, lines, contact));
+  if (made->add_kernels()) return made;
+  if (wanted == "always")
+    throw Error(
+        "solver xpbd: setting tuning.contact_frame=always: expected a device that runs all workgroups of "
+        "fused_frame at once");
+  return nullptr;
+}
+
+bool FusedFrame::add_kernels() {
+  const LineShape shape = lines_.shape_with_contact();
+  if (shape.threads % kThreadsTogether != 0) return false;
+  LineSpecialization lines = lines_.specialization_with_contact(shape);
+  groups_ = lines_.groups_of(shape);
+  const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();
+  // Workgroups beyond those of the lines have pairs and vertices alone, and so threads without a line.
+  if (const std::uint32_t smallest = wanted != 0 ? wanted : kWorkgroups; smallest > groups_.x * groups_.y) {
+    groups_ = vulkan::groups_for(smallest, 1);
+    lines.EXACT = 0;
+  }
+  const std::vector<std::uint32_t> constants = both(lines, contact_.frame_specialization());
+  lines_.add_regularisation();
+  if (!runs_at_once<LineConstants>(frame_, "fused_frame", constants, shape.threads, groups_)) return false;
+  add_grid_barrier(frame_);
+  const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kOfLines) | contact_.serves(), true);
+  kernel_ = frame_.add_kernel(stage, "fused_frame", sizeof(LineConstants), constants, shape.threads);
+  add_contact_free(constants, shape.threads);
+  return true;
+}
+
+void FusedFrame::add_contact_free(const std::vector<std::uint32_t>& constants, std::uint32_t threads) {
+  const FusedFrameSpecialization planes = contact_.frame_specialization();
+  if (planes.SHAPES == 0 || planes.PLANES > 0) return;
+  const LineShape one = lines_.single_dispatch_shape();
+  const bool in_one_group = one.threads > 0;
+  if (!in_one_group && !runs_at_once<LineConstants>(frame_, "fused_frame_contact_free", constants, threads, groups_))
+    return;
+  const int stage = frame_.add_stage("ContactFreeFrame", frame_.scene().needs & kOfLines, true);
+  if (!in_one_group) {
+    contact_free_lists_ = true;
+    contact_free_ = frame_.add_kernel(stage, "fused_frame_contact_free", sizeof(LineConstants), constants, threads);
+    contact_free_groups_ = groups_;
+  } else {
+    contact_free_ = frame_.add_kernel(stage, "line_frame_contact_free", sizeof(LineConstants),
+                                      both(lines_.single_dispatch_specialization(one), planes), one.threads);
+  }
+}
+
+LineConstants FusedFrame::constants(double dt_s, const Steps& steps, bool listed) const {
+  LineConstants c = lines_.constants(dt_s, steps.substeps, steps.step);
+  const ContactConstants contact = contact_.constants(0, steps.substeps, dt_s);
+  c.substeps = static_cast<std::uint32_t>(steps.substeps);
+  c.first_pass = listed ? BROAD_PHASE_DONE : 0;
+  c.passes = c.substeps * lines_.passes();
+  c.frame_s = contact.frame_s;
+  c.bound_m = contact.bound_m;
+  return c;
+}
+
+void FusedFrame::record(double dt_s, const Steps& contact, const Steps& contact_free) {
+  const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
+  if (contact_free_ != nullptr)
+    frame_.dispatch_groups(*contact_free_, contact_free_groups_, constants(dt_s, contact_free, false),
+                           {64 * n, 64 * n});
+  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, contact, contact_free_lists_),
+                         lines_.substep_traffic() * contact.substeps + Traffic{32 * n, 36 * n});
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,92 @@
+#pragma once
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "clothbench/error.hpp"
+#include "common/frame_builder.hpp"
+#include "xpbd/constraints.hpp"
+#include "xpbd/lines/line_layout.hpp"
+#include "xpbd/time/integrator.hpp"
+
+// What lines and chains share: constants of a substep, and one dispatch of many workgroups that wait for one another.
+
+namespace clothbench::pbd_gpu {
+
+/// Most polls of a barrier over the whole dispatch before it times out, at loading (some 10 ms) and in a frame (some
+/// 1 s). A poll takes some 0.5 us on a GPU and 3 ns on a CPU.
+struct TimeoutPolls {
+  std::uint32_t at_loading, in_a_frame;
+};
+inline TimeoutPolls timeout_polls(const vulkan::Device& d) {
+  return d.is_software() ? TimeoutPolls{1u << 24, 1u << 30} : TimeoutPolls{1u << 14, 1u << 21};
+}
+
+/// Gravity, damping, the maximum speed and the step of LineConstants or ChainConstants.
+template <class Constants>
+Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
+  const Scene& s = frame.scene();
+  const double h = step.implicit_h_s, gain = h * step.force_scale,
+               across = std::hypot(s.cloth.width_m, s.cloth.height_m);
+  const Vec3 g = s.gravity_m_per_s2;
+  const auto f = [](double value) { return static_cast<float>(value); };
+  Constants c{};
+  c.gravity_h = {f(g[0] * gain), f(g[1] * gain), f(g[2] * gain), 0};
+  c.h = f(h);
+  c.damping_fraction = f(step.damping_fraction);
+  c.history_weight = f(step.history_weight);
+  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(s.cloth.initial_velocity_m_per_s) +
+                    norm(s.cloth.spin_rad_per_s) * across);
+  c.per_h = f(1 / h);
+  c.timeout_polls = timeout_polls(*frame.device()).in_a_frame;
+  return c;
+}
+
+/// True if speed is limited (LINES_LIMIT_SPEED). Moving colliders may drive the cloth at any speed, and so may springs
+/// that start stretched.
+inline bool limits_speed(const Scene& s, bool tethered) {
+  const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
+  return (tethered || starts_crumpled(s)) && !driven;
+}
+
+/// True if the device runs all workgroups of this kernel at once (grid_barrier.glsl) and tuning.device_barrier allows
+/// it. Vulkan does not guarantee it, so a trial dispatch without work (all constants 0) has to pass a barrier over all
+/// workgroups. With "always" a failed trial is an Error.
+template <class Constants>
+bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std::vector<std::uint32_t> specialization,
+                  std::uint32_t threads, vulkan::Groups groups) {
+  const std::string wanted = frame.tuning()["device_barrier"];
+  const std::shared_ptr<vulkan::Device>& device = frame.device();
+  if (!(wanted == "always" || (wanted == "auto" && device->is_discrete()))) return false;
+  constexpr double kTimeout_s = 60;  // a longer trial means that the device is shared or faulty: an error in both cases
+  const vulkan::Buffer barrier_counter(device, "meeting", 8, vulkan::Buffer::Place::Device);
+  vulkan::Buffer zeros(device, "meeting (initial)", 8, vulkan::Buffer::Place::Host),
+      timed_out(device, "timed out", 4, vulkan::Buffer::Place::Host);
+  std::memset(zeros.mapped(), 0, 8);
+  std::memset(timed_out.mapped(), 0, 4);
+  specialization[0] = threads;
+  const vulkan::Kernel kernel(device, kernel_name, shader(kernel_name).code, specialization,
+                              frame.buffers_with({{BIND_BARRIER, &barrier_counter}, {BIND_TIMED_OUT, &timed_out}}),
+                              sizeof(Constants));
+  vulkan::Program program(device);
+  program.copy(0, zeros, barrier_counter);
+  Constants constants{};
+  constants.timeout_polls = timeout_polls(*device).at_loading;
+  program.dispatch(0, kernel, groups, constants);
+  program.record(false);
+  program.run(kTimeout_s);
+  std::uint32_t failed = 0;
+  std::memcpy(&failed, timed_out.mapped(), 4);
+  if (failed != 0 && wanted == "always")
+    throw Error("solver xpbd: setting tuning.device_barrier=always: expected a device that runs " +
+                std::to_string(groups.x * groups.y) + " workgroups of " + std::to_string(threads) + " at once");
+  return failed == 0;
+}
+
+/// Adds the buffers of the barrier: its counter, and the flag that it timed out.
+inline void add_grid_barrier(FrameBuilder& frame) {
+  frame.add_buffer(BIND_BARRIER, "meeting", 8);
+  frame.set_timed_out(frame.add_host_buffer("timed out", 4, BIND_TIMED_OUT));
+}
+
+}  // namespace clothbench::pbd_gpu

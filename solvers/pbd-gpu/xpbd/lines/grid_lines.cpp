@@ -1,0 +1,288 @@
+#include "xpbd/lines/grid_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "xpbd/grid_barrier.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// Of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as there
+/// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
+constexpr std::uint32_t kThreadsWithContact = 128;
+
+}  // namespace
+
+Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tension, bool corrects_splitting)
+    : frame_(frame),
+      scene_(scene),
+      tethers_(tethers_of(scene, frame.settings()["tethers"].get<bool>())),
+      over_constrained_(over_constrained_lines(scene)),
+      batch_(frame.settings()["batch"].get<std::uint32_t>()),
+      uses_bdf2_(uses_bdf2),
+      tension_(tension),
+      corrects_splitting_(corrects_splitting),
+      regularised_(
+          std::any_of(over_constrained_.begin(), over_constrained_.end(), [](std::uint8_t t) { return t != 0; })) {
+  if (tethers_.to.empty()) frame_.disable("tethers", tethers_.reason);
+  if (!scene.needs.has(Feature::Damping)) frame_.disable("damping", "the scene has none");
+  if (!scene.needs.has(Feature::Shear)) frame_.disable("diagonals", "the scene has no shear stiffness");
+  if (!scene.needs.has(Feature::Bend)) frame_.disable("bending", "the scene has no bending");
+  const std::size_t n = scene.cloth.vertex_count();
+  if (!corrects_splitting_) return;
+  frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", batch_ * n * sizeof(vec4));
+  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", batch_ * passes() * n * sizeof(float));
+}
+
+void Lines::add_kernels(bool any_masses) {
+  const LineShape whole = single_dispatch_shape();
+  const bool in_one = whole.threads > 0 && !any_masses && scene_.cloth.mass_factors.empty();
+  if (batch_ > 1 && !(in_one && scene_.grips.vertices.empty() && scene_.colliders.empty()))
+    throw Error(
+        "solver xpbd: setting batch: expected cloths that each fit one workgroup (32 x 32 vertices of even masses) in "
+        "a "
+        "scene without hands and colliders");
+  if (in_one)
+    add_single_dispatch(whole);
+  else if (!scene_.cloth.mass_factors.empty() || !add_persistent())
+    add_passes();
+}
+
+LineRequest Lines::request() const {
+  return {frame_.tuning()["vertices_a_thread"].get<std::uint32_t>(),
+          frame_.tuning()["threads_a_group"].get<std::uint32_t>(), frame_.tuning()["lines_beside"].get<std::uint32_t>(),
+          corrects_splitting_};
+}
+
+LineDevice Lines::device() const {
+  const vulkan::Device& d = *frame_.device();
+  LineDevice line;
+  line.subgroup = d.shuffled_lanes();
+  line.max_threads = std::min(d.limits().maxComputeWorkGroupInvocations, d.limits().maxComputeWorkGroupSize[0]);
+  line.wide = d.is_discrete();
+  line.shared_B =
+      line.wide ? d.limits().maxComputeSharedMemorySize : std::min(d.limits().maxComputeSharedMemorySize, 32768u);
+  return line;
+}
+
+std::uint32_t Lines::features() const {
+  const FeatureSet needs = scene_.needs;
+  std::uint32_t f = 0;
+  if (needs.has(Feature::Damping)) f |= LINES_DAMPING;
+  if (needs.has(Feature::Bend)) f |= LINES_BEND;
+  if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
+  if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
+  if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
+  if (regularised_) f |= LINES_REGULARISED;
+  if (uses_bdf2_) f |= LINES_BDF2;
+  if (tension_) f |= LINES_TENSION;
+  if (corrects_splitting_) f |= LINES_SPLITTING;
+  return f;
+}
+
+LineSpecialization Lines::specialization(const LineShape& shape) const {
+  LineSpecialization s;
+  s.LANES = shape.lanes;
+  s.K = shape.vertices;
+  s.COLUMNS = static_cast<std::uint32_t>(scene_.cloth.columns);
+  s.ROWS = static_cast<std::uint32_t>(scene_.cloth.rows);
+  s.THREADS = shape.threads;
+  s.FEATURES = features();
+  s.TETHERS = static_cast<std::uint32_t>(tethers_.to.size());
+  uint* const ends[Tethers::kMax][2] = {{&s.TETHER_0, &s.TETHER_0_LAST},
+                                        {&s.TETHER_1, &s.TETHER_1_LAST},
+                                        {&s.TETHER_2, &s.TETHER_2_LAST},
+                                        {&s.TETHER_3, &s.TETHER_3_LAST}};
+  for (std::size_t k = 0; k < tethers_.to.size(); ++k) {
+    const PinnedRectangle& r = tethers_.to[k];
+    *ends[k][0] = r.first_column | r.first_row << 16;
+    *ends[k][1] = r.last_column | r.last_row << 16;
+  }
+  s.SUBGROUP = device().subgroup;
+  s.BESIDE = shape.beside;
+  const bool square =
+      s.COLUMNS == s.ROWS && shape.lanes * shape.vertices == s.COLUMNS && s.COLUMNS % shape.chains_a_group() == 0;
+  s.EXACT = square ? 1 : 0;
+  return s;
+}
+
+LineSpecialization Lines::single_dispatch_specialization(const LineShape& shape) const {
+  LineSpecialization s = specialization(shape);
+  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
+  const auto largest = static_cast<std::size_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
+  uint* const firm[] = {&s.REGULAR_0, &s.REGULAR_1, &s.REGULAR_2, &s.REGULAR_3};
+  for (std::size_t colour = 0; colour < 4; ++colour)
+    for (std::size_t chain = 0; chain < largest; ++chain)
+      *firm[colour] |= std::uint32_t{over_constrained_[colour * largest + chain]} << chain;
+  return s;
+}
+
+void Lines::add_single_dispatch(const LineShape& shape) {
+  const FeatureSet serves{Feature::Stretch, Feature::Shear,      Feature::Bend,
+                          Feature::Damping, Feature::MovingPins, Feature::Pins};
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  const LineSpecialization s = single_dispatch_specialization(shape);
+  single_dispatch_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), "line_frame",
+                                       sizeof(LineConstants), s.by_number(), shape.threads);
+}
+
+void Lines::add_regularisation() {
+  if (!regularised_ || added_regularisation_) return;
+  added_regularisation_ = true;
+  std::vector<float> smallest;
+  for (const std::uint8_t over_constrained : over_constrained_)
+    smallest.push_back(over_constrained != 0 ? static_cast<float>(kRegularisation) : 0.0f);
+  frame_.add_buffer(BIND_REGULARISATION, "regularisation", smallest);
+}
+
+vulkan::Groups Lines::groups_of(const LineShape& shape) const {
+  const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
+  return vulkan::groups_for(chains, shape.chains_a_group());
+}
+
+LineShape Lines::single_dispatch_shape() const {
+  return frame_shape(scene_.cloth.columns, scene_.cloth.rows, request(), device());
+}
+
+LineShape Lines::shape_with_contact() const {
+  LineRequest wanted = request();
+  if (wanted.threads == 0 && device().wide) wanted.threads = kThreadsWithContact;
+  return pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wanted, device());
+}
+
+LineSpecialization Lines::specialization_with_contact(const LineShape& shape) {
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  LineSpecialization s = specialization(shape);
+  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
+  s.PERSISTENT = 1;
+  return s;
+}
+
+/// False where the device does not run all workgroups at once, or where that is unknown.
+bool Lines::add_persistent() {
+  const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), request(), device());
+  shape_[0] = shape_[1] = shape_[2] = shape;
+  LineSpecialization s = specialization(shape);
+  s.PERSISTENT = 1;
+  const std::string name = "line_pass";
+  if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
+  add_regularisation();
+  const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
+  const int stage = frame_.add_stage("Lines", scene_.needs & serves);
+  add_grid_barrier(frame_);
+  persistent_ = frame_.add_kernel(stage, name, sizeof(LineConstants), s.by_number(), shape.threads);
+  return true;
+}
+
+void Lines::add_passes() {
+  const FeatureSet needs = scene_.needs;
+  shape_[0] = pass_shape(scene_.cloth.columns, request(), device());
+  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, request(), device());
+  add_regularisation();
+  const char* const names[] = {"Rows", "Columns", "Diagonals"};
+  const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
+                               {Feature::Stretch, Feature::Bend},
+                               {Feature::Shear}};
+  for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k)
+    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], needs & serves[k]), "line_pass", sizeof(LineConstants),
+                                 specialization(shape_[k]).by_number(), shape_[k].threads);
+}
+
+LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) const {
+  const Cloth& cloth = scene_.cloth;
+  const double h = step.implicit_h_s, du = cloth.du(), dv = cloth.dv();
+  const auto f = [](double x) { return static_cast<float>(x); };
+  auto c = step_constants<LineConstants>(frame_, step);
+  c.tether_stretch = f(tethers_.stretch);
+  c.rest_u = f(du);
+  c.rest_v = f(dv);
+  c.rest_d = f(std::hypot(du, dv));
+  if (const auto Y = scene_.material.membrane_stiffness_N_per_m) {
+    const bool shears = scene_.needs.has(Feature::Shear);
+    c.alpha_u = f(1 / (grid_spring_N_per_m(*Y, {du, dv}, shears) * h * h * step.force_scale));
+    c.alpha_v = f(1 / (grid_spring_N_per_m(*Y, {dv, du}, shears) * h * h * step.force_scale));
+    if (shears) c.alpha_d = f(1 / (diagonal_spring_N_per_m(*Y, {du, dv}) * h * h * step.force_scale));
+  }
+  const double mass = cloth.areal_density_kg_per_m2 * du * dv;
+  if (scene_.needs.has(Feature::Bend)) {
+    const double B = scene_.material.bending_rigidity_N_m;
+    c.bend_u = f(du * du * du / (B * dv) / (h * h * step.force_scale));
+    c.bend_v = f(dv * dv * dv / (B * du) / (h * h * step.force_scale));
+    c.bend_rounds_u = bend_rounds(static_cast<double>(c.bend_u), 4 / mass, shape_[0]);
+    c.bend_rounds_v = bend_rounds(static_cast<double>(c.bend_v), 4 / mass, shape_[1]);
+  }
+  c.inverse_mass = f(1 / mass);
+  c.regularisation = f(kRegularisation);
+  c.substep_part = f(1.0 / substeps);
+  c.frames_per_s = f(1 / dt_s);
+  return c;
+}
+
+/// The creep of every link of a colour is read and written.
+Traffic Lines::creep_traffic(std::uint32_t colour) const {
+  if (!corrects_splitting_) return {};
+  const double columns = scene_.cloth.columns, rows = scene_.cloth.rows;
+  const double bytes = 4 * (colour == 1 ? columns : columns - 1) * (colour == 0 ? rows : rows - 1);
+  return {bytes, bytes};
+}
+
+/// Traffic of one pass of a substep: it reads and writes every vertex; the first also reads tether ends.
+Traffic Lines::pass_traffic(std::uint32_t pass) const {
+  const auto n = static_cast<double>(scene_.cloth.vertex_count());
+  const std::uint32_t colour = colour_of(pass);
+  const auto chains = static_cast<double>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
+  const Traffic shifts = corrects_splitting_ ? Traffic{16 * n, colour < 2 ? 16 * n : 0} : Traffic{};
+  return creep_traffic(colour) + shifts +
+         Traffic{32 * n + (regularised_ ? 4.0 * shape_[std::min(colour, 2u)].lanes * chains : 0) +
+                     (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * n : 0),
+                 32 * n};
+}
+
+Traffic Lines::substep_traffic() const {
+  Traffic t;
+  for (std::uint32_t k = 0; k < passes(); ++k) t = t + pass_traffic(k);
+  return t;
+}
+
+/// Traffic of the rounding errors of compensated sums, and of what BDF2 goes on from, in each dispatch that
+/// integrates.
+Traffic Lines::compensated_traffic() const {
+  const double all_B = (uses_bdf2_ ? 64.0 : 32.0) * static_cast<double>(scene_.cloth.vertex_count());
+  return {all_B, all_B};
+}
+
+void Lines::record(int first, int count, int substeps, double dt_s, const TimeStep& step) {
+  LineConstants c = constants(dt_s, substeps, step);
+  c.first_substep = static_cast<std::uint32_t>(first);
+  c.substeps = static_cast<std::uint32_t>(count);
+  if (single_dispatch_ == nullptr && persistent_ == nullptr) {
+    c.passes = 1;
+    for (c.first_pass = 0; c.first_pass < passes(); ++c.first_pass) record_pass(c);
+    return;
+  }
+  c.passes = c.substeps * passes();
+  const auto n = static_cast<double>(scene_.cloth.vertex_count());
+  const double a_vertex_B = (uses_bdf2_ ? 96 : 64) + (corrects_splitting_ ? 16 : 0);
+  Traffic t =
+      persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n * batch_, a_vertex_B * n * batch_};
+  if (single_dispatch_ != nullptr)
+    t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
+  for (std::uint32_t k = 0; k < passes(); ++k)
+    t = t + (single_dispatch_ != nullptr ? creep_traffic(colour_of(k)) * batch_ : pass_traffic(k)) * count;
+  if (single_dispatch_ != nullptr)
+    frame_.dispatch_groups(*single_dispatch_, vulkan::groups_for(batch_, 1), c, t);
+  else
+    frame_.dispatch_groups(*persistent_, all_groups(), c, t);
+}
+
+void Lines::record_pass(const LineConstants& c) {
+  const std::uint32_t colour = colour_of(c.first_pass);
+  const std::size_t kind = std::min(colour, 2u);
+  const auto chains = static_cast<std::uint32_t>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
+  const Traffic t = pass_traffic(c.first_pass);
+  frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
+                         c.first_pass == 0 ? t + compensated_traffic() : t);
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,72 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "common/frame_builder.hpp"
+#include "xpbd/lines/line_layout.hpp"
+#include "xpbd/time/integrator.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// The constraints of `xpbd`: a substep integrates, applies tethers and solves rows, columns and diagonals, each line
+/// directly. One dispatch takes any number of substeps: of one workgroup for small cloths, of many for larger ones
+/// where the device runs them all at once. Else a substep takes four dispatches (two without shear).
+class Lines {
+ public:
+  /// Adds its stages, buffers and kernels. The buffers of the state must exist, one vec4 per vertex: positions (.w =
+  /// inverse mass), velocities, and the rounding errors of both (compensated sums).
+  Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tension, bool corrects_splitting);
+  /// Adds its stages and kernels. With contact by separating planes vertices have any inverse mass while they are
+  /// solved, which the kernel of a frame in one workgroup cannot do.
+  void add_kernels(bool any_masses);
+  /// The kernel of lines and contact in one: its shape, of workgroups that run at once, and what it is specialized to.
+  LineShape shape_with_contact() const;
+  LineSpecialization specialization_with_contact(const LineShape&);
+  /// Shape of the kernel that takes a frame in one dispatch in one workgroup (threads 0 if cloth or device do not fit
+  /// it), and what it is specialized to.
+  LineShape single_dispatch_shape() const;
+  LineSpecialization single_dispatch_specialization(const LineShape&) const;
+  vulkan::Groups groups_of(const LineShape&) const;
+  LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
+  void add_regularisation();        ///< of kernels that have lines in memory
+  Traffic substep_traffic() const;  ///< of all passes
+  std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
+
+  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
+  /// not fit one dispatch takes one substep a call.
+  void record(int first, int count, int substeps, double dt_s, const TimeStep&);
+  bool is_single_dispatch() const {
+    return single_dispatch_ != nullptr || (persistent_ != nullptr && scene_.grips.vertices.empty());
+  }
+  /// True if its kernels move attached vertices with their hands.
+  bool moves_grips() const { return single_dispatch_ != nullptr; }
+
+ private:
+  LineDevice device() const;
+  std::uint32_t features() const;
+  LineSpecialization specialization(const LineShape&) const;
+  void add_single_dispatch(const LineShape&);
+  bool add_persistent();
+  void add_passes();
+  LineRequest request() const;
+  Traffic pass_traffic(std::uint32_t pass) const;
+  Traffic compensated_traffic() const;
+  /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
+  std::uint32_t colour_of(std::uint32_t pass) const { return passes() - 1 - pass; }
+  vulkan::Groups all_groups() const { return groups_of(shape_[0]); }
+  Traffic creep_traffic(std::uint32_t colour) const;
+  void record_pass(const LineConstants&);
+
+  FrameBuilder& frame_;
+  const Scene& scene_;
+  const Tethers tethers_;
+  const std::vector<std::uint8_t> over_constrained_;
+  const std::uint32_t batch_;
+  const bool uses_bdf2_, tension_, corrects_splitting_;
+  bool added_regularisation_ = false, regularised_ = false;
+  const FrameKernel *single_dispatch_ = nullptr, *persistent_ = nullptr;
+  std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
+  std::array<LineShape, 3> shape_{};
+};
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,37 @@
+// Start of a substep for the thread's vertices: they fall, then tethers (Kim, Chentanez & Mueller 2012): no vertex is farther
+// from a pinned one than the cloth between them is long. `anchor(v, k)` gives where vertex v, which is pinned, is, for the
+// thread's vertex k.
+vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
+vec3 last_pos[K], last_vel[K];  // before the last substep, if kUsesBdf2
+
+#include "xpbd/time/substep.glsl"
+
+/// The nearest vertex of a rectangle of pinned ones.
+uvec2 nearest(uvec2 at, uint first, uint last) {
+  return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
+}
+
+/// Without shear stiffness the cloth reaches along warp and weft only.
+float reach_of(uvec2 at, uvec2 to) {
+  vec2 across = abs(vec2(ivec2(at) - ivec2(to))) * vec2(p.rest_u, p.rest_v);
+  return p.tether_stretch * (kShears ? length(across) : across.x + across.y);
+}
+
+void integrate() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uvec2 at = vertex(lane * K + k), to[4];
+    vec3 end[4];
+    // Where pins are is fetched first: nothing below waits for it.
+    if (TETHERS > 0u) end[0] = anchor(to[0] = nearest(at, TETHER_0, TETHER_0_LAST), k);
+    if (TETHERS > 1u) end[1] = anchor(to[1] = nearest(at, TETHER_1, TETHER_1_LAST), k);
+    if (TETHERS > 2u) end[2] = anchor(to[2] = nearest(at, TETHER_2, TETHER_2_LAST), k);
+    if (TETHERS > 3u) end[3] = anchor(to[3] = nearest(at, TETHER_3, TETHER_3_LAST), k);
+    if (w[k] > 0.0) fall(pos[k], vel[k], rest_pos[k], rest_vel[k], last_pos[k], last_vel[k]);
+    [[unroll]] for (uint t = 0u; t < 4u; ++t)
+      if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t])));
+  }
+}
+
+void limit_speed() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) vel[k] = limited(vel[k]);
+}

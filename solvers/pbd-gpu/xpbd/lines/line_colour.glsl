@@ -1,0 +1,64 @@
+// One colour of lines, its state in memory: the buffers x, v, rx, rv, lx, lv and regularisation. A frame with
+// contact (FUSED_FRAME) predicts nothing.
+// Compensation terms are of the first colour's chains, so threads that stay with them keep them from substep to substep.
+void store_history(uint at[K]) {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    if (w[k] == 0.0) continue;
+    STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
+    STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
+#ifndef FUSED_FRAME
+    if (!kUsesBdf2) continue;
+    STORE16(lx, at[k], vec4(last_pos[k], 0.0));
+    STORE16(lv, at[k], vec4(last_vel[k], 0.0));
+#endif
+  }
+}
+
+void pass(uint substep, bool first, bool last) {
+  uint at[K];
+  bool fetches = first && substep == 0u;
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    pos[k] = vel[k] = vec3(0.0);
+    if (kCorrectsSplitting) shift[k] = vec4(0.0);
+    w[k] = 0.0;
+    at[k] = 0u;
+    if (!(EXACT || on_chain(i))) continue;
+    at[k] = index_of(vertex(i));
+    COUNT_READ(!fetches ? 32u : kUsesBdf2 ? 96u : 64u)
+    vec4 here = x[at[k]];
+    pos[k] = here.xyz;
+    w[k] = here.w;
+    vel[k] = v[at[k]].xyz;
+    if (kCorrectsSplitting) {
+      vec4 by_lines = LOAD16(shifts, at[k]);
+      if (w[k] > 0.0) shift[k] = p.h * p.h * by_lines;
+    }
+    if (fetches) {
+      rest_pos[k] = rx[at[k]].xyz;
+      rest_vel[k] = rv[at[k]].xyz;
+#ifndef FUSED_FRAME
+      if (kUsesBdf2) {
+        last_pos[k] = lx[at[k]].xyz;
+        last_vel[k] = lv[at[k]].xyz;
+      }
+#endif
+    }
+  }
+  float smallest = 0.0;
+  if ((FEATURES & LINES_REGULARISED) != 0u && chain < chain_count())
+    smallest = LOAD4(regularisation, colour * max(COLUMNS, ROWS) + chain);
+  if (first) {
+    integrate();
+    if (substep + 1u >= p.substeps) store_history(at);
+  }
+  if (kBends && colour < 2u) bend();
+  stretch(smallest);
+  if (last) limit_speed();
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    if (w[k] == 0.0) continue;
+    STORE16(x, at[k], vec4(pos[k], w[k]));
+    STORE16(v, at[k], vec4(vel[k], 0.0));
+    if (kCorrectsSplitting && colour < 2u) STORE16(shifts, at[k], p.per_h * p.per_h * shift[k]);
+  }
+}

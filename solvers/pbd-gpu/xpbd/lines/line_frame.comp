@@ -1,0 +1,192 @@
+#version 450
+// Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
+#define SUBGROUPS
+#include "common/common.glsl"
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
+layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
+layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
+#ifdef CONTACT_FREE
+layout(std430, binding = BIND_FRAME_STATE) buffer FrameState { ContactFrameState frame_state; };
+layout(std430, binding = BIND_DIAGNOSTICS) writeonly buffer Diagnostics { ContactDiagnostics diagnostics; };
+layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // groups' after convex shapes'
+FUSED_FRAME_CONSTANTS(SPECIALIZE)
+const uint SELF = 0u;
+#endif
+#include "xpbd/lines/grid_lines.glsl"
+
+// 34 words per row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
+const uint kStride = 34u;
+shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
+shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
+shared uint held[32];  // one bit per vertex, one word per row
+// Shifts over h^2. The filters' first stages are of one colour only.
+const uint kShifts = kCorrectsSplitting ? kStride * ROWS : 1u;
+shared float su[kShifts], sv[kShifts], filter_u[kShifts], filter_v[kShifts];
+
+void put_shift(uvec2 at, vec4 value) {
+  uint o = at.y * kStride + at.x;
+  su[o] = value.x;
+  sv[o] = value.y;
+  filter_u[o] = value.z;
+  filter_v[o] = value.w;
+}
+
+#ifdef CONTACT_FREE
+#define CLOTH_LOW cloth_low
+#define CLOTH_HIGH cloth_high
+shared uint any_nearby;
+#include "xpbd/contact/broad_phase/cloth_aabb.glsl"
+#include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
+#include "xpbd/fused/contact_free_frame.glsl"
+#endif
+
+vec3 anchor(uvec2 at, uint k) {
+  uint o = at.y * kStride + at.x;
+  return vec3(px[o], py[o], pz[o]);
+}
+#include "xpbd/lines/integrate_lines.glsl"
+
+float inverse_mass(uvec2 at) {
+  if ((held[at.y] >> at.x & 1u) != 0u) return 0.0;
+  bool side = at.x == 0u || at.x + 1u == COLUMNS, end = at.y == 0u || at.y + 1u == ROWS;
+  return p.inverse_mass * (side ? 2.0 : 1.0) * (end ? 2.0 : 1.0);
+}
+
+void put(uvec2 at, vec3 position, vec3 velocity) {
+  uint o = at.y * kStride + at.x;
+  px[o] = position.x;
+  py[o] = position.y;
+  pz[o] = position.z;
+  vx[o] = velocity.x;
+  vy[o] = velocity.y;
+  vz[o] = velocity.z;
+}
+
+/// The thread's vertices on its chain of `colour`.
+void take() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    uvec2 at = on_chain(i) ? vertex(i) : uvec2(0u);
+    uint o = at.y * kStride + at.x;
+    pos[k] = vec3(px[o], py[o], pz[o]);
+    vel[k] = vec3(vx[o], vy[o], vz[o]);
+    w[k] = on_chain(i) ? inverse_mass(at) : 0.0;
+    if (kCorrectsSplitting) shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
+  }
+}
+
+void give() {
+  [[unroll]] for (uint k = 0u; k < K; ++k)
+    if (w[k] > 0.0) put(vertex(lane * K + k), pos[k], vel[k]);
+  [[unroll]] for (uint k = 0u; kCorrectsSplitting && k < K; ++k)
+    if (w[k] > 0.0 && colour < 2u) put_shift(vertex(lane * K + k), p.per_h * p.per_h * shift[k]);
+}
+
+void load() {
+  if (thread < 32u) held[thread] = 0u;
+  barrier();  // the clearing before the bits are set
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (!on_chain(i)) continue;
+    uint o = index_of(vertex(i));
+    vec4 here = LOAD16(x, o);
+    put(vertex(i), here.xyz, LOAD16(v, o).xyz);
+    if (kCorrectsSplitting) put_shift(vertex(i), LOAD16(shifts, o));
+    rest_pos[k] = LOAD16(rx, o).xyz;
+    rest_vel[k] = LOAD16(rv, o).xyz;
+    if (kUsesBdf2) {
+      last_pos[k] = LOAD16(lx, o).xyz;
+      last_vel[k] = LOAD16(lv, o).xyz;
+    }
+    if (here.w == 0.0) atomicOr(held[vertex(i).y], 1u << vertex(i).x);
+  }
+  barrier();  // the state and the bits of pinned vertices before hands change them and all read them
+  for (uint g = thread; g < GRIPS; g += THREADS) {
+    GripVertex grip = LOAD(48u, grips, g);
+    uint bit = 1u << grip.vertex % COLUMNS;
+    if (grip.held != 0u) atomicOr(held[grip.vertex / COLUMNS], bit);
+    else atomicAnd(held[grip.vertex / COLUMNS], ~bit);
+  }
+}
+
+void store() {
+  [[unroll]] for (uint k = 0u; k < K; ++k) {
+    uint i = lane * K + k;
+    if (!on_chain(i)) continue;
+    uint o = index_of(vertex(i));
+    STORE16(x, o, vec4(pos[k], w[k]));
+    STORE16(v, o, vec4(vel[k], 0.0));
+    uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
+    if (kCorrectsSplitting) STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
+    STORE16(rx, o, vec4(rest_pos[k], 0.0));
+    STORE16(rv, o, vec4(rest_vel[k], 0.0));
+    if (!kUsesBdf2) continue;
+    STORE16(lx, o, vec4(last_pos[k], 0.0));
+    STORE16(lv, o, vec4(last_vel[k], 0.0));
+  }
+}
+
+/// Attached vertices go where hands take them, on a straight line through the frame.
+void move_held(uint substep) {
+  barrier();  // reads of the last substep before attached vertices move
+  // As the host has it for move_grips: the quotient, not a multiple of a rounded part.
+  float fraction = float(p.first_substep + substep + 1u) / floor(1.0 / p.substep_part + 0.5);
+  for (uint g = thread; g < GRIPS; g += THREADS) {
+    GripVertex grip = LOAD(48u, grips, g);
+    if (grip.held == 0u) continue;
+    put(uvec2(grip.vertex % COLUMNS, grip.vertex / COLUMNS),
+        grip.from.xyz * (1.0 - fraction) + grip.to.xyz * fraction,
+        (grip.to.xyz - grip.from.xyz) * p.frames_per_s);
+  }
+  barrier();  // their new places before all read them
+}
+
+void main() {
+  first_vertex = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * COLUMNS * ROWS;
+  if (first_vertex >= x.length()) return;  // the last row of workgroups may be longer than it need be
+  set_thread();
+  lane = thread % LANES;
+  chain = thread / LANES;
+  const uint colours = kShears ? 4u : 2u;
+  colour = colours - 1u;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
+#ifdef CONTACT_FREE
+  if (!cannot_reach_any_collider()) return;
+#endif
+  load();
+  barrier();  // what load() wrote before all read it
+  for (uint s = 0u; s < p.substeps; ++s) {
+    if (GRIPS > 0u) move_held(s);
+    for (uint turn = 0u; turn < colours; ++turn) {
+      colour = colours - 1u - turn;
+      take();
+      if (turn == 0u) integrate();
+      if (kBends && colour < 2u) bend();
+      uint regularisation_ratio = colour == 0u ? REGULAR_0 : colour == 1u ? REGULAR_1 : colour == 2u ? REGULAR_2 : REGULAR_3;
+      stretch(chain < 32u && (regularisation_ratio >> chain & 1u) != 0u ? p.regularisation : 0.0);
+      if (turn + 1u == colours) limit_speed();
+      give();
+#ifdef CONTACT_FREE
+      if (turn + 1u == colours) check_motion_bound();
+#endif
+      barrier();  // this colour's writes before the next one's reads
+    }
+  }
+#ifdef CONTACT_FREE
+  if (any_nearby != 0u) return;
+  if (thread == 0u) {
+    frame_state.contact_free = 1u;
+    frame_state.contact_possible = 0u;
+  }
+#endif
+  colour = colours - 1u;  // whose chains a thread's compensation are of
+  take();
+#ifdef CONTACT_FREE
+  record_max_displacement();
+#endif
+  store();
+}

@@ -1,0 +1,277 @@
+#version 450
+// One colour of chains of a cloth whose links are not all alike: a triangle mesh, a grid of uneven cells or stiffnesses. A chain is
+// a path of links of which each vertex of the cloth is on at most one in a colour; a thread holds a vertex and the link to the next
+// entry, one workgroup per block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
+// Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first colour of a substep has every vertex
+// and integrates what it loads. A mesh that bends has passes before the first colour: one that integrates, then the iterations
+// of its bending, one thread per vertex. With MEMBRANE triangles of constant strain take part in these, and there are no colours.
+// A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
+// at once, and wait for one another after each.
+#include "common/common.glsl"
+CHAIN_CONSTANTS(SPECIALIZE)
+layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass
+layout(std430, binding = BIND_VELOCITIES) coherent buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_POSITION_COMPENSATION) buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation { vec4 rv[]; };
+layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
+layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
+layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
+layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
+layout(std430, binding = BIND_CHAIN_COLOURS) readonly buffer Ranges { ChainRange ranges[]; };
+layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
+layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
+layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };  // right sides, odd steps, even steps; positions with MEMBRANE
+layout(push_constant) uniform Push { ChainConstants p; };
+#include "xpbd/time/substep.glsl"
+#include "common/grid_barrier.glsl"
+#ifdef MEMBRANE
+#include "xpbd/mesh/membrane.glsl"
+#endif
+
+vec3 pos, vel, rest_pos, rest_vel, last_pos, last_vel;
+float w;
+
+void move(vec3 step) {
+  pos += step;
+  vel += step * p.per_h;
+}
+
+/// Pinned vertices are never written, so reading them here races with nothing.
+void integrate(uint i) {
+  vel = limited(vel);
+  fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
+  for (uint t = 0u; t < TETHERS; ++t) {
+    COUNT_READ(24u)
+    TetherEnd end = tether_ends[TETHERS * i + t];
+    if (end.reach < 0.0) continue;
+    vec3 back = tethered(pos, x[end.to].xyz, end.reach);
+    if (back != vec3(0.0)) move(back);
+  }
+}
+
+#ifdef MEMBRANE
+void stretch(ChainEntry entry, uint rounds) {}  // triangles take the place of links
+#else
+// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
+// others write the other.
+shared vec4 exchanged[2u * THREADS];
+uint exchange_half = 0u;
+void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
+  uint here = exchange_half, thread = gl_LocalInvocationIndex;
+  exchange_half = THREADS - exchange_half;
+  exchanged[here + thread] = mine;
+  barrier();
+  below = thread >= n ? exchanged[here + thread - n] : vec4(0.0);
+  above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
+}
+
+const bool kTension = (FEATURES & LINES_TENSION) != 0u;
+vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
+float link_length;
+
+/// Solves the links of the chain where its vertices are now, which carry `pull` (tension over length) already. Returns the
+/// multipliers of the link before and of the thread's.
+vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
+  vec4 none, next, below, above;
+  exchange(vec4(pos, w), 1u, none, next);
+  vec3 e = next.xyz - pos;
+  float square = dot(e, e), sum = w + next.w;
+  bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
+  float per_l = inversesqrt(square), l = square * per_l;
+  vec3 g = is ? e * per_l : vec3(0.0);
+  // As in grid_lines.glsl: what is pulled over-constrained between attached vertices yields, by what keeps it regular and its tension from
+  // turning links farther than a substep resolves.
+  float regularisation_ratio = entry.regularisation;
+  if (kTension) regularisation_ratio = entry.compliance == 0.0 ? regularisation_ratio : 0.0;
+  else if (regularisation_ratio != 0.0 && entry.rest > 0.0) {
+    if (entry.compliance == 0.0) regularisation_ratio = max(regularisation_ratio, 4.0 * (l / entry.rest - 5.0));
+    else if ((FEATURES & LINES_SHEAR) == 0u) regularisation_ratio = max(regularisation_ratio, l / entry.rest - 1.0);
+  }
+  float soft = max(entry.compliance * p.per_h * p.per_h * p.per_force_scale, regularisation_ratio * max(w, next.w));
+  exchange(vec4(g, 0.0), 1u, below, above);
+  float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
+  float right = entry.rest - l;
+  if (kTension) right += soft * pull * l;
+  // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
+  vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), right) * per_diagonal : vec3(0.0);
+  direction = g;
+  direction_below = below.xyz;
+  link_length = l;
+  for (uint r = 0u; r < rounds; ++r) {
+    exchange(vec4(row, 0.0), 1u << r, below, above);
+    float per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
+    row = vec3(-row.x * below.x, -row.y * above.y, row.z - row.x * below.z - row.y * above.z) * per;
+  }
+  exchange(vec4(row, 0.0), 1u, below, above);
+  return vec2(below.z, row.z);
+}
+
+/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has a vertex more than
+/// links, so its system needs a round more.
+void turn(float pull, uint rounds) {
+  vec4 below, above, right_below, right_above;
+  exchange(vec4(pos, pull), 1u, below, above);
+  float before = w * below.w, after = w * pull, per = 1.0 / (1.0 + before + after);
+  vec3 right = (before * (below.xyz - pos) + after * (above.xyz - pos)) * per;
+  vec2 row = vec2(-before, -after) * per;  // of the vertices before and after; the diagonal is 1
+  for (uint r = 0u; r <= rounds; ++r) {
+    exchange(vec4(row, 0.0, 0.0), 1u << r, below, above);
+    exchange(vec4(right, 0.0), 1u << r, right_below, right_above);
+    per = 1.0 / (1.0 - row.x * below.y - row.y * above.x);
+    right = (right - row.x * right_below.xyz - row.y * right_above.xyz) * per;
+    row = vec2(-row.x * below.x, -row.y * above.y) * per;
+  }
+  if (w > 0.0) move(right);
+}
+
+void stretch(ChainEntry entry, uint rounds) {
+  float pull = 0.0;
+  if (kTension) {
+    float lambda = solve_links(entry, rounds, 0.0).y;
+    pull = direction != vec3(0.0) ? max(-lambda, 0.0) / link_length : 0.0;
+    turn(pull, rounds);
+  }
+  vec2 lambda = solve_links(entry, rounds, pull);
+  move(w * (lambda.x * direction_below - lambda.y * direction));
+}
+#endif
+
+void pass(uint number, bool first, bool links, uint rounds) {
+  ChainEntry entry = LOAD(16u, entries, number);
+  bool is = entry.vertex != CHAIN_NO_VERTEX;
+  uint i = is ? entry.vertex : 0u;
+  pos = vel = rest_pos = rest_vel = last_pos = last_vel = vec3(0.0);
+  w = 0.0;
+  if (is) {
+    vec4 here = LOAD16(x, i);
+    pos = here.xyz;
+    w = here.w;
+    vel = LOAD16(v, i).xyz;
+    if (first) {
+      rest_pos = LOAD16(rx, i).xyz;
+      rest_vel = LOAD16(rv, i).xyz;
+      if (kUsesBdf2) {
+        last_pos = LOAD16(lx, i).xyz;
+        last_vel = LOAD16(lv, i).xyz;
+      }
+      if (w > 0.0) integrate(i);
+    }
+  }
+  if (links) stretch(entry, rounds);
+  if (w == 0.0) return;
+  STORE16(x, i, vec4(pos, w));
+  STORE16(v, i, vec4(vel, 0.0));
+  if (!first) return;
+  STORE16(rx, i, vec4(rest_pos, 0.0));
+  STORE16(rv, i, vec4(rest_vel, 0.0));
+  if (!kUsesBdf2) return;
+  STORE16(lx, i, vec4(last_pos, 0.0));
+  STORE16(lv, i, vec4(last_vel, 0.0));
+}
+
+const bool kBends = (FEATURES & LINES_BEND) != 0u;
+#ifdef MEMBRANE
+const bool kSolves = true;
+#else
+const bool kSolves = kBends;
+#endif
+float weight = 2.0;     // of iteration `weight_of` of bending
+uint weight_of = 1u;
+
+/// The weight of Chebyshev's iteration k, from 2 on; the same in a dispatch of all passes as in one of one.
+float weight_at(uint k) {
+  if (k < weight_of) {
+    weight = 2.0;
+    weight_of = 1u;
+  }
+  for (; weight_of < k; ++weight_of) weight = 1.0 / (1.0 - p.bending_spread * weight);
+  return weight;
+}
+
+/// K times steps, or with k == 1 times positions: rows of K sum to 0, and differences of neighbours lose no digits.
+vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
+  vec3 force = vec3(0.0);
+  BendingSlice slice = LOAD(8u, slices, i / BENDING_ROWS);
+  uint at = slice.first + i % BENDING_ROWS;
+  for (uint j = 0u; j < slice.width; ++j) {
+    BendingEntry entry = LOAD(8u, bending, at + BENDING_ROWS * j);
+    vec3 other = k > 1u ? LOAD16(bent, before + entry.column).xyz : LOAD16(x, entry.column).xyz;
+    force += entry.stiffness * (other - mine);
+  }
+  return force;
+}
+
+#ifdef MEMBRANE
+/// The same of triangles, linear in the steps; with k == 1 as their elongations are. Positions are those that the first
+/// iteration found, since the last writes its own.
+vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
+  vec3 pull = vec3(0.0);
+  BendingSlice slice = LOAD(8u, membrane_slices, i / BENDING_ROWS);
+  uint at = slice.first + i % BENDING_ROWS, found = 3u * p.vertices;
+  for (uint j = 0u; j < slice.width; ++j) {
+    MembraneCorner c = LOAD(48u, corners, at + BENDING_ROWS * j);
+    if (c.a == CHAIN_NO_VERTEX) continue;
+    if (k == 1u)
+      pull += membrane_force(c, here, LOAD16(x, c.a).xyz, LOAD16(x, c.b).xyz);
+    else
+      pull += membrane_change(c, here, LOAD16(bent, found + c.a).xyz, LOAD16(bent, found + c.b).xyz, mine,
+                              LOAD16(bent, before + c.a).xyz, LOAD16(bent, before + c.b).xyz);
+  }
+  return -pull;
+}
+#endif
+
+/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep, whose
+/// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
+void bend(uint i, uint k) {
+  uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
+  vec4 here = LOAD16(x, i);
+#ifdef MEMBRANE
+  if (k == 1u) STORE16(bent, 3u * p.vertices + i, here);
+#endif
+  if (here.w == 0.0) {  // attached vertices do not move; one may have moved in the last frame
+    if (k < p.bending_iterations) STORE16(bent, now + i, vec4(0.0));
+    return;
+  }
+  vec3 mine = k > 1u ? LOAD16(bent, before + i).xyz : here.xyz, force = vec3(0.0);
+  if (kBends) force = bending_force(i, k, before, mine);
+#ifdef MEMBRANE
+  force += triangle_force(i, k, before, here.xyz, mine);
+#endif
+  vec3 step = -p.bending_step * here.w * force;
+  if (k == 1u) {
+    if (k < p.bending_iterations) STORE16(bent, i, vec4(step, 0.0));
+    step *= p.bending_gain;
+  } else {
+    vec3 last = k > 2u ? LOAD16(bent, now + i).xyz : vec3(0.0);
+    step += LOAD16(bent, i).xyz - mine;
+    step = last + weight_at(k) * (p.bending_gain * step + mine - last);
+  }
+  if (k < p.bending_iterations) {
+    STORE16(bent, now + i, vec4(step, 0.0));
+    return;
+  }
+  pos = here.xyz;
+  vel = LOAD16(v, i).xyz;
+  move(step);
+  STORE16(x, i, vec4(pos, here.w));
+  STORE16(v, i, vec4(vel, 0.0));
+}
+
+void main() {
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // only a probe whether all can run
+  uint block = item() / THREADS;
+  for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
+    if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
+    uint bends = kSolves ? 1u + p.bending_iterations : 0u, number = n % (p.colours + bends);
+    if (kSolves && number > 0u && number < bends) {
+      if (item() < p.vertices) bend(item(), number);
+      continue;
+    }
+    uint f = number < bends ? 0u : number - bends;
+    ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
+    if (PERSISTENT) range = LOAD(16u, ranges, f);
+    if (block < range.blocks) pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);
+  }
+  if (PERSISTENT) leave_grid_barrier();
+}

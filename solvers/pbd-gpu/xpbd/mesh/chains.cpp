@@ -1,0 +1,229 @@
+#include "xpbd/mesh/chains.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "xpbd/constraints.hpp"
+#include "xpbd/grid_barrier.hpp"
+#include "xpbd/mesh/bending.hpp"
+#include "xpbd/mesh/membrane.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+constexpr std::uint32_t kBlock = 256;
+
+double rows_of(const std::vector<BendingSlice>& slices) {
+  double sum = 0;
+  for (const BendingSlice& s : slices) sum += s.width * BENDING_ROWS;
+  return sum;
+}
+
+}  // namespace
+
+Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension,
+               bool membrane)
+    : frame_(frame),
+      scene_(scene),
+      block_(std::min({kBlock, frame.device()->limits().maxComputeWorkGroupInvocations,
+                       frame.device()->limits().maxComputeWorkGroupSize[0]})),
+      uses_bdf2_(uses_bdf2),
+      tension_(tension),
+      membrane_(membrane) {
+  const FeatureSet needs = scene.needs;
+  const FeatureSet serves{Feature::Stretch,   Feature::Shear,      Feature::Damping, Feature::Pins,
+                          Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions, Feature::Bend};
+  const int stage = frame.add_stage("Chains", needs & serves);
+  const TetherTable tethers = tether_table(scene, frame.settings()["tethers"].get<bool>());
+  tethers_ = tethers.a_vertex;
+  if (tethers_ == 0) frame.disable("tethers", tethers.reason);
+  if (!needs.has(Feature::Damping)) frame.disable("damping", "the scene has none");
+  add_colours(cloth);
+  add_bending();
+  add_membrane();
+  if (bends_ || membrane_)
+    frame.add_buffer(BIND_BENDING_STEPS, "bending steps",
+                     (membrane_ ? 4 : 3) * scene.cloth.vertex_count() * sizeof(vec4));
+  frame.add_buffer(BIND_CHAIN_ENTRIES, "chain entries", entries_);
+  if (tethers_ > 0) frame.add_buffer(BIND_TETHER_ENDS, "tether ends", tethers.ends);
+  const char* kernel = membrane_ ? "chain_pass_membrane" : "chain_pass";
+  ChainSpecialization s = specialization();
+  s.PERSISTENT = 1;
+  persistent_ =
+      cloth.welded.empty() && runs_at_once<ChainConstants>(frame, kernel, s.by_number(), block_, all_groups());
+  if (persistent_) {
+    std::vector<ChainRange> ranges;
+    for (const Colour& f : colours_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
+    frame.add_buffer(BIND_CHAIN_COLOURS, "chain colours", ranges);
+    add_grid_barrier(frame);
+  }
+  s.PERSISTENT = persistent_ ? 1 : 0;
+  kernel_ = frame.add_kernel(stage, kernel, sizeof(ChainConstants), s.by_number(), block_);
+  if (cloth.welded.empty()) return;
+  std::vector<std::uint32_t> welds;
+  for (const std::uint32_t vertex : cloth.welded) {
+    welds.push_back(vertex);
+    welds.push_back(cloth.particle[vertex]);
+  }
+  welds_ = static_cast<std::uint32_t>(cloth.welded.size());
+  frame.add_buffer(BIND_WELDS, "welds", welds);
+  weld_ = frame.add_kernel(stage, "weld", 4);
+}
+
+void Chains::add_colours(const ChainCloth& cloth) {
+  const std::size_t n = scene_.cloth.vertex_count();
+  const std::vector<ChainColour> colours =
+      membrane_ ? std::vector<ChainColour>(1) : colours_of(edge_paths(scene_, cloth), n, block_);
+  for (std::size_t f = 0; f < colours.size(); ++f) {
+    const std::vector<ChainEntry> more = entries_of(colours[f], scene_, cloth, block_, f == 0);
+    const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(colours[f].longest() - 1));
+    const auto vertices =
+        std::count_if(more.begin(), more.end(), [](const ChainEntry& e) { return e.vertex != CHAIN_NO_VERTEX; });
+    colours_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds,
+                        static_cast<double>(vertices)});
+    entries_.insert(entries_.end(), more.begin(), more.end());
+  }
+}
+
+ChainSpecialization Chains::specialization() const {
+  ChainSpecialization s;
+  s.THREADS = block_;
+  s.TETHERS = tethers_;
+  if (scene_.needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
+  if (scene_.needs.has(Feature::Shear) || scene_.needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
+  if (limits_speed(scene_, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
+  if (bends_) s.FEATURES |= LINES_BEND;
+  if (uses_bdf2_) s.FEATURES |= LINES_BDF2;
+  if (tension_) s.FEATURES |= LINES_TENSION;
+  return s;
+}
+
+void Chains::add_bending() {
+  bends_ = scene_.needs.has(Feature::Bend);
+  if (!bends_) {
+    frame_.disable("bending", "the scene has no bending");
+    return;
+  }
+  const BendingMatrix K = bending_matrix(scene_);
+  max_per_s2_ = K.max_per_s2;
+  const SlicedRows<BendingEntry> table = bending_table(K);
+  row_entries_ = rows_of(table.slices);
+  frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
+  frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
+}
+
+void Chains::add_membrane() {
+  if (!membrane_) return;
+  max_per_s2_ += membrane_bound(scene_);
+  const SlicedRows<MembraneCorner> table = membrane_table(scene_);
+  row_corners_ = rows_of(table.slices);
+  frame_.add_buffer(BIND_MEMBRANE_SLICES, "triangle slices", table.slices);
+  frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.entries);
+}
+
+/// As many workgroups as the colour with the most blocks needs.
+vulkan::Groups Chains::all_groups() const {
+  std::uint32_t largest = 0;
+  for (const Colour& f : colours_) largest = std::max(largest, f.entries);
+  return vulkan::groups_for(largest, block_);
+}
+
+Traffic Chains::traffic(std::size_t colour, bool integrates) const {
+  const Colour& f = colours_[colour];
+  const double compensation = integrates ? 1 : 0, of_start = (uses_bdf2_ ? 64 : 32) * compensation;
+  return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.vertices,
+          (32 + of_start) * f.vertices};
+}
+
+/// The first iteration reads positions and no steps, and writes the right side, with triangles also positions; the last
+/// writes the state.
+Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const {
+  const auto n = static_cast<double>(scene_.cloth.vertex_count());
+  const bool last = iteration == iterations;
+  const double steps = iteration == 1 ? 0 : iteration == 2 ? 2 : 3;
+  const double slices = (bends_ ? 8 : 0) + (membrane_ ? 8 : 0);
+  const double corners = 3.0 * (membrane_ ? static_cast<double>(scene_.cloth.mesh->triangles.size()) : 0);
+  const double read = (16 + slices + 16 * steps + (last ? 16 : 0)) * n + 24 * row_entries_ + 48 * row_corners_ +
+                      (iteration == 1 ? 32 : 64) * corners;
+  const double found = membrane_ && iteration == 1 ? 16 * n : 0;
+  return {read, last ? 32 * n : 16 * n + found + (iteration == 1 ? 16 * n : 0)};
+}
+
+std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
+  std::vector<Traffic> all;
+  if (bends_ || membrane_) all.push_back(traffic(0, true));
+  for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
+  for (std::size_t f = 0; !membrane_ && f < colours_.size(); ++f)
+    all.push_back(traffic(f, f == 0 && !bends_ && !membrane_));
+  return all;
+}
+
+void Chains::record(int count, const TimeStep& step) {
+  auto c = step_constants<ChainConstants>(frame_, step);
+  c.per_force_scale = static_cast<float>(1 / step.force_scale);
+  c.colours = membrane_ ? 0 : static_cast<std::uint32_t>(colours_.size());
+  if (bends_ || membrane_) {
+    const double square = step.implicit_h_s * step.implicit_h_s * step.force_scale, largest = square * max_per_s2_;
+    c.bending_iterations = bending_iterations_now_ = bending_iterations(largest);
+    c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+    c.bending_step = static_cast<float>(square);
+    c.bending_gain = static_cast<float>(2 / (2 + largest));
+    c.bending_spread = static_cast<float>(largest / (2 + largest) * (largest / (2 + largest)) / 4);
+  }
+  const std::vector<Traffic> all = passes(c.bending_iterations);
+  const std::size_t first_colour = all.size() - c.colours;
+  if (persistent_) {
+    const vulkan::Groups groups = all_groups();
+    const double ranges = 16.0 * groups.x * groups.y * block_;
+    Traffic sum;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      sum = sum + (all[k] + Traffic{k == 0 || k >= first_colour ? ranges : 0, 0}) * count;
+    c.passes = static_cast<std::uint32_t>(all.size()) * static_cast<std::uint32_t>(count);
+    frame_.dispatch_groups(*kernel_, groups, c, sum);
+    return;
+  }
+  c.passes = 1;
+  for (int s = 0; s < count; ++s) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const Colour& colour = colours_[k < first_colour ? 0 : k - first_colour];
+      c.first_pass = static_cast<std::uint32_t>(k);
+      c.first_entry = colour.first_entry;
+      c.rounds = colour.rounds;
+      frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.entries, c, all[k]);
+    }
+    record_welds();
+  }
+}
+
+void Chains::record_second_solve(const TimeStep& step) {
+  auto c = step_constants<ChainConstants>(frame_, step);
+  c.per_force_scale = static_cast<float>(1 / step.force_scale);
+  c.colours = static_cast<std::uint32_t>(colours_.size());
+  c.again = 1;
+  c.bending_iterations = bending_iterations_now_;
+  const std::uint32_t before = bends_ || membrane_ ? 1 + bending_iterations_now_ : 0;
+  if (persistent_) {
+    Traffic sum;
+    const vulkan::Groups groups = all_groups();
+    for (std::size_t f = 0; f < colours_.size(); ++f)
+      sum = sum + traffic(f, false) + Traffic{16.0 * groups.x * groups.y * block_, 0};
+    c.first_pass = before;
+    c.passes = c.colours;
+    frame_.dispatch_groups(*kernel_, groups, c, sum);
+    return;
+  }
+  c.passes = 1;
+  for (std::size_t f = 0; f < colours_.size(); ++f) {
+    c.first_pass = before + static_cast<std::uint32_t>(f);
+    c.first_entry = colours_[f].first_entry;
+    c.rounds = colours_[f].rounds;
+    frame_.dispatch(*kernel_, colours_[f].entries, c, traffic(f, false));
+  }
+  record_welds();
+}
+
+void Chains::record_welds() {
+  if (weld_ != nullptr) frame_.dispatch(*weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
+}
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,60 @@
+#pragma once
+#include <vector>
+
+#include "common/frame_builder.hpp"
+#include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/time/integrator.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions); even grids have
+/// Lines. It takes one dispatch a colour and substep, or one in all where the device runs all workgroups at once. One
+/// iteration a substep. Bending of meshes is solved before the links of a substep, all at once; so are triangles of an
+/// elastic mesh, instead of its links.
+class Chains {
+ public:
+  /// Adds its stages, buffers and kernels. The buffers of the state must exist.
+  Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension, bool membrane);
+
+  /// Records `count` substeps, each a TimeStep.
+  void record(int count, const TimeStep&);
+  /// Records the colours once more after a substep's `record`, from where the vertices are.
+  void record_second_solve(const TimeStep&);
+
+  /// Puts welded vertices where those are that they are welded to; `record` ends with it.
+  void record_welds();
+  bool is_single_dispatch() const { return persistent_ && scene_.grips.vertices.empty(); }
+
+ private:
+  struct Colour {
+    std::uint32_t first_entry, entries, rounds;
+    double vertices;  ///< on its chains; the first colour has all vertices, with triangles it is the only one
+  };
+  void add_colours(const ChainCloth&);
+  void add_bending();
+  void add_membrane();
+  ChainSpecialization specialization() const;
+  Traffic traffic(std::size_t colour, bool integrates) const;
+  Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
+  /// Number and traffic of a substep's passes: one that integrates and the iterations of bending, if there are any,
+  /// then colours.
+  std::vector<Traffic> passes(std::uint32_t bending_iterations) const;
+  vulkan::Groups all_groups() const;
+
+  FrameBuilder& frame_;
+  const Scene& scene_;
+  const std::uint32_t block_;
+  const bool uses_bdf2_, tension_, membrane_;
+  std::uint32_t tethers_ = 0;
+  std::vector<Colour> colours_;
+  std::vector<ChainEntry> entries_;
+  bool persistent_ = false;
+  const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
+  std::uint32_t welds_ = 0;
+  bool bends_ = false;
+  std::uint32_t bending_iterations_now_ = 0;  ///< of the last recorded substep
+  double max_per_s2_ = 0;                     ///< at least the maximum eigenvalue of bending and triangles
+  double row_entries_ = 0, row_corners_ = 0;  ///< of all rows of bending and of triangles, with what pads them
+};
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clothbench/scene.hpp"
+#include "common/gpu_types.h"
+
+namespace clothbench::pbd_gpu {
+
+/// True if the links of a cloth are not all alike, so that chains (chain_pass) solve it instead of lines.
+bool needs_chain_solver(const Scene&);
+
+/// Factor on the substeps of an even cloth. Short links turn faster, by the square root of the ratio of lengths. The
+/// factor is 1 while the shortest link that is not welded has at least half of the mean length.
+double substeps_for_short_links(const Scene&);
+
+/// Particles and links of a chain cloth. Edges shorter than a fiftieth of the mean length are slivers, and the vertices
+/// at their ends are welded: so short a link turns by any angle within a substep of real-time length.
+struct ChainCloth {
+  std::vector<std::uint32_t> particle;  ///< one a vertex: itself, or the vertex that it is welded to
+  struct Link {
+    std::uint32_t a, b;  ///< particles, a < b, ascending
+    float rest_m, compliance_m_per_N;
+  };
+  std::vector<Link> links;
+  std::vector<std::uint32_t> welded;  ///< vertices whose particle is another vertex
+  const Link& link(std::uint32_t a, std::uint32_t b) const;
+};
+/// Vertices that hands hold are not welded, because each moves by itself.
+ChainCloth chain_cloth(const Scene&);
+
+/// A path of links [v0 v1], [v1 v2], ... that is best solved as a whole: a line of a grid, or edges of a mesh that
+/// continue as straight as its triangles allow.
+struct EdgePath {
+  std::vector<std::uint32_t> vertices;  ///< particles; a closed edge path ends with its first
+  int colour = -1;                      ///< wanted colour; -1: any
+  std::vector<float> share = {};        ///< of each link's stiffness; empty: 1
+};
+/// Strands of a cloth; every link is on exactly one, or on two that share its stiffness. The edge paths of a grid are
+/// its rows, columns and (with shear) both diagonals.
+std::vector<EdgePath> edge_paths(const Scene&, const ChainCloth&);
+
+/// One colour: chains that share no vertex.
+struct ChainColour {
+  std::vector<std::vector<std::uint32_t>> chains;  ///< each of at least two vertices and at most a block
+  std::vector<std::vector<float>> shares;          ///< of each chain's links, as in a edge path
+  std::uint32_t longest() const;                   ///< links of the longest chain
+};
+/// Cuts edge paths into chains and spreads them over few colours, without cutting much. Colours are in the order in
+/// which they are solved: the last colour has the edge paths to be solved last.
+std::vector<ChainColour> colours_of(std::vector<EdgePath> edge_paths, std::size_t vertices, std::uint32_t block);
+
+/// What a kernel reads of a colour: whole chains in blocks, padded with CHAIN_NO_VERTEX. `with_others` adds the
+/// vertices that are on no chain.
+std::vector<ChainEntry> entries_of(const ChainColour&, const Scene&, const ChainCloth&, std::uint32_t block,
+                                   bool with_others);
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,172 @@
+#include "xpbd/mesh/membrane.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/solver.hpp"
+#include "clothbench/vector.hpp"
+#include "xpbd/mesh/bending.hpp"
+#include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/time/integrator.hpp"
+#include "xpbd/time/substep_count.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+/// How far the trace of a deformed triangle's matrix may exceed that at rest, and the factor on the bound that covers
+/// any triangle within it, with the part of its tension that turns its edges.
+constexpr double kMaxTrace = 1.25, kRoom = 1.75;
+
+/// Most iterations per substep. A mesh that needs more is solved by chains.
+constexpr std::uint32_t kMaxIterations = 600;
+
+/// Unit vectors along the edges of a triangle at rest, in its plane.
+std::array<std::array<double, 2>, 3> directions(const std::array<Vec3, 3>& p) {
+  const Vec3 e = minus(p[1], p[0]), f = minus(p[2], p[0]);
+  const double l = norm(e), x = dot(e, f) / l, y = norm(cross(e, f)) / l;
+  const double second = std::hypot(x - l, y), third = std::hypot(x, y);
+  return {{{1, 0}, {(x - l) / second, y / second}, {-x / third, -y / third}}};
+}
+
+/// Norms of the 2 x 2 blocks that couple the corners of a triangle at rest.
+std::array<std::array<double, 3>, 3> block_norms(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
+  const auto g = directions(rest);
+  // The edges at corner c: number c leaves it, and number c + 2 arrives.
+  const auto stiffness = [&](std::size_t i, std::size_t j) {
+    return i == j ? k.along_N_m[i] : k.cross_N_m[(i + 1) % 3 == j ? i : j];
+  };
+  std::array<std::array<double, 3>, 3> out{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) {
+      double block[2][2] = {};
+      for (const auto& [i, sign_i] : {std::pair{a, -1}, {(a + 2) % 3, 1}})
+        for (const auto& [j, sign_j] : {std::pair{b, -1}, {(b + 2) % 3, 1}})
+          for (std::size_t r = 0; r < 2; ++r)
+            for (std::size_t c = 0; c < 2; ++c) block[r][c] += sign_i * sign_j * stiffness(i, j) * g[i][r] * g[j][c];
+      const double sum = block[0][0] * block[0][0] + block[0][1] * block[0][1] + block[1][0] * block[1][0] +
+                         block[1][1] * block[1][1],
+                   det = block[0][0] * block[1][1] - block[0][1] * block[1][0];
+      out[a][b] = std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * det * det))) / 2);
+    }
+  return out;
+}
+
+/// Trace of the triangle's matrix at rest: what the kernel keeps deformed ones near.
+double trace(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
+  const auto g = directions(rest);
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    sum += 2 * k.along_N_m[i] - 2 * k.cross_N_m[i] * (g[i][0] * g[j][0] + g[i][1] * g[j][1]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TriangleStiffness triangle_stiffness(const ClothMesh& mesh, std::size_t triangle, double Y_N_per_m) {
+  const std::array<Vec3, 3> p = rest_corners(mesh, triangle);
+  const double twice_area = norm(cross(minus(p[1], p[0]), minus(p[2], p[0])));
+  const double scale = 3.0 / 16 * Y_N_per_m / twice_area;
+  TriangleStiffness out{};
+  double cotangent[3];  // of the angle opposite the edge
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &from = p[(k + 2) % 3], a = minus(p[k], from), b = minus(p[(k + 1) % 3], from);
+    cotangent[k] = dot(a, b) / twice_area;
+    out.rest_m[k] = norm(minus(p[(k + 1) % 3], p[k]));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    out.along_N_m[k] = scale * out.rest_m[k] * out.rest_m[k] * (3 * cotangent[k] * cotangent[k] + 1);
+    out.cross_N_m[k] = scale * out.rest_m[k] * out.rest_m[next] * (3 * cotangent[k] * cotangent[next] - 1);
+  }
+  return out;
+}
+
+double membrane_bound(const Scene& scene) {
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  std::vector<std::array<std::array<double, 3>, 3>> norms;
+  const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    norms.push_back(block_norms(triangle_stiffness(mesh, t, Y[t].value()), rest_corners(mesh, t)));
+  return kRoom * eigenvalue_bound(vertex_masses(scene), [&](const auto& v, auto& to) {
+           std::fill(to.begin(), to.end(), 0.0);
+           for (std::size_t t = 0; t < norms.size(); ++t)
+             for (std::size_t a = 0; a < 3; ++a)
+               for (std::size_t b = 0; b < 3; ++b) to[mesh.triangles[t][a]] += norms[t][a][b] * v[mesh.triangles[t][b]];
+         });
+}
+
+FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("membrane", "auto");
+  if (!scene.cloth.mesh) return {false, "the cloth is a grid"};
+  if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (std::any_of(scene.material.regions.begin(), scene.material.regions.end(),
+                  [](const StiffnessRegion& r) { return !r.membrane_stiffness_N_per_m; }))
+    return {false, "a region of the cloth is inextensible"};
+  if (wanted == "never") return {false, "setting tuning.membrane=never"};
+  if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
+  if (wanted == "always") return {true, ""};
+  const int substeps = xpbd_substeps(scene, settings);
+  const double h = scene.time.dt() / substeps;
+  const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
+  if (!is_contact_free(scene))
+    return {false, "the cloth touches, and a frame would take " +
+                       std::to_string(wants * static_cast<std::uint32_t>(substeps)) + " iterations"};
+  if (wants > kMaxIterations)
+    return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +
+                       std::to_string(kMaxIterations) + " are taken"};
+  return {true, ""};
+}
+
+std::vector<BufferNeed> mesh_needs(const Scene& scene, bool membrane) {
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  const std::uint64_t n = mesh.vertices.size(), state = n * sizeof(vec4);
+  std::vector<BufferNeed> out;
+  for (const char* name : {"positions", "velocities", "position compensation", "velocity compensation"})
+    out.push_back({name, state});
+  out.push_back({"chain entries", (membrane ? n : std::max<std::uint64_t>(n, mesh.edges.size())) * sizeof(ChainEntry)});
+  const bool bends = scene.needs.has(Feature::Bend);
+  if (bends || membrane) out.push_back({"bending steps", (membrane ? 4 : 3) * state});
+  constexpr std::uint64_t kRow = 18;
+  if (bends) out.push_back({"bending entries", kRow * n * sizeof(BendingEntry)});
+  if (!membrane) return out;
+  std::vector<std::uint64_t> at(n, 0);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) ++at[v];
+  std::uint64_t corners = 0;
+  for (std::size_t begin = 0; begin < n; begin += BENDING_ROWS) {
+    const auto first = at.begin() + static_cast<std::ptrdiff_t>(begin);
+    corners +=
+        BENDING_ROWS * *std::max_element(first, first + std::min<std::ptrdiff_t>(BENDING_ROWS, at.end() - first));
+  }
+  out.push_back({"triangle corners", corners * sizeof(MembraneCorner)});
+  return out;
+}
+
+SlicedRows<MembraneCorner> membrane_table(const Scene& scene) {
+  const ClothMesh& mesh = *scene.cloth.mesh;
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  const std::vector<std::optional<double>> Y = triangle_stiffnesses(scene);
+  std::vector<std::vector<MembraneCorner>> at(n);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const TriangleStiffness k = triangle_stiffness(mesh, t, Y[t].value());
+    const auto largest = static_cast<float>(kMaxTrace * trace(k, rest_corners(mesh, t)));
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto of = [r](const double(&values)[3], std::size_t i) { return static_cast<float>(values[(r + i) % 3]); };
+      at[mesh.triangles[t][r]].push_back({mesh.triangles[t][(r + 1) % 3], mesh.triangles[t][(r + 2) % 3],
+                                          of(k.rest_m, 0), of(k.rest_m, 1), of(k.rest_m, 2), of(k.along_N_m, 0),
+                                          of(k.along_N_m, 1), of(k.along_N_m, 2), of(k.cross_N_m, 0),
+                                          of(k.cross_N_m, 1), of(k.cross_N_m, 2), largest});
+    }
+  }
+  return sliced<MembraneCorner>(
+      n, [&](std::uint32_t i) { return at[i].size(); },
+      [&](std::uint32_t i, std::uint32_t j) {
+        return i < n && j < at[i].size() ? at[i][j] : MembraneCorner{CHAIN_NO_VERTEX, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+      });
+}
+
+}  // namespace clothbench::pbd_gpu

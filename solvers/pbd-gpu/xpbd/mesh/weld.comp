@@ -1,0 +1,16 @@
+#version 450
+// Vertices that are welded to another go where it goes.
+#include "common/common.glsl"
+layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
+layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };
+layout(std430, binding = BIND_WELDS) readonly buffer Welds { uvec2 welds[]; };  // a vertex, and the one it follows
+layout(push_constant) uniform Push { uint count; };
+
+void main() {
+  uint i = item();
+  if (i >= count) return;
+  uvec2 w = LOAD(8u, welds, i);
+  vec4 here = LOAD16(x, w.y), speed = LOAD16(v, w.y);
+  STORE16(x, w.x, here);
+  STORE16(v, w.x, speed);
+}

@@ -1,0 +1,356 @@
+// XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019), every grid line solved at once.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/gpu_solver.hpp"
+#include "xpbd/constraints.hpp"
+#include "xpbd/contact/contact.hpp"
+#include "xpbd/fused/fused_frame.hpp"
+#include "xpbd/lines/grid_lines.hpp"
+#include "xpbd/lines/line_layout.hpp"
+#include "xpbd/mesh/chains.hpp"
+#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/time/integrator.hpp"
+#include "xpbd/time/substep_count.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+class Xpbd final : public GpuSolver {
+ public:
+  using GpuSolver::GpuSolver;
+
+  ContactDiagnostics contact_diagnostics() const override {
+    return contact_ ? contact_->diagnostics() : ContactDiagnostics{};
+  }
+
+  std::vector<SolverCount> counts() const override {
+    if (!contact_) return {};
+    const ContactDiagnostics f = contact_->diagnostics();
+    return {{"contact_infeasible", "vertices that were put at the nearest place, for none was before all their planes",
+             static_cast<double>(f.infeasible_vertices)},
+            {"contact_inside", "pairs that met at a substep's start", static_cast<double>(f.inside)},
+            {"contact_overflow", "pairs that the list had no place for", static_cast<double>(f.overflow),
+             "contact: the list of pairs had no place for all of them"}};
+  }
+
+  void reset() override {
+    GpuSolver::reset();
+    if (contact_) contact_->clear_diagnostics();
+    last_dt_s_ = 0;
+    controller_.reset();
+  }
+
+ private:
+  void build() override {
+    if (device_->shuffled_lanes() == 0)
+      throw Error("solver xpbd: this device has no subgroup shuffles in compute shaders (optional in Vulkan 1.1)");
+    // The slack of tethers is computed from the weight of an even sheet.
+    if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
+      override_setting("tethers", false, "masses are scaled");
+    if (needs_chain_solver(scene())) restrict_to_chains();
+    const FeatureDecision membrane = membrane_decision(scene(), settings());
+    if (scene().cloth.mesh) require_room(mesh_needs(scene(), membrane.enabled));
+    crumpled_ = starts_crumpled(scene());
+    std::vector<double> start = initial_positions(scene());
+    const bool chained = needs_chain_solver(scene());
+    const bool touches = !is_contact_free(scene());
+    if (touches && settings()["batch"] != 1)
+      throw Error("solver xpbd: setting batch: expected a scene in which the cloth touches nothing");
+    if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
+      disable(std::to_string(wanted) + " substeps",
+              "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
+                  " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
+    const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
+    if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
+      throw Error(fmt::format(
+          "solver xpbd: /cloth/mesh: vertex {} is on an edge shorter than a fiftieth of the mean; expected none in a "
+          "cloth that bends",
+          cloth.welded.front()));
+    const std::vector<float> w = welded(inverse_masses(scene()), cloth);
+    if (crumpled_) break_symmetry(scene(), w, start);
+    const std::vector<double> start_velocity = initial_velocities(scene());
+    const Vec3 origin = scene().cloth.center_m;
+    vec4s position, velocity;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      // Relative to the cloth's initial centre, so that a scene far from the world's origin loses no digits.
+      const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin[k]); };
+      const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
+      position.push_back({at(0), at(1), at(2), w[i]});
+      velocity.push_back({speed(0), speed(1), speed(2), 0});
+    }
+    const auto batch = settings()["batch"].get<std::size_t>();
+    const std::size_t one = position.size();
+    position.reserve(batch * one);
+    velocity.reserve(batch * one);
+    for (std::size_t i = one; i < batch * one; ++i) {
+      position.push_back(position[i - one]);
+      velocity.push_back(velocity[i - one]);
+    }
+    const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
+    const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
+    add_buffer(BIND_POSITION_COMPENSATION, "position compensation", x.bytes());
+    add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", v.bytes());
+    set_state(x, v, origin);
+    if (touches) add_colliders(origin, true);
+    add_grips(origin, 1);
+    add_history(position.size());
+    const FeatureDecision tension = tension_decision(scene(), settings());
+    if (!tension.enabled) disable("implicit tension", tension.reason);
+    if (!membrane.enabled && scene().cloth.mesh && scene().material.membrane_stiffness_N_per_m)
+      disable("triangles of constant strain",
+              membrane.reason + ": springs along edges take their place, and the sheet is softer than Y", "sheet_Y");
+    const FeatureDecision splitting_correction = splitting_correction_decision(scene(), settings());
+    const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
+    if (!splitting_correction.enabled)
+      disable("splitting correction", splitting_correction.reason, soft ? "sheet_Y" : "");
+    second_solve_ = touches && chained && !membrane.enabled && frame().tuning()["second_solve"] == "auto";
+    if (touches)
+      contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_);
+    if (chained)
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, uses_bdf2(), tension.enabled, membrane.enabled);
+    else
+      lines_ = std::make_unique<Lines>(frame(), scene(), uses_bdf2(), tension.enabled, splitting_correction.enabled);
+    if (touches && lines_) fused_frame_ = FusedFrame::make(frame(), *lines_, *contact_);
+    if (lines_ && !fused_frame_) lines_->add_kernels(touches);
+    if (touches && !fused_frame_) contact_->add_kernels();
+    // Friction of strips on edges needs all substeps even where they hardly move; so does a tangle, to come to rest.
+    // Where hands released the cloth, substeps that change make it snap.
+    const bool adapts = touches && !contact_->has_kinematic_shapes() && grips() == nullptr &&
+                        scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
+    controller_ = SubstepController(scene(), settings(), adapts);
+    recorded_substeps_ = controller_.substeps();
+    if (adapts) set_reads_back();
+    if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
+    const FeatureSet of_contact =
+        scene().needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
+    if ((scene().needs & kColliderFeatures).empty()) {
+      disable("contact", "the scene has no collider");
+    } else if (!touches) {
+      add_stage("ContactSubstep", of_contact);
+      disable("contact", "no collider is where the cloth can get in the scene's time");
+    }
+    if (!scene().needs.has(Feature::SelfCollision))
+      disable("self-contact", "the cloth of the scene does not touch itself");
+  }
+
+  /// What BDF2 goes on from: the state before the last substep.
+  void add_history(std::size_t particles) {
+    const FeatureDecision prediction = bdf2_decision(scene(), settings());
+    set_uses_bdf2(prediction.enabled);
+    if (!uses_bdf2()) {
+      disable("bdf2", prediction.reason);
+      return;
+    }
+    add_buffer(BIND_LAST_POSITIONS, "last positions", particles * sizeof(vec4));
+    add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
+  }
+
+  /// Rejects what chains do not support: batches, and bending of anything but meshes whose edges all are links.
+  void restrict_to_chains() const {
+    if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
+      throw Error(
+          "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
+          "neither; expected bending_rigidity_N_m 0");
+    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
+  }
+
+  /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
+  static std::vector<float> welded(std::vector<float> w, const ChainCloth& cloth) {
+    for (const std::uint32_t v : cloth.welded) {
+      float& of = w[cloth.particle[v]];
+      of = of > 0 && w[v] > 0 ? 1 / (1 / of + 1 / w[v]) : 0;
+    }
+    for (const std::uint32_t v : cloth.welded) w[v] = w[cloth.particle[v]];
+    return w;
+  }
+
+  int substeps_in(double dt_s) const { return in_frames(controller_.substeps(), dt_s); }
+
+  /// Of a frame that takes `by_rule` of them if it is as long as the scene's.
+  int in_frames(int by_rule, double dt_s) const {
+    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+  }
+
+  FusedFrame::Steps contact_free_steps(double dt_s) const {
+    const int substeps = std::min(substeps_in(dt_s), in_frames(contact_free_substeps(scene(), settings()), dt_s));
+    return {substeps, time_step(uses_bdf2(), dt_s / substeps, 0, scene().material.damping_per_s)};
+  }
+
+  bool update_substep_count(double dt_s) override {
+    if (!controller_.adapts()) return false;
+    const double max_displacement_m = contact_->read_max_displacement_m(fused_frame_ != nullptr),
+                 frame_s = scene().time.dt();
+    // The first frame has none before it.
+    const double cloth_m =
+        last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
+    last_dt_s_ = dt_s;
+    controller_.next(cloth_m);
+    // After a reset too what was recorded has the last frame's substeps.
+    return std::exchange(recorded_substeps_, controller_.substeps()) != controller_.substeps();
+  }
+
+  TimeStep time_step_of(double dt_s, double last_dt_s) const {
+    const double last_h = last_dt_s > 0 ? last_dt_s / substeps_in(last_dt_s) : 0;
+    return time_step(uses_bdf2(), dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
+  }
+
+  /// Substeps [first, first + count) in as few dispatches as the kernels allow.
+  void record_lines(int first, int count, int substeps, double dt_s, const TimeStep& step) {
+    if (count == 0) return;
+    if (lines_)
+      lines_->record(first, count, substeps, dt_s, step);
+    else
+      chains_->record(count, step);
+  }
+
+  void record_frame(double dt_s, double last_dt_s) override {
+    const int substeps = substeps_in(dt_s);
+    // The first substep differs where the last frame's were of another length, or where there was none.
+    const TimeStep start = time_step_of(dt_s, last_dt_s), step = time_step_of(dt_s, dt_s);
+    if (colliders() != nullptr) colliders()->record();
+    if (grips() != nullptr) grips()->record_upload();
+    if (contact_) contact_->record_shapes(dt_s, substeps);
+    if (fused_frame_) {
+      fused_frame_->record(dt_s, {substeps, step}, contact_free_steps(dt_s));
+      return;
+    }
+    if (contact_) contact_->record_list(dt_s, substeps);
+    if ((lines_ ? lines_->is_single_dispatch() : chains_->is_single_dispatch()) && !contact_) {
+      const int apart = uses_bdf2() && last_dt_s != dt_s ? 1 : 0;
+      record_lines(0, apart, substeps, dt_s, start);
+      record_lines(apart, substeps - apart, substeps, dt_s, step);
+      return;
+    }
+    for (int s = 0; s < substeps; ++s) {
+      // First, so that a released vertex is free in the frame in one dispatch.
+      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
+      if (contact_) contact_->record_before(s, substeps, dt_s);
+      record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
+      if (contact_)
+        contact_->record_after(s, substeps, dt_s, [&] {
+          if (second_solve_) chains_->record_second_solve(step);
+        });
+      if (contact_ && chains_) chains_->record_welds();
+    }
+  }
+
+  /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no
+  /// vertex is thrown. The substeps of 1 s are the most: in a longer frame the simulation itself has fallen behind.
+  int frames_in(double dt_s) const {
+    constexpr double kSlack = 1.25, kMax_s = 1;  // jitter is no hitch
+    const double frame = scene().time.dt();
+    if (!(dt_s > kSlack * frame)) return 1;
+    return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMax_s, frame)) / frame - 1e-9));
+  }
+
+  SubstepController controller_;
+  int recorded_substeps_ = 0;
+  double last_dt_s_ = 0;                       ///< of the last frame; 0: none
+  static constexpr int kCrumpledSubsteps = 4;  ///< factor; with less a tangle takes longer than 1 s
+
+  bool crumpled_ = false;
+  bool second_solve_ = false;       ///< chains, between the responses of contact
+  std::unique_ptr<Lines> lines_;    ///< if links are all alike
+  std::unique_ptr<Chains> chains_;  ///< else
+  std::unique_ptr<XpbdContact> contact_;
+  std::unique_ptr<FusedFrame> fused_frame_;  ///< lines and contact in one kernel, where it fits
+  const FrameKernel* move_grips_ = nullptr;
+};
+
+}  // namespace
+
+SolverInfo xpbd_info() {
+  SolverInfo info;
+  info.name = "xpbd";
+  info.folder = "solvers/pbd-gpu";
+  info.summary = "extended PBD in small steps: whole grid lines solved at once, tethers; bitwise repeatable";
+  info.version = "2";
+  info.precision = "float32";
+  info.time_order = 2;
+  info.on_gpu = true;
+  info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,         Feature::Damping,
+                   Feature::Pins,     Feature::MovingPins,  Feature::Sphere,       Feature::Box,
+                   Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
+                   Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
+                   Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
+  info.settings = {
+      {"quality", "\"default\"",
+       "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
+      {"substeps", "0", "substeps per frame; 0: by quality"},
+      {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
+      {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
+      {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.tuning = {
+      {"contact_frame", "\"auto\"",
+       "with contact, a frame in one dispatch in one dispatch: auto (on GPUs), always, never"},
+      {"contact_groups", "0",
+       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 96 or those of the "
+       "lines"},
+      {"contact_pairs", "0", "with contact, pairs that the list has place for; 0: by the cloth's primitives"},
+      {"device_barrier", "\"auto\"",
+       "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
+       "always, never"},
+      {"bdf2", "\"auto\"",
+       "where time_order 2 is on: auto (where it is safe), always (in every scene without contact)"},
+      {"tension", "\"auto\"",
+       "where links get implicit tension: auto (where it pays), always (in every scene without contact), never"},
+      {"splitting_correction", "\"auto\"",
+       "where diagonals are solved where columns and rows will put the vertices: auto (sheets whose modulus needs it), "
+       "always (in every elastic sheet without contact), never"},
+      {"membrane", "\"auto\"",
+       "where triangles of constant strain make an elastic mesh, instead of springs along its edges: auto (where "
+       "nothing is touched and 600 iterations per substep are enough), always, never"},
+      {"second_solve", "\"auto\"",
+       "with contact, whether chains are solved once more between the responses of a substep: auto (yes), never"},
+      {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
+      {"threads_a_group", "0", "of one colour's workgroups: 32 to 1024; 0: by line and device"},
+      {"lines_beside", "0",
+       "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
+       "and device"}};
+  return info;
+}
+
+std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
+  require_between("xpbd", settings, "substeps", 0, 4096);
+  require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
+  require_between("xpbd", settings, "time_order", 1, 2);
+  require_between("xpbd", settings, "batch", 1, 262144);
+  const nlohmann::json& tuning = settings[kTuning];
+  require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
+  require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
+  require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "bdf2", {"auto", "always"});
+  require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "splitting_correction", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "membrane", {"auto", "always", "never"});
+  require_one_of("xpbd", tuning, "second_solve", {"auto", "never"});
+  require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
+  require_between("xpbd", tuning, "contact_groups", 0, 1024);
+  require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
+  return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
+}
+
+/// The prediction alone, every substep: without forces inside the cloth it is the whole step.
+double xpbd_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
+  const int substeps = xpbd_substeps(scene, settings);
+  const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];
+  const double damping = scene.needs.has(Feature::Damping) ? scene.material.damping_per_s : 0;
+  const bool uses_bdf2 = bdf2_decision(scene, settings).enabled;
+  double v = scene.cloth.initial_velocity_m_per_s[1], x = 0, last_v = v, last_x = x;
+  for (long i = 0; i < static_cast<long>(frames) * substeps; ++i) {
+    const TimeStep step = time_step(uses_bdf2, h, i > 0 ? h : 0, damping);
+    const double from_v = v + step.history_weight * (v - last_v), from_x = x + step.history_weight * (x - last_x);
+    last_v = v;
+    last_x = x;
+    v = from_v + step.force_scale * g * step.implicit_h_s - step.damping_fraction * from_v;
+    x = from_x + v * step.implicit_h_s;
+  }
+  return x;
+}
+
+}  // namespace clothbench::pbd_gpu

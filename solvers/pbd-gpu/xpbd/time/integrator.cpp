@@ -1,0 +1,239 @@
+#include "xpbd/time/integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "clothbench/motion.hpp"
+#include "clothbench/solver.hpp"
+#include "clothbench/vector.hpp"
+#include "xpbd/constraints.hpp"
+#include "xpbd/lines/line_layout.hpp"
+#include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/time/substep_count.hpp"
+
+namespace clothbench::pbd_gpu {
+
+TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_per_s) {
+  if (!uses_bdf2) return {h_s, 0, -std::expm1(-damping_per_s * h_s), 1};
+  // BDF2 with variable steps is zero-stable below a ratio of 1 + sqrt(2) (Hairer, Norsett & Wanner, Solving Ordinary
+  // Differential Equations I, section III.5); above 2 the history says little, and the integration begins anew.
+  constexpr double kMaxRatio = 2;
+  const double ratio = last_h_s > 0 && h_s <= kMaxRatio * last_h_s ? h_s / last_h_s : 0;
+  const double h = ratio > 0 ? h_s * (1 + ratio) / (1 + 2 * ratio) : h_s;
+  const double force_scale = 1 / (1 + damping_per_s * h);
+  return {h, ratio * ratio / (1 + 2 * ratio), 1 - force_scale, force_scale};
+}
+
+namespace {
+
+std::string tuned(const nlohmann::json& settings, const char* member) {
+  return settings.value(kTuning, nlohmann::json::object()).value(member, "auto");
+}
+
+double distance_to_box(const Collider& c, const Vec3& from) {
+  Vec3 beyond{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    double along = 0;
+    for (std::size_t i = 0; i < 3; ++i) along += c.axes[k][i] * (from[i] - c.center_m[i]);
+    beyond[k] = std::max(0.0, std::abs(along) - c.half_extent_m[k]);
+  }
+  return norm(beyond);
+}
+
+double distance_to_vertices(const ColliderMesh& mesh, const Vec3& from) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    smallest = std::min(smallest, norm(minus(vertex_at(mesh.positions, v), from)));
+  return smallest;
+}
+
+/// Lower bound of the distance [m] from a point to a static collider.
+double distance_to(const Collider& c, const Vec3& from) {
+  const auto to = [&](const Vec3& p) { return norm(minus(p, from)); };
+  switch (c.shape) {
+    case Collider::Shape::Plane:
+      return (from[0] - c.center_m[0]) * c.normal[0] + (from[1] - c.center_m[1]) * c.normal[1] +
+             (from[2] - c.center_m[2]) * c.normal[2];
+    case Collider::Shape::Sphere:
+      return to(c.center_m) - c.radius_m;
+    case Collider::Shape::Box:
+      return distance_to_box(c, from);
+    case Collider::Shape::Mesh: {
+      // Every point of a triangle is nearer to its first corner than the triangle's longest side.
+      double smallest = std::numeric_limits<double>::infinity();
+      for (const auto& t : c.mesh->triangles) {
+        const auto corner = [&](std::size_t k) { return vertex_at(c.mesh->positions, t[k]); };
+        const Vec3 a = corner(0);
+        double side = 0;
+        for (const std::size_t k : {1u, 2u}) side = std::max(side, norm(minus(corner(k), a)));
+        smallest = std::min(smallest, to(a) - side);
+      }
+      return smallest;
+    }
+    case Collider::Shape::Capsules:
+      break;
+  }
+  return 0;
+}
+
+/// Distance [m] from the cloth's centre that no vertex leaves while nothing but gravity, its own links and what holds
+/// it act: where the farthest one starts, twice the cloth's diagonal, and the way of a fall at its first speed.
+double bound_m(const Scene& s) {
+  const Cloth& c = s.cloth;
+  const std::vector<double> x = initial_positions(s);
+  double start = 0;
+  for (std::size_t v = 0; v < c.vertex_count(); ++v) start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
+  const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
+  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
+  return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
+}
+
+/// True if inextensible lines may be pulled apart at their two ends: by attachments, or by pins too far apart. Pins
+/// that leave tethers their reach do not.
+bool may_be_pulled_apart(const Scene& scene) {
+  if (scene.material.membrane_stiffness_N_per_m || needs_chain_solver(scene) || !tethers_of(scene).to.empty())
+    return false;
+  const std::vector<std::uint8_t> over_constrained = over_constrained_lines(scene);
+  return std::any_of(over_constrained.begin(), over_constrained.end(), [](std::uint8_t t) { return t != 0; });
+}
+
+/// True if its lines share no links: nothing is left by one colour to another.
+bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
+
+/// True unless a stretch wave crosses more than kMaxOfCloth of an elastic cloth in a substep. Above, a horizontal
+/// sheet released by two corners gains up to seven times the energy that it gains under backward Euler, and below less
+/// (xpbd/time/README.md has the table). Inextensible cloth stores no energy in its links.
+bool resolves_waves(const Scene& scene, int substeps) {
+  constexpr double kMaxOfCloth = 0.6;
+  double largest = scene.material.membrane_stiffness_N_per_m.value_or(0), lightest = 1;
+  for (const StiffnessRegion& r : scene.material.regions)
+    largest = std::max(largest, r.membrane_stiffness_N_per_m.value_or(0));
+  for (const double factor : scene.cloth.mass_factors) lightest = std::min(lightest, factor);
+  const double h = scene.time.dt() / substeps,
+               speed = std::sqrt(largest / (lightest * scene.cloth.areal_density_kg_per_m2));
+  return h * speed <= kMaxOfCloth * std::max(scene.cloth.width_m, scene.cloth.height_m);
+}
+
+/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it takes. The maximum
+/// stretch of two-hand-stretch-10mps, whose hands double their distance, is 12 % above the converged one under BDF2 and
+/// 3 % under backward Euler; where they add a third to it BDF2 is not above backward Euler at any speed.
+bool is_pulled_far(const Scene& scene) {
+  constexpr double kMaxStrain = 0.5;
+  return !scene.grips.vertices.empty() && !(grip_strain(scene) <= kMaxStrain);
+}
+
+constexpr const char* kPulledFar =
+    "hands pull the sheet by more than half of their distance: its links would overshoot";
+
+}  // namespace
+
+bool is_held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
+
+bool is_contact_free(const Scene& scene) {
+  if (scene.needs.has(Feature::SelfCollision)) return false;
+  if (scene.colliders.empty()) return true;
+  if (!scene.jumps.empty()) return false;
+  const double reach = bound_m(scene);
+  return std::all_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) {
+    return !c.moves() && distance_to(c, scene.cloth.center_m) > reach + c.margin_m;
+  });
+}
+
+double impact_speed_m_per_s(const Scene& scene) {
+  if (is_held(scene) || scene.colliders.empty() || is_contact_free(scene)) return 0;
+  double fall_m = std::numeric_limits<double>::infinity();
+  for (const Collider& c : scene.colliders) {
+    if (c.moves()) return 0;
+    const Vec3& from = scene.cloth.center_m;
+    fall_m = std::min(fall_m, c.mesh ? distance_to_vertices(*c.mesh, from) : std::max(0.0, distance_to(c, from)));
+  }
+  return norm(scene.cloth.initial_velocity_m_per_s) + std::sqrt(2 * norm(scene.gravity_m_per_s2) * fall_m);
+}
+
+FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = tuned(settings, "tension");
+  if (membrane_decision(scene, settings).enabled)
+    return {true, ""};  // triangles are solved with theirs, whatever the setting
+  if (wanted == "never") return {false, "setting tuning.tension=never"};
+  if (!is_contact_free(scene)) return {false, "the cloth touches"};
+  if (wanted == "always") return {true, ""};
+  if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
+  if (!is_held(scene)) return {false, "nothing holds the cloth"};
+  if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())
+    return {false, "tethers hold the cloth, for less"};
+  if (is_strip(scene)) return {true, ""};
+  if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
+  if (is_pulled_far(scene)) return {false, kPulledFar};
+  if (!resolves_waves(scene, xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses the sheet in too few substeps: it would not come to rest"};
+  return {true, ""};
+}
+
+FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings) {
+  const std::string wanted = tuned(settings, "bdf2");
+  if (settings.value("time_order", 2) < 2 && wanted != "always") return {false, "setting time_order=1"};
+  if (!is_contact_free(scene)) return {false, "the cloth touches: a contact would rebound"};
+  if (wanted == "always") return {true, ""};
+  if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
+  if (!is_held(scene)) return {true, ""};
+  const int substeps = xpbd_substeps(scene, settings);
+  const bool tension = tension_decision(scene, settings).enabled;
+  if (!tension && may_be_pulled_apart(scene))
+    return {false, "inextensible lines may be pulled apart at both ends, and would be thrown farther"};
+  // A strip's links are one system and solved exactly; what a sheet's colours leave to one another is not.
+  if (is_strip(scene)) return {true, ""};
+  if (is_pulled_far(scene)) return {false, kPulledFar};
+  if (!resolves_waves(scene, substeps))
+    return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
+  // Tethers hold a grid, whose rows are solved last and whole; no colour that is solved last holds all of a mesh.
+  if (!tension && scene.needs.has(Feature::ClothMesh))
+    return {false, "a triangle mesh without implicit tension: single links would stretch far"};
+  if (!tension && !is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
+    return {false, "no tethers and fewer substeps than a third of the links: the cloth would be thrown"};
+  return {true, ""};
+}
+
+double substeps_for_splitting(const Scene& scene) {
+  // Squared, h'^2 Y / m: at 100 a patch of 65 x 17 vertices leaves its modulus within seconds, at 52 within a minute;
+  // at 47 it keeps it.
+  constexpr double kMaxCells = 6.9;
+  // Beyond the shorter side, what the colours keep of one another feeds oscillations.
+  constexpr double kMaxOfSide = 1.15;
+  const Cloth& c = scene.cloth;
+  const double way = 2.0 / 3 * scene.time.dt() *
+                     std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
+  return way / std::min(kMaxCells * std::min(c.du(), c.dv()), kMaxOfSide * std::min(c.width_m, c.height_m));
+}
+
+FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& settings) {
+  constexpr int kMinLinks = 4;
+  constexpr double kSquare = 0.05;
+  const std::string wanted = tuned(settings, "splitting_correction");
+  if (wanted == "never") return {false, "setting tuning.coupling=never"};
+  const Cloth& c = scene.cloth;
+  if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
+  if (needs_chain_solver(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
+  if (!is_contact_free(scene)) return {false, "the cloth touches"};
+  if (wanted == "always") return {true, ""};
+  if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
+  if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
+  if (!(std::abs(c.du() / c.dv() - 1) <= kSquare)) return {false, "cells are not square"};
+  if (std::min(c.columns, c.rows) <= kMinLinks) return {false, "fewer than four links across the cloth"};
+  return {true, ""};
+}
+
+FeatureDecision splitting_correction_decision(const Scene& scene, const nlohmann::json& settings) {
+  const FeatureDecision may = may_correct_splitting(scene, settings);
+  if (!may.enabled || tuned(settings, "splitting_correction") == "always") return may;
+  if (const FeatureDecision prediction = bdf2_decision(scene, settings); !prediction.enabled)
+    return {false, "first order in time: " + prediction.reason};
+  if (!(substeps_for_splitting(scene) <= xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses too many cells in a substep: the modulus of the sheet is below Y"};
+  return {true, ""};
+}
+
+}  // namespace clothbench::pbd_gpu

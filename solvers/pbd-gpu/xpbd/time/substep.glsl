@@ -1,0 +1,53 @@
+// What lines and chains do with a vertex in a substep, by the push constants `p` and the constant FEATURES of both.
+
+/// a + b = sum + rest exactly (Knuth's two-sum).
+void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
+  precise vec3 s = a + b;
+  precise vec3 part = s - a;
+  precise vec3 left = (a - (s - part)) + (b - part);
+  sum = s;
+  rest = left;
+}
+
+const bool kUsesBdf2 = (FEATURES & LINES_BDF2) != 0u;
+
+/// v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second the increments fall
+/// below the last bit of x and v, and plain sums would freeze or drift. `rest_`: what the last sums could not hold.
+/// `last_`: before the last substep, and then before this one. A prediction adds a fraction of what the last substep changed
+/// (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels from substep to substep).
+void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
+          inout vec3 last_position, inout vec3 last_velocity) {
+  vec3 gain = p.gravity_h.xyz, sum, rest, max_shape_displacement = vec3(0.0);
+  if (kUsesBdf2) {
+    vec3 change = p.history_weight * (velocity - last_velocity);
+    gain += change;
+    if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.damping_fraction * (velocity + change);
+    max_shape_displacement = p.history_weight * (position - last_position);
+    last_velocity = velocity;
+    last_position = position;
+  } else if ((FEATURES & LINES_DAMPING) != 0u) {
+    gain -= p.damping_fraction * velocity;
+  }
+  two_sum(velocity, gain + rest_velocity, sum, rest);
+  velocity = sum;
+  rest_velocity = rest;
+  vec3 way = p.h * sum + rest_position;
+  if (kUsesBdf2) way += max_shape_displacement;
+  two_sum(position, way, sum, rest);
+  position = sum;
+  rest_position = rest;
+}
+
+/// The displacement back to within `reach` of what a tether ends at; 0 where it is slack.
+vec3 tethered(vec3 position, vec3 end, float reach) {
+  vec3 e = position - end;
+  float square = dot(e, e);
+  return square > reach * reach ? e * (reach * inversesqrt(square) - 1.0) : vec3(0.0);
+}
+
+/// No vertex is faster than a fall across the cloth can make it: what a solve of few substeps throws, it does not keep.
+vec3 limited(vec3 velocity) {
+  float square = dot(velocity, velocity);
+  bool too_fast = (FEATURES & LINES_LIMIT_SPEED) != 0u && square > p.speed_limit * p.speed_limit;
+  return too_fast ? velocity * (p.speed_limit * inversesqrt(square)) : velocity;
+}

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "clothbench/scene.hpp"
+
+namespace clothbench::pbd_gpu {
+
+/// Every pair of a triangle of the cloth and a convex convex shape of a collider whose boxes meet in a frame, by force.
+struct PairCheck {
+  long pairs = 0;
+  long separated = 0;  ///< those that some plane parts at both ends of the frame, with the convex shape's radius
+};
+/// For solvers that move cloth and colliders in straight lines in a frame, as `xpbd` does with substeps=1: a plane that
+/// parts a pair at both ends then parts it in between. Convex shapes are capsules, spheres, and triangles (of boxes
+/// too); directions tried are those of the nearest points at both ends and 15 between them. In double, with no code of
+/// the solver's. Positions [m], three numbers a vertex.
+PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after,
+                      int frame);
+
+/// The same of the cloth's triangles with each other, those without a common vertex.
+PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after);
+
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,123 @@
+// Contact by planes in one dispatch: bit for bit the motion of one dispatch per pass, for every kind of collider, for
+// held vertices, by one workgroup and by many; and what it costs where no collider is active.
+#include <set>
+
+#include "contact_scenes.hpp"
+#include "runner/stage_check.hpp"
+#include "xpbd/contact/contact.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+constexpr int kSubsteps = 6;
+
+struct FrameRun {
+  ClothState end;
+  ContactDiagnostics diagnostics{};
+  long dispatches = 0;
+  std::set<std::string> kernels;
+  bool timed_out = false;
+};
+
+class FusedFrames : public Gpu {
+ protected:
+  /// In one dispatch of a workgroup, which lavapipe runs at once: it ends a thread's loops after 65535 rounds.
+  static FrameRun run(const Scene& s, const char* in_one, int frames, const char* barrier = "always", int groups = 1) {
+    const auto solver = make("xpbd", {{"substeps", kSubsteps},
+                                      {kTuning,
+                                       {{"contact_frame", in_one},
+                                        {"device_barrier", barrier},
+                                        {"contact_groups", groups},
+                                        {"threads_a_group", 512},
+                                        {"vertices_a_thread", 8}}}});
+    solver->load(s);
+    EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+    FrameRun r;
+    for (const StagePlan& stage : solver->plan().stages) r.dispatches += stage.dispatches;
+    for (const auto& recorded : solver->frame_program().recorded())
+      if (recorded.kernel != nullptr) r.kernels.insert(recorded.kernel->name());
+    for (int f = 0; f < frames && !r.timed_out; ++f)
+      r.timed_out = solver->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)}) == StepStatus::TimedOut;
+    solver->read_state(r.end);
+    r.diagnostics = solver->contact_diagnostics();
+    return r;
+  }
+
+  static void expect_same(const FrameRun& one, const FrameRun& many) {
+    EXPECT_EQ(one.end.position, many.end.position);
+    EXPECT_EQ(one.end.velocity, many.end.velocity);
+    EXPECT_EQ(one.diagnostics.returned, many.diagnostics.returned);
+    EXPECT_EQ(one.diagnostics.infeasible_vertices, many.diagnostics.infeasible_vertices);
+    EXPECT_EQ(one.diagnostics.inside, many.diagnostics.inside);
+    EXPECT_EQ(one.diagnostics.overflow, many.diagnostics.overflow);
+  }
+};
+
+/// A sheet that falls onto something in frames of the usual length.
+Scene falling(int columns, int rows, const Collider& collider) {
+  Scene s = with_damping(with_bending(with_collider(sheet(columns, rows), collider)));
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.center_m = {0, 0.2, 0};
+  s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+  return s;
+}
+
+Collider ground() {
+  Collider c = touching(Collider::Shape::Plane, kContactFriction);
+  c.center_m = {0, -0.05, 0};
+  c.normal = {0, 1, 0};
+  return c;
+}
+
+TEST_F(FusedFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
+  const std::vector<std::pair<std::string, Collider>> kinds = {
+      {"half-space", ground()},
+      {"sphere", sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)},
+      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
+      {"capsules", capsules({-0.1, 0.04, 0}, kContactFriction)},
+      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
+      {"hand", octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)},
+      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
+  // Compiling the kernel takes a CPU longer than running it: held vertices come with two of the kinds.
+  for (const auto& [name, collider] : kinds) {
+    const bool held = name == "sphere" || name == "hand";
+    SCOPED_TRACE(name);
+    Scene s = falling(17, 13, collider);
+    if (held)
+      s = moving(s, {0, 8}, 4);
+    else if (collider.moves())
+      s = moving(s);
+    const FrameRun one = run(s, "always", 10), many = run(s, "never", 10, "never");
+    expect_same(one, many);
+    // A half-space is never far: no kernel is there for frames without contact.
+    const int contact_free = name == "half-space" ? 0 : 1;
+    EXPECT_LE(one.dispatches, contact_free + (collider.mesh && collider.moves() ? 3 : collider.moves() ? 2 : 1));
+    EXPECT_GT(many.dispatches, kSubsteps * 8);
+  }
+}
+
+/// Frames in which convex shapes are active and a slow cloth meets none, then contact: the frames without it by one
+/// workgroup, and on larger cloth by many.
+TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
+  for (const int columns : {17, 33}) {
+    Scene s = falling(columns, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+    s.cloth.center_m = {0, 0.24, 0};
+    s.cloth.initial_velocity_m_per_s = {0, 0, 0};
+    const FrameRun phases = run(s, "never", 14, "never"), one = run(s, "always", 14);
+    expect_same(one, phases);
+    EXPECT_TRUE(one.kernels.contains(columns > 32 ? "fused_frame_contact_free" : "line_frame_contact_free"));
+    // It is held up, so that a frame that missed the collider would show.
+    s.colliders[0].center_m = {0, -9, 0};
+    EXPECT_NE(run(s, "never", 14, "never").end.position, phases.end.position);
+  }
+}
+
+TEST_F(FusedFrames, AreRefusedWhereTheyCannotBe) {
+  const Scene s = falling(33, 31, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
+  EXPECT_THROW(run(s, "always", 1, "never"), Error);
+  EXPECT_NO_THROW(run(s, "auto", 1, "never"));
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,156 @@
+// How lines are planned: tethers, taut lines, substeps, threads. No device.
+#include "xpbd/lines/line_layout.hpp"
+
+#include "gpu_fixture.hpp"
+#include "scenario/load.hpp"
+#include "xpbd/time/substep_count.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+Scene pinned(Scene s, std::vector<std::uint32_t> vertices) {
+  s.pins.vertices = std::move(vertices);
+  s.needs.add(Feature::Pins);
+  return s;
+}
+
+TEST(Tethers, GoToCornersEdgesAndClamps) {
+  const Scene s = sheet(9, 7);
+  using R = std::vector<PinnedRectangle>;
+  EXPECT_EQ(tethers_of(with_pins(s)).to, (R{{0, 0, 0, 0}, {8, 0, 8, 0}}));
+  EXPECT_EQ(tethers_of(pinned(s, edge_vertices(s.cloth, "u1"))).to, (R{{8, 0, 8, 6}}));
+  EXPECT_EQ(tethers_of(pinned(s, clamp_vertices(s.cloth, "v0"))).to, (R{{0, 0, 8, 1}}));
+  EXPECT_EQ(tethers_of(pinned(s, {0, 1, 9})).to, (R{{0, 0, 0, 0}})) << "an L fills no rectangle: one of its vertices";
+  EXPECT_EQ(tethers_of(pinned(s, {0, 2, 4, 6, 8, 62})).to.size(), Tethers::kMax);
+}
+
+TEST(Tethers, AreNoneWhereTheyWouldBeWrong) {
+  EXPECT_EQ(tethers_of(sheet(9, 7)).reason, "nothing is pinned");
+  Scene held = with_pins(sheet(9, 7));
+  held.grips.vertices = {30};
+  EXPECT_TRUE(tethers_of(held).to.empty());
+  EXPECT_FALSE(tethers_of(held).reason.empty());
+  Scene stretched = with_pins(sheet(9, 7));
+  stretched.cloth.axis_u = {1.07, 0, 0};
+  EXPECT_EQ(tethers_of(stretched).reason, "the cloth starts stretched");
+}
+
+TEST(TautLines, AreThoseStraightBetweenHeldVertices) {
+  Scene s = with_pins(sheet(9, 7));
+  std::vector<std::uint8_t> expected(36, 0);
+  expected[0] = 1;  // row 0
+  EXPECT_EQ(over_constrained_lines(s), expected);
+  s = pinned(s, {1, 31});  // (1, 0) and (4, 3): on the diagonal that begins at column 1
+  expected.assign(36, 0);
+  expected[18 + 1] = 1;
+  EXPECT_EQ(over_constrained_lines(s), expected);
+  s = pinned(s, edge_vertices(s.cloth, "u0"));
+  EXPECT_EQ(over_constrained_lines(s), std::vector<std::uint8_t>(36, 0))
+      << "vertices side by side leave no link between them";
+}
+
+TEST(Substeps, FollowTheRule) {
+  const auto of = [](const Scene& s, const char* quality) { return xpbd_substeps(s, {{"quality", quality}}); };
+  Scene hang = with_pins(sheet(32, 32));
+  EXPECT_EQ(of(hang, "default"), 5) << "soft: tethers with slack";
+  hang.material.membrane_stiffness_N_per_m.reset();
+  EXPECT_EQ(of(hang, "fast"), 2);
+  EXPECT_EQ(of(hang, "default"), 6);
+  EXPECT_EQ(of(hang, "accurate"), 20);
+  EXPECT_EQ(xpbd_substeps(hang, {{"quality", "fast"}, {"substeps", 7}}), 7);
+  EXPECT_EQ(xpbd_substeps(hang, {{"tethers", false}}), 10);
+  hang.time.frame_rate_hz = 36;
+  EXPECT_EQ(of(hang, "fast"), 2) << "as many a frame: a rule in seconds would tell similar scenes apart";
+  for (const auto& [n, fast] : {std::pair{64, 3}, {128, 5}, {256, 11}, {512, 26}, {1024, 51}}) {
+    Scene s = with_pins(sheet(n, 9));
+    s.material.membrane_stiffness_N_per_m.reset();
+    EXPECT_EQ(of(s, "fast"), fast);
+  }
+  EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
+}
+
+TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
+  const Scene fold = load_scene("contact/self-fold");
+  const nlohmann::json settings = nlohmann::json::object();
+  const int most = xpbd_substeps(fold, settings);
+  const double cell_m = fold.cloth.du();
+  SubstepController pace(fold, settings, true);
+  EXPECT_EQ(pace.substeps(), most) << "nothing is known of the first frame";
+  pace.next(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(pace.substeps(), most);
+  pace.next(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(pace.substeps(), most) << "nor where that is NaN";
+  std::vector<int> calm;
+  for (int f = 0; f < 24; ++f) {
+    pace.next(cell_m / 25);
+    calm.push_back(pace.substeps());
+  }
+  EXPECT_TRUE(std::is_sorted(calm.rbegin(), calm.rend()));
+  EXPECT_GE(calm.front(), std::lround(0.75 * most));
+  EXPECT_EQ(calm.back(), 6) << "a quarter of 24";
+  pace.next(cell_m / 7);
+  EXPECT_EQ(pace.substeps(), 6) << "not calm, and not yet fast";
+  pace.next(cell_m / 5);
+  EXPECT_EQ(pace.substeps(), 24);
+  pace.next(100 * cell_m);
+  EXPECT_EQ(pace.substeps(), most);
+  pace.next(0);
+  pace.reset();
+  EXPECT_EQ(pace.substeps(), most);
+  EXPECT_FALSE(SubstepController(fold, settings, false).adapts());
+  EXPECT_EQ(SubstepController(fold, {{"substeps", 7}}, false).substeps(), 7);
+}
+
+TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
+  Scene s = load_scene("paper/capsule-sweep");
+  const auto of = [&](double speed, const char* quality) {
+    Scene changed = s;
+    for (std::size_t f = 0; f < changed.motion.size(); ++f)
+      for (std::size_t k = 0; k < changed.colliders[0].capsules.size(); ++k) {
+        Capsule& c = changed.motion[f].colliders[0].capsules[k];
+        c = changed.colliders[0].capsules[k];
+        c.a_m[0] += speed * static_cast<double>(f) * s.time.dt();
+        c.b_m[0] += speed * static_cast<double>(f) * s.time.dt();
+      }
+    return xpbd_substeps(changed, {{"quality", quality}});
+  };
+  EXPECT_EQ(of(0.8, "default"), 5) << "31 links over 6: it goes 11 mm, by less than 4 mm in each";
+  EXPECT_EQ(of(5, "default"), 18);
+  EXPECT_EQ(of(7.5, "default"), 26) << "an eighth of a cell, which is more than a margin";
+  EXPECT_EQ(of(5, "fast"), 9);
+  EXPECT_EQ(of(100, "fast"), 16) << "the most";
+  EXPECT_EQ(of(100, "default"), 32) << "the most";
+  s.jumps = {{2, 1.0}};
+  for (std::size_t f = 0; f < s.motion.size(); ++f) {
+    s.motion[f].colliders[0].capsules = s.colliders[0].capsules;
+    if (f >= 2) s.motion[f].colliders[0].capsules[0].a_m[0] += 1;
+  }
+  EXPECT_EQ(xpbd_substeps(s, {{"quality", "default"}}), 5) << "a jump is no motion";
+}
+
+TEST(Shapes, FitDevices) {
+  const LineDevice lavapipe{8, 1024, 32768}, nvidia{32, 1024, 32768, true}, adreno{64, 256, 32768};
+  for (const LineDevice& d : {lavapipe, nvidia, adreno})
+    for (const int n : {2, 3, 7, 17, 32, 33, 64, 100, 129, 256, 512, 1000, 1024}) {
+      for (const LineShape& s : {frame_shape(n, 2, {}, d), frame_shape(n, n, {}, d), pass_shape(n, {}, d)}) {
+        if (s.threads == 0) {
+          EXPECT_GT(n, 32);
+          continue;
+        }
+        EXPECT_LE(s.threads, std::min(d.wide ? 1024u : 256u, d.max_threads));
+        EXPECT_GE(s.lanes * s.vertices, static_cast<std::uint32_t>(n));
+        EXPECT_EQ(s.lanes & (s.lanes - 1), 0u);
+        EXPECT_EQ(s.threads % (s.lanes * s.beside), 0u);
+        EXPECT_EQ(s.threads % std::min(d.subgroup, s.threads), 0u) << "whole subgroups";
+      }
+    }
+  EXPECT_EQ(frame_shape(32, 32, {}, nvidia).threads, 512u);
+  EXPECT_EQ(frame_shape(32, 32, {}, adreno).threads, 256u);
+  const LineShape wide = pass_shape(512, {}, nvidia);
+  EXPECT_EQ(wide.beside * wide.lanes, 512u);
+  EXPECT_EQ(pass_shape(64, {2, 128, 2}, nvidia).threads, 128u) << "requests are granted";
+  EXPECT_THROW(pass_shape(8193, {}, nvidia), Error);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

@@ -1,0 +1,191 @@
+// Contact of `xpbd` by planes: no pair of a triangle and a convex shape meets, at any step, checked by force; the same
+// bits again; friction; what a scene does not need is not there.
+#include <functional>
+#include <set>
+
+#include "contact_check.hpp"
+#include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
+#include "runner/stage_check.hpp"
+#include "runner/whole_run.hpp"
+#include "xpbd/contact/contact.hpp"
+#include "xpbd/lines/line_layout.hpp"
+#include "xpbd/time/substep_count.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+Collider half_space(Vec3 point, Vec3 normal, double friction) {
+  Collider c = touching(Collider::Shape::Plane, friction);
+  c.center_m = point;
+  c.normal = normal;
+  return c;
+}
+
+/// Instant k of a hand round (-1, 0, 0) that goes 10 mm an instant along x, its two joints turning against each other.
+void pose_hand(ColliderPose& pose, std::size_t k) {
+  for (std::size_t joint = 0; joint < pose.joints.size(); ++joint) {
+    const double way = 0.01 * static_cast<double>(k), turn = 0.002 * static_cast<double>(k) * (joint == 0 ? 1 : -1),
+                 cosine = std::cos(turn), sine = std::sin(turn);
+    pose.joints[joint] = {{{cosine, -sine, 0, way + cosine - 1}, {sine, cosine, 0, sine}, {0, 0, 1, 0}}};
+  }
+}
+
+/// A sheet that falls onto something; frames are steps, so that every one of them can be checked.
+Scene falling_in_steps(const Collider& collider, double steps_per_s) {
+  Scene s = with_collider(sheet(12, 10), collider);
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.center_m = {0, 0.26, 0};
+  s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
+  s.time = {steps_per_s, 0.2};
+  if (collider.moves()) s = moving(s);
+  for (std::size_t k = 0; collider.mesh && k < s.motion.size(); ++k) pose_hand(s.motion[k].colliders.at(0), k);
+  return s;
+}
+
+void expect_all_separated(std::unique_ptr<GpuSolver> solver, const Scene& s, const std::string& what) {
+  SCOPED_TRACE(what);
+  solver->load(s);
+  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
+  std::vector<double> before = initial_positions(s);
+  long pairs = 0;
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    const PairCheck check = check_pairs(s, before, state.position, f);
+    ASSERT_EQ(check.pairs, check.separated) << "step " << f;
+    pairs += check.pairs;
+    before = state.position;
+  }
+  EXPECT_GT(pairs, 0) << "something must come near for this to say anything";
+  const ContactDiagnostics diagnostics = solver->contact_diagnostics();
+  EXPECT_EQ(diagnostics.infeasible_vertices, 0u);
+  EXPECT_EQ(diagnostics.overflow, 0u);
+  EXPECT_EQ(diagnostics.inside, 0u);
+}
+
+class XpbdContacts : public Gpu {};
+
+TEST_F(XpbdContacts, PartEveryPairAtEveryStep) {
+  const std::vector<std::pair<std::string, Collider>> kinds = {
+      {"sphere", sphere({0.02, 0.04, 0.03}, 0.09, kContactFriction)},
+      {"box", box({0.03, 0.01, 0.01}, {0.3, 0.07, 0.2}, kContactFriction)},
+      {"capsules", capsules({-1, 0.04, 0}, kContactFriction)},
+      {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
+      {"hand", octahedron({-1, 0.017, 0.021}, 0.12, true, kContactFriction)},
+      {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
+  // A moving collider goes 10 mm a step: 5 and 12 m/s.
+  for (const double steps_per_s : {500.0, 1200.0})
+    for (const auto& [name, collider] : kinds) {
+      if (!collider.moves() && steps_per_s > 500) continue;
+      expect_all_separated(make("xpbd", {{"substeps", 1}}), falling_in_steps(collider, steps_per_s),
+                           name + " at " + std::to_string(steps_per_s));
+    }
+}
+
+/// A sheet slides on a slope by g (sin - friction cos) T^2 / 2, or is held, on `collider` of an angle.
+template <typename Make>
+void expect_coulomb_friction(Make make, const std::function<Collider(double angle)>& collider) {
+  const double friction = 0.5, g = 9.81, T = 0.5;
+  for (const double share : {0.98, 1.1}) {
+    const double angle = std::atan(share * friction), sine = std::sin(angle), cosine = std::cos(angle);
+    Collider slope = collider(angle);
+    slope.friction = friction;
+    Scene s = with_collider(sheet(5, 5, 0.4, 0.4), slope);
+    s.cloth.axis_u = {cosine, -sine, 0};
+    s.cloth.center_m = {0.02 * sine, 0.02 * cosine, 0};
+    const auto solver = make();
+    solver->load(s);
+    const ClothState state = after(*solver, s, 36);
+    const std::vector<double> start = initial_positions(s);
+    for (std::size_t i = 0; i < start.size(); i += 3) {
+      const double slid = cosine * (state.position[i] - start[i]) - sine * (state.position[i + 1] - start[i + 1]);
+      const double expected = std::max(0.0, 0.5 * g * (sine - friction * cosine) * T * T);
+      EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected)) << "tangent " << share << " of the friction";
+    }
+  }
+}
+
+TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
+  expect_coulomb_friction([] { return make("xpbd"); },
+                          [](double angle) {
+                            return half_space({0, 0, 0}, {std::sin(angle), std::cos(angle), 0}, 0);
+                          });
+}
+
+// The nearest points of a large face have lost the digits that tell its normal.
+TEST_F(XpbdContacts, HaveTheSameFrictionOnALargeBox) {
+  expect_coulomb_friction([] { return make("xpbd"); },
+                          [](double angle) {
+                            Collider box = touching(Collider::Shape::Box, 0);
+                            const double sine = std::sin(angle), cosine = std::cos(angle);
+                            box.half_extent_m = {2, 1, 1};
+                            box.axes = {{{cosine, -sine, 0}, {sine, cosine, 0}, {0, 0, 1}}};
+                            box.center_m = {-sine, -cosine, 0};
+                            return box;
+                          });
+}
+
+Scene of_every_kind() {
+  Scene s = everything(with_pins(sheet(17, 13)));
+  s.cloth.sides = Sides::Double;
+  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
+  s.needs.add(Feature::DoubleSided);
+  s = with_collider(s, half_space({0, -0.2, 0}, {0, 1, 0}, kContactFriction));
+  s.motion.clear();
+  return moving(s);
+}
+
+TEST_F(XpbdContacts, RepeatBitForBit) {
+  const Scene s = of_every_kind();
+  const auto one = make("xpbd"), two = make("xpbd");
+  one->load(s);
+  two->load(s);
+  EXPECT_EQ(check_stages(s, one->info(), one->plan()), "");
+  const ClothState a = after(*one, s, 12), b = after(*two, s, 12);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  one->reset();
+  const ClothState again = after(*one, s, 12);
+  EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
+}
+
+/// A list that is too short cuts the reach, and what it then has no place for makes the run an error.
+TEST_F(XpbdContacts, DropNoPairInSilence) {
+  Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);
+  const SolverEntry& entry = find_solver("xpbd");
+  for (const auto& [places, overflow] : {std::pair{0, false}, {3, true}}) {
+    nlohmann::json settings = {{"substeps", 2}};
+    settings[kTuning]["contact_pairs"] = places;
+    RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
+    const RunRecord run = whole_run(spec, {});
+    EXPECT_EQ(run.outcome.status, overflow ? "error" : "ok") << run.outcome.message;
+    const auto series = std::find_if(run.accuracy.metrics.begin(), run.accuracy.metrics.end(),
+                                     [](const MetricSeries& m) { return m.name == "contact_overflow"; });
+    ASSERT_NE(series, run.accuracy.metrics.end());
+    ASSERT_EQ(series->values.size(), run.accuracy.time_s.size());
+    EXPECT_EQ(series->values.back() > 0, overflow);
+    if (!overflow) continue;
+    EXPECT_NE(run.outcome.message.find("list of pairs"), std::string::npos) << run.outcome.message;
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame)], series->values.back());
+    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame) - 1], 0);
+  }
+}
+
+TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
+  // It lies at the end, with few substeps, and falls at the start.
+  Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  const auto solver = make("xpbd");
+  solver->load(s);
+  ClothState ends[2];
+  for (ClothState& end : ends) {
+    for (int f = 0; f < s.time.frames(); ++f) end = after_frame(*solver, s, f);
+    solver->reset();
+  }
+  EXPECT_EQ(ends[0].position, ends[1].position) << "by the frame that the last one of the run before had recorded";
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu

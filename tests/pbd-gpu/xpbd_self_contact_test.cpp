@@ -1,0 +1,192 @@
+// Contact of the cloth with itself by planes: against double precision over all pairs, certified at every step, the
+// same bits again, with a collider and without one.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact_check.hpp"
+#include "contact_scenes.hpp"
+#include "mesh_scene.hpp"
+#include "metrics/contact/contour.hpp"
+#include "runner/solver_run.hpp"
+#include "scenario/load.hpp"
+
+namespace clothbench::pbd_gpu {
+namespace {
+
+nlohmann::json with(int substeps) { return {{"substeps", substeps}}; }
+
+Collider floor_below(double friction = kContactFriction) {
+  Collider c = touching(Collider::Shape::Plane, friction);
+  c.center_m = {0, -0.25, 0};
+  c.normal = {0, 1, 0};
+  return c;
+}
+
+/// A fold that falls on the floor and on itself, nothing quite parallel.
+Scene fold_on_floor(int columns = 13, int rows = 7) {
+  Scene s = with_collider(folded(sheet(columns, rows), 0.12, kContactFriction), floor_below());
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.start.noise_m = 0.004;
+  s.cloth.initial_velocity_m_per_s = {0.3, -3, 0.2};
+  return s;
+}
+
+class SelfContacts : public Gpu {};
+
+void expect_all_separated(GpuSolver& solver, const Scene& s) {
+  solver.load(s);
+  EXPECT_EQ(check_stages(s, solver.info(), solver.plan()), "");
+  std::vector<double> before = initial_positions(s);
+  long pairs = 0;
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const ClothState state = after_frame(solver, s, f);
+    const PairCheck own = check_self_pairs(s, before, state.position),
+                    shapes = check_pairs(s, before, state.position, f);
+    ASSERT_EQ(own.pairs, own.separated) << "step " << f;
+    ASSERT_EQ(shapes.pairs, shapes.separated) << "step " << f;
+    pairs += own.pairs;
+    before = state.position;
+  }
+  EXPECT_GT(pairs, 1000) << "something must come near for this to say anything";
+  const ContactDiagnostics diagnostics = solver.contact_diagnostics();
+  EXPECT_EQ(diagnostics.infeasible_vertices, 0u);
+  EXPECT_EQ(diagnostics.overflow, 0u);
+  EXPECT_EQ(diagnostics.inside, 0u);
+}
+
+/// Frames are steps, so that every one of them can be checked.
+TEST_F(SelfContacts, PartEveryPairAtEveryStep) {
+  Scene s = fold_on_floor();
+  s.time = {500, 0.2};
+  expect_all_separated(*make("xpbd", with(1)), s);
+}
+
+TEST_F(SelfContacts, PartEveryPairOfATriangleMesh) {
+  Scene s = with_collider(mesh_sheet(8), sphere({0.02, -0.72, 0.05}, 0.1, kContactFriction));
+  s.pins.vertices.clear();
+  s.needs = s.needs - FeatureSet{Feature::Pins};
+  s.cloth.sides = Sides::Double;
+  s.needs.add(Feature::DoubleSided);
+  s.cloth.self_collision = {0.01, kContactFriction};
+  s.needs.add(Feature::SelfCollision);
+  s.cloth.initial_velocity_m_per_s = {0.1, -4, 0.2};
+  s.time = {400, 0.25};
+  expect_all_separated(*make("xpbd", with(1)), s);
+}
+
+TEST_F(SelfContacts, WithoutThemTheFoldPassesItself) {
+  Scene s = fold_on_floor();
+  s.cloth.self_collision = {};
+  s.needs = s.needs - FeatureSet{Feature::SelfCollision};
+  s.time = {500, 0.2};
+  const auto solver = make("xpbd", with(1));
+  solver->load(s);
+  std::vector<double> before = initial_positions(s);
+  long crossed = 0;
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    const PairCheck own = check_self_pairs(s, before, state.position);
+    crossed += own.pairs - own.separated;
+    before = state.position;
+  }
+  EXPECT_GT(crossed, 0);
+}
+
+TEST_F(SelfContacts, RepeatBitForBit) {
+  const Scene s = fold_on_floor();
+  const auto one = make("xpbd"), two = make("xpbd");
+  one->load(s);
+  two->load(s);
+  const ClothState a = after(*one, s, 8), b = after(*two, s, 8);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  one->reset();
+  EXPECT_EQ(after(*one, s, 8).position, a.position);
+}
+
+long crossings(const Scene& s, const ClothState& state) {
+  const auto all = triangles(s.cloth);
+  return contact::self_contour({state.position, all}).pairs;
+}
+
+/// The leg of a folded sheet that ends with its last column, and half of the bow, is held; the other comes at `speed`.
+Scene closing(double speed, double friction = 0) {
+  Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);
+  const int columns = s.cloth.columns;
+  for (std::uint32_t v = 0; v < s.cloth.vertex_count(); ++v)
+    if (static_cast<int>(v) % columns >= columns / 2) s.pins.vertices.push_back(v);
+  s.needs.add(Feature::Pins);
+  s.gravity_m_per_s2 = {};
+  const std::vector<double> x = initial_positions(s);
+  const double held = x[3 * static_cast<std::size_t>(columns - 1) + 1], free = x[1];
+  s.cloth.initial_velocity_m_per_s = {0, held > free ? speed : -speed, 0};
+  return s;
+}
+
+/// Least distance of the outer vertices of the free leg from the held one, which lie along y.
+double layers_apart(const Scene& s, const ClothState& state) {
+  const std::size_t columns = static_cast<std::size_t>(s.cloth.columns);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < s.cloth.vertex_count(); v += columns)
+    least = std::min(least, std::abs(state.position[3 * (v + columns - 1) + 1] - state.position[3 * v + 1]));
+  return least;
+}
+
+class ClosingLayers : public Gpu, public ::testing::WithParamInterface<double> {};
+INSTANTIATE_TEST_SUITE_P(Speeds, ClosingLayers, ::testing::Values(0.2, 1.0, 5.0, 20.0),
+                         [](const auto& i) { return "mm_per_s_" + std::to_string(std::lround(1000 * i.param)); });
+
+TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
+  const Scene s = closing(GetParam());
+  const auto solver = make("xpbd");
+  solver->load(s);
+  EXPECT_EQ(check_stages(s, xpbd_info(), solver->plan()), "");
+  double least = std::numeric_limits<double>::infinity(), fastest = 0;
+  const int frames = std::max(24, static_cast<int>(std::lround(0.1 / GetParam() * 72)));
+  for (int f = 0; f < frames; ++f) {
+    const ClothState state = after_frame(*solver, s, f);
+    ASSERT_EQ(crossings(s, state), 0) << "frame " << f;
+    least = std::min(least, layers_apart(s, state));
+    if (f > frames / 2)
+      for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v)
+        fastest =
+            std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
+  }
+  // Of a fast one, what is seen at a frame's end is how it comes back from the stretched bow.
+  if (GetParam() <= 5) {
+    EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "they must have met for this to say anything";
+  }
+  EXPECT_LT(fastest, GetParam()) << "what met does not bounce";
+}
+
+TEST_F(ClosingLayers, FrictionHoldsALayerThatSlidesOnAnother) {
+  // Pressed on by gravity, it slides on the layer below at 0.5 m/s, which v^2 / (2 mu g) stops after 26 mm.
+  double way[2];
+  for (const int k : {0, 1}) {
+    Scene s = closing(0, k == 0 ? 0 : 0.5);
+    s.material.shear = false;  // of strips, so that a layer may slide sideways
+    s.needs = s.needs - FeatureSet{Feature::Shear};
+    const std::vector<double> x = initial_positions(s);
+    const std::size_t free_end = 0, held_end = static_cast<std::size_t>(s.cloth.columns - 1);
+    s.gravity_m_per_s2 = {0, x[3 * held_end + 1] > x[3 * free_end + 1] ? 9.81 : -9.81, 0};
+    const auto solver = make("xpbd");
+    solver->load(s);
+    // Down first; then a push along z.
+    ClothState state;
+    for (int f = 0; f < 36; ++f) state = after_frame(*solver, s, f);
+    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v)
+      if (static_cast<int>(v) % s.cloth.columns < s.cloth.columns / 4) state.velocity[3 * v + 2] += 0.5;
+    const std::vector<double> before = state.position;
+    ASSERT_TRUE(solver->restart(state));
+    for (int f = 36; f < 54; ++f) state = after_frame(*solver, s, f);
+    EXPECT_EQ(crossings(s, state), 0);
+    way[k] = state.position[2] - before[2];
+  }
+  EXPECT_GT(way[0], 0.06);
+  EXPECT_LT(way[1], 0.04);
+}
+
+}  // namespace
+}  // namespace clothbench::pbd_gpu
