@@ -11,7 +11,7 @@ namespace {
 
 /// Pairs that the list has place for: the lists of heaps and desks are a third of it, and where it does not suffice the
 /// vertices' reach is cut.
-constexpr std::uint32_t kPairsAnElement = 64, kLeastPairs = 1u << 16, kMostPairs = 1u << 20;
+constexpr std::uint32_t kPairsAnElement = 64, kLeastPairs = 1u << 16, kMostPairs = 1u << 20, kAllPairs = 1u << 18;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
 /// Lanes that share a vertex: the parts of the sum in plane_gather.glsl.
 constexpr std::uint32_t kMostTeam = 8;
@@ -71,7 +71,12 @@ void PlaneContact::add_elements(const std::vector<std::uint32_t>& particle) {
   for (const auto& fan : fans) all.insert(all.end(), fan.begin(), fan.end());
   const auto count = static_cast<std::uint32_t>(elements.size());
   capacity_ = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
-  if (capacity_ == 0) capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
+  if (capacity_ == 0) {
+    // A long oblique triangle has a box that meets much of the cloth, so small scenes get a list of all their pairs.
+    const std::uint64_t all_pairs = std::uint64_t{count} * pieces_;
+    capacity_ = std::clamp(kPairsAnElement * count, kLeastPairs, kMostPairs);
+    capacity_ = std::max(capacity_, static_cast<std::uint32_t>(std::min<std::uint64_t>(all_pairs, kAllPairs)));
+  }
   frame_.add_buffer(BIND_ELEMENTS, "contact elements", elements);
   frame_.add_buffer(BIND_FANS, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
