@@ -127,7 +127,7 @@ struct PaperContactConstants {
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                // g h keep [m/s]
+  vec4 gravity_h;                // g h keep [m/s]; w: tether_spread_m
   float h;                       // implicit step, h' of TimeStep [s]
   float damping_fraction;        // of velocity by damping
   float speed_limit;             // [m/s]
@@ -198,7 +198,7 @@ struct MembraneCorner {
 
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
-  vec4 gravity_h;          // g h keep [m/s]
+  vec4 gravity_h;          // g h keep [m/s]; w: tether_spread_m
   float h;                 // implicit step, h' of TimeStep [s]
   float damping_fraction;  // of velocity by damping
   float speed_limit;       // [m/s]

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -36,6 +37,13 @@ double tether_stretch(const Scene& scene) {
 /// Through a grid at rest, from a vertex to one that is u and v away along the grid [m].
 double way_through(const Scene& s, double u, double v) {
   return s.needs.has(Feature::Shear) ? std::hypot(u, v) : u + v;
+}
+
+/// Extra length [m] of a tether, for a vertex at distance r through the cloth from pins that span `width`: five times
+/// the elongation of a sheet around a small group of pins, which carries all of its weight (force M g spread over r).
+double spread_slack_m(const Scene& s, double width, double r) {
+  const double scale = tether_spread_m(s);
+  return scale > 0 ? scale * std::log1p(r / width) : 0;
 }
 
 constexpr const char* kStartsStretched = "the cloth starts stretched";
@@ -161,6 +169,9 @@ class Reach {
     return out;
   }
 
+  /// Straight distance at rest [m].
+  double between(std::uint32_t a, std::uint32_t b) const { return straight(a, b); }
+
  private:
   double straight(std::uint32_t a, std::uint32_t b) const {
     const Cloth& c = scene_.cloth;
@@ -223,6 +234,13 @@ double eigenvalue_bound(const std::vector<double>& mass,
   return largest;
 }
 
+double tether_spread_m(const Scene& scene) {
+  const auto Y = scene.material.membrane_stiffness_N_per_m;
+  if (!Y) return 0;
+  const std::vector<double> masses = vertex_masses(scene);
+  return 5 * std::accumulate(masses.begin(), masses.end(), 0.0) * norm(scene.gravity_m_per_s2) / *Y;
+}
+
 Tethers tethers_of(const Scene& scene, bool wanted) {
   Tethers t;
   t.reason = why_no_tethers(scene, wanted);
@@ -255,13 +273,20 @@ TetherTable tether_table(const Scene& scene, bool wanted) {
   const std::vector<double> x = initial_positions(scene);
   t.a_vertex = static_cast<std::uint32_t>(groups.size());
   t.ends.resize(n * groups.size());
+  std::vector<double> widths;
+  for (const auto& group : groups) {
+    double width = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
+    for (const std::uint32_t a : group) width = std::max(width, reach.between(group.front(), a));
+    widths.push_back(width);
+  }
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::vector<TetherEnd> ends = reach.to(groups[g]);
     for (std::size_t v = 0; v < n; ++v) {
       TetherEnd e = ends[v];
       if (e.reach >= 0 && !starts_within(scene, x, v, e.to, stretch * static_cast<double>(e.reach)))
         return {0, {}, kStartsStretched};
-      e.reach *= static_cast<float>(stretch);
+      if (e.reach >= 0)
+        e.reach += static_cast<float>((stretch - 1) * e.reach + spread_slack_m(scene, widths[g], e.reach));
       t.ends[groups.size() * v + g] = e;
     }
   }

@@ -66,7 +66,9 @@ struct Tethers {
 };
 /// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less: an
 /// inextensible cloth, or one whose springs stretch far less than the slack, 5 rho g L / Y for its own weight and
-/// 2 v0 / c for its speed. `wanted`: by the settings.
+/// 2 v0 / c for its speed. The reach of elastic cloth grows by two more lengths, so that tethers carry no load at rest:
+/// how far a substep's prediction falls, and `tether_spread_m` log(1 + r/w) at r from pins that span w. `wanted`: by the
+/// settings.
 Tethers tethers_of(const Scene&, bool wanted = true);
 
 /// The same vertex by vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
@@ -78,6 +80,9 @@ struct TetherTable {
 /// In a grid or a flat mesh with a convex border, reach is the distance at rest. Else it is the path length along
 /// edges, which is longer than that through triangles, so these tethers are a little looser.
 TetherTable tether_table(const Scene&, bool wanted = true);
+
+/// 5 M g / Y [m]: five times the elongation scale of a sheet that hangs from a few vertices; 0 if inextensible.
+double tether_spread_m(const Scene&);
 
 /// True if tethers keep every vertex within reach of pinned ones.
 bool is_tethered(const Scene&, const nlohmann::json& settings);

@@ -31,7 +31,7 @@ Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
   const Vec3 g = s.gravity_m_per_s2;
   const auto f = [](double value) { return static_cast<float>(value); };
   Constants c{};
-  c.gravity_h = {f(g[0] * gain), f(g[1] * gain), f(g[2] * gain), 0};
+  c.gravity_h = {f(g[0] * gain), f(g[1] * gain), f(g[2] * gain), f(tether_spread_m(s))};
   c.h = f(h);
   c.damping_fraction = f(step.damping_fraction);
   c.history_weight = f(step.history_weight);

@@ -14,6 +14,7 @@ namespace {
 /// Pairs that the list has place for: the lists of heaps and desks are a third of it, and where it does not suffice the
 /// vertices' motion bounds is cut.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
+constexpr std::uint64_t kAllPairs = 1u << 18;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
 /// Lanes that share a vertex: the parts of the sum in contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
@@ -75,7 +76,11 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
   for (const auto& fan : vertex_triangles) all.insert(all.end(), fan.begin(), fan.end());
   const auto count = static_cast<std::uint32_t>(primitives.size());
   capacity_ = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
-  if (capacity_ == 0) capacity_ = std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs);
+  if (capacity_ == 0) {
+    // The AABB of a long oblique triangle overlaps much of the cloth, so small scenes get a list of all their pairs.
+    const auto all_pairs = static_cast<std::uint32_t>(std::min(std::uint64_t{count} * shapes_, kAllPairs));
+    capacity_ = std::max(std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs), all_pairs);
+  }
   frame_.add_buffer(BIND_PRIMITIVES, "contact primitives", primitives);
   frame_.add_buffer(BIND_VERTEX_TRIANGLES, "contact fans", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));

@@ -11,10 +11,15 @@ uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
 }
 
-/// Without shear stiffness the cloth reaches along warp and weft only.
-float reach_of(uvec2 at, uvec2 to) {
-  vec2 across = abs(vec2(ivec2(at) - ivec2(to))) * vec2(p.rest_u, p.rest_v);
-  return p.tether_stretch * (kShears ? length(across) : across.x + across.y);
+/// Without shear stiffness the cloth reaches only along warp and weft. `first`, `last`: the pinned rectangle, whose longer
+/// side, but at least one cell, is the width of its support.
+float reach_of(uvec2 at, uvec2 to, uint first, uint last) {
+  vec2 rest = vec2(p.rest_u, p.rest_v), across = abs(vec2(ivec2(at) - ivec2(to))) * rest;
+  float r = kShears ? length(across) : across.x + across.y, reach = p.tether_stretch * r;
+  if (p.gravity_h.w == 0.0) return reach;
+  vec2 span = vec2(ivec2(last & 0xffffu, last >> 16u) - ivec2(first & 0xffffu, first >> 16u)) * rest;
+  float width = max(max(span.x, span.y), max(rest.x, rest.y));
+  return reach + prediction_fall() + p.gravity_h.w * log(1.0 + r / width);
 }
 
 void integrate() {
@@ -27,8 +32,10 @@ void integrate() {
     if (TETHERS > 2u) end[2] = anchor(to[2] = nearest(at, TETHER_2, TETHER_2_LAST), k);
     if (TETHERS > 3u) end[3] = anchor(to[3] = nearest(at, TETHER_3, TETHER_3_LAST), k);
     if (w[k] > 0.0) fall(pos[k], vel[k], rest_pos[k], rest_vel[k], last_pos[k], last_vel[k]);
+    const uint first[4] = uint[4](TETHER_0, TETHER_1, TETHER_2, TETHER_3),
+               last[4] = uint[4](TETHER_0_LAST, TETHER_1_LAST, TETHER_2_LAST, TETHER_3_LAST);
     [[unroll]] for (uint t = 0u; t < 4u; ++t)
-      if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t])));
+      if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t], first[t], last[t])));
   }
 }
 

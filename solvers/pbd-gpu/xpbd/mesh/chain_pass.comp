@@ -44,7 +44,7 @@ void integrate(uint i) {
     COUNT_READ(24u)
     TetherEnd end = tether_ends[TETHERS * i + t];
     if (end.reach < 0.0) continue;
-    vec3 back = tethered(pos, x[end.to].xyz, end.reach);
+    vec3 back = tethered(pos, x[end.to].xyz, end.reach + prediction_fall());
     if (back != vec3(0.0)) move(back);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
@@ -117,7 +118,37 @@ bool resolves_waves(const Scene& scene, int substeps) {
   return h * speed <= kMaxOfCloth * std::max(scene.cloth.width_m, scene.cloth.height_m);
 }
 
-/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it takes. The maximum
+/// h'^2 T / (m l) for the maximum tension T [N] of a link at a pin, at one substep per frame: the number that decides
+/// whether tension may be explicit. The weight is taken to hang evenly from the pinned vertices that have free
+/// neighbours; a single pinned vertex is taken to stand on the border, whose vertices have half the mass.
+double tension_number(const Scene& s) {
+  const Cloth& c = s.cloth;
+  if (s.pins.vertices.empty()) return 0;
+  std::vector<std::uint8_t> pinned(c.vertex_count(), 0), carries(c.vertex_count(), 0);
+  for (const std::uint32_t v : s.pins.vertices) pinned[v] = 1;
+  for (const Edge& e : edges(c, EdgeKind::Structural))
+    if (pinned[e.a] != pinned[e.b]) carries[pinned[e.a] != 0 ? e.a : e.b] = 1;
+  const auto carrying = std::accumulate(carries.begin(), carries.end(), 0.0);
+  if (carrying == 0) return 0;
+  const std::vector<double> masses = vertex_masses(s);
+  const double total = std::accumulate(masses.begin(), masses.end(), 0.0),
+               link = c.mesh ? c.mesh->edge_m : std::min(c.du(), c.dv()),
+               share = carrying < std::min(c.columns, c.rows) / 2.0 ? 0.5 : 1,
+               inner = total / static_cast<double>(c.vertex_count()), h = 2.0 / 3 * s.time.dt();
+  return h * h * total * norm(s.gravity_m_per_s2) / carrying / (share * inner * link);
+}
+
+/// Explicit tension is stable up to this number (xpbd/time/README.md).
+constexpr double kMaxExplicitTension = 1.0 / 3;
+
+/// True if tethers hold the cloth well enough without implicit tension: inextensible cloth, whose tethers carry the
+/// load, and elastic cloth whose tension may be explicit.
+bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
+  return !scene.material.membrane_stiffness_N_per_m ||
+         tension_number(scene) <= kMaxExplicitTension * substeps * substeps;
+}
+
+/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it uses. The maximum
 /// stretch of two-hand-stretch-10mps, whose hands double their distance, is 12 % above the converged one under BDF2 and
 /// 3 % under backward Euler; where they add a third to it BDF2 is not above backward Euler at any speed.
 bool is_pulled_far(const Scene& scene) {
@@ -162,7 +193,8 @@ FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& setti
   if (wanted == "always") return {true, ""};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
-  if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty())
+  if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty() &&
+      may_leave_tension_to_tethers(scene, xpbd_substeps(scene, settings)))
     return {false, "tethers hold the cloth, for less"};
   if (is_strip(scene)) return {true, ""};
   if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
@@ -205,14 +237,19 @@ double substeps_for_splitting(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double way = 2.0 / 3 * scene.time.dt() *
                      std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
-  return way / std::min(kMaxCells * std::min(c.du(), c.dv()), kMaxOfSide * std::min(c.width_m, c.height_m));
+  // Links under tension lose the rest of the margin: with K = h'^2 Y / m and the tension number tau, K tau of 39 is
+  // stable over 20 s and 81 grows (33 x 33 vertices held by one corner). Both go with the square of the step.
+  constexpr double kMaxStiffnessTimesTension = 25;
+  const double cell = std::min(c.du(), c.dv()), by_tension = way * way / (cell * cell) * tension_number(scene);
+  return std::max(way / std::min(kMaxCells * cell, kMaxOfSide * std::min(c.width_m, c.height_m)),
+                  std::pow(by_tension / kMaxStiffnessTimesTension, 0.25));
 }
 
 FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& settings) {
   constexpr int kMinLinks = 4;
   constexpr double kSquare = 0.05;
   const std::string wanted = tuned(settings, "splitting_correction");
-  if (wanted == "never") return {false, "setting tuning.coupling=never"};
+  if (wanted == "never") return {false, "setting tuning.splitting_correction=never"};
   const Cloth& c = scene.cloth;
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
   if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};

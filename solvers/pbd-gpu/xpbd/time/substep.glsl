@@ -38,6 +38,10 @@ void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, in
   rest_position = rest;
 }
 
+/// How far the prediction of an elastic cloth at rest falls in a substep [m]. A tether must leave it, or it would carry
+/// the load in place of links; 0 for inextensible cloth, whose tethers are to carry it.
+float prediction_fall() { return p.gravity_h.w > 0.0 ? p.h * length(p.gravity_h.xyz) : 0.0; }
+
 /// The displacement back to within `reach` of what a tether ends at; 0 where it is slack.
 vec3 tethered(vec3 position, vec3 end, float reach) {
   vec3 e = position - end;
