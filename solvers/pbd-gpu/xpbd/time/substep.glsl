@@ -17,12 +17,12 @@ const bool kUsesBdf2 = (FEATURES & LINES_BDF2) != 0u;
 /// (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels from substep to substep).
 void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
           inout vec3 last_position, inout vec3 last_velocity) {
-  vec3 gain = p.gravity_h.xyz, sum, rest, max_shape_displacement = vec3(0.0);
+  vec3 gain = p.gravity_h.xyz, sum, rest, history = vec3(0.0);
   if (kUsesBdf2) {
     vec3 change = p.history_weight * (velocity - last_velocity);
     gain += change;
     if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.damping_fraction * (velocity + change);
-    max_shape_displacement = p.history_weight * (position - last_position);
+    history = p.history_weight * (position - last_position);
     last_velocity = velocity;
     last_position = position;
   } else if ((FEATURES & LINES_DAMPING) != 0u) {
@@ -32,7 +32,7 @@ void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, in
   velocity = sum;
   rest_velocity = rest;
   vec3 way = p.h * sum + rest_position;
-  if (kUsesBdf2) way += max_shape_displacement;
+  if (kUsesBdf2) way += history;
   two_sum(position, way, sum, rest);
   position = sum;
   rest_position = rest;
