@@ -8,23 +8,35 @@
 namespace clothbench::liars {
 namespace {
 
-/// Wrenches that attachments leave: 6 less the rank of forces at the held vertices of the start.
-int equations_left(const motion_check::Motion& m) {
-  const std::vector<std::uint32_t> held = m.held(0);
-  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
-  if (held.empty()) return 6;
-  V3 middle = V3::Zero();
-  for (const std::uint32_t v : held) middle += m.at(0, v) / static_cast<double>(held.size());
-  for (const std::uint32_t v : held)
+using V6 = Eigen::Matrix<double, 6, 1>;
+using M6 = Eigen::Matrix<double, 6, 6>;
+
+V6 wrench_of(const V3& force, const V3& arm) {
+  V6 w;
+  w << force, arm.cross(force);
+  return w;
+}
+
+/// Projection on the wrenches about `middle` that attachments cannot exert.
+M6 free_of_attachments(const motion_check::Motion& m, const V3& middle) {
+  M6 gram = M6::Zero();
+  for (const std::uint32_t v : m.held(0))
     for (int axis = 0; axis < 3; ++axis) {
-      Eigen::Matrix<double, 6, 1> w;
-      w << V3::Unit(axis), ((m.at(0, v) - middle) / m.length_m).cross(V3::Unit(axis));
+      const V6 w = wrench_of(V3::Unit(axis), (m.at(0, v) - middle) / (m.length_m / 2));
       gram += w * w.transpose();
     }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram);
-  int rank = 0;
-  for (int i = 0; i < 6; ++i) rank += eigen.eigenvalues()[i] > 1e-6 * eigen.eigenvalues()[5];
-  return 6 - rank;
+  const Eigen::SelfAdjointEigenSolver<M6> eigen(gram);
+  M6 keep = M6::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (!(eigen.eigenvalues()[i] > 1e-6 * eigen.eigenvalues()[5]))
+      keep += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+  return keep;
+}
+
+V3 middle_of(const motion_check::Motion& m, std::size_t frame, std::span<const std::uint32_t> vertices) {
+  V3 sum = V3::Zero();
+  for (const std::uint32_t v : vertices) sum += m.at(frame, v) / static_cast<double>(vertices.size());
+  return sum;
 }
 
 double rms_way(const motion_check::Motion& m, std::size_t from, std::size_t to) {
@@ -64,7 +76,12 @@ Facts facts_of(const Motion& motion) {
   f.falls = m.gravity.norm() > 0;
   f.up = f.falls ? V3(-m.gravity.normalized()) : V3(V3::UnitY());
   f.attached = m.has_attachments();
-  f.equations = equations_left(m);
+  const std::vector<std::uint32_t> held = m.held(0);
+  f.equations = held.empty() ? 6 : static_cast<int>(std::lround(free_of_attachments(m, middle_of(m, 0, held)).trace()));
+  f.gravity = m.gravity.norm();
+  const double Y = s.material.membrane_stiffness_N_per_m.value_or(1e4);
+  f.soft_strain = 0.02 + 2 * m.mass_kg * m.weight_unit / (m.length_m * Y) +
+                  std::max(bodies.speed(), m.grip_speed) * std::sqrt(s.cloth.areal_density_kg_per_m2 / Y);
   f.solid = !s.colliders.empty();
   f.self = s.cloth.self_collision.thickness_m > 0;
   f.length_m = m.length_m;
@@ -87,6 +104,44 @@ Facts facts_of(const Motion& motion) {
   f.slides = slides(m, f);
   for (std::size_t k = m.frames; k-- > 0 && rms_way(m, k, m.frames - 1) < 0.002 * m.length_m;) f.at_rest = k;
   return f;
+}
+
+bool changes_force(const Right& right, const Motion& told) {
+  if (told.frames() != right.motion.frames()) return true;
+  const Scene& scene = *right.motion.scene;
+  const motion_check::Motion was(scene, {right.motion.time_s, right.motion.position});
+  const motion_check::Motion is(scene, {told.time_s, told.position});
+  const std::vector<std::uint32_t> held = was.held(0);
+  std::vector<std::uint32_t> about = held;
+  for (std::uint32_t v = 0; held.empty() && v < was.vertices; ++v) about.push_back(v);
+  const M6 keep = held.empty() ? M6(M6::Identity()) : free_of_attachments(was, middle_of(was, 0, about));
+  // Sliding on a face is judged more closely than what colliders of other shapes push.
+  const double lasting = right.facts.slides ? 0.035 : 0.05;
+  std::vector<V6> sums = {V6::Zero()};
+  for (std::size_t k = 0; k + 1 < was.frames; ++k) {
+    const double before = was.dt(k), after = was.dt(k + 1);
+    const motion_check::Flight flight(before, after, scene.material.damping_per_s);
+    const V3 middle = middle_of(was, held.empty() ? k : 0, about);
+    const auto add = [&](const motion_check::Motion& m, double sign, V6& to) {
+      for (std::size_t v = 0; v < m.vertices; ++v) {
+        const V3 ahead = m.at(k + 1, v) - m.at(k, v);
+        const V3 force = k == 0 ? V3((ahead - flight.a2 * m.start_velocity_of(v)) / (after * after))
+                                : flight.unexplained(m.at(k, v) - m.at(k - 1, v), ahead, m.gravity);
+        to += sign * m.masses_kg[v] / (m.mass_kg * m.weight_unit) *
+              wrench_of(force, (m.at(k, v) - middle) / (m.length_m / 2));
+      }
+    };
+    V6 change = V6::Zero();
+    add(is, 1, change), add(was, -1, change);
+    sums.push_back(sums.back() + keep * change);
+    for (const std::size_t span : {1, 3, 12}) {
+      if (span > k + 1 || (span > 1 && span == k + 1)) continue;
+      const double n = static_cast<double>(span);
+      const double change_mean = (sums.back() - sums[sums.size() - 1 - span]).norm() / n;
+      if (change_mean > (span == 1 ? 0.55 : lasting) + was.noise(k, was.vertices) / n) return true;
+    }
+  }
+  return false;
 }
 
 bool Right::held(std::size_t frame, std::size_t vertex) const {

@@ -31,7 +31,9 @@ struct Facts {
   double speed_m_per_s = 0;       ///< at `fastest`
   double frame_s = 0;             ///< duration of a frame
   double length_m = 1;
-  V3 up{};  ///< unit vector against gravity
+  double gravity = 0;      ///< [m/s2]
+  double soft_strain = 0;  ///< compression that the scene's weight and speeds explain
+  V3 up{};                 ///< unit vector against gravity
 };
 
 /// A right motion, and others of the same scene and solver that a lie may need.
@@ -45,13 +47,17 @@ struct Right {
 
 Facts facts_of(const Motion&);
 
+/// Whether a lie changes a force or moment, beyond those that attachments exert, by more than the check tolerates: in
+/// one interval, or on average over 3 or 12.
+bool changes_force(const Right&, const Motion& told);
+
 /// One way of being wrong. A lie leaves attached vertices where they belong unless it is about them.
 struct Lie {
   const char* name;
   bool right = false;  ///< a control: it must pass
   bool (*applies)(const Facts&);
-  /// Whether positions determine that the motion is wrong, where it differs from the right one.
-  bool (*determined)(const Facts&);
+  /// Whether positions determine that the motion is wrong, decided before the check sees it.
+  bool (*determined)(const Right&, const Motion& told);
   std::optional<Motion> (*tell)(const Right&, Dice&);
 };
 

@@ -67,7 +67,7 @@ Told sinks_1cm(const Right& r, Dice&) {
   for (std::size_t c = 0; c < r.motion.scene->colliders.size(); ++c) {
     const double margin = r.motion.scene->colliders[c].margin_m;
     const double said = c < r.motion.contact_offsets_m.size() ? r.motion.contact_offsets_m[c] : margin;
-    deep_m = std::max(deep_m, 0.01 + (std::isfinite(said) ? std::max(said, margin) : margin));
+    deep_m = std::max(deep_m, 0.01 + margin + (std::isfinite(said) ? std::max(said, margin) : margin));
   }
   return moved(r, [&](Index k, Index, const V3& x) {
     return V3(x - deep_m * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);

@@ -63,7 +63,7 @@ Trial judged(const Right& right, const Lie& lie, const Motion& told) {
   t.lie = lie.name;
   t.right = lie.right;
   t.solver = right.motion.solver;
-  t.determined = lie.determined(right.facts);
+  t.determined = lie.determined(right, told);
   t.difference_m = difference_m(right, told);
   t.findings = motion_check::verify(*told.scene, {told.time_s, told.position}, told.contact_offsets_m);
   return t;

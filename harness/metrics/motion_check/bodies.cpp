@@ -14,8 +14,6 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Contact offsets are met to a tenth.
-constexpr double kOffsetFactor = 1.1;
 /// Radius [m] of a finger: what a skinned hand may move in a frame before the direction of its force is unknown.
 constexpr double kFinger_m = 0.01;
 /// Frames whose contacts are kept: those of a window and its neighbours.
@@ -55,6 +53,32 @@ std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& b) {
   return best;
 }
 
+/// Nearest points of two triangles that do not cross: on the first, on the second. Edges of the second outside `box`
+/// are left out.
+std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex<3>& s, const Box& box) {
+  double least = kInfinite;
+  std::array<V3, 2> best = {t[0], s[0]};
+  const auto keep = [&](const V3& on_first, const V3& on_second) {
+    const double d = (on_first - on_second).squaredNorm();
+    if (d < least) least = d, best = {on_first, on_second};
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+    if (!box.intersects(Box(s[k].cwiseMin(s[(k + 1) % 3]), s[k].cwiseMax(s[(k + 1) % 3])))) continue;
+    const auto [on_first, on_second] = nearest_of(t, s[k], s[(k + 1) % 3]);
+    keep(on_first, on_second);
+  }
+  return best;
+}
+
+/// The same for a triangle on one side of the plane of `s`, with its vertex that is nearest to the plane: if the foot
+/// of this vertex is inside `s`, nothing is nearer.
+std::array<V3, 2> nearest_to_plane(const Simplex<3>& t, const Simplex<3>& s, std::size_t lowest, const Box& box) {
+  const V3 weights = contact::nearest_weights(t[lowest], s);
+  if (weights.minCoeff() > 0) return {t[lowest], point_of(s, weights)};
+  return nearest_of_triangles(t, s, box);
+}
+
 }  // namespace
 
 Bodies::State::State(const Motion& motion, std::span<const double> contact_offsets_m) : m(motion) {
@@ -87,6 +111,7 @@ Bodies::State::State(const Motion& motion, std::span<const double> contact_offse
   std::iota(each.begin(), each.end(), 0u);
   touched.assign(m.frames, {});
   depth.assign(m.frames, 0);
+  faces.assign(m.frames, {});
 }
 
 std::vector<double> Bodies::State::cloth(std::size_t frame) const {
@@ -118,6 +143,8 @@ Pose& Bodies::State::pose(Body& b, std::size_t frame) {
 /// Largest displacement [m] of a collider between the frame before and this one.
 double Bodies::State::displacement(Body& b, std::size_t frame) {
   if (!b.moves() || frame == 0 || frame >= m.frames) return 0;
+  std::pair<std::size_t, double>& known = b.displacements[frame % b.displacements.size()];
+  if (known.first == frame) return known.second;
   const Pose &was = pose(b, frame - 1), &now = pose(b, frame);
   double most = 0;
   for (std::size_t i = 0; i < now.capsules.size(); ++i)
@@ -125,6 +152,7 @@ double Bodies::State::displacement(Body& b, std::size_t frame) {
                      (to_v3(now.capsules[i].b_m) - to_v3(was.capsules[i].b_m)).norm()});
   for (std::size_t i = 0; i < now.positions.size(); i += 3)
     most = std::max(most, (V3::Map(now.positions.data() + i) - V3::Map(was.positions.data() + i)).norm());
+  known = {frame, most};
   return most;
 }
 
@@ -202,30 +230,29 @@ void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, con
     for (std::size_t k = 0; k < 3; ++k) s[k] = V3::Map(p.positions.data() + 3 * c[k]);
     const V3 normal = (s[1] - s[0]).cross(s[2] - s[0]).normalized();
     if (!normal.allFinite()) return;
-    const auto [low, high] = std::minmax({normal.dot(t[0] - s[0]), normal.dot(t[1] - s[0]), normal.dot(t[2] - s[0])});
-    if (!coarse && (low > reach || high < -reach)) return;
+    const std::array<double, 3> height = {normal.dot(t[0] - s[0]), normal.dot(t[1] - s[0]), normal.dot(t[2] - s[0])};
+    const auto [low, high] = std::minmax_element(height.begin(), height.end());
+    if (!coarse && (*low > reach || *high < -reach)) return;
     if (coarse) {
       p.noted[index] = true;
       const V3 middle = (t[0] + t[1] + t[2]) / 3;
       note(point_of(s, contact::nearest_weights(middle, s)), normal, b, any);
       return;
     }
-    double least = kInfinite;
-    std::array<V3, 2> best = {t[0], s[0]};
-    const auto keep = [&](const V3& on_cloth, const V3& on) {
-      const double d = (on_cloth - on).squaredNorm();
-      if (d < least) least = d, best = {on_cloth, on};
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
-      if (!box.intersects(Box(s[k].cwiseMin(s[(k + 1) % 3]), s[k].cwiseMax(s[(k + 1) % 3])))) continue;
-      const auto [on_cloth, on] = nearest_of(t, s[k], s[(k + 1) % 3]);
-      keep(on_cloth, on);
-    }
-    const double d = std::sqrt(least);
+    const auto lowest = static_cast<std::size_t>((*low > 0 ? low : high) - height.begin());
+    const auto best = *low * *high > 0 ? nearest_to_plane(t, s, lowest, box) : nearest_of_triangles(t, s, box);
+    const double d = (best[0] - best[1]).norm();
     if (!(d < reach)) return;
     for (const std::uint32_t v : corners) (*flags)[v] = true;
     const V3 way = d > 0 ? V3((best[0] - best[1]) / d) : normal;
+    // Over the triangles of one flat face, the way to the farther one is no normal of the surface.
+    if (way.dot(normal) < 0.99 && b.kind.nearest != nullptr) {
+      const SurfacePlace at = b.kind.nearest(b.collider, {best[0][0], best[0][1], best[0][2]});
+      if (to_v3(at.normal).dot(normal) > 1 - 1e-6) {
+        note(best[0] - at.distance_m * normal, normal, b, any);
+        return;
+      }
+    }
     note(best[1], way, b, any);
     if (way.dot(normal) < 0.99) note(best[1], normal, b, any);
   });
@@ -273,6 +300,7 @@ void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, 
     const double share = r + way / 2;
     r = kOffsetFactor * b.offset_m + 4 * m.resolution_m + share + std::min(share, fallen);
   }
+  const std::size_t before = found->size();
   if (b.kind.half_space)
     touch_plane(b, x, its_reach);
   else if (b.kind.capsules != nullptr)
@@ -284,11 +312,15 @@ void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, 
   const double allowed =
       std::max(std::isfinite(b.radius_m) ? std::min(margin, b.radius_m / 4) : (std::isfinite(margin) ? margin : 0.0),
                4 * m.resolution_m);
+  if (b.kind.nearest == nullptr && found->size() > before) faces[frame].flat = false;
   double deepest = 0;
-  for (const V3& p : x) {
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const V3& p = x[v];
     double d = kInfinite;
     if (b.kind.nearest != nullptr) {
-      d = b.kind.nearest(b.collider, {p[0], p[1], p[2]}).distance_m;
+      const SurfacePlace at = b.kind.nearest(b.collider, {p[0], p[1], p[2]});
+      d = at.distance_m;
+      if (d < its_reach[v]) faces[frame].add(to_v3(at.normal), b.collider.friction);
     } else if (b.kind.capsules != nullptr) {
       for (const Capsule& c : pose(b, frame).capsules) {
         const V3 a = to_v3(c.a_m), along = to_v3(c.b_m) - a;
@@ -300,6 +332,12 @@ void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, 
     if (std::isfinite(d)) deepest = std::max(deepest, -d);
   }
   depth[frame] = std::max(depth[frame], deepest / allowed);
+}
+
+void Face::add(const V3& n, double mu) {
+  if (!any) normal = n, friction = mu;
+  flat = flat && n.dot(normal) > 1 - 1e-6 && mu == friction;
+  any = true;
 }
 
 Bodies::Bodies(const Motion& m, std::span<const double> contact_offsets_m)
@@ -347,32 +385,8 @@ bool Bodies::touched(std::size_t frame, std::size_t vertex) const {
   return !flags.empty() && flags[vertex];
 }
 
-double Bodies::depth_ratio(std::size_t frame) const { return state_->depth[frame]; }
+const Face& Bodies::face(std::size_t frame) const { return state_->faces[frame]; }
 
-bool Bodies::near(std::size_t frame, std::span<const V3> points, double displacement_m) const {
-  State& s = *state_;
-  Box cloth;
-  for (const V3& p : points) cloth.extend(p);
-  for (Body& b : s.bodies) {
-    const double reach = displacement_m + kOffsetFactor * b.offset_m + 4 * s.m.resolution_m + s.displacement(b, frame);
-    if (b.kind.half_space) {
-      for (const V3& p : points)
-        if (to_v3(b.collider.normal).dot(p - to_v3(b.collider.center_m)) < reach) return true;
-      continue;
-    }
-    Box box;
-    const Pose& pose = s.pose(b, frame);
-    for (const Capsule& c : pose.capsules)
-      for (const Vec3& end : {c.a_m, c.b_m}) {
-        box.extend(V3(to_v3(end) - V3::Constant(c.radius_m)));
-        box.extend(V3(to_v3(end) + V3::Constant(c.radius_m)));
-      }
-    if (!pose.positions.empty()) box.extend(box_of(pose.positions));
-    box.extend(V3(box.min() - V3::Constant(reach)));
-    box.extend(V3(box.max() + V3::Constant(reach)));
-    if (box.intersects(cloth)) return true;
-  }
-  return false;
-}
+double Bodies::depth_ratio(std::size_t frame) const { return state_->depth[frame]; }
 
 }  // namespace clothbench::motion_check

@@ -14,6 +14,15 @@ struct Contact {
   bool any_force;  ///< the collider moves by much of its own size: no direction is known
 };
 
+/// The surface within reach of the cloth in one frame.
+struct Face {
+  bool any = false;  ///< something is in reach
+  bool flat = true;  ///< all of it is static and has one normal and one friction
+  V3 normal = V3::Zero();
+  double friction = 0;
+  void add(const V3& n, double mu);
+};
+
 /// The colliders of the scene, frame after frame.
 class Bodies {
  public:
@@ -31,6 +40,8 @@ class Bodies {
   const std::vector<Contact>& contacts(std::size_t frame);
   /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
   bool touched(std::size_t frame, std::size_t vertex) const;
+  /// Surface in reach in a frame, as found by `contacts`.
+  const Face& face(std::size_t frame) const;
   /// Largest depth of a frame over its tolerance: of vertices in solids with a signed distance.
   double depth_ratio(std::size_t frame) const;
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.

@@ -14,6 +14,10 @@ const std::vector<Contact>& Bodies::contacts(std::size_t) {
   return none;
 }
 bool Bodies::touched(std::size_t, std::size_t) const { return false; }
+const Face& Bodies::face(std::size_t) const {
+  static const Face none;
+  return none;
+}
 double Bodies::depth_ratio(std::size_t) const { return 0; }
 bool Bodies::near(std::size_t, std::span<const V3>, double) const { return false; }
 int Bodies::passages(std::size_t) const { return 0; }

@@ -17,6 +17,8 @@ using contact::Box;
 using contact::Simplex;
 using Corners = std::array<std::uint32_t, 3>;
 
+/// Contact offsets are met to a tenth.
+inline constexpr double kOffsetFactor = 1.1;
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A collider in one frame.
@@ -38,8 +40,9 @@ struct Body {
   std::vector<double> lengths_m = {};  ///< of its capsules at the start
   std::vector<Corners> triangles = {};
   std::array<std::unique_ptr<Pose>, 4> poses = {};
-  std::unique_ptr<contact::TriangleTree> still = nullptr;   ///< the surface of a static mesh
-  std::unique_ptr<contact::TriangleTree> middle = nullptr;  ///< the middle plane of a box
+  std::array<std::pair<std::size_t, double>, 4> displacements = {};  ///< [m] by frame, from the frame before it
+  std::unique_ptr<contact::TriangleTree> still = nullptr;            ///< the surface of a static mesh
+  std::unique_ptr<contact::TriangleTree> middle = nullptr;           ///< the middle plane of a box
   std::vector<double> middle_positions = {};
   std::vector<Corners> middle_triangles = {};
 
@@ -85,6 +88,7 @@ struct Bodies::State {
   std::vector<bool>* flags = nullptr;
   std::vector<std::vector<bool>> touched;
   std::vector<double> depth;
+  std::vector<Face> faces;
 };
 
 }  // namespace clothbench::motion_check

@@ -45,6 +45,12 @@ class Hinges {
       free_from_;  ///< per direction and frame: behind all lines that are touched or held
   std::array<std::vector<V3>, kKept> force_, relative_;  ///< of the last frames: residual acceleration; velocity
   std::array<std::vector<double>, kKept> change_;        ///< size of the acceleration beyond gravity
+  /// Per direction, the moments of the last frames, since spans share them.
+  struct Known {
+    std::size_t frame = 0, cut = 0;
+    Moment moment;
+  };
+  std::vector<std::array<Known, kKept>> known_;
 };
 
 Hinges::Hinges(const Motion& m, const Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f) {
@@ -76,6 +82,7 @@ Hinges::Hinges(const Motion& m, const Bodies& b, Findings& f) : m_(m), bodies_(b
   add(slant, [&](int i, int j) { return across + down - i - j; });
   add(slant, [&](int i, int j) { return i + down - j; });
   add(slant, [&](int i, int j) { return across - i + j; });
+  known_.resize(lines_.size());
   free_from_.assign(lines_.size(), std::vector<std::size_t>(m.frames, 0));
   for (std::size_t k = 0; k < m.frames; ++k) {
     std::vector<std::uint32_t> blocked = m.held(k);
@@ -130,7 +137,9 @@ void Hinges::judge(std::size_t d, std::size_t k, std::size_t span) {
   if (cut + 4 >= lines.vertices.size() && !lines.jumps[cut].empty()) return;
   double value = 0, hidden = 0, scale = 0;
   for (std::size_t f = k + 1 - span; f <= k; ++f) {
-    const Moment now = moment(lines, cut, f);
+    Known& known = known_[d][f % kKept];
+    if (known.frame != f || known.cut != cut) known = {f, cut, moment(lines, cut, f)};
+    const Moment& now = known.moment;
     if (!(now.scale > 0)) return;
     value += now.value, hidden += now.hidden, scale += now.scale;
   }

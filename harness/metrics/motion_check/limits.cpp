@@ -1,6 +1,7 @@
 // What falls, colliders and attachments can give to the cloth: speed, energy and strain.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
@@ -19,6 +20,9 @@ class Limits {
     area_m2_ = m.mass_kg / m.scene.cloth.areal_density_kg_per_m2;
     whip_ = std::max(3.0, std::sqrt(1 + m.length_m / m.cell_m));
     stiffness_ = m.scene.material.membrane_stiffness_N_per_m;
+    is_held_.assign(m.vertices, false);
+    for (const std::uint32_t v : m.scene.pins.vertices) is_held_[v] = true;
+    for (const std::uint32_t v : m.scene.grips.vertices) is_held_[v] = true;
   }
 
   void run() {
@@ -43,6 +47,7 @@ class Limits {
   bool moves_;
   double whip_;  ///< a whip puts the energy of the sheet into one line of its vertices
   std::optional<double> stiffness_;
+  std::vector<bool> is_held_;  ///< in any frame
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
   double imposed_ = 0;  ///< largest strain next to an attachment so far
@@ -113,12 +118,20 @@ void Limits::strain(std::size_t k) {
   std::vector<bool> held(m_.vertices, false);
   if (!m_.scene.grips.vertices.empty())
     for (const std::uint32_t v : m_.held(k)) held[v] = true;
+  std::vector<double> loose;  // changes of strain in the frame
   for (const Edge& e : m_.edges) {
     if (!(e.rest_m > 0)) continue;
     const double s = m_.strain(k, e);
+    if (k > 0 && !is_held_[e.a] && !is_held_[e.b]) loose.push_back(std::abs(s - m_.strain(k - 1, e)));
     charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
     compressed += std::max(-s, 0.0) / count;
     if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
+  }
+  constexpr std::ptrdiff_t kOthers = 12;
+  if (loose.size() > 2 * kOthers) {
+    std::nth_element(loose.begin(), loose.begin() + kOthers, loose.end(), std::greater());
+    const double most = *std::max_element(loose.begin(), loose.begin() + kOthers);
+    found_.add("tear", most / (0.15 + 2 * scripted_ * m_.dt(k) / m_.cell_m + 4 * loose[kOthers]), k);
   }
   if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
   const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);

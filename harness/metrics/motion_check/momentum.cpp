@@ -23,6 +23,10 @@ constexpr double kChord = 1.0 / 3;
 constexpr std::size_t kWindow = 12;
 /// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
+/// Of cloth that slides steadily on a face: change of the normal force, and what is left over friction [weights].
+constexpr double kSteady = 0.05, kSliding = 0.015, kFrictionShare = 0.02;
+/// Intervals over which sliding is averaged.
+constexpr std::size_t kSlidingSpans[] = {4, 12};
 
 /// min |w - sum of non-negative multiples of the columns|, with the residual.
 template <class Columns>
@@ -82,6 +86,18 @@ V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   return force.dot(h) > 0 ? V3(force.normalized()) : V3(V3::Zero());
 }
 
+/// One contact per direction of force, for which their points do not matter.
+std::vector<Contact> directions_of(std::span<const Contact> contacts) {
+  std::vector<Contact> out;
+  for (const Contact& c : contacts) {
+    const auto same = [&](const Contact& o) {
+      return o.normal == c.normal && o.friction == c.friction && o.any_force == c.any_force;
+    };
+    if (out.size() > 16 || std::none_of(out.begin(), out.end(), same)) out.push_back(c);
+  }
+  return out;
+}
+
 class Momentum {
  public:
   Momentum(const Motion& m, Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f), arm_m_(m.length_m / 2) {}
@@ -89,10 +105,20 @@ class Momentum {
   void run();
 
  private:
+  /// Coulomb's law while all that is in reach is one face, which the cloth neither meets nor leaves.
+  struct Slip {
+    bool steady = false;
+    bool slides = false;     ///< all in reach moves along the face by more than friction stops in an interval
+    V3 across = V3::Zero();  ///< force along the face [weights]
+    V3 way = V3::Zero();     ///< mean direction of the motion along the face
+    double spread = 0;       ///< largest distance of a direction from the mean
+    double limit = 0;        ///< friction times the normal force [weights]
+  };
   struct Interval {
     V6 wrench = V6::Zero();  ///< without what attachments can exert
     double hidden = 0;       ///< angular part that chords may hide
     bool judged = true, contact = false;
+    Slip slip;
   };
 
   Interval interval(std::size_t k);
@@ -100,6 +126,8 @@ class Momentum {
   std::vector<Contact> contacts_round(std::size_t k);
   double outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
                       bool coulomb = false) const;
+  Slip slip_of(std::size_t k) const;
+  void sliding(std::size_t k, std::size_t span);
   void window(std::size_t k);
   void free_motion();
   V3 middle_of(std::size_t k) const;
@@ -156,12 +184,17 @@ double Momentum::outside_cone(const V6& w, const std::vector<Contact>& contacts,
   Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
   Eigen::VectorXd multiples;
   V6 rest = w;
+  // Without a projection a unit force has a wrench of at least 1, so that it gains at most its own work.
+  const bool whole = keep.isIdentity();
   for (int round = 0; round < kRounds && rest.norm() > 1e-3; ++round) {
     V6 best = V6::Zero();
     double gain = 1e-4 * std::max(1.0, w.norm());
+    const V3 turning = rest.tail<3>();
     for (const Contact& c : contacts) {
-      const V3 arm = (c.point - middle) / arm_m_;
-      const V3 force = best_force(c, rest.head<3>() + V3(rest.tail<3>()).cross(arm), coulomb);
+      const V3 arm = (c.point - middle) / arm_m_, h = rest.head<3>() + turning.cross(arm);
+      if (whole && !(h.squaredNorm() > gain * gain)) continue;
+      const V3 force = best_force(c, h, coulomb);
+      if (whole && !(force.dot(h) > gain)) continue;
       const V6 column = keep * wrench_of(force, arm);
       const double size = column.norm();
       if (size < 1e-6 || !(column.dot(rest) / size > gain)) continue;
@@ -223,6 +256,7 @@ void Momentum::run() {
     now.wrench = keep * now.wrench;
     const std::vector<Contact> contacts = contacts_round(k);
     now.contact = !contacts.empty();
+    if (now.contact && k > 0 && !m_.has_attachments()) now.slip = slip_of(k);
     const bool attached = !keep.isIdentity(1e-9);
     now.judged =
         !(attached && std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.any_force; }));
@@ -234,10 +268,11 @@ void Momentum::run() {
       found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
     else
       found_.add("impulse", off[k] / (0.5 + noise(k)), k);
-    if (now.contact && !attached && k > 0) {
-      slip[k] = outside_cone(forces_only * now.wrench, contacts, forces_only, middle, true);
+    for (const std::size_t span : kSlidingSpans) sliding(k, span);
+    if (now.contact && !attached) {
+      slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle, true);
       // Of one interval of an impact, a quarter of the force.
-      found_.add("friction", slip[k] / (0.5 + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
+      found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
     }
     if (k < 3) continue;
     const auto median = [&](const std::vector<double>& x) {
@@ -247,6 +282,54 @@ void Momentum::run() {
     if (now.contact && !attached) found_.add("friction", median(slip) / (0.05 + noise(k)), k);
   }
   if (!bodies_.empty() && !m_.has_attachments()) free_motion();
+}
+
+Momentum::Slip Momentum::slip_of(std::size_t k) const {
+  Slip out;
+  const Face& face = bodies_.face(k);
+  for (const std::size_t f : {k - 1, k, k + 1}) {
+    const Face& other = bodies_.face(f);
+    if (!other.any || !other.flat || other.normal.dot(face.normal) < 1 - 1e-6 || other.friction != face.friction)
+      return out;
+  }
+  const V3 force = all_[k].wrench.head<3>(), up = face.normal;
+  const double normal_force = force.dot(up), rests = -m_.gravity.dot(up) / m_.weight_unit, t = m_.dt(k);
+  out.steady = std::abs(normal_force - rests) < kSteady + noise(k);
+  out.across = force - normal_force * up;
+  out.limit = face.friction * std::max(normal_force, 0.0);
+  const double stops_m = 8 * m_.resolution_m + face.friction * m_.weight_unit * t * t;
+  out.slides = true;
+  std::vector<V3> ways;
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    if (!bodies_.touched(k, v)) continue;
+    for (const V3& way : {V3(m_.at(k, v) - m_.at(k - 1, v)), V3(m_.at(k + 1, v) - m_.at(k, v))}) {
+      const V3 along = way - way.dot(up) * up;
+      out.slides = out.slides && along.norm() > stops_m;
+      ways.push_back(along.normalized());
+      out.way += ways.back();
+    }
+  }
+  out.way /= static_cast<double>(std::max<std::size_t>(ways.size(), 1));
+  for (const V3& way : ways) out.spread = std::max(out.spread, (way - out.way).norm());
+  return out;
+}
+
+/// Cloth that slides on a face is dragged by its friction times the normal force, and cloth on it by no more. Means
+/// over `span` intervals up to k.
+void Momentum::sliding(std::size_t k, std::size_t span) {
+  if (k < span + 1) return;
+  V3 across = V3::Zero(), drag = V3::Zero();
+  double limit = 0, spread = 0;
+  bool slides = true;
+  for (std::size_t i = k + 1 - span; i <= k; ++i) {
+    const Slip& s = all_[i].slip;
+    if (!s.steady) return;
+    slides = slides && s.slides;
+    across += s.across, drag -= s.limit * s.way, limit += s.limit, spread += s.limit * s.spread;
+  }
+  const double n = static_cast<double>(span);
+  const double off = slides ? std::max(0.0, (across - drag).norm() - spread) : std::max(0.0, across.norm() - limit);
+  found_.add("sliding", off / n / (kSliding + kFrictionShare * limit / n + noise(k) / n), k);
 }
 
 /// Mean wrench over the last kWindow intervals before k: noise cancels in the sum of second differences.

@@ -102,11 +102,11 @@ struct Part {
 /// All of them, in the order of the findings: later ones use the contacts that earlier ones found.
 std::span<const Part> parts();
 
-/// first_step, impulse, force, friction, mean_force, support, free_motion.
+/// first_step, impulse, force, friction, sliding, mean_force, support, free_motion.
 void check_momentum(const Motion&, Bodies&, Findings&);
 /// hinge.
 void check_hinges(const Motion&, Bodies&, Findings&);
-/// energy, speed, speed_change, strain, compression.
+/// energy, speed, speed_change, strain, tear, compression.
 void check_limits(const Motion&, Bodies&, Findings&);
 /// spike, roughness, freeze, stuck.
 void check_smoothness(const Motion&, Bodies&, Findings&);

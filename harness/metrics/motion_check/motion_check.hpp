@@ -22,7 +22,7 @@ struct Statistic {
   const char* what;  ///< what is compared with its tolerance
 };
 
-inline constexpr std::size_t kStatistics = 24;
+inline constexpr std::size_t kStatistics = 26;
 /// All statistics, in the order of the findings.
 std::span<const Statistic> statistics();
 const char* name_of(Check);

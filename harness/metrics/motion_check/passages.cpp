@@ -70,8 +70,15 @@ int Bodies::State::through_cloth(std::size_t frame, const std::vector<V3>& from,
   }
   for (std::size_t i = 0; i < from.size(); ++i) path.extend(from[i]).extend(to[i]);
   if (from.empty() || !swept.intersects(path)) return 0;
+  std::vector<Corners> close;
+  for (const Corners& t : m.triangles) {
+    Box sweep;
+    for (const std::uint32_t v : t) sweep.extend(m.at(frame - 1, v)).extend(m.at(frame, v));
+    if (sweep.intersects(path)) close.push_back(t);
+  }
+  if (close.empty()) return 0;
   const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
-  const contact::TriangleMeshView before{was, m.triangles}, after{now, m.triangles};
+  const contact::TriangleMeshView before{was, close}, after{now, close};
   const contact::SweptMesh mesh(before, after, each);
   std::unique_ptr<contact::TriangleTree> at_start, at_end;
   int count = 0;
@@ -147,6 +154,32 @@ int Bodies::passages(std::size_t frame) const {
     if (b.middle) count += s.through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
   }
   return count;
+}
+
+bool Bodies::near(std::size_t frame, std::span<const V3> points, double displacement_m) const {
+  State& s = *state_;
+  Box cloth;
+  for (const V3& p : points) cloth.extend(p);
+  for (Body& b : s.bodies) {
+    const double reach = displacement_m + kOffsetFactor * b.offset_m + 4 * s.m.resolution_m + s.displacement(b, frame);
+    if (b.kind.half_space) {
+      for (const V3& p : points)
+        if (to_v3(b.collider.normal).dot(p - to_v3(b.collider.center_m)) < reach) return true;
+      continue;
+    }
+    Box box;
+    const Pose& pose = s.pose(b, frame);
+    for (const Capsule& c : pose.capsules)
+      for (const Vec3& end : {c.a_m, c.b_m}) {
+        box.extend(V3(to_v3(end) - V3::Constant(c.radius_m)));
+        box.extend(V3(to_v3(end) + V3::Constant(c.radius_m)));
+      }
+    if (!pose.positions.empty()) box.extend(box_of(pose.positions));
+    box.extend(V3(box.min() - V3::Constant(reach)));
+    box.extend(V3(box.max() + V3::Constant(reach)));
+    if (box.intersects(cloth)) return true;
+  }
+  return false;
 }
 
 }  // namespace clothbench::motion_check
