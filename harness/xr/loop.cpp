@@ -170,8 +170,7 @@ class Loop {
     painter_.wait();
     run_.reset();
     live_.begin(b);
-    auto run =
-        std::make_unique<SolverRun>(RunSpec{&live_.scene(), o_.entry, o_.settings, o_.setting}, o_.device, "xr");
+    auto run = std::make_unique<SolverRun>(RunSpec{&live_.scene(), o_.entry, o_.settings, o_.setting}, o_.device, "xr");
     if (!run->alive()) {
       const Outcome out = run->outcome();
       throw Error(fmt::format("{}: {}: {}", o_.entry->info.name, out.status, out.message), ExitCode::CheckFailed);
