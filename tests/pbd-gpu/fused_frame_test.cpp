@@ -3,7 +3,7 @@
 #include <set>
 
 #include "contact_scenes.hpp"
-#include "runner/stage_check.hpp"
+#include "runner/solver_run.hpp"
 #include "xpbd/contact/contact.hpp"
 
 namespace clothbench::pbd_gpu {

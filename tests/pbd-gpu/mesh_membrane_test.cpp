@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "contact_scenes.hpp"
+#include "hanging_moduli.hpp"
 #include "random_sheet.hpp"
 #include "xpbd/mesh/membrane.hpp"
 #include "xpbd/time/integrator.hpp"
