@@ -20,7 +20,7 @@ struct RenderArguments {
   DeviceFlags device;
 };
 
-/// Runs a scenario for its positions alone.
+/// Runs a scenario only for its positions.
 auto run_of(const RenderArguments& a, const Console& console) {
   return [&](const std::string& file) {
     const Overrides overrides = split_overrides(a.set);

@@ -36,7 +36,7 @@ void print_jobs(const std::vector<std::string>& names, const Console& console) {
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
-/// What the seeds drew, one line per scene; many scenes are what the result files are for.
+/// The generated scenes, one line per scene. A study with many scenes prints none: the result files contain them.
 void print_drawn(const Study& study) {
   constexpr std::size_t kFew = 24;
   std::set<std::string> names;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Refuses constructions that readers had to read twice, in documents and in the texts of the command line.
+"""Refuses constructions that readers had to read twice, in documents, and in the texts and comments of the command line.
 
-usage: check_prose.py [FILE...]     default: every document that a person writes, and harness/cli
+usage: check_prose.py [FILE...]     default: every document that a person writes, and the C++ of harness/cli
 
 Prints one line per fault and exits with 1. The self-test runs first: each rule must refuse its own examples and accept its counterexamples.
 """
@@ -77,7 +77,10 @@ def split_sentences(number, text):
 
 
 def sentences_of_code(text):
-    """(line, sentence): string literals, with neighbouring ones joined as the compiler joins them."""
+    """(line, sentence): comments, and string literals with neighbouring ones joined as the compiler joins them."""
+    for m in re.finditer(r"(?:^[ ]*//[/<]*[^\n]*\n)+|//[/<]*[^\n]*", text, flags=re.M):
+        words = re.sub(r"\s*\n\s*//[/<]*\s*|^\s*//[/<]*\s*", " ", m[0])
+        yield from split_sentences(text.count("\n", 0, m.start()) + 1, re.sub(r"`[^`]*`", "X", words))
     for m in re.finditer(r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*', text):
         words = "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', m[0])).replace("\\n", ". ")
         if " " in words:
@@ -98,7 +101,7 @@ def self_test():
 
 def main():
     self_test()
-    names = sys.argv[1:] or [n for n in written() + tracked("harness/cli/*.cpp") if n not in UNCHECKED]
+    names = sys.argv[1:] or [n for n in written() + tracked("harness/cli/*.[ch]pp") if n not in UNCHECKED]
     count, faults = 0, []
     for name in names:
         sentences = sentences_of_markdown if name.endswith(".md") else sentences_of_code
