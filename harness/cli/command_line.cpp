@@ -56,7 +56,8 @@ int run_command_line(const std::vector<std::string>& words) {
   app.footer(
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
-      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nExit codes: 0 ok, 1 a "
+      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nTerms: clothbench list "
+      "terms\nExit codes: 0 ok, 1 a "
       "check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));

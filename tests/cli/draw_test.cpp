@@ -76,7 +76,7 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
       {"study contact --seed 1 --count 1 --solver ballistic", "assets required: CLOTHBENCH_ASSETS=procedural", away},
       {"study contact --procedural --require-assets", "--procedural"},
       {"study table3 --count 3", "--count: the scenes of this study are given in its file"},
-      {"study table3 --procedural", "--procedural: only for studies of protocol contact"},
+      {"study table3 --procedural", "--procedural: this study has no random contact scenes"},
       {"study table3 --seed 1", "--seed draws parameters for scenes whose \"truth\" is"},
       {"run paper/desk-flat-low --seed 1 --solver ballistic",
        "`clothbench study contact --seed N` draws contact scenes"},
