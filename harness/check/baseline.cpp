@@ -32,7 +32,7 @@ std::string stage_text(const StageRecord& s) {
 
 double number_at(const json& value, const std::string& name, const std::string& where) {
   if (find_gate(name) == nullptr)
-    throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in results/baselines/README.md)", where,
+    throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in harness/check/README.md)", where,
                             nearest_known(name, gated_names())));
   if (value.is_null()) return kMissing;
   if (!value.is_number())

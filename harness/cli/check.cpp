@@ -42,7 +42,7 @@ void add_check(CLI::App& app, Console& console) {
   cmd->add_option("runs", a.runs, "Study folders or result files")->required();
   cmd->add_option("--baseline", a.baseline, "Baseline file, such as results/baselines/penetration.json")->required();
   CLI::Option* rewrite =
-      cmd->add_flag("--update", a.update, "Write the baseline again from these results and print what changed");
+      cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and print the changes");
   cmd->add_option(
          "--allow", a.allowed,
          "Check although these differ from the baseline's (scene, device, precision, length), and mark the output")
@@ -51,8 +51,9 @@ void add_check(CLI::App& app, Console& console) {
       ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
   cmd->footer(
-      "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without the positions "
-      "that its outcome is of, 2 bad input, or runs under other conditions than the baseline's.\nExample: clothbench "
+      "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without "
+      "matching positions, 2 bad input, or runs measured under other conditions than the baseline.\nExample: "
+      "clothbench "
       "check results/runs/mine --baseline results/baselines/penetration.json "
       "--junit check.xml");
   cmd->callback([&console, &a] {
@@ -60,7 +61,7 @@ void add_check(CLI::App& app, Console& console) {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
       fs::remove(a.junit);  // an older verdict must not outlive a failed check
     if (!a.update && !fs::exists(a.baseline))
-      throw Error(a.baseline + ": no such file; expected a baseline (--update makes one)");
+      throw Error(a.baseline + ": no such baseline; --update creates it from these results");
     const std::vector<RunRecord> runs = collect(folders);
     if (a.update)
       update(a, folders, runs, console);

@@ -44,19 +44,19 @@ std::pair<int, int> pixels_of(const std::string& option, const std::string& text
   int width = 0, height = 0, used = 0;
   if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) ||
       width < 1 || height < 1 || width > kMost || height > kMost)
-    throw Error(option + " " + text + ": expected WIDTHxHEIGHT in pixels, such as 1200x900");
+    throw Error(option + " " + text +
+                ": not a size; give WIDTHxHEIGHT in pixels, each from 1 to 16384, such as 1200x900");
   return {width, height};
 }
 
 void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best one");
-  app.add_option(
-      "--device-profile", options.profile,
-      "Use only what a class of devices offers: adreno-like (32 KiB shared memory, groups of 256, 64 dispatches a "
-      "submission)");
+  app.add_option("--device-profile", options.profile,
+                 "Use only what a class of devices offers: adreno-like (32 KiB shared memory, groups of 256, 64 "
+                 "dispatches per submission)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
-  app.add_flag("--allow-no-device", allow_no_device, "Leave out GPU solvers if there is no Vulkan device");
+  app.add_flag("--allow-no-device", allow_no_device, "Skip GPU solvers if there is no Vulkan device");
 }
 
 CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names,
@@ -70,14 +70,14 @@ CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<s
 
 void add_require_assets(CLI::App& app, bool& required) {
   app.add_flag("--require-assets", required,
-               "Fail if a scene would use procedural rooms or hands in place of scans (scripts/fetch-assets.sh "
+               "Fail if a scene would use procedural rooms or hands instead of scans (scripts/fetch-assets.sh "
                "fetches the scans)");
 }
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
   app.add_option("--seed", seed,
-                 "Draw the parameters of scenes with an exact solution from this seed, and evaluate the solution for "
-                 "them; in a study of drawn contact scenes, the seed of the first scene");
+                 "Choose the parameters of scenes with an exact solution at random from this seed, and evaluate the "
+                 "solution for them; in a study of random contact scenes, the seed of the first scene");
 }
 
 Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {

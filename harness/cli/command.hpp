@@ -91,10 +91,13 @@ using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
     add_compare, add_completion, add_manual, add_render, add_xr, add_conformance;
 
-/// What `clothbench list` can list: solvers, features, scenarios, studies, devices, metrics, scalars, assets.
+/// The lists of `clothbench list`: solvers, features, scenarios, studies, devices, metrics, scalars, assets, terms.
 std::vector<std::string> list_names();
 
-/// What a solver would run for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
+/// The glossary: (term, meaning), in alphabetical order.
+std::vector<std::pair<std::string, std::string>> glossary();
+
+/// The plan of a solver for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
 /// contact_margins; the worker's side of `clothbench plan`.
 nlohmann::json plan_answer(const nlohmann::json& request);
 

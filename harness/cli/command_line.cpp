@@ -33,8 +33,8 @@ constexpr AddCommand* kCommands[] = {add_list,       add_validate, add_plan,  ad
 #endif
                                      add_completion, add_manual};
 
-/// Prints the nearest command if the first word is none.
-void tell_nearest(const CLI::App& app, const std::vector<std::string>& words) {
+/// Suggests the nearest command if the first word is not a command.
+void suggest_command(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty() || !app.get_subcommands().empty()) return;
   std::vector<std::string> commands;
   for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
@@ -56,7 +56,8 @@ int run_command_line(const std::vector<std::string>& words) {
   app.footer(
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
-      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nExit codes: 0 ok, 1 a "
+      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nTerms: clothbench list "
+      "terms\nExit codes: 0 ok, 1 a "
       "check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   colour_output(takes_colour(STDOUT_FILENO));
@@ -75,7 +76,7 @@ int run_command_line(const std::vector<std::string>& words) {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
-    tell_nearest(app, words);
+    suggest_command(app, words);
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
   } catch (const Error& e) {
     return report_error(console, e.what(), e.code());

@@ -1,5 +1,5 @@
-// Completion of the command line. What a shell's script asks for is answered from the very commands, options, solvers
-// and files there are, so it cannot grow old.
+// Completion of the command line. The answers come from the declared commands and options and from the solvers and
+// files that exist, so they cannot become outdated.
 #include <algorithm>
 
 #include "base/words.hpp"

@@ -41,7 +41,7 @@ void add_conformance(CLI::App& app, Console& console) {
   ConformanceArguments& a = console.arguments<ConformanceArguments>();
   CLI::App* cmd = app.add_subcommand(
       "conformance",
-      "Check that a solver does what every solver must: stages, start, pins, grips, finite frames, reset; on small "
+      "Check the requirements on every solver: stages, start, pins, attachments, finite positions, reset; on small "
       "grids of every scene and on whole scenes");
   a.with.add_to(*cmd, "solver", "Solvers", "Setting of the solver: solver.substeps=20");
   cmd->get_option("solver")->required();

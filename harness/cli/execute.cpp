@@ -20,7 +20,7 @@ nlohmann::json seconds_json(const RunResult& r) {
   return j;
 }
 
-/// The runs of a plan, as its folder stores them.
+/// Selects the stored runs that belong to the plan of a command.
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
   std::vector<RunRecord> runs = collect({out});
   std::erase_if(runs, [&](const RunRecord& c) { return !contains(names, run_name(c.header)); });

@@ -98,6 +98,12 @@ nlohmann::json list_assets() {
   return {{{"name", source.kind()}, {"summary", source.reason}, {"folder", source.root.string()}}};
 }
 
+nlohmann::json list_terms() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& [term, meaning] : glossary()) rows.push_back({{"name", term}, {"summary", meaning}});
+  return rows;
+}
+
 std::vector<SolverFeatures> features() {
   std::vector<SolverFeatures> out;
   for (const SolverEntry* e : all_solvers()) out.push_back(declared_features(e->info));
@@ -107,8 +113,9 @@ std::vector<SolverFeatures> features() {
 nlohmann::json list_features() { return feature_json(features(), false); }
 
 const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
-    {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios}, {"studies", list_studies},
-    {"devices", list_devices}, {"metrics", list_metrics},   {"scalars", list_scalars},     {"assets", list_assets}};
+    {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios},
+    {"studies", list_studies}, {"devices", list_devices},   {"metrics", list_metrics},
+    {"scalars", list_scalars}, {"assets", list_assets},     {"terms", list_terms}};
 
 std::string rows_text(const nlohmann::json& rows) {
   std::string out;
@@ -152,8 +159,8 @@ std::string list_text(const std::string& what) {
 void add_list(CLI::App& app, Console& console) {
   std::string& what = console.arguments<std::string>();
   what = "solvers";
-  CLI::App* cmd =
-      app.add_subcommand("list", "List solvers, features, scenarios, studies, devices, metrics, scalars or assets");
+  CLI::App* cmd = app.add_subcommand(
+      "list", "List solvers, features, scenarios, studies, devices, metrics, scalars, assets or terms");
   cmd->add_option("what", what, fmt::format("{}", fmt::join(list_names(), " | ")))->check(CLI::IsMember(list_names()));
   add_solvers(*cmd, "--solver", console.arguments<std::vector<std::string>>(),
               "Also these, in lists of solvers and features");

@@ -1,4 +1,6 @@
 // The manual page, made from the commands and options that there are.
+#include <sstream>
+
 #include "cli/command.hpp"
 #include "cli/texts.hpp"
 #include "runner/build_info.hpp"
@@ -23,6 +25,11 @@ std::string roff(std::string text) {
     line_begins = c == '\n';
   }
   return out;
+}
+
+std::string without_emphasis(std::string text) {
+  std::erase_if(text, [](char c) { return c == '`' || c == '*'; });
+  return text;
 }
 
 std::string entry(const std::string& name, const std::string& text) {
@@ -60,10 +67,24 @@ std::string manual_page(const CLI::App& app) {
     out += fmt::format(".SS {}\n{}\n", roff(c->get_name()), roff(c->get_description()));
     out += options_of(*c) + verbatim(c->get_footer());
   }
+  out += ".SH GLOSSARY\n";
+  for (const auto& [term, meaning] : glossary()) out += entry(term, meaning);
   return out + texts::kManual + ".SH EXAMPLES\n" + verbatim(app.get_footer());
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> glossary() {
+  std::vector<std::pair<std::string, std::string>> out;
+  std::istringstream lines(texts::kGlossary);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t middle = line.find(" | ");
+    if (!line.starts_with("| ") || middle == std::string::npos || line.starts_with("| term |")) continue;
+    out.emplace_back(without_emphasis(line.substr(2, middle - 2)),
+                     without_emphasis(line.substr(middle + 3, line.rfind(" |") - middle - 3)));
+  }
+  return out;
+}
 
 void add_manual(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("manual", "Print the manual page for man(1)");

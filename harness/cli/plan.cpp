@@ -91,7 +91,8 @@ struct PlanArguments {
 void add_plan(CLI::App& app, Console& console) {
   PlanArguments& a = console.arguments<PlanArguments>();
   CLI::App* cmd = app.add_subcommand(
-      "plan", "Print what a solver would run for a scene: kernels, dispatches, buffers, bytes and omitted features");
+      "plan",
+      "Print how a solver simulates one frame of a scene: stages, dispatches, buffers, bytes and disabled features");
   cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
   a.with.add_to(*cmd, "--solver", "Solvers; default: all", "Override: cloth.grid=[64,64], solver.substeps=20");
   a.with.device.add_to(*cmd);

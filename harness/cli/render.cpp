@@ -92,13 +92,13 @@ void add_render(CLI::App& app, Console& console) {
   a.size = "1200x900";
   a.solver = "xpbd";
   CLI::App* cmd =
-      app.add_subcommand("render", "Draw pictures (PNG) and a movie (MP4, if ffmpeg is present) of stored motions");
+      app.add_subcommand("render", "Draw images (PNG) and a movie (MP4, if ffmpeg is present) of stored motions");
   cmd->add_option("file", a.files, "Result files (.h5), study folders, or scenarios, which are run first")->required();
   cmd->add_option("-o,--out", a.out, "Folder to write to")->capture_default_str();
   cmd->add_option("--frames", a.frames,
                   "FRAME, FIRST:LAST or FIRST:LAST:STEP, both included; -1 is the last. Default: all");
   cmd->add_option("--view", a.views, "front, top or corner (default); more than one may be given");
-  cmd->add_option("--size", a.size, "Size of a picture: WIDTHxHEIGHT in pixels")->capture_default_str();
+  cmd->add_option("--size", a.size, "Size of an image: WIDTHxHEIGHT in pixels")->capture_default_str();
   cmd->add_option("--run", a.run, "For a folder: draw the runs with this text in their names");
   cmd->add_flag("--no-movie", a.no_movie, "Images only, no movie");
   cmd->add_option("--solver", a.solver, "Solver that runs a scenario")->capture_default_str();

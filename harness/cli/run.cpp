@@ -29,7 +29,7 @@ void add_run(CLI::App& app, Console& console) {
   cmd->footer(
       "Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
   cmd->callback([&console, &a] {
-    if (a.resume && a.out.empty()) throw Error("--resume: expected --out with the folder to continue");
+    if (a.resume && a.out.empty()) throw Error("--resume needs --out DIR, the folder of the interrupted run");
     const std::vector<std::string> set = split_overrides(a.with.set).scene;
     std::vector<Scene> scenes;
     for (const std::string& file : a.scenes)

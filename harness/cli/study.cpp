@@ -36,7 +36,7 @@ void print_jobs(const std::vector<std::string>& names, const Console& console) {
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
-/// What the seeds drew, one line per scene; many scenes are what the result files are for.
+/// The generated scenes, one line per scene. A study with many scenes prints none: the result files contain them.
 void print_drawn(const Study& study) {
   constexpr std::size_t kFew = 24;
   std::set<std::string> names;
@@ -52,7 +52,7 @@ void print_drawn(const Study& study) {
   }
 }
 
-/// Drawn scenes say which assets they are drawn from: fetched ones unless asked otherwise.
+/// Random scenes require scanned assets unless --procedural is given.
 Assets assets_of(const StudyArguments& a) {
   return asset_policy(a.require_assets || (!a.procedural && is_study_of(a.study, "contact")));
 }
@@ -65,19 +65,25 @@ void check_options(const Study& study, const StudyArguments& a) {
     if (a.trials > 0) throw Error("--trials" + of);
   }
   if (is_drawn(study)) return;
-  if (a.count > 0) throw Error("--count: nothing is drawn in this study; only for protocol contact");
+  if (a.count > 0)
+    throw Error(
+        "--count: the scenes of this study are given in its file; only studies with protocol contact generate scenes");
   if (a.procedural)
-    throw Error("--procedural: only for studies of protocol contact; others say so with --set or not at all");
+    throw Error("--procedural: this study has no random contact scenes; set CLOTHBENCH_ASSETS=procedural instead");
   if (a.jobs > 0 && study.protocol != "stability-map")
-    throw Error("--jobs: only for studies of protocols stability-map and contact, which have no timed trials");
+    throw Error(
+        "--jobs: this study has timed trials, which must run one at a time; only studies with protocol stability-map "
+        "or contact run in parallel");
 }
 
 void run_study(StudyArguments& a, Console& console) {
   const Overrides overrides = split_overrides(a.set);
-  if (!overrides.solver.empty()) throw Error("--set solver.…: the solver settings of a study are set in its file");
-  if (a.run.resume && a.run.out.empty()) throw Error("--resume: expected --out with the folder to continue");
+  if (!overrides.solver.empty())
+    throw Error("--set solver.…: a study takes solver settings from its file; copy the file and change its settings");
+  if (a.run.resume && a.run.out.empty()) throw Error("--resume needs --out DIR, the folder of the interrupted study");
   const StudyLength length = a.quick ? StudyLength::Quick : StudyLength::Full;
-  if (a.procedural && a.require_assets) throw Error("--procedural: expected without --require-assets");
+  if (a.procedural && a.require_assets)
+    throw Error("--procedural and --require-assets exclude each other; leave one out");
   const std::optional<assets::ProceduralAssets> stand_ins =
       a.procedural ? std::optional<assets::ProceduralAssets>(std::in_place) : std::nullopt;
   Study study =
@@ -98,7 +104,7 @@ void run_study(StudyArguments& a, Console& console) {
   manifest.study = study.name;
   manifest.definition = study.definition;
   if (!a.chosen.empty()) {
-    if (a.run.out.empty()) throw Error("--job: expected --out with the folder that all runs of the study share");
+    if (a.run.out.empty()) throw Error("--job needs --out DIR, the folder that collects all runs of this study");
     const std::vector<std::size_t> chosen = parse_runs(a.chosen, names.size());
     require_same_runs(a.run.out, plan, true);  // also what other processes have made of it
     plan = only_runs(std::move(plan), chosen);
@@ -124,15 +130,17 @@ void add_study(CLI::App& app, Console& console) {
                 "The study's quick form, with fewer scenes and solvers: for a software device on 2 cores");
   cmd->add_option("--trials", a.trials, "Number of trials per run, instead of the study's")->check(CLI::Range(1, 1000));
   add_solvers(*cmd, "--solver", a.only,
-              "Only these solvers; a solver that the study does not name runs with its default settings");
+              "Only these solvers. One that the study does not name is added with its default settings; a plugin with "
+              "settings substeps or iterations takes part in settings sweeps");
   cmd->add_option("--set", a.set, "Override a scene key in every run: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
   add_seed(*cmd, a.seed);
-  cmd->add_option("--count", a.count, "Number of scenes to draw in a study of drawn contact scenes, from --seed on")
+  cmd->add_option("--count", a.count,
+                  "Number of scenes to generate in a study of random contact scenes, from --seed on")
       ->check(CLI::Range(1, 100000));
   cmd->add_flag("--procedural", a.procedural,
-                "Draw contact scenes from procedural rooms and hands, which need no download; tables say so");
+                "Generate contact scenes from procedural rooms and hands, which need no download; tables state this");
   cmd->add_flag("--list-jobs", a.list_jobs, "Print the numbers and names of the jobs (runs); execute none");
   cmd->add_option("--job", a.chosen,
                   "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
@@ -143,8 +151,8 @@ void add_study(CLI::App& app, Console& console) {
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =
       cmd->add_flag("--with-rendering", a.with_rendering,
-                    "Also time frames with rendering, one picture for each eye of a headset (frame_rendered_s)");
-  cmd->add_option("--eye", a.eye, "Size of each picture: WIDTHxHEIGHT in pixels")
+                    "Also time frames with rendering, one image for each eye of a headset (frame_rendered_s)");
+  cmd->add_option("--eye", a.eye, "Size of each image: WIDTHxHEIGHT in pixels")
       ->capture_default_str()
       ->needs(rendering);
 #endif

@@ -22,12 +22,12 @@ void add_xr(CLI::App& app, Console& console) {
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand(
       "xr", "Run a live session in a headset (OpenXR): the cloth is drawn and touches the user's hands");
-  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands replace those of the scenario")
+  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands replace the hands of the scene")
       ->required();
   cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--frames", a.frames,
-                  fmt::format("Frames; default: as long as the scenario lasts, at most {}", xr::kMostFrames))
+                  fmt::format("Frames; default: the length of the scene, at most {}", xr::kMostFrames))
       ->check(CLI::Range(1, xr::kMostFrames));
   cmd->add_option("--rate", a.rate, "Requested refresh rate of the display [Hz]")
       ->check(CLI::Range(1.0, 1000.0))

@@ -70,7 +70,7 @@ struct Gate {
 /// For errors: the greatest difference of one solver between lavapipe and an H200 in the Table 3 study is 3.1e-7
 /// (paper).
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
-                                 "three times the greatest difference seen between devices"};
+                                 "three times the largest difference seen between devices"};
 
 enum class Better { Less, More, Neither };
 const char* name_of(Better);

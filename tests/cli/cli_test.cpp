@@ -91,7 +91,8 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
 }
 
 TEST_F(Cli, ListsAreReadableByMachines) {
-  for (const char* what : {"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets"}) {
+  for (const char* what :
+       {"solvers", "features", "scenarios", "studies", "devices", "metrics", "scalars", "assets", "terms"}) {
     const nlohmann::json rows = json_of(std::string("list ") + what);
     EXPECT_TRUE(rows.is_array()) << what;
     EXPECT_FALSE(std::string(what) != "devices" && rows.empty()) << what;
