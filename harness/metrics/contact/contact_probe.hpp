@@ -9,8 +9,8 @@ namespace clothbench::contact {
 
 /// Contact of a cloth with one object at one instant. Both are NaN if the cloth is not finite.
 struct ContactSample {
-  double contour_length_m;  ///< of the curve in which cloth and object cross
-  double depth_max_m;       ///< of the cloth in the object, between the vertices too; NaN for an object without inside
+  double contour_length_m;  ///< of the intersection contour of cloth and object
+  double depth_max_m;       ///< of the cloth in the object, also between vertices; NaN for an object without inside
 };
 
 /// Whether a mesh has an inside.
@@ -23,7 +23,7 @@ enum class Solid {
 /// Measures contact of one cloth with one object, frame after frame. Frames do not depend on each other.
 ///
 /// A mesh is taken as it is: the contour is exact (contour.hpp), the depth is the largest distance from the surface of
-/// all vertices, edge midpoints and centroids that are inside. A vertex alone would miss a finger that comes up through
+/// all vertices, edge midpoints and centroids that are inside. Vertices would miss a finger that comes up through
 /// the middle of a triangle. Capsules are triangles for the contour (capsule_mesh), which is at most kCapsuleError of
 /// the radius too far inside; what lies inside another capsule of the same object is left out. Their depth is exact: of
 /// the deepest point of a triangle in any single capsule.
