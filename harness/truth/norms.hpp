@@ -53,7 +53,7 @@ class LatticeSampler {
 double lattice_rms_error(const MaterialLattice&, std::span<const double> values, std::span<const double> truth,
                          double scale);
 
-/// Greatest distance of any point over `scale`.
+/// Maximum distance of any point over `scale`.
 double lattice_greatest_error(const MaterialLattice&, std::span<const double> values, std::span<const double> truth,
                               double scale);
 

@@ -12,9 +12,10 @@ namespace clothbench::truth {
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
 /// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
 /// line of the sheet; a vertex lies at its column's position plus its offset along axis_v. A triangle mesh has no exact
-/// solution of its own: it has the continuum's at its vertices, and its columns are those of the material lattice.
+/// solution of its own: it has the continuum's at its vertices, and its columns are the columns of the material
+/// lattice.
 ///
-/// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
+/// `columns` is the solution for the same mesh if there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh, or of a
 /// mesh so fine that its own error does not matter.
 struct ReferenceCase {
@@ -37,8 +38,8 @@ struct ReferenceCase {
 /// reference case's requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
-/// What is stated of every scene with a reference case, whatever its parameters: how far a run may be from the exact
-/// solution and still be right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
+/// The tolerance of a reference case, for any parameters: how far a run may be from the exact solution and still be
+/// right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
 /// and the error by which runs are ranked.
 struct Tolerance {
   std::string reference_case;
@@ -55,7 +56,7 @@ const std::vector<Tolerance>& tolerances();
 /// Throws Error if there is none of that name.
 const Tolerance& tolerance_of(const std::string& reference_case);
 
-/// Means over the rows of `values` (3 per vertex), one per column. Of a mesh: over the rows of the material lattice.
+/// Means over the rows of `values` (3 per vertex), one per column; for a mesh, over the rows of the material lattice.
 std::vector<Vec3> column_means(const Cloth&, const std::vector<double>& values);
 
 /// Positions of all vertices (3 each) of a reference case in a frame [m].

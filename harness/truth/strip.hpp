@@ -41,7 +41,7 @@ struct Strip {
     need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
          "even cells and no spin");
     need(may_shear || !scene.needs.has(Feature::Shear),
-         "\"shear\": false in its material: rows that do not feel one another");
+         "\"shear\": false in its material: so that rows are independent");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 
@@ -71,7 +71,7 @@ struct Strip {
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
   }
   void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
-  /// Of the membrane: at most this share of the length by the strip's own weight.
+  /// The strip's own weight may stretch the membrane by at most this fraction.
   void need_stiff(double strain, const std::string& text) const {
     const auto Y = scene.material.membrane_stiffness_N_per_m;
     need(!Y || scene.cloth.areal_density_kg_per_m2 * g * length_m / *Y <= strain,
