@@ -40,7 +40,7 @@ class MeshReader {
   }
 
  private:
-  /// Nodes of the active scene, which is the file's only one where none is named; all nodes of a file without scenes.
+  /// Nodes of the active scene, or of the only scene if the file names none; all nodes of a file without scenes.
   std::set<std::size_t> active_nodes() const {
     const auto count = static_cast<int>(model_.scenes.size());
     if (model_.defaultScene < 0 && count > 1)

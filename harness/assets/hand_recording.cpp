@@ -168,7 +168,7 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
     const auto all = block_at<RecordedCapsule>(*capsules_where);
     check_all(all, *capsules_where, "finite ends and a radius of at least 0");
     if (all.size() != r.frames.size() * kCapsuleCount)
-      capsules_where->fail(fmt::format("{} capsules; expected {} a frame", all.size(), kCapsuleCount));
+      capsules_where->fail(fmt::format("{} capsules; expected {} per frame", all.size(), kCapsuleCount));
     for (std::size_t k = 0; k < all.size(); ++k) r.frames[k / kCapsuleCount].capsules[k % kCapsuleCount] = all[k];
   }
   if (const auto mesh = at.maybe("mesh")) r.mesh = mesh_at(*mesh, source);
@@ -243,7 +243,7 @@ RecordedMesh welded(RecordedMesh given, const std::string& source) {
         throw Error(fmt::format("{}: hand mesh: triangle {} names vertex {}, but there are {}", source, t, c, count));
       c = number[c];
     }
-    // What had no area before stays out: it would tear the surface where its corners became one.
+    // Triangles that had no area before are left out: they would tear the surface where their corners were merged.
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
       out.triangles.push_back(corners);
   }

@@ -24,7 +24,7 @@ void read_pose(const JsonAt& at, HandKey& key, bool first) {
   const std::vector<std::string> known(kPoseNames.begin(), kPoseNames.end());
   const auto pose = at.maybe("pose"), blend = at.maybe("blend");
   if (!pose && first) at.fail("\"pose\" is missing; the first key must have one");
-  if (!pose && blend) blend->fail("expected \"pose\" beside it");
+  if (!pose && blend) blend->fail("expected \"pose\" next to it");
   if (!pose) return;
   key.pose = pose->word(known);
   key.blend_to.clear();
@@ -39,7 +39,7 @@ void read_pose(const JsonAt& at, HandKey& key, bool first) {
 
 void read_orientation(const JsonAt& at, HandKey& key) {
   const auto degrees = at.maybe("rotation_deg"), given = at.maybe("orientation");
-  if (degrees && given) given->fail("stands beside \"rotation_deg\"; expected one of them");
+  if (degrees && given) given->fail("given together with \"rotation_deg\"; expected only one of them");
   if (degrees) key.orientation = from_degrees(degrees->numbers(3));
   if (!given) return;
   const Eigen::Vector4d q = given->numbers(4);

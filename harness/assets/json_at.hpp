@@ -33,7 +33,7 @@ class JsonAt {
   Eigen::VectorXd numbers(std::size_t n) const;  ///< an array of exactly n finite numbers
   /// Fails if the object has any other key, naming the nearest known one.
   void only(const std::vector<std::string>& known) const;
-  /// The string, which must be one of `known`; else fails naming the nearest.
+  /// The string, which must be one of `known`; otherwise fails and suggests the nearest.
   std::string word(const std::vector<std::string>& known) const;
 
  private:

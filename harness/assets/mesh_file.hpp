@@ -15,7 +15,7 @@ struct MeshFile {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertices; an index may be out of range
   std::map<std::string, std::vector<std::uint32_t>>
       groups;  ///< triangles by name, ascending; a triangle may be in many
-  /// Lines of the file, from 1, for messages; empty where the file has no lines.
+  /// Lines of the file, from 1, for messages; empty if the file has no lines.
   std::vector<std::uint32_t> vertex_lines, triangle_lines;
 };
 

@@ -21,7 +21,7 @@ struct Rectangle {
 /// with different uuids and up to 3 mm apart. This struct pairs them.
 struct Table {
   std::string uuid;        ///< of the box
-  std::string stands_for;  ///< procedural rooms: uuid prefix of the real table that it replaces; else empty
+  std::string stands_for;  ///< procedural rooms: uuid prefix of the scanned table that it replaces; otherwise empty
   Frame frame;             ///< of the box; +z is up in the world
   Box box;                 ///< in that frame
   std::optional<Rectangle> top;
@@ -42,7 +42,7 @@ struct Room {
   std::size_t zero_area_triangles = 0;  ///< kept in the mesh: area below 1e-12 of the bounding box's diagonal squared
 };
 
-/// Reads a Quest room capture as @iwer/sem stores them (protobuf JSON: zero fields are left out). The mesh is that of
+/// Reads a Quest room capture as @iwer/sem stores them (protobuf JSON: zero fields are left out). It takes the mesh of
 /// the one entity with `triangleMesh_META`. Its label is not used, as one of the five captures labels it UNRECOGNIZED.
 /// Throws Error with the file and JSON pointer.
 Room load_room(const std::filesystem::path&);

@@ -89,10 +89,10 @@ double greatest_of(const std::vector<double>* values, std::size_t from) {
   return most;
 }
 
-Reduction greatest(const char* series) { return of(series, "greatest of all frames", from_start, greatest_from); }
+Reduction greatest(const char* series) { return of(series, "maximum over the frames", from_start, greatest_from); }
 
 Reduction least(const char* series) {
-  return of(series, "least of all frames", from_start, [](const std::vector<double>& v, std::size_t) {
+  return of(series, "minimum over the frames", from_start, [](const std::vector<double>& v, std::size_t) {
     double out = -v[0];
     for (const double x : v) out = max_or_nan(out, -x);
     return -out;
@@ -106,15 +106,15 @@ Reduction last(const char* series) {
 Reduction sum(const char* series) { return of(series, "sum over the frames", from_start, sum_from); }
 
 Reduction greatest_settled(const char* series) {
-  return of(series, "greatest of the last 0.5 s", if_settled, greatest_from);
+  return of(series, "maximum over the last 0.5 s", if_settled, greatest_from);
 }
 
 Reduction greatest_last_second(const char* series) {
-  return of(series, "greatest of the last second", last_second, greatest_from);
+  return of(series, "maximum over the last second", last_second, greatest_from);
 }
 
 Reduction mean_last_second(const char* series) {
-  return of(series, "mean of the last second", last_second, [](const std::vector<double>& v, std::size_t from) {
+  return of(series, "mean over the last second", last_second, [](const std::vector<double>& v, std::size_t from) {
     return sum_from(v, from) / static_cast<double>(v.size() - from);
   });
 }

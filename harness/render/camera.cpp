@@ -26,7 +26,7 @@ void look(Camera& c, View view) {
   c.up = cross(c.back, c.right);
 }
 
-/// Where to stand, along one axis of the picture, so that every point is within the slope `tangent` on both sides:
+/// Camera position along one axis of the picture such that every point is within the slope `tangent` on both sides:
 /// |x - middle| <= tangent (distance - z), z towards the viewer. Exact: the two outermost lines of slope `tangent` meet
 /// there.
 struct Stand {

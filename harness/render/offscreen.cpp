@@ -76,7 +76,7 @@ Picture Offscreen::read(std::size_t k) {
   const std::size_t pixels = static_cast<std::size_t>(extent_.width) * extent_.height;
   if (!pixels_) pixels_ = std::make_unique<vulkan::Buffer>(device_, "picture", 4 * pixels, vulkan::Buffer::Place::Host);
   submit([&] {
-    // What was drawn, before it is copied; afterwards the image is again as it was left by the drawing.
+    // Wait for the drawing before the copy. Afterwards the image returns to the layout in which the drawing left it.
     VkImageMemoryBarrier drawn{};
     drawn.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
     drawn.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;

@@ -27,7 +27,7 @@ Motion motion_of(const Scene& scene, const RunHeader& header, const Outcome& out
   return {scene, run_name(header), outcome.status == "ok" ? "" : outcome.status, {}, {}};
 }
 
-/// Result files of a folder whose names have `wanted` in them. Throws Error where that leaves it open which are meant.
+/// Result files of a folder whose names have `wanted` in them. Throws Error if that is ambiguous.
 std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted) {
   std::vector<fs::path> all, found;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -155,8 +155,8 @@ std::vector<Motion> motions_of(const std::string& file, const std::function<Moti
 }
 
 Framing framing_of(const Motion& m) {
-  constexpr double kSeenBeside = 0.12;  // of the sheet's size: colliders so near the cloth are in the picture,
-  constexpr double kDrawnBeside = 0.5;  // and so far are drawn
+  constexpr double kSeenBeside = 0.12;  // of the sheet's size: colliders this close to the cloth are in the picture,
+  constexpr double kDrawnBeside = 0.5;  // and colliders this close are drawn
   constexpr std::size_t kSamples = 48;  // of the frames
   Framing f;
   const Cloth& cloth = m.scene.cloth;

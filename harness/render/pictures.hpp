@@ -31,19 +31,19 @@ Motion stored_motion(const std::filesystem::path&);
 /// Runs a scene only for its positions. Throws Error if the solver cannot run it.
 Motion run_motion(const RunSpec&, const DeviceOptions&);
 
-/// The motions that a result file or a folder of them holds; of a folder those with `wanted` in their names. Any other
-/// path is a scenario, whose motion `run` makes. Throws Error if a folder leaves it open which are meant, and for a
-/// motion without frames.
+/// The motions that a result file or a folder of them holds; from a folder, only motions with `wanted` in their names.
+/// Any other path is a scenario, whose motion `run` makes. Throws Error if a folder leaves it open which are meant, and
+/// for a motion without frames.
 std::vector<Motion> motions_of(const std::string& file, const std::function<Motion(const std::string& scenario)>& run,
                                const std::string& wanted);
 
-/// What all pictures of a motion show, from one camera: the cloth of all frames, without vertices that are not finite
+/// Content of all pictures of a motion, from one camera: the cloth of all frames, without vertices that are not finite
 /// or are further from the initial bounds than the cloth's size, and colliders within an eighth of that size.
 struct Framing {
   Bounds near;                 ///< of the cloth, with a margin; colliders beyond are cut off
   Vec3 origin_m{};             ///< centre of the cloth's bounds
   std::vector<double> points;  ///< points that must be in the picture, xyz interleaved [m]
-  bool follows = false;        ///< the camera follows the cloth's middle vertex: nothing holds the cloth
+  bool follows = false;        ///< the camera follows the cloth's middle vertex: free cloth
 };
 Framing framing_of(const Motion&);
 
@@ -67,7 +67,7 @@ struct Taken {
 Taken take(const Motion&, const Shots&, const DeviceOptions&,
            const std::function<void(const std::string&, std::size_t, std::size_t)>& progress = {});
 
-/// What was written, for the terminal; many pictures are one line.
+/// The written files, for the terminal; many pictures are one line.
 std::string taken_text(const Taken&);
 
 /// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an

@@ -145,8 +145,8 @@ void Pipelines::create_layout() {
 
 namespace {
 
-/// Everything of a pipeline but its shaders: triangles, both sides, nearest first, opaque; the picture's size is set as
-/// it is recorded.
+/// Everything of a pipeline except its shaders: triangles, both sides, nearest first, opaque; the picture's size is set
+/// as it is recorded.
 struct States {
   VkPipelineVertexInputStateCreateInfo input{};
   VkPipelineInputAssemblyStateCreateInfo assembly{};

@@ -20,7 +20,7 @@ struct Drawn {
 // Look of a collider's vertex.
 #define LOOK_SMOOTH 0
 #define LOOK_FLAT 1  // lit by its triangles' own normals
-#define LOOK_MARK 2  // a small dark thing: where a hand holds the cloth
+#define LOOK_MARK 2  // a small dark sphere: an attached vertex
 
 #ifdef __cplusplus
 static_assert(sizeof(Drawn) == 128);

@@ -54,7 +54,7 @@ std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
   return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
 }
 
-/// What cloth.vert reads of a mesh. `per_m`: squares of the checker in a metre.
+/// Mesh data that cloth.vert reads. `per_m`: squares of the checker per metre.
 std::vector<std::uint32_t> mesh_words(const ClothMesh& m, double per_m) {
   std::vector<std::uint32_t> words, first(m.vertices.size() + 1, 0);
   const auto axes = longest_axes(m);
@@ -125,7 +125,7 @@ void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buff
   const std::size_t bytes = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) * sizeof(vec4);
   if (buffer.bytes() < bytes)
     throw Error(
-        fmt::format("buffer \"{}\" of {} B: expected a vec4 a vertex, {} B", buffer.name(), buffer.bytes(), bytes));
+        fmt::format("buffer \"{}\" of {} B: expected one vec4 per vertex, {} B", buffer.name(), buffer.bytes(), bytes));
   positions_ = &buffer;
   buffer_origin_m_ = buffer_origin_m;
   bound_ = false;

@@ -46,7 +46,7 @@ class SceneRenderer {
   /// Draws positions from a buffer of the same device: a vec4 for each vertex, in order, relative to `buffer_origin_m`.
   /// The buffer must outlive its use here; each picture shows its content at that time.
   void use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m);
-  /// Draws these positions, xyz interleaved [m], one for each vertex (else Error). Any may be NaN: its triangles are
+  /// Draws these positions, xyz interleaved [m], one per vertex (otherwise Error). Any may be NaN: its triangles are
   /// left out.
   void write_positions(std::span<const double> position_m);
   /// The camera follows a vertex that started at `start_m`.

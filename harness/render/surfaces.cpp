@@ -11,7 +11,7 @@
 namespace clothbench::render {
 namespace {
 
-constexpr double kGrip_m = 0.012;  // radius of the ball that marks a held vertex, of a cloth of a metre
+constexpr double kGrip_m = 0.012;  // radius of the sphere that marks an attached vertex, for a cloth of 1 m
 
 Vec3 sum(const Vec3& a, double s, const Vec3& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
 
@@ -35,7 +35,7 @@ std::uint32_t add_vertex(Surfaces& s, const Vec3& p, const Vec3& n, int look) {
   return static_cast<std::uint32_t>(s.position_m.size() - 1);
 }
 
-/// Rings from one pole to the other; a ball where a = b.
+/// Rings from one pole to the other; a sphere if a = b.
 void add_capsule(Surfaces& s, const Capsule& c, int look) {
   constexpr int kSides = 32, kRings = 10;  // rings of each half ball
   if (!finite(c.a_m) || !finite(c.b_m) || !(c.radius_m > 0)) return;
@@ -70,7 +70,7 @@ bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
   return true;
 }
 
-/// Hands are round, other things have edges.
+/// Hands are smooth, other meshes have edges.
 void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, const Bounds& near) {
   Extent seen{sum(near.low, 1, near.high), near.diagonal() / 2};
   for (double& x : seen.middle) x /= 2;

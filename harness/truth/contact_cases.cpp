@@ -64,7 +64,7 @@ Draped draped(const Strip& s) {
   s.need(std::abs(dot(down, s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
   s.need_rest();
   s.need_even_masses();
-  s.need_pins({}, "nothing that is held");
+  s.need_pins({}, "no pins and no grips");
   s.need_inextensible();
   s.need_no_bending();
   s.need_damping(false);
@@ -125,7 +125,7 @@ ReferenceCase incline(const Strip& s) {
   s.need_gravity();
   s.need_flat();
   s.need_even_masses();
-  s.need_pins({}, "nothing that is held");
+  s.need_pins({}, "no pins and no grips");
   s.need_damping(false);
   const Cloth& c = s.scene.cloth;
   const Collider& collider = only_collider(s, "a plane or a box");
@@ -148,7 +148,7 @@ ReferenceCase incline(const Strip& s) {
   s.need(std::abs(face.gap_m) <= kPlace * s.length_m, "a sheet that starts at the collider's margin");
   s.need(std::abs(dot(c.axis_u, face.normal)) <= Strip::kLevel && std::abs(dot(c.axis_v, face.normal)) <= Strip::kLevel,
          "a sheet parallel to the face");
-  s.need(slope.angle_rad < std::numbers::pi / 2, "a face that looks up");
+  s.need(slope.angle_rad < std::numbers::pi / 2, "a face whose normal points up");
   s.need(slope.speed_m_per_s >= 0 && length(v0 - slope.speed_m_per_s * d) <= Strip::kLevel * (length(v0) + 1),
          "an initial velocity straight downhill, or none");
   const double whole = slide_down(slope, most).distance_m;

@@ -63,7 +63,7 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
                                std::span<const std::uint32_t> triangles)
     : vertices_(rest.size() / 2), points_(lattice.size()) {
   const double width = lattice.points_m().back()[0], height = lattice.points_m().back()[1];
-  // How far a point lies outside the best triangle so far, as its least barycentric weight.
+  // How far a point lies outside the best triangle so far, as its smallest barycentric weight.
   std::vector<double> inside(lattice.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
     std::array<std::array<double, 2>, 3> p;

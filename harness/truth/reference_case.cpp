@@ -76,7 +76,7 @@ const std::vector<Tolerance>& tolerances() {
        "stretch of the strip at rest / exact stretch"},
       {"cantilever", kOfMotion, 0, "statics", at_rest},
       {"two-hand-pull", kOfMotion, 0, "waves that the ramp makes longer than a cell",
-       "greatest strain, RMS over time / (v0/c)"},
+       "maximum strain, RMS over time / (v0/c)"},
       {"incline", kOfMotion, 1e-4, "Coulomb's law; at rest 25 um of a sheet of 0.25 m",
        "displacement along the slope, RMS over time / displacement at the end (at rest: L)"},
       {"capstan", kOnCylinder, 5e-3, "a polygon on a cylinder; at rest a fifth of a cell",

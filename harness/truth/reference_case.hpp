@@ -15,7 +15,7 @@ namespace clothbench::truth {
 /// solution of its own: it has the continuum's at its vertices, and its columns are the columns of the material
 /// lattice.
 ///
-/// `columns` is the solution for the same mesh where there is one (a chain of as many links, springs, hinges), so that
+/// `columns` is the solution for the same mesh if there is one (a chain of as many links, springs, hinges), so that
 /// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh, or of a
 /// mesh so fine that its own error does not matter.
 struct ReferenceCase {
@@ -36,8 +36,8 @@ struct ReferenceCase {
 /// reference case's requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
-/// What is stated of every scene with a reference case, whatever its parameters: how far a run may be from the exact
-/// solution and still be right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
+/// The tolerance of a reference case, for any parameters: how far a run may be from the exact solution and still be
+/// right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
 /// and the error by which runs are ranked.
 struct Tolerance {
   std::string reference_case;

@@ -233,7 +233,7 @@ double hang_displacement_m(const HeavyStrip& s, double rest) {
 double hang_row_displacement_m(const HeavyStrip& s, int cells, int row) {
   check(s, 0);
   at_least(cells, 1, "cells");
-  if (row < 0 || row > cells) throw Error("argument row: expected 0 (held) up to the number of cells");
+  if (row < 0 || row > cells) throw Error("argument row: expected 0 (fixed) up to the number of cells");
   const double cell = s.length_m / cells, row_weight = s.areal_density_kg_per_m2 * s.gravity_m_per_s2 * cell;
   double displacement = 0;
   for (int i = 1; i <= row; ++i)

@@ -11,7 +11,7 @@
 
 namespace clothbench::truth {
 
-/// Points of a strip in its plane, from the held end on; x horizontal.
+/// Points of a strip in its plane, from the fixed end on; x horizontal.
 using Nodes = std::vector<std::array<double, 2>>;
 
 /// Point at a share 0 .. 1 of the strip's length, linear between the nodes.
@@ -42,7 +42,7 @@ struct Pendulum {
 double pendulum_period_s(const Pendulum&);
 double pendulum_angle_rad(const Pendulum&, double time_s);
 
-/// A straight strip of inextensible links without bending stiffness, held at one end and released at rest: the motion
+/// A straight strip of inextensible links without bending stiffness, fixed at one end and released at rest: the motion
 /// of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles. Tensions T_j follow
 /// from |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
 ///   T_j (1/m_j + 1/m_{j-1}) - T_{j+1} c_j/m_j - T_{j-1} c_{j-1}/m_{j-1} = a theta_j'^2,
@@ -75,8 +75,8 @@ struct HeavyStrip {
 };
 double hang_displacement_m(const HeavyStrip&, double rest_m);
 
-/// Displacement of row `row` (0 = held .. cells) of `cells` springs. Either row of a cell has half of its mass, so rows
-/// lie exactly on the curve above.
+/// Displacement of row `row` (0 = fixed .. cells) of `cells` springs. Either row of a cell has half of its mass, so
+/// rows lie exactly on the curve above.
 double hang_row_displacement_m(const HeavyStrip&, int cells, int row);
 
 /// Shape at rest of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum
@@ -153,13 +153,13 @@ struct Capstan {
   double gravity_m_per_s2 = 9.81;
   int turns = 0;
 };
-/// Longest overhang below the axis that `light_overhang_m` on the other side can hold.
+/// Longest overhang below the axis that `light_overhang_m` on the other side can balance.
 double greatest_overhang_m(const Capstan&, double light_overhang_m);
 
 /// The strip sliding from rest: at speed v, pressure times R is T + rho g R sin phi - rho v^2 and
 ///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = overhangs now,
-/// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that holds stays static. Throws Error
-/// for a time at which the light end has reached the axis. Integrated as above, tolerance 1e-12.
+/// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that does not slip stays static.
+/// Throws Error for a time at which the light end has reached the axis. Integrated as above, tolerance 1e-12.
 struct SlidState {
   double displacement_m, speed_m_per_s;
 };

@@ -12,12 +12,12 @@
 namespace clothbench::truth {
 namespace {
 
-// Inextensible triangles lock: a mesh is elastic, and so stiff that its stretch is small beside its own error.
+// Inextensible triangles lock: a mesh is elastic, and so stiff that its stretch is small compared with its own error.
 constexpr double kMeshStrain = 1e-3;
 constexpr const char* kMeshStrainText = "1e-3";
 
 constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet that shears
-// Links of the chain that stands for the continuum of a cantilever: off by 2.4e-7 of its length at Gamma = 10.
+// Links of the chain that is used as the continuum of a cantilever: off by 2.4e-7 of its length at Gamma = 10.
 constexpr int kSmooth = 2048;
 
 /// Distance of the last column from the middle of edge u0 along `direction`.
@@ -30,7 +30,7 @@ std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& directi
 ReferenceCase free_fall(const Strip& s) {
   s.need_gravity();
   s.need_even_masses();
-  s.need_pins({}, "nothing that is held");
+  s.need_pins({}, "no pins and no grips");
   s.need_flat();
   ReferenceCase known = s.reference_case();
   known.quantity_name = "fall of the centre of mass";
@@ -61,7 +61,7 @@ ReferenceCase pendulum(const Strip& s) {
   s.need_level();
   s.need_flat();
   s.need_rest();
-  s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
+  s.need_pins(s.edge("u0"), "edge u0 pinned, and no other pins or grips");
   s.need_inextensible();
   s.need_damping(false);
   s.need_even_masses();
@@ -85,7 +85,7 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need_level();
   s.need_flat();
   s.need_rest();
-  s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
+  s.need_pins(s.edge("u0"), "edge u0 pinned, and no other pins or grips");
   if (s.mesh())
     s.need_stiff(kMeshStrain, kMeshStrainText);
   else
@@ -106,7 +106,7 @@ ReferenceCase swing_strip(const Strip& s) {
     for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame))) out.push_back(s.at(x, z));
     return out;
   };
-  // Four times as many links are nearer to the continuum by 16; made only if asked for.
+  // Four times as many links are 16 times closer to the continuum; computed only on request.
   const auto fine = std::make_shared<States>();
   known.continuum = [s, fine](double share, int frame) {
     if (fine->empty())
@@ -153,7 +153,7 @@ ReferenceCase heavy_strip(const Strip& s) {
   s.need_gravity();
   s.need(std::abs(dot(s.along, s.up) + 1) <= Strip::kLevel, "a sheet whose axis_u points down");
   s.need_flat();
-  s.need_pins(s.edge("u0"), "edge u0 pinned and nothing else held");
+  s.need_pins(s.edge("u0"), "edge u0 pinned, and no other pins or grips");
   s.need_no_bending();
   s.need_damping(true);
   if (!s.scene.material.membrane_stiffness_N_per_m) return hanging_at_rest_length(s);
@@ -187,15 +187,15 @@ ReferenceCase heavy_strip(const Strip& s) {
 
 namespace {
 
-/// Width [m] of what the pins of a mesh hold beside edge u0. Throws Error if they hold anything else, or the edge only.
+/// Width [m] of the pinned part of a mesh next to edge u0. Throws Error if other vertices are pinned, or only the edge.
 double clamp_of_mesh_m(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   double width_m = 0;
   for (const std::uint32_t v : s.scene.pins.vertices)
     width_m = std::max(width_m, c.mesh->vertices[v][0] + c.width_m / 2);
   s.need(width_m > Strip::kFlat * c.width_m && width_m < 0.5 * c.width_m,
-         "a clamp: the vertices of edge u0 and those of a line beside it pinned");
-  s.need_pins(s.up_to(width_m), "every vertex from edge u0 to the end of the clamp pinned and nothing else held");
+         "a clamp: the vertices of edge u0 and of a line next to it pinned");
+  s.need_pins(s.up_to(width_m), "every vertex from edge u0 to the end of the clamp pinned, and no other pins or grips");
   return width_m;
 }
 
@@ -205,7 +205,7 @@ ReferenceCase cantilever(const Strip& s) {
   s.need_level();
   s.need_flat();
   s.need(s.links >= 2, "3 columns or more");
-  if (!s.mesh()) s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped and nothing else held");
+  if (!s.mesh()) s.need_pins(clamp_vertices(s.scene.cloth, "u0"), "edge u0 clamped, and no other pins or grips");
   s.need_damping(true);
   s.need(s.scene.needs.has(Feature::Bend), "a bending rigidity");
   s.need_even_masses();

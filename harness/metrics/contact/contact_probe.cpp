@@ -44,7 +44,7 @@ struct MeshObject {
 
 /// Depth [m] of a triangle in a capsule; 0 or less if it is outside.
 double depth_in(const Simplex<3>& triangle, const Capsule& c) {
-  // Most capsules are far away, which the boxes tell at less cost; the factor covers rounding.
+  // Most capsules are far away, which the boxes show at less cost; the factor covers rounding.
   const double apart = box_of(triangle).squaredExteriorDistance(Box(c.a).extend(c.b));
   if (apart > c.radius_m * c.radius_m * (1 + 1e-12)) return 0;
   return c.radius_m - std::sqrt(squared_distance(c.a, c.b, triangle));
@@ -175,7 +175,7 @@ ContactSample half_space_contact(const TriangleMeshView& cloth, const Point<3>& 
     for (const double d : f) out.depth_max_m = std::max(out.depth_max_m, d);
     const auto behind = std::count_if(f.begin(), f.end(), [](double d) { return d > 0; });
     if (behind == 0 || behind == 3) continue;
-    // `lone` is the corner alone on its side.
+    // `lone` is the only corner on its side.
     std::size_t lone = 0;
     while ((f[lone] > 0) != (behind == 1)) ++lone;
     const auto cut = [&](std::size_t k) { return Point<3>(v[lone] + f[lone] / (f[lone] - f[k]) * (v[k] - v[lone])); };

@@ -9,8 +9,8 @@ namespace clothbench::contact {
 
 /// Contact of a cloth with one object at one instant. Both are NaN if the cloth is not finite.
 struct ContactSample {
-  double contour_length_m;  ///< of the curve in which cloth and object cross
-  double depth_max_m;       ///< of the cloth in the object, between the vertices too; NaN for an object without inside
+  double contour_length_m;  ///< of the intersection contour of cloth and object
+  double depth_max_m;       ///< of the cloth in the object, also between vertices; NaN for an object without inside
 };
 
 /// Whether a mesh has an inside.

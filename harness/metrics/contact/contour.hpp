@@ -7,7 +7,7 @@ namespace clothbench::contact {
 
 /// How much of a cloth intersects an object at one instant. Needs no history or orientation, so open meshes work too.
 struct Contour {
-  double length_m = 0;  ///< of the curve in which the two surfaces cross
+  double length_m = 0;  ///< of the intersection contour of the two surfaces
   long pairs = 0;       ///< (cloth triangle, object triangle) with a point in common, exactly
 };
 

@@ -32,7 +32,7 @@ bool all_finite(std::span<const double> numbers) {
 void validate(const TriangleMeshView& mesh, const char* what) {
   const std::string name = what;
   if (mesh.positions.size() % 3 != 0)
-    throw Error(name + ": expected 3 numbers a vertex, got " + std::to_string(mesh.positions.size()) + " in all");
+    throw Error(name + ": expected 3 numbers per vertex, got " + std::to_string(mesh.positions.size()) + " in all");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
       if (v >= mesh.vertex_count())

@@ -56,8 +56,8 @@ class BoxTree {
   template <class Visit>
   void for_each_overlapping(const Box& query, Visit visit) const;
 
-  /// The item with the least squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that distance.
-  /// squared_distance must not be less than the squared distance from `p` to the item's box.
+  /// The item with the smallest squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that
+  /// distance. squared_distance must not be less than the squared distance from `p` to the item's box.
   template <class SquaredDistance>
   int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const;
 

@@ -15,10 +15,9 @@ Point<4> at_time(const Point<3>& p, double t) { return {p[0], p[1], p[2], t}; }
 
 Point<3> vertex_of(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
-/// Whether a coordinate parts the motion p -> q from the triangle that moves from `from` to `to`. Both ways are
-/// straight, so what is strictly parted at the start and at the end is parted in between, and a translation by e
-/// changes nothing.
-bool parted_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex<3>& from, const Simplex<3>& to) {
+/// Whether a coordinate separates the motion p -> q from the triangle that moves from `from` to `to`. Both motions are
+/// linear, so a strict separation at the start and at the end holds in between, and a translation by e changes nothing.
+bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex<3>& from, const Simplex<3>& to) {
   for (int k = 0; k < 3; ++k) {
     const auto [low_from, high_from] = std::minmax({from[0][k], from[1][k], from[2][k]});
     const auto [low_to, high_to] = std::minmax({to[0][k], to[1][k], to[2][k]});
@@ -66,7 +65,7 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
   const Point<4> start = at_time(p, 0), end = at_time(q, 1);
   tree_.for_each_overlapping(Box(p).extend(q), [&](int item) {
     const Prism& prism = prisms_[item];
-    if (parted_by_coordinate(p, q, prism.from, prism.to)) return;
+    if (separated_by_coordinate(p, q, prism.from, prism.to)) return;
     std::array<Point<4>, 3> v, w;
     for (int i = 0; i < 3; ++i) {
       v[i] = at_time(prism.from[i], 0);

@@ -42,9 +42,9 @@ class Border {
   /// `welded` from welded_vertices(mesh). Copies what it needs.
   Border(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded);
 
-  /// Whether a point cannot have gone round the border in a step from p to q: it was before and after, together,
-  /// farther from it than twice its way. `from`, `to`: the mesh's positions; its greatest displacement is added to the
-  /// point's.
+  /// Whether a point cannot have moved around the border in a step from p to q: the sum of its distances to the border
+  /// before and after exceeds twice its displacement. `from`, `to`: the mesh's positions; the maximum displacement of
+  /// the mesh is added to the point's.
   bool out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const double> from,
                     std::span<const double> to) const;
 
@@ -52,18 +52,18 @@ class Border {
   std::vector<Link> edges_;
 };
 
-/// What shows that the crossings of a step were made, asked only where they depend on it.
+/// Evidence that the crossings of a step took place. Evaluated only if the result depends on it.
 struct StepEvidence {
-  std::function<bool()> contour;  ///< whether cloth and mesh cross at the step's start or end
-  /// Whether a point on its way cannot have gone round the border.
+  std::function<bool()> contour;  ///< whether cloth and mesh intersect at the step's start or end
+  /// Whether a point cannot have moved around the border.
   std::function<bool(const Point<3>&, const Point<3>&)> out_of_reach;
 };
 
 /// Signed crossing count of every vertex since the start. It is 0 for a vertex on its initial side: one that never
-/// crossed, crossed back, or went round the border. Any other count means that the vertex has tunnelled.
+/// crossed, crossed back, or moved around the border. Any other count means that the vertex has tunnelled.
 ///
-/// The straight path between two frames may cut a border that the vertex went round. If there is no contour, no link of
-/// the cloth crosses the mesh, and a link between a vertex that crossed and one that did not leads round a border. So
+/// The straight path between two frames may cut a border that the vertex moved around. Without a contour, no link of
+/// the cloth crosses the mesh, and a link between a vertex that crossed and one that did not leads around a border. So
 /// without a contour the crossings of linked vertices that crossed alike count only if they have no link to others, or
 /// if the border is out of reach for one of them.
 class TunnelHistory {

@@ -30,15 +30,17 @@ MetricGroup contact_metrics() {
       kImpact{0.1, Length, 0.5, false, "one moment of an impact, three edges"},
       kDepth{5e-4, Length, 0.1, false, "half a millimetre on a cloth of 1 m"}, kPoints{0, One, 0, true, "none"};
   constexpr Needs kInside{"colliders with an inside", has_depth};
-  return {{{"contact_length_m", "m", "length of the curves in which cloth and colliders cross", kColliders,
+  return {{{"contact_length_m", "m", "length of the intersection contour of cloth and colliders", kColliders,
             [](const MetricFrame& f) { return f.contact->length_m; }, plotted("contour [m]", 1, 1)},
-           {"depth_m", "m", "greatest depth in a collider, between the vertices too", kInside,
+           {"depth_m", "m", "maximum depth of the cloth in a collider, also between vertices", kInside,
             [](const MetricFrame& f) { return f.contact->depth_m; }, plotted("depth [m]", 2, 2)}},
           {{"contact_length_max_m", greatest("contact_length_m"), Yes, &kImpact},
            {"contact_length_settled_m", greatest_settled("contact_length_m"), Yes, &kAtRest},
            {"depth_max_m", greatest("depth_m"), Yes, &kDepth},
            {"crossings_max",
-            own({}, "points that pass through the cloth or a surface between two frames; greatest of all frames",
+            own({},
+                "number of points that pass through the cloth or a static surface between two frames; maximum over the "
+                "frames",
                 crossings, "1"),
             Yes, &kPoints}}};
 }

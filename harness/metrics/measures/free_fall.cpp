@@ -55,7 +55,7 @@ bool falls_freely(const Scene& s) {
 
 MetricGroup free_fall_metrics() {
   constexpr Needs kFree{"free cloth, gravity", falls_freely};
-  return {{{"free_fall_error", "1", "greatest distance from free fall over g T^2 / 2", kFree, free_fall_error}},
+  return {{{"free_fall_error", "1", "maximum distance from free fall, divided by g T^2 / 2", kFree, free_fall_error}},
           {{"free_fall_error", last("free_fall_error"), Expect::Yes, &kErrorGate}}};
 }
 

@@ -81,19 +81,20 @@ MetricGroup grips_metrics() {
   using enum Expect;
   static constexpr Gate kEdge{0.05, One, 0, false, "a twentieth of an edge"},
       kLeft{1e-3, One, 0.1, false, "a tenth of what is allowed"};
-  constexpr Needs kHold{"hands that hold", [](const Scene& s) { return !s.grips.vertices.empty(); }};
+  constexpr Needs kHold{"attachments", [](const Scene& s) { return !s.grips.vertices.empty(); }};
   return {
-      {{"grip_error_m", "m", "greatest distance of a held vertex from where it is held", kHold, grip_error}},
+      {{"grip_error_m", "m", "maximum distance of an attached vertex from its prescribed position", kHold, grip_error}},
       {{"grip_error_max_m", greatest("grip_error_m"), Yes, &kErrorGate},
        {"grip_edge_ratio_max",
         own({"stretch_max"},
-            "longest structural edge over its rest length, over what the hands pull apart over their distance at the "
-            "start, while they hold",
+            "maximum stretch ratio of a structural edge, divided by the stretch that the hands impose, while they are "
+            "attached",
             edge_ratio, "1"),
         Yes, &kEdge},
        {"strain_mean_released",
         own({"stretch_mean_positive"},
-            "mean strain of the structural edges, those that are short counted as 0, 1 s after the last hand let go",
+            "mean strain of the structural edges (compressed edges count as 0), 1 s after the last hand released the "
+            "cloth",
             strain_released, "1"),
         Yes, &kLeft}}};
 }

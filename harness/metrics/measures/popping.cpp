@@ -126,8 +126,8 @@ MetricGroup popping_metrics() {
   return {{},
           {{"pop_max_m",
             own({},
-                "greatest displacement of a vertex within 1/36 s beyond twice what its neighbours, colliders and grips "
-                "move in that time",
+                "maximum displacement of a vertex within 1/36 s, minus twice that of its neighbours, colliders and "
+                "attachments",
                 pop, "m"),
             Expect::Yes, &kHalf}}};
 }

@@ -9,7 +9,8 @@ bool touches_itself(const Scene& s) { return kWithContactMetrics && s.needs.has(
 
 /// Excess over the start frame's value, so that a start that crosses itself is not counted against a solver.
 Reduction beyond_start(Reduction r) {
-  return {r.series, r.how + ", beyond the start's", [series = r.series.front(), value = r.value](const RunView& run) {
+  return {r.series, r.how + ", minus the value of the initial frame",
+          [series = r.series.front(), value = r.value](const RunView& run) {
             const double v = value(run);
             return v != v ? v : max_or_nan(0, v - run.series(series)->front());
           }};
@@ -23,9 +24,9 @@ MetricGroup self_contact_metrics() {
   static constexpr Gate kPairs{4, One, 0.1, true, "four pairs of thousands"},
       kLength{1e-2, Length, 0.1, true, "a third of an edge of a 32 × 32 cloth"};
   constexpr Needs kSelf{"cloth.self_collision", touches_itself};
-  return {{{"self_contact_length_m", "m", "length of the curves in which the cloth crosses itself", kSelf,
+  return {{{"self_contact_length_m", "m", "length of the self-intersection contour", kSelf,
             [](const MetricFrame& f) { return f.self_contact->length_m; }},
-           {"self_contact_pairs", "1", "pairs of triangles of the cloth that meet and share no vertex", kSelf,
+           {"self_contact_pairs", "1", "number of intersecting pairs of cloth triangles that share no vertex", kSelf,
             [](const MetricFrame& f) { return f.self_contact->pairs; }}},
           {{"self_contact_pairs_max", beyond_start(greatest("self_contact_pairs")), Yes, &kPairs},
            {"self_contact_length_max_m", beyond_start(greatest("self_contact_length_m")), Yes, &kLength},

@@ -16,7 +16,7 @@ auto judged_field(double StabilityFrame::*field) {
 
 /// Greatest over the frames that count; NaN frames do not.
 Reduction greatest_known(const char* series) {
-  return {{series}, "greatest of the frames that count", [name = std::string(series)](const RunView& r) {
+  return {{series}, "maximum over the frames that count", [name = std::string(series)](const RunView& r) {
             double most = kMissing;
             for (const MetricSeries& m : r.pass.metrics)
               for (std::size_t f = 0; m.name == name && f < m.values.size(); ++f)
@@ -51,9 +51,9 @@ MetricGroup stability_metrics() {
   };
   scalar("stability_grade", own({"stability_classes"}, "0 stable, 1 degraded, 2 failed", grade, "1"));
   for (const Judged& j :
-       {Judged{"stability_speed", "greatest vertex speed over the greatest that physics allows", &S::speed},
-        {"stability_energy_gain", "energy gained over M g L", &S::energy_gain},
-        {"stability_strain_excess", "greatest strain beyond the truth", &S::strain_excess}}) {
+       {Judged{"stability_speed", "maximum vertex speed, divided by the maximum that physics allows", &S::speed},
+        {"stability_energy_gain", "energy gained, divided by M g L", &S::energy_gain},
+        {"stability_strain_excess", "maximum strain beyond the exact solution or its bound", &S::strain_excess}}) {
     g.series.push_back({j.name, "1", j.doc, kJudged, judged_field(j.field)});
     scalar(std::string(j.name) + "_max", greatest_known(j.name));
   }

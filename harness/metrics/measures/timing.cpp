@@ -144,10 +144,10 @@ void add_readings(std::vector<Scalar>& scalars) {
                                                   "dispatches"};
   const std::vector<Scalar> readings = {
       {"untimed_s", own({}, "wall time of loading and of the untimed pass", nullptr, "s")},
-      {"cpu_clock_*", own({}, "greatest clock of a processor's core, before and after", nullptr, "Hz")},
+      {"cpu_clock_*", own({}, "maximum clock of a CPU core, before and after", nullptr, "Hz")},
       {"gpu_clock_*", own({}, "clock of the GPU, before and after", nullptr, "Hz")},
       {"temperature_*", own({}, "hottest sensor, before and after", nullptr, "degC")},
-      {"sampled_*", own({}, "what another program read from the device during the trials", nullptr, "1")},
+      {"sampled_*", own({}, "readings of the device during the trials by another program", nullptr, "1")},
   };
   scalars.insert(scalars.end(), readings.begin(), readings.end());
   static const std::set<std::string> kFacts = {"jobs", "trials", "fps_spread", "bandwidth_window_s"};
@@ -181,39 +181,41 @@ MetricGroup timing_metrics() {
   using B = Bandwidth;
   MetricGroup g;
   g.scalars = {
-      reported("jobs", "1", "the most clothbench jobs that ran side by side while the run was loaded and timed",
+      reported("jobs", "1", "maximum number of clothbench jobs on the machine while the run was loaded and timed",
                jobs_beside),
       reported("trials", "1", "timed trials",
                [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
       reported("fps_median", "s-1", "frames per second, median of the trials",
                [](const RunView& r) { return median(rates(r)); }),
-      reported("fps_spread", "1", "half the range of the trials' frames per second, over their median", half_range),
+      reported("fps_spread", "1", "half the range of the trials' frames per second, divided by their median",
+               half_range),
       reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
                [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
       median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s),
       median_frame("frame_cpu_median_s", "CPU time of a frame of a solver on the host, summed over its threads, median",
                    &T::frame_cpu_s),
       reported("frame_pipelined_median_s", "s",
-               "wall time of a frame that is not waited for, median of the trials' means",
+               "mean wall time of a frame with two frames in flight, median of the trials",
                [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
-      median_frame("frame_rendered_median_s", "wall time of a frame and its pictures, median", &T::frame_rendered_s),
+      median_frame("frame_rendered_median_s", "wall time of a frame with both eye views rendered, median",
+                   &T::frame_rendered_s),
       median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s),
       reported("read_B_per_frame", "B", "bytes that a frame's shaders read",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
       reported("write_B_per_frame", "B", "bytes that a frame's shaders write",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
-      bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read over wall time, greatest of the windows",
+      bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read divided by wall time, maximum over the windows",
                        &T::stage_read_B, &B::peak),
-      bandwidth_scalar("bandwidth_write_peak_B_per_s", "bytes written over wall time, greatest of the windows",
+      bandwidth_scalar("bandwidth_write_peak_B_per_s", "bytes written divided by wall time, maximum over the windows",
                        &T::stage_write_B, &B::peak),
       reported("bandwidth_window_s", "s", "length of those windows",
                [](const RunView& r) {
                  return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));
                }),
       reported("device_memory_B", "B", "buffers in device-local memory", device_memory),
-      reported("dispatches", "1", "dispatches a frame", dispatches),
+      reported("dispatches", "1", "dispatches per frame", dispatches),
       {kStage + std::string("*"),
-       own({}, "time of a stage on the GPU, median; from the frames run again for it", nullptr, "s")},
+       own({}, "GPU time of a stage, median, from a second run of the frames", nullptr, "s")},
       reported("load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
   };
   add_readings(g.scalars);

@@ -32,9 +32,9 @@ MetricGroup touch_metrics() {
   static constexpr Gate kSlip{1e-2, SlackUnit::Length, 0.5, false, "a fold that slides elsewhere"};
   constexpr Needs kFriction{"friction", has_friction}, kRest{"colliders, gravity", can_rest};
   return {
-      {{"touching_fraction", "1", "share of the cloth's triangles within the margin of a collider, by area", kColliders,
+      {{"touching_fraction", "1", "fraction of the cloth's area in contact with a collider", kColliders,
         [](const MetricFrame& f) { return f.touch->touching_fraction; }},
-       {"slip_m", "m", "mean distance that touching vertices slid on the surface in the frame", kFriction,
+       {"slip_m", "m", "mean displacement along the surface of vertices in contact, per frame", kFriction,
         [](const MetricFrame& f) { return f.touch->slip_m; }},
        {"lowest_height_m", "m", "height of the lowest vertex above the origin, against gravity", kRest, lowest_height}},
       {{.name = "touching_fraction_end", .from = last("touching_fraction"), .expect = Yes, .better = Better::More},

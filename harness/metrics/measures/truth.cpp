@@ -64,7 +64,7 @@ Reduction at_the_end(const char* series) {
 
 /// RMS over time for truths in motion; the last frame for truths at rest.
 Reduction over_time(const char* series) {
-  return {{series}, "RMS over time, at rest the last frame", [name = std::string(series)](const RunView& r) {
+  return {{series}, "RMS over time; at rest, the last frame", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
             if (v == nullptr) return kMissing;
             return r.reference_case().settles || v->size() < 2 ? v->back() : truth::time_rms(r.pass.time_s, *v);
@@ -73,7 +73,7 @@ Reduction over_time(const char* series) {
 
 /// The greatest value for truths in motion; the last frame for truths at rest.
 Reduction worst(const char* series) {
-  return {{series}, "greatest of all frames, at rest the last", [name = std::string(series)](const RunView& r) {
+  return {{series}, "maximum over the frames; at rest, the last frame", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
             if (v == nullptr) return kMissing;
             return r.reference_case().settles ? v->back() : greatest_amount(v);
@@ -90,7 +90,7 @@ double truth_error(const RunView& r) {
 Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
   return {scalar + kBound,
           own(
-              {}, "bound on " + scalar + ": tolerance of the reference case, error of the mesh, rounding",
+              {}, "bound on " + scalar + ": tolerance of the test case, error of the mesh, rounding",
               [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; }, "1"),
           Expect::No,
           nullptr,
@@ -109,15 +109,15 @@ bool with_energy(const RunView& r) { return truth_keeps_energy(r.scene); }
 
 std::vector<Metric> truth_series() {
   using T = TruthErrors;
-  constexpr Needs kTruth{"a truth", has_truth},
-      kEnergy{"a truth without damping, shear, bending, hands and colliders", truth_keeps_energy};
+  constexpr Needs kTruth{"an exact solution", has_truth},
+      kEnergy{"an exact solution without damping, shear, bending, attachments and colliders", truth_keeps_energy};
   return {
-      {"truth_error_e2", "1", "RMS distance from the truth on the material lattice, over the longer side", kTruth,
-       truth_field(&T::e2)},
-      {"truth_quantity", "1", "the reference case's quantity, in SI units", kTruth, truth_field(&T::quantity)},
-      {"truth_quantity_error", "1", "error of the reference case's quantity, over its scale", kTruth,
+      {"truth_error_e2", "1", "RMS distance from the exact solution at the material points, divided by the longer side",
+       kTruth, truth_field(&T::e2)},
+      {"truth_quantity", "1", "quantity of the analytic test case, in SI units", kTruth, truth_field(&T::quantity)},
+      {"truth_quantity_error", "1", "error of the quantity of the analytic test case, divided by its scale", kTruth,
        truth_field(&T::quantity_error)},
-      {"energy_rise", "1", "energy less that at the start, over M g L", kEnergy, energy_rise},
+      {"energy_rise", "1", "energy minus the energy at the start, divided by M g L", kEnergy, energy_rise},
   };
 }
 
@@ -135,14 +135,14 @@ MetricGroup truth_metrics() {
        {"truth_quantity", at_the_end("truth_quantity"), No, nullptr, with_truth, "", "", Better::Neither},
        {"truth_error",
         own({"truth_error_e2", "truth_quantity_error"},
-            "what runs are ranked by: the error of the reference case's quantity, or of positions", truth_error, "1"),
+            "error by which runs are ranked: of the test case's quantity, or of positions", truth_error, "1"),
         No, &kErrorGate, with_truth},
        {"energy_gain",
         own(
-            {"energy_rise"}, "greatest energy above that at the start, over M g L",
+            {"energy_rise"}, "maximum energy above the energy at the start, divided by M g L",
             [](const RunView& r) { return max_or_nan(0, greatest_of(whole_series(r, "energy_rise"))); }, "1"),
         No, nullptr, with_energy},
-       of_the_study("truth_value", "the reference case's quantity itself, in SI units"),
+       of_the_study("truth_value", "exact quantity of the analytic test case, in SI units"),
        of_the_study("truth_space_error", "what ranks runs, of the mesh's own truth against the continuum", &kErrorGate),
        of_the_study("truth_dependence_*", "change of what ranks runs with the logarithm of a modulus"),
        of_the_study("reference_*",

@@ -1,10 +1,10 @@
 #version 450
 #include "../render_shared.h"
-// Draws 6 vertices a cell of the grid, or 3 a triangle of a mesh, which pull their positions from the solver's own buffer (or one like it). There are no
+// Draws 6 vertices per cell of the grid, or 3 per triangle of a mesh, which pull their positions from the solver's own buffer (or one like it). There are no
 // indices, so that every vertex knows its triangle and one with a corner that is not finite can be left out whole.
 layout(push_constant) uniform Constants { Drawn d; };
 layout(std430, set = 0, binding = 0) readonly buffer Positions { vec4 position[]; };
-// Of a mesh: 3 words a corner, its vertex and its place on the checker (bits of floats). Then for each vertex where its triangles begin,
+// For a mesh: 3 words per corner, its vertex and its position on the checker (bits of floats). Then for each vertex where its triangles begin,
 // and the end of the last; then these triangles.
 layout(std430, set = 0, binding = 3) readonly buffer Mesh { uint mesh[]; };
 layout(location = 0) out vec3 out_position;

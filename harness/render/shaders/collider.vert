@@ -1,7 +1,7 @@
 #version 450
 #include "../render_shared.h"
 layout(push_constant) uniform Constants { Drawn d; };
-// Two vec4 a vertex: position from the picture's origin [m] and look; normal, unit.
+// Two vec4 per vertex: position from the picture's origin [m] and look; normal, unit.
 layout(std430, set = 0, binding = 1) readonly buffer Vertices { vec4 vertex[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Corners { uint corner[]; };
 layout(location = 0) out vec3 out_position;
