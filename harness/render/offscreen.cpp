@@ -137,7 +137,7 @@ class StereoDrawer : public FrameDrawer {
     } else {
       upload_ = true;
     }
-    // What nothing holds falls out of sight; the eyes fall with it, on the device.
+    // Free cloth falls out of sight, so the eyes follow it, on the device.
     if (scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty()) {
       const auto v = static_cast<std::uint32_t>((scene.cloth.rows / 2) * scene.cloth.columns + scene.cloth.columns / 2);
       renderer_.follow(v, vertex_at(start, v));
