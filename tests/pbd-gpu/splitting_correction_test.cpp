@@ -57,7 +57,8 @@ TEST_F(SplittingCorrection, IsOnlyWhereASheetNeedsItAndThePlanSaysWhy) {
   s.material.membrane_stiffness_N_per_m = 1000;
   EXPECT_EQ(reason(s, {{"substeps", 1}}),
             "a wave crosses too many cells in a substep: the modulus of the sheet is below Y");
-  EXPECT_EQ(reason(square(), {{"tuning", {{"splitting_correction", "never"}}}}), "setting tuning.splitting_correction=never");
+  EXPECT_EQ(reason(square(), {{"tuning", {{"splitting_correction", "never"}}}}),
+            "setting tuning.splitting_correction=never");
 }
 
 }  // namespace
