@@ -108,7 +108,7 @@ function draw_axes(look, panel, x, y, box, first) {
       if (at - half < last + 4) continue;
       last = at + half;
     }
-    const upright = wide && wide < words.length * look.size * 0.56;
+    const upright = wide && panel.x.values.some(v => wide < x.text(v).length * look.size * 0.56);
     out += upright ? text(look, at + look.size / 3, bottom + 7, words, {anchor: 'end', rotate: -90, size: look.size - 1}) :
                      text(look, at, bottom + look.size + 4, words, {anchor: 'middle'});
   }
@@ -122,7 +122,7 @@ function draw_axes(look, panel, x, y, box, first) {
     for (const [k, v] of y.ticks.entries())
       if (k % Math.ceil(0.95 * look.size / y.step) === 0)
         out += text(look, left - 8, y.at(v) + look.size / 3, y.text(v), {anchor: 'end', colour: panel.y.colour?.(v) ?? look.soft});
-  if (panel.y.title) out += text(look, left - (first ? look.gutter - 2 : 0), top - 8, panel.y.title, {colour: look.ink});
+  if (panel.y.title) out += text(look, left - (first ? look.gutter - 2 : 0), top - 8 * look.unit, panel.y.title, {colour: look.ink});
   return out;
 }
 
@@ -151,9 +151,13 @@ function draw_labels(look, lines, taken, {left, right, top, bottom}) {
     const width = l.label.length * look.size * 0.6 + 4, height = look.size + 2;
     let best = null;
     for (const [n, [x, y]] of [l.at.at(-1), l.at[0], l.at[l.at.length >> 1]].entries())
-      for (const [k, [dx, dy]] of [
-               [9, 0], [9, -13], [9, 13], [-width - 9, 0], [-width / 2, -16], [-width / 2, 17], [9, -26], [9, 26], [-width - 9, -16],
-               [-width - 9, 16]]
+      for (const [k, [dx, dy]] of [[1, 0], [1, -1.4], [1, 1.4], [-1, 0], [0, -1.7], [0, 1.8], [1, -2.9], [1, 2.9], [-1, -1.7], [-1, 1.7]]
+               .map(
+                   ([side, rows]) =>
+                       [side > 0     ? 9 * look.unit :
+                            side < 0 ? -width - 9 * look.unit :
+                                       -width / 2,
+                        rows * 9 * look.unit])
                .entries()) {
         const box = [x + dx, y + dy - height / 2, width, height];
         const out_of = box[0] < left || box[0] + width > right || box[1] < top || box[1] + height > bottom;
@@ -175,7 +179,7 @@ function draw_mark(look, m, x, y, index, box) {
     const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:${
         look.tones[m.tone]}"${hit}/>`;
     return cell +
-        (m.glyph && w > m.glyph.length * 5 ? text(
+        (m.glyph && h > look.size && w > m.glyph.length * 5 ? text(
                                                  look, x.at(m.x), y.at(m.y) + 3.5, m.glyph,
                                                  {anchor: 'middle', colour: look.tone_ink[m.tone], size: Math.min(10, look.size)}) :
                                              '');
@@ -187,8 +191,8 @@ function draw_mark(look, m, x, y, index, box) {
   if (!Number.isFinite(a + b)) return '';
   let out = '';
   const along = m.along === 'x' ? (p, q) => `M${px(x.at(p))} ${px(b)}H${px(x.at(q))}` : (p, q) => `M${px(a)} ${px(y.at(p))}V${px(y.at(q))}`;
-  if (m.high > m.low) out += line(along(m.low, m.high), colour, ' stroke-width="1.6"');
-  if (m.thick) out += line(along(...m.thick), colour, ' stroke-width="7" stroke-opacity="0.35"');
+  if (m.high > m.low) out += line(along(m.low, m.high), colour, ` stroke-width="${1.6 * look.unit}"`);
+  if (m.thick) out += line(along(...m.thick), colour, ` stroke-width="${7 * look.unit}" stroke-opacity="0.35"`);
   if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.size - 1});
   return out + (m.kind === 'none' ? '' : symbol(look, m.solver, a, b, m.open, hit));
 }
@@ -215,13 +219,14 @@ function draw_panel(look, panel, box, first, marks) {
           ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % 5]}"` : ''}`);
     l.at.forEach(([a, b], k) => {
       const next = l.at[k + 1] ?? [a, b];
-      for (let n = 0; n < 5; ++n) taken.push([a + (next[0] - a) * n / 5 - 3, b + (next[1] - b) * n / 5 - 3, 6, 6]);
+      for (let n = 0; n < 5; ++n)
+        taken.push([a + (next[0] - a) * n / 5 - 3 * look.unit, b + (next[1] - b) * n / 5 - 3 * look.unit, 6 * look.unit, 6 * look.unit]);
     });
   }
   for (const m of panel.marks) {
     const index = marks.push(m) - 1;
     out += draw_mark(look, m, x, y, index, box);
-    if (m.kind !== 'cell') taken.push([x.at(m.x) - 5, y.at(m.y) - 5, 10, 10]);
+    if (m.kind !== 'cell') taken.push([x.at(m.x) - 5 * look.unit, y.at(m.y) - 5 * look.unit, 10 * look.unit, 10 * look.unit]);
   }
   return out + draw_labels(look, panel.labels === false ? [] : placed, taken, {...box, right: box.right + look.right});
 }
@@ -263,7 +268,10 @@ export function draw(chart, look_at, width, title, shrink = 1) {
   const longest = banded ? Math.max(0, ...panels[0].y.values.map(v => (panels[0].y.text ?? String)(v).length)) : 5;
   const look = {...look_at, gutter: Math.min(width * 0.42, 14 * unit + longest * look_at.size * 0.58), right: unit * (chart.right ?? 8)};
   const most = banded && panels[0].x.type === 'band' ? 110 * unit * panels[0].x.values.length : Infinity;  // cells stay cells
-  const each = Math.min((width - look.gutter - 10 * unit) / columns, most), base = unit * (chart.x_room ?? 0) || 2 * look.size + 20 * unit;
+  const each = Math.min((width - look.gutter - 10 * unit) / columns, most);
+  const names = panels[0]?.x.type === 'band' ? panels[0].x.values.map(v => (panels[0].x.text ?? String)(v).length * look.size * 0.56) : [];
+  const upright = names.length && Math.max(...names) > (each - look.right) / names.length;
+  const base = upright ? Math.max(...names) + 14 * unit : (names.length ? 1 : 2) * look.size + 20 * unit;
   let y = 0, svg = '';
   for (let k = 0; k < panels.length; k += columns) {
     const row = panels.slice(k, k + columns),
@@ -277,14 +285,13 @@ export function draw(chart, look_at, width, title, shrink = 1) {
     y = bottom + base;
   }
   const legend = draw_legend(look, chart, width, y + 6 * unit), height = Math.ceil(legend.bottom + 4 * unit), size = look.paper ? 'pt' : '';
-  if (look.paper && height > kPaperHeight && shrink === 1)
-    return draw(chart, look_at, width, title, Math.max(0.1, 1 - (height - kPaperHeight + 2) / (y - base)));
+  if (look.paper && height > kPaperHeight && shrink > 0.1) return draw(chart, look_at, width, title, 0.93 * shrink);
   return {
     marks,
     width,
     height,
     svg: `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}${size}" height="${height}${
-        size}" role="img" aria-label="${escape(title)}" font-family="${look.font}">${
+        size}" role="img" aria-label="${escape(title)}" font-family="${look.font}" stroke-width="${unit}">${
         look.paper ? `<rect width="${width}" height="${height}" fill="#fff"/>` : ''}${svg}${legend.out}</svg>`
   };
 }

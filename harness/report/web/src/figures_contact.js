@@ -37,10 +37,8 @@ export function verdicts(doc) {
       const scenes = unique(rows.map(r => r.scene)), labels = unique(rows.map(r => r.label)), tall = width < 740 || scenes.length < 12;
       const solver_axis = {type: 'band', values: labels},
             scene_axis = {type: 'band', values: scenes, text: v => v.length > 30 ? `${v.slice(0, 29)}…` : v};
-      const longest = Math.max(...(tall ? labels : scenes).map(v => Math.min(v.length, 30)));
       return {
         row: tall ? 18 : 24,
-        x_room: tall && width / (labels.length + 3) > longest * 7 ? 34 : longest * 6.4 + 16,
         tones: [['pass', 'pass'], ['fail', 'fail'], ['ignored', 'ignored: no contact simulated'], ['none', 'unsupported, or not measured']],
         panels: [{
           x: tall ? solver_axis : scene_axis,
@@ -247,10 +245,9 @@ export function stability(doc) {
     choices: [],
     rows: () => rows,
     chart: (given, s, width) => {
-      const labels = unique(given.map(r => r.label)), longest = Math.max(...labels.map(l => l.length));
+      const labels = unique(given.map(r => r.label));
       return {
         row: 18,
-        x_room: width / (labels.length + 3) > longest * 8 ? 34 : longest * 6.4 + 16,
         tones: [['pass', 'all stable'], ['part', 'some stable or degraded'], ['fail', 'none stable'], ['none', 'unsupported']],
         panels: [{
           x: {type: 'band', values: labels},

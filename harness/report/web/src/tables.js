@@ -39,14 +39,16 @@ class ShownTable {
         (_, k) => body.filter(r => !Number.isNaN(value_of(r[k])) || r[k] === '–').length * 2 >= body.length &&
             body.some(r => !Number.isNaN(value_of(r[k]))));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': table.title});
-    this.more = element('button', {
-      type: 'button',
-      class: 'more',
-      onclick: () => {
-        this.open = !this.open;
-        this.fill();
-      }
-    }, 'Show all rows');
+    this.more = element(
+        'button', {
+          type: 'button',
+          class: 'more',
+          onclick: () => {
+            this.open = !this.open;
+            this.fill();
+          }
+        },
+        'Show all rows');
     this.block = element(
         'div', {class: 'table', id: this.id},
         element(
