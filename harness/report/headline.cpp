@@ -224,7 +224,6 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
   const auto missed = [](const Short& s) {
     return paired(100 * s.row.times->wall.missed(72), 100 * s.row.times->wall.missed(90), " / ", 3);
   };
-  const std::string withheld = withheld_note(beside);
   const Columns<Short> columns = {{"", "scene", [](auto& s) { return s.row.scene; }},
                                   {"", "solver", [](auto& s) { return label_of(*s.row.run); }},
                                   {"", "outcome", ended},
@@ -240,7 +239,7 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
        "on the scene's criteria; ignored: they are met, but the solver ignores all contact. Stretch: maximum strain of "
        "a structural edge in the last second. Not ranked: runs that failed, cloths with an edge of more than twice "
        "its length, and medians whose interval is wider than 20 % (~)." +
-           (withheld.empty() ? "" : " " + withheld),
+           std::string(" ") + withheld_note(beside),
        {}},
       all);
 }

@@ -243,22 +243,22 @@ const kClocks = {
   wall: 'wall time, all frames'
 };
 
+const kTimesCaption = 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.';
+
 function frame_times(doc) {
   const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));
-  if (!clocks.length) return null;
   const solvers = unique(all.map(r => r.solver)), first = clocks.includes('contact_wall') ? 'contact_wall' : 'wall';
-  const few = unique(all.map(r => r.scene)).length <= 8;
-  return {
+  return clocks.length && {
     id: 'frame-times',
     section: 'time',
     hero: true,
     title: s => `Distribution of frame times${s.Solver === 'all' ? '' : `: ${s.Solver}`}`,
-    caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
+    caption: kTimesCaption,
     choices: [
       {label: 'Time', options: () => clocks.map(c => ({value: c, text: kClocks[c]})), first: () => first}, {
         label: 'Solver',
         options: s =>
-            [...(few ? [{value: 'all', text: 'all'}] : []),
+            [...(unique(all.map(r => r.scene)).length <= 8 ? [{value: 'all', text: 'all'}] : []),
              ...solvers.filter(n => all.some(r => r.solver === n && r[s.Time])).map(n => ({value: n, text: n}))]
       }
     ],

@@ -170,8 +170,7 @@ export function forest(doc) {
                        scenes: mine.length,
                        unsupported: mine.filter(r => r.status === 'unsupported').length,
                        low,
-                       high,
-                       study: mine[0]?.study
+                       high
                      };
                    }))
                    .filter(r => r.scenes);
