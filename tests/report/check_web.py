@@ -65,7 +65,7 @@ assert any(r[0].startswith("published") for r in static["Table 3: frames per sec
 
 # Rows of the figures, and the series.
 KEYS = {"fps_median", "free_fall_error", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
-points = errors = times = 0
+points = errors = quantiles = 0
 for r in doc["runs"]:
     if r.get("published"):
         continue
@@ -81,7 +81,7 @@ for r in doc["runs"]:
             rank = lambda q: frames[max(int(np.ceil(q * len(frames))), 1) - 1]  # noqa: E731
             for told, q in zip([r["wall"][0], *r["wall"][3:]], [0.5, 0.95, 0.99, 1]):
                 np.testing.assert_allclose(told, rank(q), rtol=1e-5)
-                times += 1
+                quantiles += 1
             low, high = r["wall"][1:3]
             assert low is None or frames[0] <= low <= r["wall"][0] * 1.00001 <= high * 1.0001 <= frames[-1] * 1.0002, r["wall"]
         if r["part"] == "accuracy":
@@ -89,7 +89,7 @@ for r in doc["runs"]:
             assert r["error"] == a["truth_error"]
             assert abs(r["wall_ms_per_s"] / (1e3 * rate * a["frame_wall_median_s"]) - 1) < 1e-12
             errors += 1
-assert points >= 12 and errors == 2 and times >= 40, f"only {points} rates, {errors} errors and {times} times were compared"
+assert points >= 12 and errors == 2 and quantiles >= 40, f"only {points} rates, {errors} errors and {quantiles} times were compared"
 series = 0
 for s in json.loads(zlib.decompress(base64.b64decode(blobs[doc["series"]]))):
     r = doc["runs"][s["run"]]
@@ -153,4 +153,4 @@ with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
     a = sheet["arrays"]["triangles"]
     np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])
     np.testing.assert_array_equal(shapes["sphere"]["attributes"]["radius_m"], 0.15)
-print(f"{len(tables)} tables, {points} rates, {times} times, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")
+print(f"{len(tables)} tables, {points} rates, {quantiles} times, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")

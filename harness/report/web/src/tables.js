@@ -38,7 +38,7 @@ class ShownTable {
     this.numeric = head.map(
         (_, k) => body.filter(r => !Number.isNaN(value_of(r[k])) || r[k] === '–').length * 2 >= body.length &&
             body.some(r => !Number.isNaN(value_of(r[k]))));
-    this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': table.title});
+    this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`});
     this.more = element(
         'button', {
           type: 'button',
