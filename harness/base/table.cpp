@@ -1,9 +1,13 @@
 #include "base/table.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -15,7 +19,6 @@
 namespace clothbench {
 namespace {
 
-constexpr std::size_t kLabelColumns = 2;  // solver and sides, repeated where a table is too wide for one piece
 constexpr std::size_t kGap = 2;
 
 /// A bar or line break inside a cell would end it.
@@ -88,6 +91,14 @@ std::string latex_text(std::string_view text) {
 
 }  // namespace
 
+std::size_t console_columns() {
+  constexpr long kUnknown = 80, kMinimum = 40;
+  long columns = 0;
+  if (const char* stated = std::getenv("COLUMNS")) columns = std::strtol(stated, nullptr, 10);
+  if (winsize size{}; columns <= 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
+  return static_cast<std::size_t>(std::max(kMinimum, columns > 0 ? columns : kUnknown));
+}
+
 std::string significant(double v, int digits) {
   if (!std::isfinite(v)) return "–";
   const int before = v == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(v)))) + 1;
@@ -133,23 +144,33 @@ std::string Table::markdown() const {
   return out + (note.empty() ? "" : "\n" + note + "\n");
 }
 
+/// Number of columns that are repeated where a table is too wide for one piece: the first, and a second one without
+/// numbers.
+static std::size_t label_columns(const std::vector<std::vector<std::string>>& rows) {
+  const auto is_label = [](const auto& row) {
+    return row.size() < 2 || row[1].empty() || !std::isdigit(static_cast<unsigned char>(row[1][0]));
+  };
+  return rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), is_label) ? 2 : 1;
+}
+
 std::string Table::console() const {
+  const std::size_t labels = label_columns(rows);
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], display_width(row[k]));
   }
   std::string out = "\n" + tinted(Tone::Heading, title) + "\n";
-  for (std::size_t first = kLabelColumns; first == kLabelColumns || first < widths.size();) {
+  for (std::size_t first = labels; first == labels || first < widths.size();) {
     std::size_t total = 1, last = first;
-    for (std::size_t k = 0; k < std::min(kLabelColumns, widths.size()); ++k) total += widths[k] + kGap;
-    while (last < widths.size() && (last == first || total + widths[last] + kGap <= kConsoleColumns))
+    for (std::size_t k = 0; k < std::min(labels, widths.size()); ++k) total += widths[k] + kGap;
+    while (last < widths.size() && (last == first || total + widths[last] + kGap <= console_columns()))
       total += widths[last++] + kGap;
     for (const auto& row : rows) {
       const bool head = &row == &rows.front();
       out += " ";
       for (std::size_t k = 0; k < row.size(); ++k) {
-        if (k >= kLabelColumns && (k < first || k >= last)) continue;
+        if (k >= labels && (k < first || k >= last)) continue;
         const std::string pad(widths[k] - display_width(row[k]), ' ');
         out += k == 0 ? " " + row[k] + pad : "  " + pad + tinted(head ? Tone::Plain : tone_of(row[k]), row[k]);
       }
@@ -157,7 +178,7 @@ std::string Table::console() const {
     }
     first = std::max(last, first + 1);
   }
-  return out + (note.empty() ? "" : wrapped(note, 2, kConsoleColumns));
+  return out + (note.empty() ? "" : wrapped(note, 2, console_columns()));
 }
 
 std::string Table::latex() const {

@@ -5,8 +5,8 @@
 
 namespace clothbench {
 
-/// Width of the terminal [characters] that tables and their notes must fit.
-inline constexpr std::size_t kConsoleColumns = 120;
+/// Width [characters] that tables and their notes must fit: COLUMNS, else the terminal's, else 80; at least 40.
+std::size_t console_columns();
 
 /// A table of text, printed for the terminal, as Markdown or as LaTeX. The first row of cells is the header.
 struct Table {
@@ -18,7 +18,7 @@ struct Table {
   /// A `table` environment for LaTeX with the package booktabs: the title as its caption, the note below the rows. Only
   /// characters that LaTeX knows without further packages.
   std::string latex() const;
-  /// Columns beyond kConsoleColumns follow below, with the first two columns repeated. The note is wrapped. Verdicts
+  /// Columns beyond console_columns() follow below, with the first two columns repeated. The note is wrapped. Verdicts
   /// are coloured if colour is on (base/tint.hpp).
   std::string console() const;
 };

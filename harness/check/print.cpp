@@ -32,7 +32,7 @@ Table findings_table(const Table& start, const std::vector<CheckedRun>& runs, co
         if (f.verdict != verdict) continue;
         rows.push_back({run.key.text(), &f});
         if (!f.message.empty() && verdict != Verdict::New)
-          messages += wrapped(fmt::format("{}: {}: {}", run.key.text(), f.quantity, f.message), 2, kConsoleColumns);
+          messages += wrapped(fmt::format("{}: {}: {}", run.key.text(), f.quantity, f.message), 2, console_columns());
       }
   const Columns<Row> columns = {
       {"", "run", &Row::run},

@@ -85,23 +85,29 @@ constexpr double kTornApart = 1;  // edges of twice their length
 /// A run in the short table.
 struct Short {
   Row row;
-  double frame_s = kMissing, half_range_s = kMissing;  ///< median and half the range of the trials' means
-  double stretch = kMissing;                           ///< maximum strain of a structural edge in the last second
-  double fastest_s = kMissing;                         ///< frame_s of its scene's first run
+  double stretch = kMissing;     ///< maximum strain of a structural edge in the last second
+  double baseline_s = kMissing;  ///< median frame of time_baseline() in the same scene
+  double frame_s() const { return row.times->wall.at(0.5); }
   /// Whether its time may be compared: it ended well, and its cloth is not torn apart.
   bool ranked() const {
-    return std::isfinite(frame_s) && row.status() == "ok" && verdict(*row.run) != "fail" && !(stretch > kTornApart);
+    return std::isfinite(frame_s()) && row.status() == "ok" && verdict(*row.run) != "fail" && !(stretch > kTornApart) &&
+           !row.times->uncertain();
+  }
+  std::string times() const {
+    const FrameTimes& t = row.times->wall;
+    if (t.sorted.empty()) return "–";
+    const auto ms = [](double s) { return significant(1e3 * s, 3); };
+    return ms(t.at(0.5)) +
+           (std::isfinite(t.median.low) ? " (" + ms(t.median.low) + "–" + ms(t.median.high) + ")" : "") +
+           (row.times->uncertain() ? " ~" : "") + row.frames_mark();
   }
 };
 
 Short short_of(const RunRecord& c) {
   Short s{{&c}};
   s.row.scene = c.header.scene;
+  s.row.times = std::make_shared<RunTimes>(times_of(c));
   s.stretch = summary_value(c, "stretch_max_last_second");
-  if (const std::vector<double> means = trial_means(c); !means.empty()) {
-    s.frame_s = middle(means);
-    if (means.size() > 1) s.half_range_s = (means.back() - means.front()) / 2;
-  }
   return s;
 }
 
@@ -122,32 +128,42 @@ std::string overhead_line(const std::vector<RunRecord>& runs) {
       100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene, most->header.solver);
 }
 
-std::string headline(const std::vector<RunRecord>& runs, Format format) {
-  std::vector<std::string> software, invalid, lines, hosts;
-  std::map<std::string, Span> created;
-  std::map<std::string, bool> on_gpu;  // by host: whether it has a line with a GPU
+std::vector<std::string> warnings_of(const std::vector<RunRecord>& runs) {
+  std::vector<std::string> software, invalid, out;
   for (const RunRecord& c : runs) {
     const nlohmann::json& e = c.header.environment;
     if (!e.is_object() || e.empty()) continue;
     if (const nlohmann::json s = e.value("device_samples", nlohmann::json()); s.is_object() && !s.value("valid", true))
       for (const nlohmann::json& reason : s.value("reasons", nlohmann::json::array()))
         add(invalid, reason.get<std::string>());
+    if (!gpu_of(c).empty() && flag(e, "gpu_is_software")) add(software, text(e, "gpu"));
+  }
+  for (const std::string& device : software)
+    out.push_back(
+        fmt::format("Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.", device));
+  for (const std::string& reason : invalid) out.push_back(fmt::format("Not a valid measurement: {}.", reason));
+  for (const std::string& line : trust_lines(runs)) out.push_back(line);
+  return out;
+}
+
+std::string headline(const std::vector<RunRecord>& runs, Format format) {
+  std::vector<std::string> lines, hosts;
+  std::map<std::string, Span> created;
+  std::map<std::string, bool> on_gpu;  // by host: whether it has a line with a GPU
+  for (const RunRecord& c : runs) {
+    const nlohmann::json& e = c.header.environment;
+    if (!e.is_object() || e.empty()) continue;
     const std::string host = host_line(e);
     created[host].add(text(e, "created"));
     add(hosts, host);
     if (gpu_of(c).empty()) continue;
-    if (flag(e, "gpu_is_software")) add(software, text(e, "gpu"));
     add(lines, fmt::format("GPU {} · driver {} · {}", text(e, "gpu"), text(e, "driver"), host));
     on_gpu[host] = true;
   }
   for (const std::string& host : hosts)
     if (!on_gpu[host]) lines.push_back("no GPU · " + host);
   std::string out;
-  for (const std::string& device : software)
-    out += fmt::format("**Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.**\n\n",
-                       device);
-  for (const std::string& reason : invalid) out += fmt::format("**Not a valid measurement: {}.**\n\n", reason);
-  for (const std::string& line : trust_lines(runs)) out += fmt::format("**{}**\n\n", line);
+  for (const std::string& w : warnings_of(runs)) out += "**" + w + "**\n\n";
   for (const std::string& line : lines) {
     std::string host = line;
     for (const auto& [key, span] : created)
@@ -162,7 +178,7 @@ std::string headline(const std::vector<RunRecord>& runs, Format format) {
   std::string console;
   for (std::size_t at = 0, end; at < out.size(); at = end + 1) {
     end = out.find('\n', at);
-    if (end > at) console += wrapped(out.substr(at, end - at), 0, kConsoleColumns);
+    if (end > at) console += wrapped(out.substr(at, end - at), 0, console_columns());
   }
   return console;
 }
@@ -174,45 +190,56 @@ Table in_short_table(const std::vector<RunRecord>& runs) {
   for (auto& [scene, rows] : scenes) {
     std::stable_sort(rows.begin(), rows.end(), [](const Short& a, const Short& b) {
       if (a.ranked() != b.ranked()) return a.ranked();
-      return a.frame_s < b.frame_s || (std::isnan(b.frame_s) && !std::isnan(a.frame_s));
+      return a.frame_s() < b.frame_s() || (std::isnan(b.frame_s()) && !std::isnan(a.frame_s()));
     });
     int most_frames = 0;
-    for (const Short& r : rows) most_frames = std::max(most_frames, r.row.frames());
+    double baseline_s = kMissing;
+    for (const Short& r : rows) {
+      most_frames = std::max(most_frames, r.row.frames());
+      if (r.row.run->header.solver == time_baseline() && r.row.run->header.setting == "default")
+        baseline_s = r.frame_s();
+    }
     for (Short& r : rows) {
       r.row.most_frames = most_frames;
-      r.fastest_s = rows.front().frame_s;
+      r.baseline_s = baseline_s;
       all.push_back(r);
     }
   }
   Group beside;
   for (const Short& s : all) beside.push_back(&s.row);
-  const auto time = [&](const Short& s) {
-    std::string shown = significant(1e3 * s.frame_s, 3);
-    if (std::isfinite(s.half_range_s)) shown += " ± " + significant(1e3 * s.half_range_s, 2);
-    return std::isfinite(s.frame_s) ? shown + s.row.frames_mark() : shown;
-  };
   const auto ended = [](const Short& s) {
     const std::string v = verdict(*s.row.run);
     return v == "–" ? s.row.status() : v;
   };
   const auto ratio = [](const Short& s) {
-    return s.ranked() ? significant(s.frame_s / s.fastest_s, 3) + "×" : std::isfinite(s.frame_s) ? "not ranked" : "–";
+    if (!s.ranked()) return std::string(std::isfinite(s.frame_s()) ? "not ranked" : "–");
+    return std::isfinite(s.baseline_s) ? significant(s.frame_s() / s.baseline_s, 3) + "×" : std::string("–");
   };
-  const std::string withheld = withheld_note(beside);
+  const auto tail = [](const Short& s) {
+    const FrameTimes& t = s.row.times->wall;
+    return t.sorted.empty() ? std::string("–")
+                            : significant(1e3 * t.at(0.95), 3) + " / " + significant(1e3 * t.at(0.99), 3) + " / " +
+                                  significant(1e3 * t.at(1), 3);
+  };
+  const auto missed = [](const Short& s) {
+    return paired(100 * s.row.times->wall.missed(72), 100 * s.row.times->wall.missed(90), " / ", 3);
+  };
   const Columns<Short> columns = {{"", "scene", [](auto& s) { return s.row.scene; }},
-                                  {"", "solver", [](auto& s) { return s.row.run->header.solver; }},
-                                  {"", "setting", [](auto& s) { return s.row.run->header.setting; }},
+                                  {"", "solver", [](auto& s) { return label_of(*s.row.run); }},
                                   {"", "outcome", ended},
                                   {"", "stretch", &Short::stretch, digits(3), {"%", 100}},
-                                  {"", "frame [ms]", time},
-                                  {"", "relative to the fastest", ratio}};
+                                  {"", "frame p50 [ms]", &Short::times},
+                                  {"", "p95 / p99 / worst", tail},
+                                  {"", "missed 72 / 90 Hz [%]", missed},
+                                  {"", "trials", [](auto& s) { return s.row.run->trials.size(); }},
+                                  {"", "of " + time_baseline(), ratio}};
   return columns.table(
       {"In short",
-       "Frame: wall time, median of the trials' means ± half their range. Outcome: how the run ended, or the verdict "
+       "Frame: wall time, with the 95 % interval of the median. Outcome: how the run ended, or the verdict "
        "on the scene's criteria; ignored: they are met, but the solver ignores all contact. Stretch: maximum strain of "
-       "a structural edge in the last second. Not ranked: runs that failed, and cloths with an edge of more than twice "
-       "its length." +
-           (withheld.empty() ? "" : " " + withheld),
+       "a structural edge in the last second. Not ranked: runs that failed, cloths with an edge of more than twice "
+       "its length, and medians whose interval is wider than 20 % (~)." +
+           std::string(" ") + withheld_note(beside),
        {}},
       all);
 }

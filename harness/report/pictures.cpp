@@ -75,25 +75,38 @@ void write_list(const fs::path& out, const std::set<std::string>& names) {
   write_file_atomically(out / kPicturesList, j.dump(1) + "\n");
 }
 
-/// Makes a PNG of every SVG in a folder. If one fails, removes all PNGs and returns false.
+/// Makes a PDF of every SVG in a folder, and a PNG of the wide ones. If one fails, removes them all and returns false.
 bool draw_png(const fs::path& folder) {
   std::vector<fs::path> svg;
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".svg") svg.push_back(entry.path());
-  const auto png = [](fs::path file) { return file.replace_extension(".png"); };
+  const auto convert = [](fs::path file, const std::string& kind, const std::string& options) {
+    const fs::path to = fs::path(file).replace_extension(kind);
+    return runs(fmt::format("rsvg-convert {} {} -o {} 2>/dev/null", options, quoted(file), quoted(to)));
+  };
   const bool drawn = std::all_of(svg.begin(), svg.end(), [&](const fs::path& file) {
-    return runs(fmt::format("rsvg-convert --zoom 3 {} -o {} 2>/dev/null", quoted(file), quoted(png(file))));
+    return convert(file, ".pdf", "--format pdf") &&
+           (!file.stem().string().ends_with("-wide") || convert(file, ".png", "--zoom 3"));
   });
   for (const fs::path& file : svg)
-    if (!drawn) fs::remove(png(file));
+    for (const char* kind : {".pdf", ".png"})
+      if (!drawn) fs::remove(fs::path(file).replace_extension(kind));
   return drawn;
+}
+
+/// Puts the figure for readers without JavaScript into the page.
+void add_first_figure(const fs::path& index, const std::string& svg) {
+  std::string page = content_of(index);
+  constexpr std::string_view kMark = "<!--clothbench:figure-->";
+  if (const std::size_t at = page.find(kMark); at != std::string::npos)
+    write_file_atomically(index, page.replace(at, kMark.size(), svg));
 }
 
 void put_in_place(const fs::path& out, const fs::path& from) {
   const std::set<std::string> old = listed_pictures(out);
   std::set<std::string> drawn;
   for (const auto& entry : fs::directory_iterator(from))
-    if (entry.path().extension() == ".svg" || entry.path().extension() == ".png")
+    if (const std::string kind = entry.path().extension(); kind == ".svg" || kind == ".png" || kind == ".pdf")
       drawn.insert(entry.path().filename().string());
   for (const std::string& name : drawn)
     if (!old.contains(name) && fs::exists(out / name))
@@ -130,8 +143,9 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
                         quoted(scratch.path()))))
     return without("Node could not draw them; 18 or later is needed (Debian: nodejs)");
   Drawn drawn{"", content_of(scratch.path() / "figures.md")};
+  add_first_figure(out / "index.html", content_of(scratch.path() / "hero.html"));
   if (!draw_png(scratch.path()))
-    drawn.fault = "PNG pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin).";
+    drawn.fault = "PNG and PDF pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin).";
   put_in_place(out, scratch.path());
   return drawn;
 }

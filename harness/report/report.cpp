@@ -6,11 +6,13 @@
 #include <algorithm>
 
 #include "base/files.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "report/features.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {
@@ -24,11 +26,13 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
 }
 
 /// The table of features is no view: its rows are features, not runs.
-Table features_of(const RunTable& table) {
+ViewTable features_of(const RunTable& table) {
   const auto solvers = solver_features(table.runs());
   if (std::none_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; })) return {};
-  Table t = feature_table(solvers, true);
+  ViewTable t{feature_table(solvers, true)};
   t.in_full = true;
+  t.solvers = {""};
+  for (const SolverFeatures& s : solvers) t.solvers.push_back(s.solver);
   return t;
 }
 
@@ -39,9 +43,9 @@ std::vector<PageSection> filled_sections(const RunTable& table) {
     PageSection section{s.id, s.title, {}};
     for (const View& v : views())
       if (v.section == s.id)
-        for (Table& t : tables_of(v, table)) section.tables.push_back(std::move(t));
+        for (ViewTable& t : tables_of(v, table)) section.tables.push_back(std::move(t));
     if (section.id == "features")
-      if (Table t = features_of(table); !t.rows.empty()) section.tables.push_back(std::move(t));
+      if (ViewTable t = features_of(table); !t.rows.empty()) section.tables.push_back(std::move(t));
     if (!section.tables.empty()) out.push_back(std::move(section));
   }
   return out;
@@ -50,6 +54,23 @@ std::vector<PageSection> filled_sections(const RunTable& table) {
 std::string verdict_line(const std::vector<RunRecord>& runs) {
   const VerdictCounts n = count_verdicts(runs);
   return n.runs == 0 ? "" : n.text() + ", of those whose scene has acceptance criteria.\n";
+}
+
+/// Names of the studies among the results, each once.
+std::vector<std::string> names_of(const std::vector<fs::path>& results) {
+  std::vector<std::string> out;
+  for (const fs::path& result : results)
+    if (fs::exists(result / "study.json"))
+      if (std::string name = read_manifest(result).study; !name.empty() && !contains(out, name))
+        out.push_back(std::move(name));
+  return out;
+}
+
+std::string tiles_markdown(const std::vector<Tile>& tiles) {
+  std::string out;
+  for (const Tile& t : tiles)
+    out += fmt::format("- {}: **{}** ({}){}\n", t.title, t.value, t.interval, t.others.empty() ? "" : "; " + t.others);
+  return out.empty() ? "" : out + "\n";
 }
 
 }  // namespace
@@ -67,7 +88,8 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   write("series.csv", series_csv(table));
   write("trials.csv", trials_csv(table));
   const std::string head = headline(table.runs(), Format::Markdown) + verdict_line(table.runs());
-  const Page page{head, filled_sections(table), commands_of(results)};
+  const Page page{heading_of(table, names_of(results)), warnings_of(table.runs()), tiles_of(table), head,
+                  filled_sections(table)};
   std::string all, latex = "% Tables of this report for LaTeX; \\usepackage{booktabs}.\n";
   for (const PageSection& s : page.sections) {
     all += "## " + s.title + "\n\n";
@@ -83,27 +105,38 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   for (const std::string& why : {no_page, no_figures})
     if (!why.empty()) fmt::print(stderr, "{}\n", why);
   write("report.md",
-        "# clothbench report\n\n" + head + "\n" + all + (figures.empty() ? "" : "## Figures\n\n" + figures) +
-            (no_figures.empty() ? "" : no_figures + "\n\n") +
+        "# " + page.heading.title + "\n\n" + head + "\n" + tiles_markdown(page.tiles) + all +
+            (figures.empty() ? "" : "## Figures\n\n" + figures) + (no_figures.empty() ? "" : no_figures + "\n\n") +
             (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
             "`runs.csv` and `runs.json` hold every summary value of every run in full precision, `series.csv` the "
             "metrics by frame, `trials.csv` the timed trials.\n");
 }
 
 void print_console_report(const std::vector<fs::path>& results) {
+  constexpr std::size_t kShown = 2;
   const RunTable table(printable(results));
-  fmt::print("{}{}", headline(table.runs(), Format::Console), verdict_line(table.runs()));
+  fmt::print("{}{}", headline(table.runs(), Format::Console),
+             wrapped(verdict_line(table.runs()), 0, console_columns()));
+  std::size_t shown = 0, rest = 0;
   for (const PageSection& s : filled_sections(table))
-    for (const Table& t : s.tables) {
-      if (t.in_full) continue;
-      if (s.id != "failed") {
+    for (const ViewTable& t : s.tables) {
+      // Messages are sentences and are printed as lines, not columns; a failed run is never left out.
+      if (s.id == "failed" && !t.in_full) {
+        fmt::print("\n{}\n", t.title);
+        for (std::size_t r = 1; r < t.rows.size(); ++r)
+          fmt::print("{}", wrapped(fmt::format("{}", fmt::join(t.rows[r], ": ")), 2, console_columns()));
+      } else if (!t.in_full && shown < kShown) {
         fmt::print("{}", t.console());
-        continue;
+        ++shown;
+      } else {
+        ++rest;
       }
-      fmt::print("\n{}\n", t.title);
-      for (std::size_t r = 1; r < t.rows.size(); ++r)  // messages are sentences and are printed as lines, not columns
-        fmt::print("{}", wrapped(fmt::format("{}", fmt::join(t.rows[r], ": ")), 2, kConsoleColumns));
     }
+  if (rest == 0) return;
+  const std::string from = joined(results, " ", [](const fs::path& p) { return p.string(); });
+  fmt::print("\n{}",
+             wrapped(fmt::format("{} more tables, figures and motions: clothbench report {} -o report", rest, from), 0,
+                     console_columns()));
 }
 
 }  // namespace clothbench

@@ -32,11 +32,14 @@ enum class Format { Markdown, Console };
 /// for each combination among the runs; the plugins; the overhead of the harness.
 std::string headline(const std::vector<RunRecord>& runs, Format);
 
+/// Sentences about the whole report: a software device, measurements that are not valid, withheld times.
+std::vector<std::string> warnings_of(const std::vector<RunRecord>& runs);
+
 /// The ballistic solver's slowest run as a percentage of a 72 Hz frame, against the 1 % allowed; empty without one.
 std::string overhead_line(const std::vector<RunRecord>& runs);
 
-/// One row per run, the fastest of each scene first: ending, stretch, frame time, ratio to the fastest frame time.
-/// Runs that failed, or whose cloth is stretched to more than twice its length, follow without a rank.
+/// One row per run, the fastest of each scene first: ending, stretch, frame times, ratio to time_baseline(). Runs that
+/// failed, or whose cloth is stretched to more than twice its length, follow without a rank.
 Table in_short_table(const std::vector<RunRecord>& runs);
 
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
@@ -53,7 +56,7 @@ std::string trials_csv(const RunTable&);
 /// states the reason. Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& results, const ReportOptions&);
 
-/// The same tables on the terminal.
+/// Head, failures and the first two tables on the terminal, and where the rest is.
 void print_console_report(const std::vector<std::filesystem::path>& results);
 
 }  // namespace clothbench

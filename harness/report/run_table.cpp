@@ -7,12 +7,16 @@
 #include <set>
 #include <tuple>
 
+#include "report/report.hpp"
+#include "report/verdict.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kThrottled = 0.95;  // of the GPU's clock at the start
 
 json at(const json& scenario, const char* pointer) {
   return scenario.is_object() ? scenario.value(json::json_pointer(pointer), json()) : json();
@@ -130,6 +134,7 @@ const json& solver_roles() {
 
 bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
 bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
+std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 
 std::vector<double> trial_means(const RunRecord& c) {
   std::vector<double> out;
@@ -244,6 +249,19 @@ std::pair<double, double> Row::offset_m() const {
   return out;
 }
 
+std::string Row::trust() const {
+  if (run->trials.empty()) return "";
+  std::string out = jobs_of(*run) == 1 ? "alone" : std::isfinite(jobs_of(*run)) ? "not alone" : "not stated";
+  const double start = value("gpu_clock_start_Hz"), end = value("gpu_clock_end_Hz");
+  if (end < kThrottled * start) out += fmt::format(", throttled ({:.0f} to {:.0f} MHz)", 1e-6 * start, 1e-6 * end);
+  const bool clocks = std::isfinite(start) || std::isfinite(value("cpu_clock_start_Hz"));
+  if (!clocks) out += ", clocks not readable";
+  const json load = environment_of(*run, "load_average");
+  if (load.is_number()) out += fmt::format(", load {:.1f}", load.get<double>());
+  if (times && times->uncertain()) out += ", ~ wide interval";
+  return out;
+}
+
 json Row::drawn() const { return at(scenario, "/drawn"); }
 
 bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
@@ -258,8 +276,10 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::set<std::string> timed;
   std::map<std::string, std::size_t> scenes;
   std::map<std::string, int> most_frames;
+  std::map<std::string, double> largest;
   for (const RunRecord& c : runs_) {
     Row row{&c};
+    row.times = std::make_shared<RunTimes>(times_of(c));
     const std::string family = read_scenario(row);
     if (const auto [found, is_new] = families.try_emplace(family); is_new) {
       const int same_name = ++names[row.name];
@@ -271,11 +291,13 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                     r.solver == row.solver && r.setting == row.setting && r.scene == row.scene;
     if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
     most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
+    largest[row.family] = std::max(largest[row.family], row.resolution.size());
     scenes.try_emplace(row.part == Part::Rates ? row.family : row.scene, scenes.size());
     rows_.push_back(std::move(row));
   }
   for (Row& r : rows_) {
     r.most_frames = most_frames[r.scene];
+    r.largest = r.resolution.size() >= largest[r.family];
     // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
     if (r.part == Part::Truth && r.set_up == "wave" && !timed.contains(r.scene)) r.part = Part::Contact;
     if (r.part != Part::Truth) continue;
@@ -295,6 +317,33 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       rank_of_sides(r.sides), r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+  compare_times();
+}
+
+/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
+/// below its own.
+void RunTable::compare_times() {
+  std::map<std::string, std::vector<Row*>> scenes;
+  for (Row& r : rows_)
+    if (r.published < 0) scenes[r.scene].push_back(&r);
+  for (auto& [unused, rows] : scenes) {
+    double baseline_s = kMissing;
+    std::vector<Row*> ranked;
+    for (Row* r : rows) {
+      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
+      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
+        baseline_s = r->times->wall.at(0.5);
+      const std::string v = verdict(*r->run);
+      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->uncertain() &&
+          std::isfinite(r->times->wall.median.low) && r->repeat == 1)
+        ranked.push_back(r);
+    }
+    for (Row* r : rows) r->baseline_s = baseline_s;
+    for (Row* r : ranked)
+      r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
+                  return other->times->wall.median.high < r->times->wall.median.low;
+                }));
+  }
 }
 
 void RunTable::add_published() {
@@ -312,6 +361,7 @@ void RunTable::add_published() {
       c.summary["fps_at_72"] = column.at("fps").at(n);
       const int width = published["resolution"][n];
       Row row{&c};
+      row.times = std::make_shared<RunTimes>();
       row.name = name;
       row.family = family;
       row.solver = c.header.solver;

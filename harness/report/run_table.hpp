@@ -11,6 +11,7 @@
 
 #include "base/words.hpp"
 #include "clothbench/record.hpp"
+#include "report/frame_times.hpp"
 
 namespace clothbench {
 
@@ -34,8 +35,10 @@ extern const char* const kSolverRoles;      ///< solvers.json
 const nlohmann::json& solver_roles();
 /// The harness without a cloth model: its times are the harness's cost, and its motion proves nothing.
 bool is_floor(const std::string& solver);
-/// The model that others are compared with; it is not ranked.
+/// The model that errors are compared with; it is not ranked.
 bool is_baseline(const std::string& solver);
+/// The solver that times are relative to, whoever else is present.
+std::string time_baseline();
 
 /// Mean wall time of a frame in each trial [s], ascending.
 std::vector<double> trial_means(const RunRecord&);
@@ -99,11 +102,15 @@ struct Row {
   std::string solver = {}, setting = {}, sides = {};
   std::string set_up = {};  ///< kind of contact: "rooms", "capsules", "hand", "grip", "wave", "shapes"; "" without
   Resolution resolution = {};
-  int repeat = 1;       ///< 2, 3, … where several files hold the same run
-  int paper_table = 0;  ///< number of the paper's table that the scene names; 0: none
-  int published = -1;   ///< index of the paper's column whose value this is; -1 for a run
-  int most_frames = 0;  ///< maximum number of timed frames of a run of the scene
+  int repeat = 1;        ///< 2, 3, … where several files hold the same run
+  int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
+  int published = -1;    ///< index of the paper's column whose value this is; -1 for a run
+  bool largest = false;  ///< no run of the family has a larger mesh
+  int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
+  std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
+  double baseline_s = kMissing;  ///< median wall time of a frame of time_baseline() in the same scene
+  int rank = 0;                  ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
@@ -125,6 +132,8 @@ struct Row {
   std::string not_ranked() const;
   /// Minimum and maximum contact offset [m]: the solver's own, otherwise the scene's margin; NaN without colliders.
   std::pair<double, double> offset_m() const;
+  /// What the file states of the conditions of the timed trials: "alone", "alone, throttled (1980 to 1400 MHz)", …
+  std::string trust() const;
   /// Parameters of a randomly generated scene; null for any other.
   nlohmann::json drawn() const;
 };
@@ -150,6 +159,7 @@ class RunTable {
 
  private:
   void add_published();
+  void compare_times();
 
   std::vector<RunRecord> runs_;
   std::deque<RunRecord> published_;

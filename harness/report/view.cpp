@@ -1,7 +1,11 @@
 #include "report/view.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <map>
 
+#include "base/interval.hpp"
 #include "report/report.hpp"
 
 namespace clothbench {
@@ -50,6 +54,8 @@ std::vector<TableRow> rows_of(const View& v, const Group& runs) {
     for (const std::string& k : r.keys) keys.emplace_back(k.starts_with(kAll), k);
     return keys;
   };
+  if (v.order)
+    std::stable_sort(out.begin(), out.end(), [&](auto& a, auto& b) { return v.order(a.runs) < v.order(b.runs); });
   if (v.by_key) std::stable_sort(out.begin(), out.end(), [&](auto& a, auto& b) { return place(a) < place(b); });
   return out;
 }
@@ -69,8 +75,10 @@ Texts values_across(const Across& a, const Group& runs) {
 }
 
 /// Adds a column if a row has a value in it. Returns whether it was added.
-bool add_column(Table& t, const std::string& head, const Texts& cells, bool always) {
+bool add_column(ViewTable& t, const std::string& head, const Texts& cells, bool always,
+                const std::string& solver = "") {
   if (!always && std::none_of(cells.begin(), cells.end(), has_value)) return false;
+  t.solvers.push_back(solver);
   t.rows[0].push_back(head);
   for (std::size_t k = 0; k < cells.size(); ++k) t.rows[k + 1].push_back(or_dash(cells[k]));
   return true;
@@ -85,32 +93,37 @@ std::string note_of(const View& v, const Group& runs) {
 }
 
 /// No rows if no cell has a value and no time is withheld.
-Table table_of(const View& v, const std::string& title, const Group& runs) {
-  Table t{title, note_of(v, runs), {}, v.in_full};
+ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
+  ViewTable t{{title, note_of(v, runs), {}, v.in_full}};
   const std::vector<TableRow> rows = rows_of(v, runs);
   t.rows.resize(rows.size() + 1);
+  for (const TableRow& r : rows) t.runs.push_back(r.runs.front());
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     Texts cells;
     for (const TableRow& r : rows) cells.push_back(r.keys[k]);
-    add_column(t, v.keys[k].head, cells, k == 0);
+    if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
+      t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
   bool any = v.columns.empty() && !v.across;
   if (v.across)
     for (const std::string& value : values_across(*v.across, runs)) {
       Texts cells;
+      std::string solver;
       for (const TableRow& r : rows) {
         const auto at = r.across.find(value);
         cells.push_back(at == r.across.end() ? "" : v.across->cell(at->second));
         any = any || has_value(cells.back());
+        if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
         if (at != r.across.end() && v.across->without && !has_value(cells.back()))
           cells.back() = v.across->without(at->second);
       }
-      add_column(t, value, cells, true);
+      add_column(t, value, cells, true, solver);
     }
   for (const ViewColumn& c : v.columns) {
     Texts cells;
     for (const TableRow& r : rows) cells.push_back(c.text(r.runs, r.keys));
-    any = add_column(t, c.head, cells, false) || any;
+    const bool same = c.if_differs && std::all_of(cells.begin(), cells.end(), [&](auto& x) { return x == cells[0]; });
+    any = (!same && add_column(t, c.head, cells, false)) || any;
   }
   if (!any && (!v.timed || withheld_note(runs).empty())) t.rows.resize(1);
   return t;
@@ -126,34 +139,68 @@ Key scene_key() {
   return key("scene", [](const Row& r) { return r.scene; });
 }
 Key label_key() {
-  return key("solver", [](const Row& r) { return label_of(*r.run); });
+  Key k = key("solver", [](const Row& r) { return label_of(*r.run); });
+  k.is_solver = true;
+  return k;
 }
-Key solver_key() { return key("solver", &Row::label); }
+Key solver_key() {
+  Key k = key("solver", &Row::label);
+  k.is_solver = true;
+  return k;
+}
 Key sides_key() {
   return key("sides", [](const Row& r) { return or_dash(r.sides); });
 }
 
-ViewColumn column(std::string head, std::function<std::string(const Row&)> text) {
-  return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) { return text(*g.front()); }};
+ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs) {
+  return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) { return text(*g.front()); },
+          if_differs};
 }
 
-std::vector<Table> tables_of(const View& v, const RunTable& table) {
+std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   std::vector<std::pair<std::string, Group>> groups;
   for (const Row& r : table.rows()) {
     if (!v.where(r)) continue;
     const std::string title = v.each ? v.each(r) : v.title;
     find_or_add(groups, [&](auto& g) { return g.first == title; }, {title, {}}).second.push_back(&r);
   }
-  std::vector<Table> out;
+  std::vector<ViewTable> out;
   for (const auto& [title, runs] : groups)
-    if (Table t = table_of(v, title, runs); t.rows.size() > 1) out.push_back(std::move(t));
+    if (ViewTable t = table_of(v, title, runs); t.rows.size() > 1) out.push_back(std::move(t));
   return out;
+}
+
+std::string rate_text(double v) {
+  if (!std::isfinite(v)) return "–";
+  if (v >= 999500) return significant(1e-6 * v, 3) + "M";
+  return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
+}
+
+std::string rate_with_interval(const Row& r) {
+  const Interval95 i = r.times->rate;
+  const std::string rate = rate_text(r.value("fps_median"));
+  if (rate == "–" || !std::isfinite(i.low)) return rate;
+  return fmt::format("{} ({}–{}){}", rate, rate_text(i.low), rate_text(i.high), r.times->uncertain() ? " ~" : "");
+}
+
+std::string share_text(std::size_t passed, std::size_t all) {
+  if (all == 0) return "";
+  const Interval i = wilson_95(passed, all);
+  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", passed, all, 100 * i.low, 100 * i.high);
+}
+
+std::string short_setting(const Row& r) {
+  const std::string first = "substeps=", second = ",iterations=", &setting = r.setting;
+  const std::size_t at = setting.find(second);
+  if (!setting.starts_with(first)) return setting;
+  if (at == std::string::npos) return setting.substr(first.size());
+  return setting.substr(first.size(), at - first.size()) + "×" + setting.substr(at + second.size());
 }
 
 const std::vector<View>& views() {
   static const std::vector<View> all = [] {
-    std::vector<View> out = rate_views();
-    for (auto* more : {contact_views, accuracy_views})
+    std::vector<View> out = overview_views();
+    for (auto* more : {rate_views, contact_views, accuracy_views})
       for (View& v : more()) out.push_back(std::move(v));
     return out;
   }();
@@ -161,15 +208,11 @@ const std::vector<View>& views() {
 }
 
 const std::vector<Section>& sections() {
-  static const std::vector<Section> all = {{"rates", "Frame rates"},
-                                           {"time", "Time per frame"},
-                                           {"contact", "Contact"},
-                                           {"generated", "Randomly generated contact scenes"},
-                                           {"accuracy", "Error against run time"},
-                                           {"stability", "Stability"},
-                                           {"features", "Features"},
-                                           {"failed", "Runs without a result"},
-                                           {"environment", "Environment"}};
+  static const std::vector<Section> all = {
+      {"overview", "Overview"},      {"rates", "Frame rates"},           {"time", "Frame times"},
+      {"contact", "Contact"},        {"generated", "Generated contact"}, {"accuracy", "Error against run time"},
+      {"stability", "Stability"},    {"features", "Features"},           {"failed", "Runs without a result"},
+      {"environment", "Environment"}};
   return all;
 }
 

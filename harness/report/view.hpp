@@ -17,6 +17,7 @@ using Texts = std::vector<std::string>;
 struct Key {
   std::string head;
   std::function<Texts(const Row&)> of;
+  bool is_solver = false;  ///< the page's filter of solvers applies to its values
 };
 /// A key with one value per run.
 Key key(std::string head, std::function<std::string(const Row&)> of);
@@ -31,9 +32,10 @@ Key sides_key();
 struct ViewColumn {
   std::string head;
   std::function<std::string(const Group&, const Texts& keys)> text;
+  bool if_differs = false;  ///< left out where all rows have the same value
 };
 /// A column that shows the row's first run.
-ViewColumn column(std::string head, std::function<std::string(const Row&)> text);
+ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs = false);
 
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order` or in the order of `values`.
 struct Across {
@@ -53,16 +55,33 @@ struct View {
   std::optional<Across> across = {};
   std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, which is its title
   std::function<std::string(const Group&)> more = nullptr;  ///< a further sentence of the note
+  std::function<double(const Group&)> order = nullptr;      ///< rows ascend by it
   bool by_key = false;   ///< rows in the order of their keys, "all" last; otherwise in the order of the runs
   bool timed = false;    ///< shows times: the note states whose times are withheld
   bool in_full = false;  ///< only in files and on the page, not on the terminal
 };
 
+/// A table with the runs behind it, for filters and commands of the page.
+struct ViewTable : Table {
+  std::vector<const Row*> runs = {};      ///< the first run of each row
+  int solver_column = -1;                 ///< column of the key that names the solver; -1: none
+  std::vector<std::string> solvers = {};  ///< by column: the solver that a column is about, or ""
+};
+
 /// The tables of a view that have rows and values; none if no run is concerned.
-std::vector<Table> tables_of(const View&, const RunTable&);
+std::vector<ViewTable> tables_of(const View&, const RunTable&);
 
 /// All views, in the order of report.md.
 const std::vector<View>& views();
+
+/// Frames per second in at most four digits; larger values in thousands or millions.
+std::string rate_text(double fps);
+/// "7818 (7480–8190)": a run's median frame rate and its interval; " ~" follows if the interval is wide.
+std::string rate_with_interval(const Row&);
+/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's interval; empty without runs.
+std::string share_text(std::size_t passed, std::size_t all);
+/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
+std::string short_setting(const Row&);
 
 /// Titles of sections by id, in their order: "rates", "contact", …
 struct Section {
@@ -76,6 +95,7 @@ std::string case_of(const Row&);
 int grade_of(const Row&);
 
 // Parts of views(), by file.
+std::vector<View> overview_views();
 View cost_view();
 std::vector<View> rate_views();
 std::vector<View> contact_views();

@@ -22,7 +22,11 @@ constexpr double kSmallEnough = 1e-3;  // all errors below it are small enough f
 constexpr double kEnergyGain = 1e-3;
 
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
-std::string solver_of(const Row& r) { return r.solver; }
+Key solver_only() {
+  Key k = key("solver", [](const Row& r) { return r.solver; });
+  k.is_solver = true;
+  return k;
+}
 
 using Measure = double (Row::*)() const;
 
@@ -32,15 +36,6 @@ const Row* best(const Group& g, const std::function<bool(const Row&)>& when, Mea
   for (const Row* r : g)
     if (r->counts() && std::isfinite((r->*by)()) && when(*r) && (out == nullptr || (r->*by)() < (out->*by)())) out = r;
   return out;
-}
-
-/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
-std::string short_setting(const Row& r) {
-  const std::string first = "substeps=", second = ",iterations=", &setting = r.setting;
-  const std::size_t at = setting.find(second);
-  if (!setting.starts_with(first)) return setting;
-  if (at == std::string::npos) return setting.substr(first.size());
-  return setting.substr(first.size(), at - first.size()) + "×" + setting.substr(at + second.size());
 }
 
 /// Shortest time to an error of at most `most`, by a clock.
@@ -108,12 +103,13 @@ View work() {
          "the scene depends on, as its plan states; effective stiffness is not measured here.",
          in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
-            key("solver", solver_of)};
+            solver_only()};
   v.columns = {time_to("to 1 %", 1e-2, &Row::wall_ms_per_s),
                time_to("to 0.1 %", 1e-3, &Row::wall_ms_per_s),
                best_error("best error in real time", kRealTime_ms_per_s),
                best_error("best error", INFINITY),
                {"failed", [](const Group& g, const Texts&) { return failed_text(g); }},
+               {"trials", [](const Group& g, const Texts&) { return std::to_string(g.front()->run->trials.size()); }},
                time_to("to 1 %, fenced", 1e-2, &Row::fenced_ms_per_s),
                time_to("to 0.1 %, fenced", 1e-3, &Row::fenced_ms_per_s),
                time_to("to 1 %, GPU", 1e-2, &Row::device_ms_per_s),
@@ -129,7 +125,7 @@ View within_budgets() {
          "where the solver can. ≤: the error is at most 0.001 or at the scene's floor, below which solvers are not "
          "distinguished. –: no setting is that fast.",
          in_truth};
-  v.keys = {scene_key(), key("solver", solver_of)};
+  v.keys = {scene_key(), solver_only()};
   for (const double budget_ms : kBudgets_ms)
     v.columns.push_back(
         {fmt::format("{:g} ms", budget_ms), [=](const Group& g, const Texts&) {
@@ -153,7 +149,7 @@ View energy() {
       return a->value("energy_gain") < b->value("energy_gain");
     });
   };
-  v.keys = {scene_key(), key("solver", solver_of)};
+  v.keys = {scene_key(), solver_only()};
   v.columns = {{"maximum gain",
                 [=](const Group& g, const Texts&) { return fmt::format("{:.1e}", most(g)->value("energy_gain")); }},
                {"setting", [=](const Group& g, const Texts&) { return most(g)->setting; }},
@@ -236,7 +232,7 @@ View robustness() {
       "crash or device.",
       in_stability};
   v.keys = {{"case", [](const Row& r) { return Texts{case_of(r), "all"}; }}};
-  v.across = {key("", [](const Row& r) { return label_of(*r.run); }), tally};
+  v.across = {label_key(), tally};
   v.by_key = true;
   return v;
 }

@@ -8,7 +8,6 @@
 #include <set>
 #include <tuple>
 
-#include "base/interval.hpp"
 #include "metrics/registry.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
@@ -70,7 +69,7 @@ View verdicts() {
          "handles no contact. –: not run, or the scene has no criteria.",
          in_contact};
   v.keys = {scene_key()};
-  v.across = {key("", &Row::label), [](const Group& g) { return verdict(*g.front()->run); }};
+  v.across = {solver_key(), [](const Group& g) { return verdict(*g.front()->run); }};
   return v;
 }
 
@@ -83,11 +82,12 @@ View contact() {
       "Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the last 0.5 s. "
       "Depth: how far the cloth is inside a collider, without the margin. Popping: "
       "maximum displacement of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders "
-      "and grips. Strain: strain of the structural edges. Time: median over the timed frames.",
+      "and grips. Strain: strain of the structural edges. Times: section Frame times.",
       in_contact};
   v.each = [](const Row& r) { return "Contact: " + kSetUps.at(r.set_up); };
   v.keys = {scene_key(), solver_key(), sides_key()};
-  v.columns = {column("contact offset [mm]", offset_of),
+  v.columns = {column("verdict", [](const Row& r) { return verdict(*r.run); }),
+               column("contact offset [mm]", offset_of),
                values("crossings", {"crossings_max"}, whole),
                values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm, 1e3),
                values("depth [mm]", {"depth_max_m"}, mm, 1e3),
@@ -96,16 +96,7 @@ View contact() {
                values("popping [mm]", {"pop_max_m"}, mm, 1e3),
                values("strain, max / end [%]", {"stretch_max", "stretch_max_end"}, percent, 100),
                values("error of maximum strain, max / RMS [of v0/c]",
-                      {"truth_quantity_error_max", "truth_quantity_error"}, number),
-               {"wall / GPU [ms]",
-                [](const Group& g, const Texts&) {
-                  const Row& r = *g.front();
-                  const std::string times =
-                      paired(1e3 * r.value("frame_wall_median_s"), 1e3 * r.value("frame_device_median_s"), " / ", 3);
-                  return times == "–" ? times : times + r.frames_mark();
-                }},
-               column("verdict", [](const Row& r) { return verdict(*r.run); })};
-  v.timed = true;
+                      {"truth_quantity_error_max", "truth_quantity_error"}, number)};
   return v;
 }
 
@@ -172,7 +163,7 @@ View pass_rates() {
       "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: distance "
       "at which the solver keeps the cloth from colliders.",
       [](const Row& r) { return r.part == Part::Generated; }};
-  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Texts{label_of(*r.run)} : Texts(); }},
+  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Texts{label_of(*r.run)} : Texts(); }, true},
             {"kind", [](const Row& r) {
                return Texts{kind_of(r), with_assets(kAllKinds, r)};
              }}};
@@ -184,9 +175,7 @@ View pass_rates() {
                 std::vector<const RunRecord*> runs;
                 for (const Row* r : g) runs.push_back(r->run);
                 const VerdictCounts n = count_verdicts(runs);
-                if (n.runs == 0) return std::string();
-                const Interval i = wilson_95(n.passed, n.runs);
-                return fmt::format("{}/{} ({:.0f}–{:.0f} %)", n.passed, n.runs, 100 * i.low, 100 * i.high);
+                return share_text(n.passed, n.runs);
               },
               nullptr,
               band_names()};

@@ -15,23 +15,9 @@ constexpr const char* kBytes =
     "with instrumented kernels. ≥: a lower bound, where the bytes read depend on the shape of the cloth, "
     "as in contact. Retries of atomics are not counted.";
 
-/// At most four digits; larger values in thousands or millions.
-std::string fps(double v) {
-  if (!std::isfinite(v)) return "–";
-  if (v >= 999500) return significant(1e-6 * v, 3) + "M";
-  return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
-}
-
 std::string capped(const Row& r) {
   const double v = r.value("fps_at_72");
-  return r.published < 0 ? fps(v) : fmt::format("{:g}", v);
-}
-
-std::string with_half_range(const Row& r) {
-  const double v = r.value("fps_median"), spread = r.value("fps_spread");
-  if (!std::isfinite(v)) return "–";
-  return fps(v) + " ± " +
-         (std::isfinite(spread) ? fmt::format("{:.{}f} %", 100 * spread, spread >= 0.0995 ? 0 : 1) : "–");
+  return r.published < 0 ? rate_text(v) : fmt::format("{:g}", v);
 }
 
 /// "≥ 12.3 / 4.50" of the bytes read and written, times `scale`; ≥ where the bytes read are a lower bound.
@@ -92,10 +78,6 @@ View rates(const std::string& title, const std::string& note, std::function<std:
   return v;
 }
 
-View milliseconds(const char* title, const char* note, const char* name) {
-  return rates(title, note, [name](const Row& r) { return significant(1e3 * r.value(name), 3); });
-}
-
 View table3() {
   View v = rates("Frames per second, capped at 72",
                  "Median of the trials' means over frames of min(72, 1/t), without rendering.", capped);
@@ -113,53 +95,121 @@ View table3() {
   return v;
 }
 
-/// All timed frames of a run, ascending [s].
-std::vector<double> frames(const Row& r, std::vector<double> TimedTrial::*series) {
-  std::vector<double> out;
-  for (const TimedTrial& t : r.run->trials)
-    for (const double s : t.*series)
-      if (std::isfinite(s)) out.push_back(s);
-  std::sort(out.begin(), out.end());
-  return out;
+constexpr const char *kAllFrames = "all", *kContactFrames = "with contact";
+
+const FrameTimes& times(const Row& r, const Texts& keys, bool device) {
+  const RunTimes& t = *r.times;
+  if (keys.back() == kContactFrames) return device ? t.contact_device : t.contact_wall;
+  return device ? t.device : t.wall;
 }
 
-ViewColumn quantiles(const std::string& head, std::vector<double> TimedTrial::*series) {
-  return column(head, [series](const Row& r) -> std::string {
-    const std::vector<double> all = frames(r, series);
-    if (all.empty()) return "";
-    std::string out;
-    for (const double q : {0.5, 0.95, 0.99, 1.0})
-      out += (out.empty() ? "" : " / ") + significant(1e3 * quantile(all, q), 3);
-    return out;
-  });
+std::string milliseconds(double s) { return significant(1e3 * s, 3); }
+
+ViewColumn of_times(std::string head, bool device, std::function<std::string(const FrameTimes&)> text) {
+  return {std::move(head), [=](const Group& g, const Texts& keys) {
+            const FrameTimes& t = times(*g.front(), keys, device);
+            return t.sorted.empty() ? std::string() : text(t);
+          }};
 }
 
-/// Percentage of frames that took longer than one refresh of a display.
-ViewColumn missed(double rate_hz) {
-  return column(fmt::format("missed at {:g} Hz [%]", rate_hz), [rate_hz](const Row& r) -> std::string {
-    const std::vector<double> all = frames(r, &TimedTrial::frame_wall_s);
-    if (all.empty()) return "";
-    const auto late = all.end() - std::upper_bound(all.begin(), all.end(), 1 / rate_hz);
-    return significant(100 * static_cast<double>(late) / static_cast<double>(all.size()), 3);
-  });
+/// A row for all frames; a second one for the frames with contact where the scene has some.
+View frame_times(const char* title, const std::string& note, bool device) {
+  View v{"time", title, note + " Percentiles by nearest rank. " + kIntervalMethod,
+         [device](const Row& r) { return !(device ? r.times->device : r.times->wall).sorted.empty(); }};
+  v.keys = {scene_key(),
+            solver_key(),
+            sides_key(),
+            {"frames", [](const Row& r) {
+               return r.times->contact_wall.sorted.empty() ? Texts{kAllFrames} : Texts{kAllFrames, kContactFrames};
+             }}};
+  v.columns = {{"trials", [](const Group& g, const Texts&) { return std::to_string(g.front()->run->trials.size()); }},
+               of_times("number of frames", device, [](auto& t) { return std::to_string(t.sorted.size()); }),
+               {"p50 (95 %)",
+                [device](const Group& g, const Texts& keys) {
+                  const FrameTimes& t = times(*g.front(), keys, device);
+                  const std::string span = milliseconds(t.median.low) + "–" + milliseconds(t.median.high);
+                  if (t.sorted.empty()) return std::string();
+                  return milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") +
+                         (t.median.high - t.median.low > 0.2 * t.at(0.5) ? " ~" : "");
+                }},
+               of_times("p95", device, [](auto& t) { return milliseconds(t.at(0.95)); }),
+               of_times("p99", device, [](auto& t) { return milliseconds(t.at(0.99)); }),
+               of_times("worst", device, [](auto& t) { return milliseconds(t.at(1)); })};
+  for (const double rate_hz : {72.0, 90.0})
+    v.columns.push_back(of_times(fmt::format("missed at {:g} Hz [%]", rate_hz), device,
+                                 [rate_hz](auto& t) { return significant(100 * t.missed(rate_hz), 3); }));
+  v.in_full = true;
+  v.timed = true;
+  return v;
 }
 
-View time_of_a_frame() {
+std::string of_environment(const Row& r, const char* key) {
+  const nlohmann::json e = environment_of(*r.run, key);
+  return e.is_string() ? e.get<std::string>() : "";
+}
+
+/// Conditions of a run, each only where the rows of a table differ in it.
+std::vector<ViewColumn> conditions() {
+  return {column(
+              "precision", [](const Row& r) { return of_environment(r, "precision"); }, true),
+          column(
+              "CPU threads", [](const Row& r) { return significant(r.times->threads, 1); }, true),
+          column(
+              "device",
+              [](const Row& r) {
+                const std::string gpu = of_environment(r, "gpu");
+                return gpu.empty() || gpu == "CPU" ? "CPU" : gpu;
+              },
+              true),
+          column(
+              "conditions", [](const Row& r) { return r.trust(); }, false)};
+}
+
+View wall_times() {
+  View v = frame_times("Wall time per frame [ms]",
+                       "From submission to fence, over all trials, without rendering. Missed: frames longer than one "
+                       "refresh of the display. Real-time factor: simulated time over the median. Rank: one more than "
+                       "the number of runs of the scene whose whole interval is below the run's; runs that failed are "
+                       "not ranked.",
+                       false);
+  const auto in_all = [](auto text) {
+    return [text](const Group& g, const Texts& keys) {
+      return keys.back() == kAllFrames ? text(*g.front()) : std::string();
+    };
+  };
+  v.columns.push_back({"real-time factor", [](const Group& g, const Texts& keys) {
+                         const double frame_s = times(*g.front(), keys, false).at(0.5);
+                         return significant(1 / (g.front()->frame_rate_hz() * frame_s), 3);
+                       }});
+  v.columns.push_back({"× " + time_baseline(), in_all([](const Row& r) {
+                         return std::isfinite(r.baseline_s) ? significant(r.times->wall.at(0.5) / r.baseline_s, 3)
+                                                            : std::string();
+                       })});
+  v.columns.push_back(
+      {"rank", in_all([](const Row& r) { return r.rank > 0 ? std::to_string(r.rank) : std::string(); })});
+  for (ViewColumn& c : conditions()) v.columns.push_back(std::move(c));
+  return v;
+}
+
+View gpu_times() {
+  return frame_times(
+      "GPU time per frame [ms]",
+      "First to last timestamp of the frame's one submission, over all trials. CPU solvers are left out.", true);
+}
+
+View other_clocks() {
   View v{
-      "time", "Time per frame: median, 95th and 99th percentile, maximum",
-      "Over all frames of all trials, nearest rank, without rendering. Missed: frames whose wall time is longer than "
-      "one refresh of the display. Real-time factor: simulated time over the median wall time.",
-      [](const Row& r) { return !r.run->trials.empty(); }};
+      "time", "Other clocks, median time per frame [ms]",
+      "CPU: sum over a solver's threads. Pipelined: two frames in flight, median of the trials' means; –: the solver "
+      "waits for each frame. Rendered: a frame and the images for both eyes, one after the other; the paper's rates "
+      "include rendering. Load: once, before the first frame.",
+      [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key()};
-  v.columns = {
-      column("trials × frames", [](const Row& r) { return fmt::format("{} × {}", r.run->trials.size(), r.frames()); }),
-      quantiles("wall p50 / p95 / p99 / max [ms]", &TimedTrial::frame_wall_s),
-      missed(72),
-      missed(90),
-      quantiles("GPU p50 / p95 / p99 / max [ms]", &TimedTrial::frame_device_s),
-      column("real-time factor", [](const Row& r) {
-        return significant(1 / (r.frame_rate_hz() * quantile(frames(r, &TimedTrial::frame_wall_s), 0.5)), 3);
-      })};
+  const auto ms = [](const char* head, const char* name) {
+    return column(head, [name](const Row& r) { return milliseconds(r.value(name)); });
+  };
+  v.columns = {ms("CPU", "frame_cpu_median_s"), ms("pipelined", "frame_pipelined_median_s"),
+               ms("with rendering, stereo", "frame_rendered_median_s"), ms("load", "load_s")};
   v.in_full = true;
   v.timed = true;
   return v;
@@ -174,9 +224,7 @@ View cost_view() {
   v.columns = {column("kB per frame, read / written",
                       [](const Row& r) { return bytes(r, "read_B_per_frame", "write_B_per_frame", 1e-3); }),
                column("memory [kB]", [](const Row& r) { return significant(1e-3 * r.value("device_memory_B"), 4); }),
-               column("dispatches", [](const Row& r) { return significant(r.value("dispatches"), 1); }),
-               column("load [ms]", [](const Row& r) { return significant(1e3 * r.value("load_s"), 3); })};
-  v.timed = true;
+               column("dispatches", [](const Row& r) { return significant(r.value("dispatches"), 1); })};
   v.in_full = true;
   return v;
 }
@@ -184,22 +232,7 @@ View cost_view() {
 std::vector<View> rate_views() {
   std::vector<View> out = {
       table3(),
-      rates("Frames per second, uncapped", "Median of the trials ± half their range.", with_half_range),
-      milliseconds("Wall time per frame [ms]", "Median over all timed frames.", "frame_wall_median_s"),
-      milliseconds("CPU time per frame [ms]",
-                   "Median over the same frames; the sum over a solver's threads. –: a GPU solver.",
-                   "frame_cpu_median_s"),
-      milliseconds("Frame time with rendering, stereo [ms]",
-                   "Median wall time of a frame and the images for both eyes, one after the other; the result file has "
-                   "the size of the images. A GPU solver's buffer is drawn in place; a CPU solver's positions are "
-                   "uploaded. The paper's FPS include rendering.",
-                   "frame_rendered_median_s"),
-      milliseconds("Wall time per frame, pipelined [ms]",
-                   "Two frames in flight; median of the trials' means. –: the solver waits for each frame.",
-                   "frame_pipelined_median_s"),
-      milliseconds("GPU time per frame [ms]",
-                   "Median; first to last timestamp of the frame's one submission. –: a CPU solver.",
-                   "frame_device_median_s"),
+      rates("Frames per second, uncapped", std::string("Median of the trials. ") + kIntervalMethod, rate_with_interval),
       rates(
           "Free-fall error over gT²/2 at T = 0.5 s",
           "Maximum distance of a vertex from the closed form of the solver's own integrator.",
@@ -230,8 +263,8 @@ std::vector<View> rate_views() {
                                                         : std::string("–");
           },
           false)};
-  out[10].more = windows;
-  out.push_back(time_of_a_frame());
+  out[5].more = windows;
+  for (auto* more : {wall_times, gpu_times, other_clocks}) out.push_back(more());
   return out;
 }
 

@@ -95,6 +95,7 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["clock_policy"] = clock_policy(e["sensors"]);
   e["protocol"] = protocol;
   e["jobs"] = jobs_now();
+  if (double load = 0; std::ifstream("/proc/loadavg") >> load) e["load_average"] = load;
   return e;
 }
 

@@ -24,7 +24,8 @@ if not (report / "index.html").exists():
     print("SKIPPED:", line)
     sys.exit(77)
 html = (report / "index.html").read_text(encoding="utf-8")
-doc = json.loads(re.search(r'<script type="application/json" id="clothbench-data">(.*?)</script>', html, re.S)[1])
+embedded = lambda name: json.loads(re.search(rf'<script type="application/json" id="{name}">(.*?)</script>', html, re.S)[1])  # noqa: E731
+doc, motions = embedded("clothbench-data"), embedded("clothbench-motions")
 blobs = {int(k): v for k, v in re.findall(r'<script type="text/plain" id="blob-(\d+)">([^<]*)</script>', html)}
 files = {}
 for path in sorted((sample / "runs").rglob("*.h5")):
@@ -36,6 +37,14 @@ same = lambda a, b: a is None and not np.isfinite(b) or a is not None and a == b
 assert len(html) < 20e6, len(html)
 markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
 assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
+
+# Static text has no results, which would be those of other runs; the head states trials and device of these ones.
+static_text = re.sub(r'<(script|style|svg)\b.*?</\1>|<section id="overview">.*?</section>|<details>.*?</details>', "", html, flags=re.S)
+assert not re.search(r"\d+ of \d+|\d\s?(ms|µs|%)(?! interval)|results/reference", static_text), "a result in static text"
+title = re.search(r"<title>(.*?)</title>", html)[1]
+assert "table3" in title and re.search(rf"<h1>{re.escape(title.split(' · ')[0])}</h1>", html), title
+assert "trials <b>1</b>" in html and "commit <b>" in html and "date <b>" in html
+assert not re.search(r"\b(nan|inf)\b", html.split('id="clothbench-motions"')[0].split('id="clothbench-data"')[0].split("<body>")[1]), "not a number in prose"
 
 # Tables: those of report.md, run by run.
 markdown = (report / "report.md").read_text(encoding="utf-8")
@@ -55,10 +64,10 @@ for t in tables:
 assert any(r[0].startswith("published") for r in static["Table 3: frames per second, capped at 72"])
 
 # Rows of the figures, and the series.
-KEYS = {"fps_median", "fps_spread", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
-points = errors = 0
+KEYS = {"fps_median", "free_fall_error", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
+points = errors = quantiles = 0
 for r in doc["runs"]:
-    if r["published"]:
+    if r.get("published"):
         continue
     with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
         a = f["summary"].attrs
@@ -66,14 +75,23 @@ for r in doc["runs"]:
         for name in KEYS & set(r):
             assert same(r[name], a.get(name, np.nan)), (r["scene"], r["solver"], name)
             points += r[name] is not None
+        if "wall" in r:
+            frames = np.sort(f["timing/frame_wall_s"][:].ravel())
+            frames = frames[np.isfinite(frames)]
+            rank = lambda q: frames[max(int(np.ceil(q * len(frames))), 1) - 1]  # noqa: E731
+            for told, q in zip([r["wall"][0], *r["wall"][3:]], [0.5, 0.95, 0.99, 1]):
+                np.testing.assert_allclose(told, rank(q), rtol=1e-5)
+                quantiles += 1
+            low, high = r["wall"][1:3]
+            assert low is None or frames[0] <= low <= r["wall"][0] * 1.00001 <= high * 1.0001 <= frames[-1] * 1.0002, r["wall"]
         if r["part"] == "accuracy":
             rate = json.loads(json.loads(f["header_json"][0])["scenario_json"])["time"]["frame_rate_hz"]
             assert r["error"] == a["truth_error"]
             assert abs(r["wall_ms_per_s"] / (1e3 * rate * a["frame_wall_median_s"]) - 1) < 1e-12
             errors += 1
-assert points >= 12 and errors == 2, f"only {points} rates and {errors} errors were compared"
+assert points >= 12 and errors == 2 and quantiles >= 40, f"only {points} rates, {errors} errors and {quantiles} times were compared"
 series = 0
-for s in doc["series"]:
+for s in json.loads(zlib.decompress(base64.b64decode(blobs[doc["series"]]))):
     r = doc["runs"][s["run"]]
     with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
         for name, m in s["metrics"].items():
@@ -92,7 +110,7 @@ def words(index, size):
 
 # Motions: within half a step of the stored positions, in the order of the grid.
 moved = 0
-for c in doc["motions"]["runs"]:
+for c in motions["runs"]:
     with h5py.File(files[c["scene"], c["solver"], c["setting"]]) as f:
         stored = f["trajectory/position"][:].astype(float)
         times = f["trajectory/time_s"][:]
@@ -117,11 +135,11 @@ for c in doc["motions"]["runs"]:
     assert error <= 0.5001 * c["step_m"], (c["scene"], error, c["step_m"])
     assert c["step_m"] <= np.ptp(stored[c["frames"]], axis=1).max() / 32000
     moved += np.ptp(x, axis=0).max() > 0
-assert moved == len(doc["motions"]["runs"]) >= 14, moved
+assert moved == len(motions["runs"]) >= 14, moved
 
 # Colliders: every shape is there, and an array of each kind reads back.
 shapes = {}
-for groups in doc["motions"]["colliders"]:
+for groups in motions["colliders"]:
     for g in groups:
         shapes.setdefault(g["attributes"].get("shape", g["path"]), g)
 assert {"sphere", "box", "plane", "mesh", "capsules", "colliders/grips"} <= set(shapes), set(shapes)
@@ -130,9 +148,9 @@ with h5py.File(files["capsule-sweep", "bullet-soft", "default"]) as f:
     told = words(a["blob"], 4).view("<f4").reshape(a["shape"])
     np.testing.assert_array_equal(told, f["colliders/0/capsules"][:].astype("f4"))
 with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
-    run = next(c for c in doc["motions"]["runs"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
-    sheet = next(g for g in doc["motions"]["colliders"][run["colliders"]] if g["path"] == "colliders/0")
+    run = next(c for c in motions["runs"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
+    sheet = next(g for g in motions["colliders"][run["colliders"]] if g["path"] == "colliders/0")
     a = sheet["arrays"]["triangles"]
     np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])
     np.testing.assert_array_equal(shapes["sphere"]["attributes"]["radius_m"], 0.15)
-print(f"{len(tables)} tables, {points} rates, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")
+print(f"{len(tables)} tables, {points} rates, {quantiles} times, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "report/overview.hpp"
 #include "report/report.hpp"
 #include "report/view.hpp"
 
@@ -89,7 +90,10 @@ inline std::string entry(const Table& t, const std::string& solver, const std::s
 inline std::vector<Table> tables_titled(const std::vector<RunRecord>& runs, const std::string& title) {
   const RunTable table(runs);
   for (const View& v : views())
-    if (v.title == title) return tables_of(v, table);
+    if (v.title == title) {
+      const std::vector<ViewTable> found = tables_of(v, table);
+      return {found.begin(), found.end()};
+    }
   throw std::runtime_error("no view has the title " + title);
 }
 

@@ -97,8 +97,9 @@ TEST_F(ReportFiles, WritesEveryFile) {
   EXPECT_EQ(parse_csv(text(out / "runs.csv")).size(), 6u);
   if (can_draw()) {
     EXPECT_NE(text(out / "fig4.svg").find("<svg"), std::string::npos);
-    EXPECT_NE(text(out / "fig5.png").find("PNG"), std::string::npos);
-    EXPECT_NE(md.find("](fig5.svg)"), std::string::npos);
+    EXPECT_NE(text(out / "fig5-wide.png").find("PNG"), std::string::npos);
+    EXPECT_NE(text(out / "fig5.pdf").find("%PDF"), std::string::npos);
+    EXPECT_NE(md.find("](fig5-wide.svg)"), std::string::npos);
   } else {
     EXPECT_NE(md.find("were left out: "), std::string::npos);
   }
@@ -121,7 +122,9 @@ TEST_F(ReportFiles, ThePicturesOfAnOlderReportGoAndTheUsersStay) {
   EXPECT_FALSE(fs::exists(out / "stability-old-map.svg")) << "an older figure stands beside new tables";
   EXPECT_FALSE(fs::exists(out / "stability-old-map.png"));
   const nlohmann::json list = nlohmann::json::parse(text(out / "report-pictures.json"));
-  EXPECT_EQ(list.at("pictures"), (nlohmann::json{"fig4.png", "fig4.svg", "fig5.png", "fig5.svg"}));
+  EXPECT_EQ(list.at("pictures"),
+            (nlohmann::json{"fig4-wide.pdf", "fig4-wide.png", "fig4-wide.svg", "fig4.pdf", "fig4.svg", "fig5-wide.pdf",
+                            "fig5-wide.png", "fig5-wide.svg", "fig5.pdf", "fig5.svg"}));
 }
 
 TEST_F(ReportFiles, AUsersPictureIsNotWrittenOver) {
@@ -163,14 +166,16 @@ TEST_F(ReportFiles, WhatCannotBeDrawnLeavesTheOlderPictures) {
 TEST_F(ReportFiles, WithoutRsvgConvertThereIsNoPng) {
   if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
   const OnlyPrograms broken(dir_ / "bin");
-  broken.add("node", "[ \"$1\" = --version ] || { : >\"$3/fig4.svg\"; echo '![Drawn](fig4.svg)' >\"$3/figures.md\"; }");
+  broken.add("node",
+             "[ \"$1\" = --version ] || { : >\"$3/fig4.svg\"; : >\"$3/hero.html\"; echo '![Drawn](fig4.svg)' "
+             ">\"$3/figures.md\"; }");
   broken.add("rsvg-convert", "exit 1");
   write_report({run_}, {dir_ / "out"});
   EXPECT_TRUE(fs::exists(dir_ / "out" / "fig4.svg"));
   EXPECT_FALSE(fs::exists(dir_ / "out" / "fig4.png"));
   const std::string md = text(dir_ / "out" / "report.md");
   EXPECT_NE(md.find("## Figures\n\n![Drawn](fig4.svg)"), std::string::npos);
-  EXPECT_NE(md.find("PNG pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin)."),
+  EXPECT_NE(md.find("PNG and PDF pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin)."),
             std::string::npos);
 }
 

@@ -14,7 +14,7 @@ RunRecord run(const std::string& solver, const std::vector<double>& means_s, con
   c.outcome = outcome;
   for (const double mean : means_s) {
     TimedTrial t;
-    t.frame_wall_s = {0.5 * mean, 1.5 * mean};
+    t.frame_wall_s.assign(12, mean);
     c.trials.push_back(t);
   }
   return c;
@@ -23,25 +23,28 @@ RunRecord run(const std::string& solver, const std::vector<double>& means_s, con
 TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
   Outcome broken, crashed{"crashed", "F3", 7, "its process"};
   broken.expect = "fail: depth_max_m 1 > 0";
-  const Table t = in_short_table(
-      {run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken), run("quick", {2e-3, 1e-3, 3e-3}, {})});
-  ASSERT_EQ(t.rows.size(), 4u);
-  EXPECT_EQ(t.rows[1], (std::vector<std::string>{"drop", "quick", "default", "ok", "–", "2.00 ± 1.0", "1.00×"}));
-  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "slow", "default", "fail", "–", "4.00 ± 0.0", "not ranked"}));
-  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "none", "default", "crashed at 7", "–", "–", "–"}));
+  const Table t = in_short_table({run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken),
+                                  run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})});
+  ASSERT_EQ(t.rows.size(), 5u);
+  using Cells = std::vector<std::string>;
+  EXPECT_EQ(t.rows[1],
+            (Cells{"drop", "quick", "ok", "–", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0 / 0", "3", "0.500×"}));
+  EXPECT_EQ(t.rows[2][8], "1.00×") << "relative to bullet-soft, not to the fastest";
+  EXPECT_EQ(t.rows[3][2] + " " + t.rows[3][8], "fail not ranked");
+  EXPECT_EQ(t.rows[4], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "0", "–"}));
 }
 
 TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
   RunRecord torn = run("torn", {1e-3}, {}), held = run("held", {2e-3}, {}), cut = run("cut", {3e-3}, {});
   torn.summary["stretch_max_last_second"] = 3.57;
   held.summary["stretch_max_last_second"] = 0.05;
-  cut.trials[0].frame_wall_s.pop_back();
+  cut.trials[0].frame_wall_s.resize(5);
   const Table t = in_short_table({torn, held, cut});
   ASSERT_EQ(t.rows.size(), 4u);
-  EXPECT_EQ(t.rows[1][1], "cut");
-  EXPECT_EQ(t.rows[1][5], "1.50 (first 1 frames)");
-  EXPECT_EQ(t.rows[2], (std::vector<std::string>{"drop", "held", "default", "ok", "5.00", "2.00", "1.33×"}));
-  EXPECT_EQ(t.rows[3], (std::vector<std::string>{"drop", "torn", "default", "ok", "357", "1.00", "not ranked"}));
+  EXPECT_EQ(t.rows[1][1] + t.rows[2][1] + t.rows[3][1], "heldcuttorn");
+  EXPECT_EQ(t.rows[2][4], "3.00 (first 5 frames)") << "too few frames for an interval";
+  EXPECT_EQ(t.rows[1][3] + " " + t.rows[1][8], "5.00 –") << "no baseline is present";
+  EXPECT_EQ(t.rows[3][3] + " " + t.rows[3][8], "357 not ranked");
 }
 
 TEST(Tint, IsPlainUntilSwitchedOn) {

@@ -1,20 +1,57 @@
-// usage: node palette.mjs SOURCE: no two labels have the same colour, however many there are.
+// Colours and symbols of solvers (harness/report/solvers.json): told apart with every common colour blindness.
+//   node palette.mjs ROOT
 import assert from 'node:assert';
+import {readFileSync} from 'node:fs';
+import {join} from 'node:path';
 
-const {palette} = await import(`${process.argv[2]}/harness/report/web/src/theme.js`);
-const labels = ['xpbd', 'paper', 'bullet-soft', ...Array.from({length: 40}, (_, k) => `plugin setting=${k}`)];
-for (const theme of ['light', 'dark', 'paper']) {
-  const colours = Object.values(palette(labels, theme));
-  assert.strictEqual(new Set(colours).size, labels.length, `${theme}: ${colours}`);
-  for (const c of colours) assert.match(c, /^#[0-9A-F]{6}$/, c);
+const roles = JSON.parse(readFileSync(join(process.argv[2], 'harness/report/solvers.json'), 'utf8'));
+const kLeastDistance = 15, kLeastContrast = 3;  // CIEDE2000; WCAG 2 for graphics
+const kBack = {light: '#ffffff', dark: '#12161c'};
+// Machado, Oliveira and Fernandes (2009), severity 1.
+const kVision = {
+  normal: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  protanopia: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+  deuteranopia: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+  tritanopia: [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]]
+};
+const times = (m, v) => m.map(row => row.reduce((sum, x, k) => sum + x * v[k], 0));
+const linear = hex => [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16) / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+
+function lab(rgb) {
+  const xyz = times([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.072175], [0.0193339, 0.119192, 0.9503041]], rgb.map(c => Math.min(Math.max(c, 0), 1)));
+  const [x, y, z] = [xyz[0] / 0.95047, xyz[1], xyz[2] / 1.08883].map(t => t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116);
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
 }
-// A report of a dozen and a half settings: none that the eye takes for another.
-const channels = c => [1, 3, 5].map(at => parseInt(c.slice(at, at + 2), 16));
-for (const theme of ['light', 'dark']) {
-  const colours = Object.values(palette(labels.slice(3, 21), theme));
-  colours.forEach((a, k) => colours.slice(k + 1).forEach(b => {
-    const apart = Math.hypot(...channels(a).map((v, i) => v - channels(b)[i]));
-    assert.ok(apart >= 35, `${theme}: ${a} and ${b} are ${apart} apart`);
-  }));
+
+/// CIEDE2000 (Sharma, Wu and Dalal 2005).
+function distance([l1, a1, b1], [l2, a2, b2]) {
+  const rad = Math.PI / 180, mean_c = (Math.hypot(a1, b1) + Math.hypot(a2, b2)) / 2, g = 0.5 * (1 - Math.sqrt(mean_c ** 7 / (mean_c ** 7 + 25 ** 7)));
+  const [p1, p2] = [(1 + g) * a1, (1 + g) * a2], [c1, c2] = [Math.hypot(p1, b1), Math.hypot(p2, b2)];
+  const hue = (a, b) => (Math.atan2(b, a) / rad + 360) % 360, [h1, h2] = [hue(p1, b1), hue(p2, b2)];
+  const dh = c1 * c2 === 0 ? 0 : ((h2 - h1 + 540) % 360) - 180, dH = 2 * Math.sqrt(c1 * c2) * Math.sin(dh / 2 * rad);
+  const l = (l1 + l2) / 2, c = (c1 + c2) / 2, h = c1 * c2 === 0 ? h1 + h2 : (h1 + dh / 2 + 360) % 360;
+  const t = 1 - 0.17 * Math.cos((h - 30) * rad) + 0.24 * Math.cos(2 * h * rad) + 0.32 * Math.cos((3 * h + 6) * rad) - 0.2 * Math.cos((4 * h - 63) * rad);
+  const sl = 1 + 0.015 * (l - 50) ** 2 / Math.sqrt(20 + (l - 50) ** 2), sc = 1 + 0.045 * c, sh = 1 + 0.015 * c * t;
+  const turn = -2 * Math.sqrt(c ** 7 / (c ** 7 + 25 ** 7)) * Math.sin(60 * Math.exp(-(((h - 275) / 25) ** 2)) * rad);
+  const [x, y, z] = [(l2 - l1) / sl, (c2 - c1) / sc, dH / sh];
+  return Math.sqrt(x * x + y * y + z * z + turn * y * z);
 }
-console.log(`${labels.length} labels, all of different colours`);
+assert.ok(Math.abs(distance([50, 2.6772, -79.7751], [50, 0, -82.7485]) - 2.0425) < 1e-3, 'a published pair of the formula');
+
+const names = Object.keys(roles.look), luminance = hex => times([[0.2126, 0.7152, 0.0722]], linear(hex))[0];
+let least = Infinity;
+for (const [at, theme] of [[1, 'light'], [2, 'dark']]) {
+  for (const [k, a] of names.entries()) {
+    const [low, high] = [luminance(roles.look[a][at]), luminance(kBack[theme])].sort((x, y) => x - y);
+    assert.ok((high + 0.05) / (low + 0.05) >= kLeastContrast, `${theme}: contrast of ${a}`);
+    for (const b of names.slice(k + 1))
+      for (const [vision, matrix] of Object.entries(kVision)) {
+        const apart = distance(...[a, b].map(n => lab(times(matrix, linear(roles.look[n][at])))));
+        least = Math.min(least, apart);
+        assert.ok(apart >= kLeastDistance, `${theme}, ${vision}: ${a} and ${b} are ${apart.toFixed(1)} apart`);
+      }
+  }
+}
+const symbols = [...Object.values(roles.look), ...roles.spare].map(l => l[0]);
+assert.equal(new Set(symbols).size, symbols.length, 'each solver has a symbol of its own');
+console.log(`${names.length} solvers, at least ${least.toFixed(1)} apart`);

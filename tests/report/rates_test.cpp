@@ -1,6 +1,10 @@
 // What the tables say, read back from their Markdown.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
 #include "fake_runs.hpp"
 
 namespace clothbench {
@@ -9,7 +13,7 @@ namespace {
 constexpr const char* kCapped = "Frames per second, capped at 72";
 constexpr const char* kUncapped = "Frames per second, uncapped";
 constexpr const char* kWall = "Wall time per frame [ms]";
-constexpr const char* kGpu = "GPU time per frame [ms]";
+constexpr const char* kOther = "Other clocks, median time per frame [ms]";
 constexpr const char* kFall = "Free-fall error over gT²/2 at T = 0.5 s";
 constexpr const char* kBytes = "kB per frame, read / written";
 constexpr const char* kBandwidth = "Peak bandwidth, read / written [GB/s]";
@@ -21,7 +25,7 @@ std::vector<Table> rate_tables(const std::vector<RunRecord>& runs) {
   std::vector<Table> out;
   for (const View& v : views())
     if (v.section == "rates")
-      for (Table& t : tables_of(v, table)) out.push_back(std::move(t));
+      for (const ViewTable& t : tables_of(v, table)) out.push_back(t);
   return out;
 }
 
@@ -68,18 +72,16 @@ TEST(Tables, ResolutionsAscendAndSidesAreInOrder) {
   EXPECT_EQ(rows[4][0] + rows[4][1], "xpbddouble");
 }
 
-TEST(Tables, UncappedHasSpreadAndFourDigits) {
+TEST(Tables, UncappedHasFourDigits) {
   const Table t = table_of(study(), kUncapped);
-  EXPECT_EQ(entry(t, "xpbd", "single", "128²"), "50.0 ± 3.1 %");
-  EXPECT_EQ(entry(t, "xpbd", "double", "8²"), "5000 ± 3.1 %");
-  EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "10.0k ± 3.1 %");
-  EXPECT_EQ(entry(t, "ballistic", "single", "8²"), "10.0M ± 3.1 %");
+  EXPECT_EQ(entry(t, "xpbd", "single", "128²"), "50.0");
+  EXPECT_EQ(entry(t, "xpbd", "double", "8²"), "5000");
+  EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "10.0k");
+  EXPECT_EQ(entry(t, "ballistic", "single", "8²"), "10.0M");
 }
 
-TEST(Tables, TimesBytesAndMemory) {
+TEST(Tables, BytesAndMemory) {
   const std::vector<RunRecord> runs = study();
-  EXPECT_EQ(entry(table_of(runs, kWall), "xpbd", "double", "128²"), "21.7");
-  EXPECT_EQ(entry(table_of(runs, kGpu), "xpbd", "single", "128²"), "18.0");
   EXPECT_EQ(entry(table_of(runs, kFall), "xpbd", "single", "8²"), "1.2e-06");
   EXPECT_EQ(entry(table_of(runs, kBytes), "xpbd", "single", "128²"), "256 / 128");
   EXPECT_EQ(entry(table_of(runs, kBandwidth), "xpbd", "single", "128²"), "4.00 / 2.00");
@@ -88,7 +90,7 @@ TEST(Tables, TimesBytesAndMemory) {
 
 TEST(Tables, MissingValuesAreDashes) {
   std::vector<RunRecord> runs = study();
-  for (const char* word : {kGpu, kBytes, kBandwidth, kMemory})
+  for (const char* word : {kBytes, kBandwidth, kMemory})
     EXPECT_EQ(entry(table_of(runs, word), "bullet-soft", "single", "8²"), "–") << word;
   for (RunRecord& c : runs) c.summary.clear();
   for (const Table& t : rate_tables(runs))
@@ -98,9 +100,9 @@ TEST(Tables, MissingValuesAreDashes) {
 TEST(Tables, WithoutAGpuThereAreNoTablesOfDashes) {
   std::vector<RunRecord> runs;
   for (const char* solver : {"bullet-soft", "other"}) runs.push_back(fake_run(solver, 8, "single", 1e-3, false));
-  for (const char* title : {kGpu, kBytes, kBandwidth, kMemory})
+  for (const char* title : {"GPU time per frame [ms]", kBytes, kBandwidth, kMemory})
     EXPECT_TRUE(tables_titled(runs, title).empty()) << title;
-  EXPECT_EQ(entry(table_of(runs, kWall), "other", "single", "8²"), "1.00");
+  EXPECT_EQ(entry(table_of(runs, kUncapped), "other", "single", "8²"), "1000");
 }
 
 TEST(Tables, RunsThatFailedSayHow) {
@@ -141,14 +143,18 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
     two.frame_wall_s.push_back(1e-3 * (50 + k));
   }
   c.trials = {one, two};
-  const Table t = table_of({c}, "Time per frame: median, 95th and 99th percentile, maximum");
+  const Table t = table_of({c}, kWall);
   const auto value = [&](const std::string& head) { return entry(t, "gravity-8-single", "xpbd", head); };
-  EXPECT_EQ(value("trials × frames"), "2 × 50");
-  EXPECT_EQ(value("wall p50 / p95 / p99 / max [ms]"), "50.0 / 95.0 / 99.0 / 100");
+  EXPECT_EQ(value("trials") + " " + value("number of frames") + " " + value("frames"), "2 100 all");
+  EXPECT_TRUE(value("p50 (95 %)").starts_with("50.0 (")) << value("p50 (95 %)");
+  EXPECT_TRUE(value("p50 (95 %)").ends_with(" ~")) << "two trials that differ by a factor: " << value("p50 (95 %)");
+  EXPECT_EQ(value("p95") + " " + value("p99") + " " + value("worst"), "95.0 99.0 100");
   EXPECT_EQ(value("missed at 72 Hz [%]"), "87.0") << "14 to 100 ms";
   EXPECT_EQ(value("missed at 90 Hz [%]"), "89.0");
   EXPECT_EQ(value("real-time factor"), "0.200");
-  EXPECT_EQ(t.markdown().find("GPU p50"), std::string::npos) << "no GPU times";
+  EXPECT_EQ(value("rank"), "") << "too uncertain";
+  EXPECT_NE(value("conditions").find("wide interval"), std::string::npos);
+  EXPECT_TRUE(tables_titled({c}, "GPU time per frame [ms]").empty()) << "no GPU times";
   const auto csv = parse_csv(trials_csv(RunTable({c})));
   ASSERT_EQ(csv.size(), 3u);
   for (std::size_t k = 0; k < csv[0].size(); ++k) {
@@ -164,6 +170,67 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
   }
 }
 
+/// A run with trials of `frames` frames that vary by a share of the mean, in an order that is no trend.
+RunRecord timed(const std::string& solver, double frame_s, double vary, int frames = 72, int trials = 3) {
+  RunRecord c = fake_run(solver, 8, "single", frame_s, false);
+  for (int t = 0; t < trials; ++t) {
+    TimedTrial trial;
+    for (int f = 0; f < frames; ++f)
+      trial.frame_wall_s.push_back(frame_s * (1 + vary * (((17 * f + t) % 9) - 4) / 4.0));
+    c.trials.push_back(trial);
+  }
+  return c;
+}
+
+TEST(Intervals, HoldTheMedianAndShrinkWithTheSpread) {
+  const RunTimes wide = times_of(timed("a", 1e-3, 0.3)), narrow = times_of(timed("a", 1e-3, 0.01)),
+                 none = times_of(timed("a", 1e-3, 0.1, 5, 1));
+  for (const RunTimes* t : {&wide, &narrow}) {
+    EXPECT_LE(t->wall.median.low, t->wall.at(0.5));
+    EXPECT_GE(t->wall.median.high, t->wall.at(0.5));
+    EXPECT_LE(t->rate.low, 1000.0 * 1.01);
+    EXPECT_GE(t->rate.high, 1000.0 * 0.99);
+  }
+  EXPECT_LT(narrow.wall.median.high - narrow.wall.median.low, wide.wall.median.high - wide.wall.median.low);
+  EXPECT_TRUE(std::isnan(none.wall.median.low)) << "too few frames";
+  // A trial that is twice as slow as the others makes the interval that wide, however many frames each has.
+  RunRecord c = timed("a", 1e-3, 0.01);
+  for (double& s : c.trials[1].frame_wall_s) s *= 2;
+  for (double& s : c.trials[2].frame_wall_s) s *= 2;
+  EXPECT_TRUE(times_of(c).uncertain());
+}
+
+TEST(Intervals, RanksAreNoFinerThanThem) {
+  std::vector<RunRecord> runs = {timed("near-a", 1.000e-3, 0.05), timed("near-b", 1.002e-3, 0.05),
+                                 timed("bullet-soft", 4e-3, 0.01), timed("shaky", 5e-4, 0.9)};
+  runs[3].trials.resize(1);
+  runs[3].trials[0].frame_wall_s.resize(12);
+  const Table t = table_of(runs, kWall);
+  const auto value = [&](const std::string& solver, const char* head) {
+    return entry(t, "gravity-8-single", solver, head);
+  };
+  EXPECT_EQ(value("near-a", "rank") + value("near-b", "rank"), "11") << "their intervals overlap";
+  EXPECT_EQ(value("bullet-soft", "rank"), "3");
+  EXPECT_EQ(value("shaky", "rank"), "–");
+  EXPECT_EQ(value("near-a", "× bullet-soft"), "0.250") << "relative to a fixed solver, whoever is fastest";
+  EXPECT_EQ(value("bullet-soft", "× bullet-soft"), "1.00");
+}
+
+TEST(Intervals, ContactScenesHaveARowOverFramesWithContact) {
+  RunRecord c = timed("xpbd", 1e-3, 0, 10, 1);
+  c.accuracy.metrics = {{"touching_fraction", "1", "", {0, 0, 0, 0, 0, 0, 0, 0, 0.1, 0.2, 0}}};
+  c.trials[0].frame_wall_s[7] = c.trials[0].frame_wall_s[8] = 5e-3;
+  const Table t = table_of({c}, kWall);
+  ASSERT_EQ(t.rows.size(), 3u);
+  const auto column = [&](const char* head) {
+    return static_cast<std::size_t>(std::find(t.rows[0].begin(), t.rows[0].end(), head) - t.rows[0].begin());
+  };
+  EXPECT_EQ(t.rows[1][column("frames")] + ", " + t.rows[2][column("frames")], "all, with contact");
+  EXPECT_EQ(t.rows[2][column("number of frames")], "2");
+  EXPECT_TRUE(t.rows[1][column("p50 (95 %)")].starts_with("1.00")) << "a median over frames without contact";
+  EXPECT_EQ(t.rows[2][column("p50 (95 %)")], "5.00");
+}
+
 TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   std::vector<RunRecord> runs = {fake_run("alone", 8, "single", 0.002), fake_run("crowd", 8, "single", 0.002),
                                  fake_run("silent", 8, "single", 0.002)};
@@ -172,11 +239,13 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   runs[1].trials.resize(1);
   withhold_times(runs);
   EXPECT_TRUE(runs[1].trials.empty());
-  for (const char* title : {kCapped, kUncapped, kWall, kGpu, kBandwidth}) {
+  for (const char* title : {kCapped, kUncapped, kBandwidth, kOther}) {
     const Table t = table_of(runs, title);
-    EXPECT_NE(entry(t, "alone", "single", "8²"), "–") << title;
-    EXPECT_EQ(entry(t, "crowd", "single", "8²"), "–") << title;
-    EXPECT_NE(entry(t, "silent", "single", "8²"), "–") << title << ": its file does not state it";
+    if (title != kOther) {
+      EXPECT_NE(entry(t, "alone", "single", "8²"), "–") << title;
+      EXPECT_EQ(entry(t, "crowd", "single", "8²"), "–") << title;
+      EXPECT_NE(entry(t, "silent", "single", "8²"), "–") << title << ": its file does not state it";
+    }
     EXPECT_NE(t.note.find("Times of 1 run are withheld (–) because up to 11 jobs ran side by side."), std::string::npos)
         << t.note;
   }
@@ -192,7 +261,7 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   EXPECT_TRUE(j["summary"]["frame_wall_median_s"].is_null());
   EXPECT_EQ(j["withheld"]["frame_wall_median_s"], "not timed alone: up to 11 jobs ran side by side");
   // Where every time is withheld, the table stays with the reason.
-  EXPECT_EQ(entry(table_of({runs[1]}, kWall), "crowd", "single", "8²"), "–");
+  EXPECT_EQ(entry(table_of({runs[1]}, kUncapped), "crowd", "single", "8²"), "–");
 }
 
 TEST(Tables, BytesThatAreALowerBoundSaySo) {
@@ -218,7 +287,7 @@ TEST(Tables, EveryLineFitsTheTerminal) {
   for (const Table& t : rate_tables(runs)) {
     const std::string console = t.console();
     std::istringstream lines(console);
-    for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), kConsoleColumns) << line;
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), console_columns()) << line;
     for (const std::string& column : t.rows[0]) EXPECT_NE(console.find(column), std::string::npos) << console;
     if (t.title.starts_with(kBytes)) {
       EXPECT_NE(console.find("solver"), console.rfind("solver")) << "too wide for one piece: " << console;
@@ -276,6 +345,42 @@ TEST(Tables, RunsWithoutASceneDoNotHarm) {
     EXPECT_EQ(parse_csv(runs_csv(RunTable(runs))).size(), 2u) << scene;
   }
   EXPECT_TRUE(RunTable({}).rows().empty());
+}
+
+TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
+  std::vector<RunRecord> runs = study();
+  runs[1].summary["free_fall_error"] = 0.74;  // of xpbd, 128², single
+  const Table t = table_of(runs, "Table 3: speed and error");
+  EXPECT_EQ(entry(t, "xpbd", "single", "8²") + " " + entry(t, "xpbd", "single", "128²"), "10.0k 50.0");
+  EXPECT_EQ(entry(t, "xpbd", "single", "free-fall error"), "7.4e-01 !") << "a rate without meaning is marked";
+  EXPECT_EQ(entry(t, "published: PBD single-sided", "single", "128²"), "42");
+  const Table all = table_of(runs, "All solvers in one table");
+  EXPECT_EQ(entry(all, "xpbd", "50.0", "device"), "Fake GPU");
+  EXPECT_EQ(entry(all, "bullet-soft", "1000", "device"), "CPU");
+}
+
+TEST(Overview, TilesAreOfTheRunsPresent) {
+  const std::vector<Tile> tiles = tiles_of(RunTable(study()));
+  ASSERT_EQ(tiles.size(), 1u) << "rates only";
+  EXPECT_EQ(tiles[0].title, "Frames per second at 128², bullet-soft") << "no solver has a place of its own";
+  EXPECT_EQ(tiles[0].value, "1000");
+  EXPECT_EQ(tiles[0].others, "xpbd 50.0") << "without the harness's own cost";
+  const Heading h = heading_of(RunTable(study()), {"table3"});
+  EXPECT_EQ(h.title, "Cloth solvers on Fake GPU: table3");
+  EXPECT_TRUE(tiles_of(RunTable({})).empty());
+}
+
+TEST(Terminal, TablesFitTheColumnsStated) {
+  for (const char* columns : {"60", "80", "200"}) {
+    setenv("COLUMNS", columns, 1);
+    EXPECT_EQ(std::to_string(console_columns()), columns);
+    std::size_t widest = 0;
+    std::istringstream lines(table_of(study(), "Table 3: speed and error").console());
+    for (std::string line; std::getline(lines, line);) widest = std::max(widest, display_width(line));
+    EXPECT_LE(widest, console_columns());
+  }
+  unsetenv("COLUMNS");
+  EXPECT_EQ(console_columns(), 80u) << "not a terminal";
 }
 
 TEST(Headline, SoftwareComesFirstAndInBold) {
@@ -343,9 +448,8 @@ TEST(Tables, APluginStandsBelowThePublishedRowOfItsEngine) {
   EXPECT_NE(t.note.find("peer: the engine behind Unity Cloth"), std::string::npos) << t.note;
   EXPECT_NE(t.note.find("not Unity Cloth"), std::string::npos) << t.note;
   EXPECT_EQ(table_of(study(), kCapped).note.find("not Unity Cloth"), std::string::npos) << "no such plugin";
-  EXPECT_EQ(entry(table_of(runs, "CPU time per frame [ms]"), "peer", "single", "8²"), "0.900");
-  EXPECT_EQ(entry(table_of(runs, "CPU time per frame [ms]"), "xpbd", "single", "8²"), "–");
-  EXPECT_TRUE(tables_titled(study(), "CPU time per frame [ms]").empty()) << "no CPU times, no table";
+  EXPECT_EQ(entry(table_of(runs, kOther), "gravity-8-single", "peer", "CPU"), "0.900");
+  EXPECT_EQ(entry(table_of(runs, kOther), "gravity-8-single", "xpbd", "CPU"), "–");
   EXPECT_NE(headline(runs, Format::Markdown).find("plain is a plugin"), std::string::npos);
   EXPECT_NE(headline(runs, Format::Markdown).find("Library p.so,"), std::string::npos) << "no path of a machine";
 }

@@ -2,7 +2,7 @@
 //   node web_browser.mjs PACKAGES INDEX.html [SHOTS]     PACKAGES: folder of node_modules; SHOTS: folder for
 //   screenshots
 // Exit 77 where Chromium or the packages are missing.
-import {existsSync} from 'node:fs';
+import {existsSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -16,7 +16,8 @@ const skip = why => {
   process.exit(77);
 };
 if (!browser_path) skip('no Chromium (Debian: chromium)');
-if (!existsSync(join(packages, 'puppeteer-core'))) skip(`no puppeteer-core in ${packages}`);
+for (const name of ['puppeteer-core', 'axe-core'])
+  if (!existsSync(join(packages, name))) skip(`no ${name} in ${packages}`);
 const puppeteer = createRequire(join(resolve(packages), 'x.js'))('puppeteer-core');
 
 let failures = 0;
@@ -51,71 +52,163 @@ await page.setViewport({width: 1280, height: 900});
 await page.emulateMediaFeatures([{name: 'prefers-color-scheme', value: 'light'}]);
 await page.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
 
-const marks = (id, name) => page.$$eval(`#${id} .${name}_marks > path`, list => list.length);
+const doc = await page.evaluate(() => window.clothbench.document);
+const wait = ms => new Promise(done => setTimeout(done, ms));
 
-async function check_tables() {
-  const sizes = await page.$$eval('.table table', list => list.map(t => [t.rows.length, t.rows[0].cells.length]));
-  const wanted = await page.evaluate(
-      () => window.clothbench.document.sections.flatMap(s => s.tables)
-                .map(t => [t.rows.length, t.rows[0].length])
-                .sort());
-  equal(sizes.sort(), wanted, 'rows and columns of the tables');
-  // Verdicts of many solvers: upright heads, and all of the table in sight.
-  const upright = await page.$$eval(
-      '.table table', list => list.every(t => t.classList.contains('many') === t.rows[0].cells.length >= 11));
-  check(upright, 'tables of many columns, and no others, have upright heads');
-  const cut = await page.evaluate(() => {
-    const row = (tag, first, cell) => `<tr><th>${first}</th>${`<${tag}>${cell}</${tag}>`.repeat(13)}</tr>`;
-    const box = document.createElement('div');
-    box.className = 'scroll';
-    box.innerHTML = `<table class="many"><thead>${row('th', 'scene', 'bullet-soft margin 20 mm')}</thead>` +
-        `<tbody>${row('td', 'two-hand-stretch-0p5mps', 'unsupported')}</tbody></table>`;
-    document.querySelector('main').append(box);
-    const wide = box.scrollWidth - box.clientWidth;
-    box.remove();
-    return wide;
-  });
-  check(cut <= 0, `a table of verdicts of 13 solvers fits, ${cut} px too wide`);
-  const hidden = await page.$$eval(
-      'h2, h3, table, figure',
-      list => list.filter(e => {
-        const b = e.getBoundingClientRect(), main = document.querySelector('main').getBoundingClientRect();
-        return !(b.width > 0 && b.height > 0 && b.bottom <= main.bottom + 1);
-      }).length);
-  equal(hidden, 0, 'headings, tables and figures cut off or without extent');
-  const unnamed = await page.$$eval(
-      'button, select, input, canvas',
-      list => list.filter(e => !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.length)).length);
-  equal(unnamed, 0, 'controls without a name');
-  const twice = await page.$$eval('button[aria-label*="download as"]', list => {
-    const names = list.map(b => b.getAttribute('aria-label'));
-    return names.filter((n, k) => names.indexOf(n) !== k);
-  });
-  equal(twice, [], 'downloads that share a name');
+/// Scrolls through the page, so that every figure and table is drawn.
+async function draw_all() {
+  const ids = await page.$$eval('figure, .table', list => list.map(e => e.id));
+  for (const id of ids) {
+    await page.evaluate(i => document.getElementById(i).scrollIntoView({behavior: 'instant'}), id);
+    await page.waitForFunction(i => document.getElementById(i).querySelector('table, .plot > *'), {timeout: 20000}, id);
+  }
+  await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
 }
 
+/// Every cell of every table on the page equals the stored one.
+async function check_tables() {
+  await page.$$eval('.table button.more:not([hidden])', list => list.forEach(b => b.click()));
+  const shown = await page.$$eval('.table', list => Object.fromEntries(list.map(t => [t.querySelector('h3').firstChild.textContent, [...t.querySelectorAll('tr')].map(r => [...r.cells].map(c => c.textContent.replace(/^\u00a0$/, '')))])));
+  let cells = 0;
+  for (const t of doc.sections.flatMap(s => s.tables)) {
+    const width = t.rows[0].length, rows = shown[t.title]?.map(r => r.slice(0, width)), wanted = t.rows.map(r => r.map(c => c || ''));
+    const same = rows?.length === wanted.length && wanted.every((r, k) => r.every((c, n) => rows[k][n].trim() === c.trim()));
+    if (!same) check(false, `table ${t.title}: ${JSON.stringify(rows?.slice(0, 2))}, expected ${JSON.stringify(wanted.slice(0, 2))}`);
+    cells += wanted.length * width;
+  }
+  check(cells > 200, `${cells} cells of tables equal the stored ones`);
+  const first = await page.$('.table thead button');
+  await first.evaluate(b => b.click());
+  equal(await page.$eval('.table th[aria-sort]', e => e.getAttribute('aria-sort')), 'ascending', 'a click on the first head sorts by it');
+  check((await page.evaluate(() => location.hash)).includes('.sort='), 'the address keeps the order of a table');
+  const table = `#${await page.$eval('.table:has(td.n)', t => t.id)} `;
+  await page.$eval(`${table} thead th.n button`, b => b.click());
+  const values = await page.$$eval(`${table} tbody tr`, list => list.map(r => [...r.cells].find(c => c.classList.contains('n'))?.textContent ?? ''));
+  const numbers = values.map(v => parseFloat(v) / (v.match(/^\d+(?:\/| of )(\d+)/)?.[1] ?? 1) * (/^[\d.]+k/.test(v) ? 1e3 : /^[\d.]+M/.test(v) ? 1e6 : 1)).filter(Number.isFinite);
+  check(numbers.length > 1 && numbers.every((v, k) => k === 0 || v <= numbers[k - 1]), `a click on a head of numbers sorts them downwards: ${numbers.slice(0, 4)}`);
+}
+
+/// A mark stands where its value is: from two marks follow the scales of the others.
+async function check_places(id, x_of, y_of) {
+  const marks = await page.evaluate(i => window.clothbench.figures.find(f => f.entry.id === i).marks.map((m, k) => {
+    const at = document.querySelector(`#${i} [data-i="${k}"]`)?.getAttribute('transform')?.match(/translate\(([-\d.]+) ([-\d.]+)\)/);
+    return {kind: m.kind, x: m.x, y: m.y, at: at && [Number(at[1]), Number(at[2])]};
+  }), id);
+  const points = marks.filter(m => m.kind === 'point' && m.at);
+  for (const [name, of, n] of [['x', x_of, 0], ['y', y_of, 1]]) {
+    const v = points.map(m => of(m[name])), low = v.indexOf(Math.min(...v)), high = v.indexOf(Math.max(...v));
+    if (v[low] === v[high]) continue;
+    const scale = (points[high].at[n] - points[low].at[n]) / (v[high] - v[low]);
+    const off = Math.max(...points.map((m, k) => Math.abs(points[low].at[n] + scale * (v[k] - v[low]) - m.at[n])));
+    check(off < 0.2, `${id}: ${points.length} marks are ${off.toFixed(2)} px off along ${name}`);
+  }
+}
+
+/// Every figure shows as many marks as it has values, for every choice; its table of values has the stored ones.
 async function check_figures() {
-  const runs = await page.evaluate(() => window.clothbench.document.runs), rated = runs.filter(r => r.part === 'rates');
-  for (const [k, family] of [...new Set(rated.map(r => r.family))].entries()) {
-    const drawn = rated.filter(r => r.family === family && r.solver !== 'ballistic' && r.fps_median > 0);
-    equal(await marks(`rates-${k}`, 'points'), drawn.length, `points of the rates of ${family}`);
+  const ids = await page.$$eval('figure', list => list.map(f => f.id));
+  check(ids.length >= 5, `${ids.length} figures: ${ids.join(', ')}`);
+  for (const id of ids) {
+    const options = await page.$$eval(`#${id} .head select`, list => list[0] && !list[0].closest('label').hidden ? [...list[0].options].map(o => o.value) : []);
+    for (const option of options.length ? options.slice(0, 8) : [null]) {
+      if (option !== null) await page.select(`#${id} .head select`, option);
+      await wait(60);
+      const [rows, marks, drawn] = await page.evaluate(i => {
+        const f = window.clothbench.figures.find(x => x.entry.id === i);
+        return [f.rows.length, f.marks.filter(m => m.kind !== 'none').length, f.plot.querySelectorAll('[data-i]').length];
+      }, id);
+      equal(drawn, marks, `${id} ${option ?? ''}: marks drawn`);
+      check(rows > 0 || id === 'penetration', `${id} ${option ?? ''}: ${rows} values`);
+    }
   }
-  const work = runs.filter(r => r.part === 'accuracy');
-  for (const scene of new Set(work.map(r => r.scene))) {
-    await page.select('figure:has(#work) select', scene);
-    const good = work.filter(r => r.scene === scene && r.status === 'ok' && r.error > 0 && r.wall_ms_per_s > 0);
-    equal(await marks('work', 'points'), good.length, `points of ${scene}`);
+  if (ids.includes('rates')) await check_places('rates', Math.log, Math.log);
+  if (ids.includes('error-time')) await check_places('error-time', Math.log, Math.log);
+  const [head, ...rows] = (await page.evaluate(() => {
+                            const f = window.clothbench.figures.find(x => x.entry.id === 'rates');
+                            f.details.open = true;
+                            f.show_values();
+                            return [...f.values.querySelectorAll('tr')].map(r => [...r.cells].map(c => c.textContent));
+                          }));
+  const stored = doc.runs.map(r => r.fps_median), at = head.indexOf('fps_median');
+  check(rows.length > 1 && rows.every(r => stored.includes(Number(r[at]))), `${rows.length} frame rates behind the figure equal the stored ones`);
+}
+
+async function check_filter() {
+  const count = () => page.evaluate(() => [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]);
+  const before = await count();
+  await page.click('#chips button');
+  await wait(200);
+  const after = await count(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
+  check(after[0] < before[0] || after[1] < before[1], `without ${solver}: marks and rows ${before} become ${after}`);
+  check((await page.evaluate(() => location.hash)).includes(`off=${solver}`), 'the address keeps the filter');
+  await page.click('#chips button');
+  await wait(200);
+  equal(await count(), before, 'and back');
+}
+
+/// First screen, no sideways scroll, closed menu on a phone, and no violation that axe finds, at three widths.
+async function check_widths() {
+  const axe = readFileSync(join(packages, 'axe-core', 'axe.min.js'), 'utf8');
+  await page.evaluate(axe);
+  for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
+    await page.setViewport({width, height});
+    await wait(400);
+    await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
+    equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `${width} px: the page scrolls sideways by`);
+    const top = await page.evaluate(() => ['h1', '.tiles', '#hero .plot svg'].map(s => document.querySelector(s)?.getBoundingClientRect().top ?? 1e9));
+    check(top.every(t => t < height - 60), `${width} px: title, tiles and first figure begin on the first screen (${top.map(Math.round)})`);
+    const nav = await page.evaluate(() => ({seen: document.getElementById('contents').checkVisibility(), links: document.querySelectorAll('#contents a').length}));
+    check(nav.links <= 9 && nav.seen === (width > 760), `${width} px: ${nav.links} groups, contents ${nav.seen ? 'shown' : 'closed'}`);
+    for (const theme of ['light', 'dark']) {
+      await page.evaluate(t => document.documentElement.dataset.theme = t, theme);
+      const found = await page.evaluate(async () => (await window.axe.run({exclude: ['#viewer']})).violations.map(v => `${v.id}: ${v.nodes.slice(0, 3).map(n => n.target).join(' ')} (${v.nodes.length})`));
+      equal(found, [], `${width} px, ${theme}: axe`);
+      if (shots) await page.screenshot({path: join(shots, `${width}-${theme}.png`)});
+    }
+    await page.evaluate(() => delete document.documentElement.dataset.theme);
   }
-  const series = (await page.evaluate(() => window.clothbench.document.series)).map(s => ({...s, ...runs[s.run]}));
-  for (const scene of new Set(series.map(s => s.scene))) {
-    await page.select('figure:has(#penetration-series) select', scene);
-    const metric = await page.$eval('figure:has(#penetration-series) label:nth-of-type(2) select', e => e.value);
-    const wanted = series.filter(s => s.scene === scene && s.solver !== 'ballistic')
-                       .flatMap(s => s.metrics[metric]?.values ?? [])
-                       .filter(v => v !== null)
-                       .length;
-    equal(await marks('penetration-series', 'points'), wanted, `points of ${scene}, ${metric}`);
-  }
+  await page.setViewport({width: 390, height: 844});
+  await page.click('#menu');
+  check(await page.evaluate(() => document.getElementById('contents').checkVisibility()), 'the menu opens');
+  await page.click('#contents a[href="#method"]');
+  await wait(900);
+  const top = await page.$eval('#method', e => e.getBoundingClientRect().top), bar = await page.$eval('header', e => e.getBoundingClientRect().height);
+  check(top >= bar - 2, `a link leaves the heading below the bar (${top.toFixed(0)}, ${bar.toFixed(0)} px)`);
+  await page.setViewport({width: 1280, height: 900});
+}
+
+/// Wide margins: this machine may be busy.
+async function check_budgets() {
+  const ready = await page.evaluate(() => window.clothbench.ready_ms);
+  check(ready < 3000, `ready after ${ready.toFixed(0)} ms (asked for: 1000)`);
+  const html = readFileSync(page_file, 'utf8'), without = html.replace(/<script type="text\/plain" id="blob-\d+">[^<]*<\/script>/g, '').length;
+  check(without < 2e6, `${(without / 1e6).toFixed(2)} MB without motions`);
+  const switched = await page.evaluate(() => {
+    const start = performance.now();
+    document.getElementById('theme').click();
+    document.body.getBoundingClientRect();
+    const took = performance.now() - start;
+    document.getElementById('theme').click();
+    return took;
+  });
+  check(switched < 600, `the theme switches in ${switched.toFixed(0)} ms (asked for: 200)`);
+  const slow = await browser.newPage();
+  await slow.emulateCPUThrottling(4);
+  await slow.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
+  const slow_ms = await slow.evaluate(() => window.clothbench.ready_ms);
+  check(slow_ms < 16000, `at a quarter of the speed ready after ${slow_ms.toFixed(0)} ms (asked for: 8000)`);
+  await slow.close();
+}
+
+async function check_without_script() {
+  const plain = await browser.newPage();
+  await plain.setJavaScriptEnabled(false);
+  await plain.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
+  const seen = await plain.evaluate(() => [document.querySelectorAll('.tile').length, document.querySelectorAll('#first-table tr').length, document.querySelectorAll('#hero svg').length]).catch(() => null);
+  const html = readFileSync(page_file, 'utf8').replace(/<script[^]*?<\/script>/g, '');
+  const counts = seen ?? [html.split('class="tile"').length - 1, html.split('<tr>').length - 1, html.includes('<svg xmlns') ? 1 : 0];
+  check(counts[0] > 0 && counts[1] > 2, `without JavaScript: ${counts[0]} tiles, ${counts[1]} rows, ${counts[2]} figure`);
+  await plain.close();
 }
 
 /// What a button saves, instead of saving it.
@@ -136,55 +229,29 @@ async function saved(label) {
 const text_of = file => Buffer.from(file.bytes).toString('utf8');
 
 async function check_downloads() {
-  const table = await page.evaluate(
-      () => window.clothbench.document.sections.flatMap(s => s.tables).find(t => t.rows.length > 2));
-  const name = table.title;
-  const csv = text_of(await saved(`${name}: download as CSV`)),
-        markdown = text_of(await saved(`${name}: download as Markdown`)),
-        tex = text_of(await saved(`${name}: download as LaTeX`));
+  const table = doc.sections.flatMap(s => s.tables).find(t => t.rows.length > 2), name = table.title;
+  const csv = text_of(await saved(`${name}: download as CSV`)), markdown = text_of(await saved(`${name}: download as Markdown`));
   equal(csv.trim().split('\n').length, table.rows.length, 'lines of a table as CSV');
-  equal(
-      markdown.split('\n').filter(l => l.startsWith('|')).length, table.rows.length + 1,
-      'lines of a table as Markdown');
-  equal(tex.split('\n').filter(l => l.endsWith('\\\\')).length, table.rows.length, 'rows of a table as LaTeX');
-  check(
-      ['\\toprule', '\\midrule', '\\bottomrule'].every(r => tex.includes(r)) && !/[^\x00-\x7f]/.test(tex),
-      'LaTeX has booktabs rules and plain characters alone');
-  const figure = await page.$eval('figure h3', e => e.textContent),
-        points = await page.$$eval('figure:first-of-type .points_marks > path', l => l.length);
-  const svg = text_of(await saved(`${figure}: download as SVG`)), png = await saved(`${figure}: download as PNG`);
-  check(
-      svg.startsWith('<svg') &&
-          (svg.match(/points_marks[^]*?<\/g>/)?.[0].match(/<path/g) ?? []).length >= Math.min(points, 1),
-      'a figure as SVG has its points');
+  equal(markdown.split('\n').filter(l => l.startsWith('|')).length, table.rows.length + 1, 'lines of a table as Markdown');
+  const svg = text_of(await saved('rates: download as SVG')), png = await saved('rates: download as PNG');
+  check(svg.startsWith('<svg') && /width="493pt"/.test(svg) && !/var\(/.test(svg), 'a figure as SVG is 174 mm wide and has its own colours');
   const width = Buffer.from(png.bytes).readUInt32BE(16);
   check(png.bytes[1] === 0x50 && width > 1500, `a figure as PNG, ${width} pixels wide`);
 }
 
-async function check_hover() {
-  const point = await page.$('.points_marks > path');
-  await point.hover();
-  await page.waitForFunction(
-      () => document.querySelector('#vg-tooltip-element.visible')?.textContent.length > 10, {timeout: 5000});
-  check(true, 'hover over a point: ' + await page.$eval('#vg-tooltip-element', e => e.innerText.replace(/\s+/g, ' ')));
-}
-
-async function check_themes() {
-  const look = () => page.evaluate(() => ({
-                                     back: getComputedStyle(document.body).backgroundColor,
-                                     axis: getComputedStyle(document.querySelector('.plot .role-axis-label text')).fill,
-                                     points: document.querySelectorAll('.points_marks > path').length
-                                   }));
-  const light = await look();
-  await page.click('#theme');
-  const dark = await look();
-  check(
-      light.back !== dark.back && light.axis !== dark.axis,
-      `the button changes page and figures (${light.back} to ${dark.back})`);
-  equal(dark.points, light.points, 'points in the dark');
-  if (shots) await page.screenshot({path: join(shots, 'dark.png')});
-  await page.click('#theme');
-  equal(await look(), light, 'and back');
+/// The value of a mark, by the pointer and by keyboard, with the command that makes its run again.
+async function check_values() {
+  await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'}));
+  await wait(200);
+  await (await page.$('#rates .mark[data-i]')).hover();
+  const by_pointer = await page.$eval('#tip', e => e.textContent);
+  check(/--job \d+/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
+  await page.focus('#rates .plot');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowRight');
+  check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
+  await page.keyboard.press('Escape');
+  equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
 }
 
 /// One channel of every pixel of the canvas.
@@ -199,7 +266,9 @@ const positions = () => page.evaluate(() => window.clothbench.viewer.panels.map(
 const drawn = () => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 async function check_motion() {
+  await page.evaluate(() => window.clothbench.load_viewer());
   await page.waitForFunction(() => window.clothbench.viewer.panels.length > 0, {timeout: 60000});
+  await page.evaluate(() => document.querySelector('#stage').scrollIntoView({behavior: 'instant'}));
   await page.evaluate(() => window.clothbench.viewer.ready);
   await page.focus('#stage canvas');
   await page.keyboard.press('Home');
@@ -277,16 +346,9 @@ async function check_colours() {
 }
 
 try {
-  await page.waitForFunction(() => window.clothbench?.document, {timeout: 60000});
-  await check_tables();
-  await check_figures();
-  await check_downloads();
-  await check_hover();
-  await check_themes();
-  if (await page.evaluate(() => window.clothbench.document.motions.runs.length)) {
-    await check_motion();
-    await check_colours();
-  } else console.log('no motions in this report');
+  await check_budgets();
+  await draw_all();
+  for (const run of [check_tables, check_figures, check_filter, check_downloads, check_values, check_widths, check_without_script, check_motion, check_colours]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
 } catch (error) { problems.push(String(error.stack ?? error)); }
 equal(problems, [], 'errors on the console');

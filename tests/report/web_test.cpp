@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "clothbench/error.hpp"
 #include "fake_runs.hpp"
@@ -183,26 +184,39 @@ TEST_F(WebFiles, ThinsUntilThePageIsSmallAndSaysSo) {
 TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
   Page page;
-  page.sections.push_back({"failed", "Failed", {table_of(runs, "Runs without a result")}});
-  page.commands = commands_of({dir_ / "run"});
-  const nlohmann::json document = page_document(RunTable(runs), page, motions_of(runs));
-  const std::string html = page_html("<html><!--clothbench:data--><script>code</script></html>", document, {"QUJD"});
+  page.heading.title = "Runs of </script>";
+  const RunTable table(runs);
+  for (const View& v : views())
+    if (v.title == "Runs without a result") page.sections.push_back({"failed", "Failed", tables_of(v, table)});
+  const nlohmann::json document = page_document(table, page), motions = motions_of(runs).document;
+  const std::string marks = "<!--clothbench:title--><!--clothbench:head--><!--clothbench:data-->";
+  const std::string html =
+      page_html("<html>" + marks + "<script>code</script></html>", page, document, motions, {"QUJD"});
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
-  EXPECT_EQ(ends, 3u) << "data, one blob, the code";
-  EXPECT_EQ(html.find("<!--"), std::string::npos);
-  const std::string mark = "id=\"clothbench-data\">";
-  const std::size_t first = html.find(mark) + mark.size();
-  const nlohmann::json back = nlohmann::json::parse(html.substr(first, html.find("</script", first) - first));
+  EXPECT_EQ(ends, 4u) << "data, motions, one blob, the code";
+  EXPECT_EQ(html.find("<!--"), html.find("<!--clothbench:figure-->"));
+  const auto embedded = [&](const std::string& id) {
+    const std::string mark = "id=\"" + id + "\">";
+    const std::size_t first = html.find(mark) + mark.size();
+    return nlohmann::json::parse(html.substr(first, html.find("</script", first) - first));
+  };
+  const nlohmann::json back = embedded("clothbench-data");
   EXPECT_EQ(back, nlohmann::json::parse(document.dump()));
-  EXPECT_EQ(back["commands"].at(0), "clothbench study </script><b>table3");
-  EXPECT_NE(back["motions"]["runs"][0]["message"].get<std::string>().find("<!-- ü"), std::string::npos);
-  EXPECT_THROW(page_html("no place", document, {}), Error);
+  EXPECT_EQ(back["studies"].at(0)["command"], "clothbench study </script><b>table3");
+  std::set<std::size_t> jobs;
+  for (const auto& r : back["runs"])
+    if (!r.value("published", false)) jobs.insert(r.at("job").get<std::size_t>());
+  EXPECT_EQ(jobs, (std::set<std::size_t>{0, 1, 2, 3})) << "each run names its job in its study";
+  EXPECT_NE(embedded("clothbench-motions")["runs"][0]["message"].get<std::string>().find("<!-- ü"), std::string::npos);
+  EXPECT_THROW(page_html("no place", page, document, motions, {}), Error);
 }
 
 TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
-  EXPECT_EQ(write_page(dir_, RunTable(runs), {}, {"<html><!--clothbench:data--></html>", ""}), "");
+  EXPECT_EQ(write_page(dir_, RunTable(runs), {},
+                       {"<html><!--clothbench:title--><!--clothbench:head--><!--clothbench:data--></html>", ""}),
+            "");
   EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
   EXPECT_EQ(write_page(dir_, RunTable(runs), {}, {"", "there was no Node when this was built"}),
             "The interactive page was left out: there was no Node when this was built.");
@@ -215,7 +229,7 @@ TEST_F(WebFiles, RowsKeepFullPrecisionAndMissingIsNull) {
   const nlohmann::json rows = nlohmann::json::parse(figure_rows(RunTable(runs)).dump());
   ASSERT_EQ(rows.size(), 15u + 2);
   for (const auto& r : rows) {
-    EXPECT_EQ(r["published"].get<bool>(), r["solver"].get<std::string>().starts_with("published"));
+    EXPECT_EQ(r.value("published", false), r["solver"].get<std::string>().starts_with("published"));
     if (r["published"] == true) continue;
     const bool gpu = r["solver"] == "xpbd";
     EXPECT_EQ(r["fps_median"].get<double>(), runs[gpu ? 0 : 1].summary.at("fps_median"));

@@ -59,14 +59,14 @@ function licences(inputs) {
   return [...texts].map(([text, who]) => `<h4>${escaped(who.join(', '))}</h4><pre>${escaped(text)}</pre>`).join('\n');
 }
 
-const program = await bundled('main.js', {format: 'iife'});
+const program = await bundled('main.js', {format: 'iife'}), viewer = await bundled('viewer.js', {format: 'iife'});
 const script = script_safe(program.text), style = (await bundled('style.css', {})).text.trim();
 const parts = {
   style,
   script,
+  viewer: `<script type="text/plain" id="viewer-program">${script_safe(viewer.text)}</script>`,
   rules: section('Rules of the comparison'),
-  limits: section('Limits'),
-  licences: licences(program.inputs)
+  licences: licences([...program.inputs, ...viewer.inputs])
 };
 const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:(\w+)-->/g, (mark, name) => {
   if (!(name in parts)) throw new Error(`index.html: unknown mark ${mark}`);

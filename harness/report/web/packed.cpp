@@ -111,6 +111,8 @@ std::string pack_floats(const std::vector<double>& values) {
   return pack_words(words);
 }
 
+std::string pack_text(const std::string& text) { return deflated(text); }
+
 std::string base64(const std::string& bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "base/files.hpp"
 #include "base/json_number.hpp"
@@ -18,11 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr char kDataMark[] = "<!--clothbench:data-->";
+constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothbench:head-->",
+               kTitleMark[] = "<!--clothbench:title-->";
 
 /// Summary values that a figure shows.
 constexpr const char* kFigureValues[] = {"fps_median",
-                                         "fps_spread",
+                                         "free_fall_error",
                                          "frame_device_median_s",
                                          "bandwidth_read_peak_B_per_s",
                                          "bandwidth_write_peak_B_per_s",
@@ -31,33 +33,70 @@ constexpr const char* kFigureValues[] = {"fps_median",
                                          "stretch_mean_last_second"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "accuracy", "stability", ""};
 
-json table_json(const Table& t) {
-  return {{"title", t.title}, {"note", t.note}, {"rows", t.rows}, {"markdown", t.markdown()}, {"latex", t.latex()}};
-}
-
 json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
 
 /// Vertices along one side; for a grid that is no square, the side of the square with as many.
 double width_of(const Resolution& r) { return std::sqrt(r.size()); }
 
+/// [p50, low, high, p95, p99, worst] in seconds; null without frames.
+json times_json(const FrameTimes& t) {
+  if (t.sorted.empty()) return json();
+  return {rounded(t.at(0.5)),  rounded(t.median.low), rounded(t.median.high),
+          rounded(t.at(0.95)), rounded(t.at(0.99)),   rounded(t.at(1))};
+}
+
+void add_times(const Row& r, json& out) {
+  const RunTimes& t = *r.times;
+  if (t.wall.sorted.empty()) return;
+  out["trials"] = r.run->trials.size();
+  out["trust"] = r.trust();
+  for (const auto& [name, times] : {std::pair{"wall", &t.wall},
+                                    {"gpu_time", &t.device},
+                                    {"contact_wall", &t.contact_wall},
+                                    {"contact_gpu_time", &t.contact_device}})
+    if (!times->sorted.empty()) out[name] = times_json(*times);
+}
+
+/// The criteria of the scene that the run violates, with what was found.
+json violated(const Row& r) {
+  json out = json::array();
+  for (const BoundResult& b : bound_results(*r.run))
+    if (b.passed == 0) out.push_back({b.name, rounded(r.value(b.name))});
+  return out;
+}
+
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
               {"scene", r.scene},
-              {"family", r.family},
-              {"paper_table", r.paper_table},
-              {"published", r.published >= 0},
               {"solver", r.solver},
               {"setting", r.setting},
               {"label", r.label()},
-              {"sides", r.sides},
-              {"set_up", r.set_up},
-              {"width", width_of(r.resolution)},
-              {"resolution", r.resolution.label()},
               {"status", r.status()},
-              {"verdict", verdict(*r.run)},
-              {"gpu", gpu_of(*r.run)}};
+              {"verdict", verdict(*r.run)}};
+  const auto add = [&](const char* name, const std::string& text) {
+    if (!text.empty()) out[name] = text;
+  };
+  add("sides", r.sides);
+  add("set_up", r.set_up);
+  add("plugin", engine_of(*r.run));
+  add("message", r.run->outcome.message);
+  if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
+  if (const json bad = violated(r); !bad.empty()) out["violated"] = bad;
+  add_times(r, out);
+  if (r.part == Part::Contact) out["speed"] = finite_or_null(r.value("imposed_speed_m_per_s"));
+  if (r.part == Part::Generated) {
+    out["kind"] = r.drawn().value("kind", "");
+    out["speed"] = finite_or_null(r.drawn().value("speed_m_per_s", kMissing));
+  }
   if (r.part == Part::Rates) {
+    out["family"] = r.family;
+    out["paper_table"] = r.paper_table;
+    out["published"] = r.published >= 0;
+    out["width"] = width_of(r.resolution);
+    out["resolution"] = r.resolution.label();
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
+    out["fps_low"] = finite_or_null(r.times->rate.low);
+    out["fps_high"] = finite_or_null(r.times->rate.high);
     if (r.published >= 0) out["fps_median"] = r.value("fps_at_72");
   }
   if (r.part == Part::Stability) {
@@ -74,6 +113,85 @@ json figure_row(const Row& r) {
   out["reference_uncertainty"] = finite_or_null(r.truth->uncertainty);
   out["refused"] = r.truth->refused();
   return out;
+}
+
+/// The study folders of the runs, and which job of its folder each run is.
+json studies_of(const RunTable& table, json& rows) {
+  json out = json::array();
+  std::map<std::string, std::pair<std::size_t, std::map<std::string, std::size_t>>> folders;
+  for (std::size_t k = 0; k < table.rows().size(); ++k) {
+    const RunRecord& c = *table.rows()[k].run;
+    if (c.file.empty()) continue;
+    const fs::path folder = fs::path(c.file).parent_path();
+    const auto [at, is_new] = folders.try_emplace(folder.string());
+    if (is_new && fs::exists(folder / "study.json")) {
+      const StudyManifest m = read_manifest(folder);
+      for (std::size_t n = 0; n < m.runs.size(); ++n) at->second.second[m.runs[n]] = n;
+      at->second.first = out.size();
+      out.push_back({{"study", m.study},
+                     {"folder", fs::absolute(folder).lexically_normal().filename().string()},
+                     {"command", m.command_line}});
+    }
+    if (const auto job = at->second.second.find(run_name(c.header)); job != at->second.second.end()) {
+      rows[k]["study"] = at->second.first;
+      rows[k]["job"] = job->second;
+    }
+  }
+  return out;
+}
+
+json table_json(const ViewTable& t, const RunTable& table) {
+  json runs = json::array(), solvers = json::array();
+  for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
+  for (const std::string& s : t.solvers) solvers.push_back(s);
+  return {{"title", t.title},  {"note", t.note}, {"rows", t.rows}, {"runs", runs}, {"solver_column", t.solver_column},
+          {"solvers", solvers}};
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+std::string table_html(const Table& t) {
+  std::string out = "<table><caption>" + escaped(t.title) + "</caption>";
+  for (std::size_t k = 0; k < t.rows.size(); ++k) {
+    out += k == 0 ? "<thead><tr>" : "<tr>";
+    for (std::size_t c = 0; c < t.rows[k].size(); ++c) {
+      const char* tag = k == 0 || c == 0 ? "th" : "td";
+      out += fmt::format("<{}{}>{}</{}>", tag,
+                         k == 0   ? " scope=\"col\""
+                         : c == 0 ? " scope=\"row\""
+                                  : "",
+                         escaped(t.rows[k][c]), tag);
+    }
+    out += k == 0 ? "</tr></thead><tbody>" : "</tr>";
+  }
+  return out + "</tbody></table><p class=\"note\">" + escaped(t.note) + "</p>";
+}
+
+/// What shows without a script: title, facts, warnings, tiles and the first table.
+std::string head_html(const Page& page) {
+  std::string out =
+      "<h1>" + escaped(page.heading.title) +
+      "</h1><p>clothbench runs cloth solvers on the same scenes and "
+      "reports their speed together with its cost in error and in contact failures.</p><p class=\"meta\">";
+  for (const auto& [name, value] : page.heading.facts)
+    out += (name == page.heading.facts.front().first ? "" : " · ") + escaped(name) + " <b>" + escaped(value) + "</b>";
+  out += "</p>";
+  for (const std::string& w : page.warnings) out += "<p class=\"warning\">" + escaped(w) + "</p>";
+  out += "<div class=\"tiles\">";
+  for (const Tile& t : page.tiles)
+    out += fmt::format(
+        "<div class=\"tile\"><p>{}</p><p class=\"v\">{} <small>{}</small></p><p class=\"more\">{}</p></div>",
+        escaped(t.title), escaped(t.value), escaped(t.interval), escaped(t.others));
+  out +=
+      "</div><h2 class=\"skip\">Error and speed</h2><div class=\"pair\"><div "
+      "id=\"hero\"><!--clothbench:figure--></div><div id=\"first-table\">";
+  if (!page.sections.empty() && !page.sections[0].tables.empty()) out += table_html(page.sections[0].tables[0]);
+  return out + "</div></div>";
 }
 
 /// Text inside a script element ends at "</script" or changes its meaning at "<!--": neither is left.
@@ -120,37 +238,38 @@ json figure_series(const RunTable& table) {
   return out;
 }
 
-std::vector<std::string> commands_of(const std::vector<fs::path>& results) {
-  std::vector<std::string> out;
-  for (const fs::path& result : results) {
-    if (!fs::exists(result / "study.json")) continue;
-    std::string line = read_manifest(result).command_line;
-    if (!line.empty() && !contains(out, line)) out.push_back(std::move(line));
-  }
-  return out;
-}
-
-json page_document(const RunTable& table, const Page& page, const Motions& motions) {
-  json shown = json::array();
+json page_document(const RunTable& table, const Page& page) {
+  json shown = json::array(), rows = figure_rows(table);
+  json studies = studies_of(table, rows);
   for (const PageSection& s : page.sections) {
     json tables = json::array();
-    for (const Table& t : s.tables) tables.push_back(table_json(t));
+    for (const ViewTable& t : s.tables) tables.push_back(table_json(t, table));
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"format", "clothbench-report"}, {"format_version", 1},        {"headline", page.headline},
-          {"sections", std::move(shown)},  {"runs", figure_rows(table)}, {"series", figure_series(table)},
-          {"commands", page.commands},     {"solvers", solver_roles()},  {"motions", motions.document}};
+  return {{"format", "clothbench-report"}, {"format_version", 2},      {"title", page.heading.title},
+          {"conditions", page.headline},   {"sections", shown},        {"runs", std::move(rows)},
+          {"studies", std::move(studies)}, {"solvers", solver_roles()}};
 }
 
-std::string page_html(const std::string& html, const json& document, const std::vector<std::string>& blobs) {
-  const std::size_t at = html.find(kDataMark);
-  if (at == std::string::npos)
-    throw Error("the page's template has no place for the data; build clothbench again", ExitCode::CheckFailed);
-  std::string data = "<script type=\"application/json\" id=\"clothbench-data\">" +
-                     script_safe(document.dump(-1, ' ', true, json::error_handler_t::replace)) + "</script>\n";
+std::string page_html(const std::string& html, const Page& page, const json& document, const json& motions,
+                      const std::vector<std::string>& blobs) {
+  const auto data = [](const char* id, const json& j) {
+    return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
+                       script_safe(j.dump(-1, ' ', true, json::error_handler_t::replace)));
+  };
+  std::string all = data("clothbench-data", document) + data("clothbench-motions", motions);
   for (std::size_t k = 0; k < blobs.size(); ++k)
-    data += "<script type=\"text/plain\" id=\"blob-" + std::to_string(k) + "\">" + blobs[k] + "</script>\n";
-  return html.substr(0, at) + data + html.substr(at + sizeof kDataMark - 1);
+    all += "<script type=\"text/plain\" id=\"blob-" + std::to_string(k) + "\">" + blobs[k] + "</script>\n";
+  std::string out = html;
+  for (const auto& [mark, text] : {std::pair<std::string, std::string>{kDataMark, all},
+                                   {kHeadMark, head_html(page)},
+                                   {kTitleMark, escaped(page.heading.title)}}) {
+    const std::size_t at = out.find(mark);
+    if (at == std::string::npos)
+      throw Error("the page's template has no place for " + mark + "; build clothbench again", ExitCode::CheckFailed);
+    out.replace(at, mark.size(), text);
+  }
+  return out;
 }
 
 #ifdef CLOTHBENCH_WITH_PAGE
@@ -159,8 +278,13 @@ std::string write_page(const fs::path& out, const RunTable& table, const Page& p
     fs::remove(out / "index.html");  // an older run's page is not this report's
     return "The interactive page was left out: " + from.missing + ".";
   }
-  const Motions motions = motions_of(table.runs());
-  write_file_atomically(out / "index.html", page_html(from.html, page_document(table, page, motions), motions.blobs));
+  Motions motions = motions_of(table.runs());
+  json document = page_document(table, page);
+  if (const json series = figure_series(table); !series.empty()) {
+    document["series"] = motions.blobs.size();
+    motions.blobs.push_back(base64(pack_text(series.dump())));
+  }
+  write_file_atomically(out / "index.html", page_html(from.html, page, document, motions.document, motions.blobs));
   return "";
 }
 #else

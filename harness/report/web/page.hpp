@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/table.hpp"
-#include "report/run_table.hpp"
+#include "report/overview.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -35,13 +34,15 @@ Drawn draw_pictures(const std::filesystem::path& out, const PageTemplate&);
 /// A section of the report: the same tables in report.md and on the page.
 struct PageSection {
   std::string id, title;
-  std::vector<Table> tables;
+  std::vector<ViewTable> tables;
 };
 
 struct Page {
-  std::string headline;
+  Heading heading;
+  std::vector<std::string> warnings;  ///< sentences about the whole report: a software device, invalid measurements
+  std::vector<Tile> tiles;
+  std::string headline;  ///< conditions of all runs (headline())
   std::vector<PageSection> sections;
-  std::vector<std::string> commands;  ///< command lines that made the results
 };
 
 /// Data of all figures: one object per run or published value, with the summary values that figures show. Missing =
@@ -50,9 +51,6 @@ nlohmann::json figure_rows(const RunTable&);
 
 /// Time series of the runs with contact: `run` is an index into figure_rows. Six digits, missing = null.
 nlohmann::json figure_series(const RunTable&);
-
-/// Command lines of the study folders among `runs`, each once.
-std::vector<std::string> commands_of(const std::vector<std::filesystem::path>& runs);
 
 /// Maximum size of packed motions and colliders in one page, as base64.
 inline constexpr std::size_t kMotionBudget_B = 13'000'000;
@@ -82,6 +80,7 @@ PackedMotion pack_motion(const Replay&, std::size_t columns, std::size_t rows, s
 std::string pack_words(const std::vector<std::uint32_t>& words);
 std::string pack_floats(const std::vector<double>& values);  ///< the same, with each value as a 32-bit float
 
+std::string pack_text(const std::string&);  ///< zlib
 std::string base64(const std::string&);
 
 /// Motions of the runs, for the viewer. The document has `runs` (scene, solver, strides, index into `blobs`),
@@ -94,11 +93,12 @@ struct Motions {
 /// Reads trajectories from the runs' files and thins them until they fit the budget: first frames, then the grid.
 Motions motions_of(const std::vector<RunRecord>& runs, std::size_t budget_B = kMotionBudget_B);
 
-/// The document of the page, without blobs.
-nlohmann::json page_document(const RunTable&, const Page&, const Motions&);
+/// The document of the page: tables, one object per run, study folders. It has neither series nor motions.
+nlohmann::json page_document(const RunTable&, const Page&);
 
 /// One self-contained HTML page. `html` has the placeholders that bundle.mjs leaves.
-std::string page_html(const std::string& html, const nlohmann::json& document, const std::vector<std::string>& blobs);
+std::string page_html(const std::string& html, const Page&, const nlohmann::json& document,
+                      const nlohmann::json& motions, const std::vector<std::string>& blobs);
 
 /// Writes `index.html`. If it cannot be made, removes an older one and returns the reason; otherwise returns "". Throws
 /// Error if a file cannot be read or written.

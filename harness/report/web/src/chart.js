@@ -1,182 +1,301 @@
-// The one drawing of all figures. A chart has panels; a panel is
-//   {title?, x, y, rows, rules?, shade?, edge?, bars?}
-// `x`, `y`: {field, title, log?, base?, ticks?, format?, domain?, symlog?}. `rows`: {label, kind, dash?, shape?, low?, high?, faint?,
-// tip?}, with `kind` one of 'point' (drawn as a point), 'line' (joined by label and dash), 'both', 'text' (its `text`
-// at the point), 'failed' (a cross at the edge 'top' or 'bottom'; at the right end without an x). `rules`: reference
-// lines [{x or y, text}]. `shade`: y below which the panel is grey. `bars`: {share, of, scale}: stacked bars instead.
-import {palette} from './theme.js';
+// The one drawing of all figures: a chart becomes the text of an SVG, on the page and on paper.
+//   {panels, columns?, height?, dashes?}
+// A panel: {title?, solver?, x, y, marks, lines?, rules?, labels?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
+// a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, solver, kind: 'point', 'cell', 'failed' or 'none',
+// open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], tone?, glyph?, note?, row}. A line:
+// {solver, points: [[x, y]], dash?, label?}. Rules: [{x or y, text, zone?}]. `labels`: names at the ends of lines.
 
 export const unique = list => [...new Set(list)];
-const kShapes = ['circle', 'square', 'triangle-up', 'diamond', 'triangle-down', 'cross', 'triangle-right', 'triangle-left'];
-const kDashes = [[1, 0], [7, 3], [2, 2], [7, 2, 2, 2], [4, 1]];
+export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
 
-/// Ticks of a logarithmic axis: powers of ten; also 2 and 5 times them on short axes; every other one on long axes.
-function decades(values) {
-  const first = Math.floor(Math.log10(Math.min(...values))), last = Math.ceil(Math.log10(Math.max(...values))), out = [];
-  for (let e = first; e <= last; e += last - first > 8 ? 2 : 1)
+export const paper_widths = {
+  '': 238,
+  '-wide': 493
+};                         // points: 84 mm for one column of text, 174 mm for two
+const kPaperHeight = 311;  // points: 110 mm
+const kDashes = ['', '6 3', '2 3', '8 3 2 3', '1 2'];
+const kMost = 1e4;  // and least 1e-3: beyond, numbers have a power of ten
+
+/// "0.0012", "12.5", "4.5·10⁻⁷"; "–" for what is not a number.
+export function number(v, digits = 3) {
+  if (v === null || v === undefined || !Number.isFinite(Number(v))) return '–';
+  if (v === 0) return '0';
+  const size = Math.abs(v);
+  if (size < kMost && size >= 1e-3) return String(Number(v.toPrecision(digits)));
+  const [mantissa, exponent] = v.toExponential(digits - 1).split('e');
+  const power = '10' + [...String(Number(exponent))].map(c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]).join('');
+  return Number(mantissa) === 1 ? power : `${Number(mantissa)}·${power}`;
+}
+
+/// Ticks of a logarithmic axis: powers of ten, also 2 and 5 times them on short axes.
+function decades(low, high) {
+  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), out = [];
+  const step = Math.ceil((last - first) / 8);
+  for (let e = first; e <= last; e += step)
     for (const m of last - first > 2 ? [1] : [1, 2, 5]) out.push(Number(`${m}e${e}`));
+  return out.filter(t => t >= low * 0.999 && t <= high * 1.001);
+}
+
+function steps(low, high) {
+  const raw = (high - low) / 4, base = 10 ** Math.floor(Math.log10(raw || 1)), step = base * [1, 2, 5, 10].find(m => m * base >= raw);
+  const out = [];
+  for (let t = Math.ceil(low / step) * step; t <= high + 1e-9 * step; t += step) out.push(Number(t.toPrecision(12)));
   return out;
 }
 
-function axis({field, title, log, base, ticks, format = '~g', domain, symlog}, values) {
-  const scale = symlog ? {type: 'symlog', constant: 1, domain} :
-      log              ? {type: 'log', ...(base ? {base} : {}), nice: false, padding: 12} :
-                         {nice: false, ...(domain ? {domain} : {})};
-  const at = ticks ?? (log && values.length ? decades(values) : null);
+/// {at(value), ticks, text(tick)} from an axis, its data and its range in pixels.
+function scale_of(axis, data, from, to) {
+  if (axis.type === 'band') {
+    const step = (to - from) / Math.max(axis.values.length, 1), place = new Map(axis.values.map((v, k) => [v, from + (k + 0.5) * step]));
+    return {at: v => place.get(v), ticks: axis.values, text: axis.text ?? String, step: Math.abs(step)};
+  }
+  const log = axis.type === 'log', values = data.filter(v => Number.isFinite(v) && (!log || v > 0));
+  let [low, high] = axis.domain ?? (values.length ? [Math.min(...values), Math.max(...values)] : log ? [1, 10] : [0, 1]);
+  if (!axis.domain) {
+    const room = log ? (high / low) ** 0.04 : 0.04 * (high - low);
+    [low, high] = low === high ? (log ? [low / 2, high * 2] : [low - 0.5, high + 0.5]) :
+        log                    ? [low / room, high * room] :
+                                 [low, high + room];
+  }
+  const f = log ? Math.log : v => v, at = v => from + (f(v) - f(low)) / (f(high) - f(low)) * (to - from);
   return {
-    field,
-    type: 'quantitative',
-    title,
-    scale,
-    axis: {format, grid: !base, labelOverlap: true, ...(at ? {values: at} : {tickCount: 5})}
+    at,
+    low,
+    high,
+    ticks: (axis.ticks ?? (log ? decades(low, high) : steps(low, high))).filter(t => t >= low && t <= high),
+    text: axis.format ?? (t => number(t))
   };
 }
 
-/// A nominal channel whose legend is shared with the colours.
-const by = (field, domain, range, legend) => ({
-  field,
-  type: 'nominal',
-  title: null,
-  scale: {domain, range: domain.map((_, k) => range[k % range.length])},
-  ...(legend === undefined ? {} : {legend})
-});
+const kPaths = {
+  square: 'M-4 -4H4V4H-4Z',
+  up: 'M0 -5.2L4.8 3.6H-4.8Z',
+  down: 'M0 5.2L4.8 -3.6H-4.8Z',
+  diamond: 'M0 -5.4L5.4 0L0 5.4L-5.4 0Z',
+  right: 'M5.2 0L-3.6 4.8V-4.8Z',
+  left: 'M-5.2 0L3.6 4.8V-4.8Z',
+  x: 'M-4 -4L4 4M-4 4L4 -4',
+  plus: 'M0 -5V5M-5 0H5',
+  star: 'M0 -5.5L1.6 -1.8L5.4 -1.6L2.4 0.9L3.4 4.7L0 2.6L-3.4 4.7L-2.4 0.9L-5.4 -1.6L-1.6 -1.8Z',
+  hexagon: 'M-2.6 -4.5H2.6L5.2 0L2.6 4.5H-2.6L-5.2 0Z',
+  circle: 'M-4.4 0a4.4 4.4 0 1 0 8.8 0a4.4 4.4 0 1 0 -8.8 0Z',
+  ring: 'M-4.4 0a4.4 4.4 0 1 0 8.8 0a4.4 4.4 0 1 0 -8.8 0ZM-1.2 0a1.2 1.2 0 1 0 2.4 0a1.2 1.2 0 1 0 -2.4 0Z'
+};
+const px = v => Number(v.toFixed(1));
 
-function bars_spec({title, rows, bars}, width) {
-  return {
-    title: {text: title, anchor: 'start', fontWeight: 'bold'},
-    width: Math.min(170, width),
-    height: {step: 15},
-    layer: [{
-      name: 'points',
-      data: {values: rows},
-      mark: {type: 'bar', stroke: '#ffffff', strokeWidth: 1},
-      encoding: {
-        x: {
-          field: bars.share,
-          type: 'quantitative',
-          stack: 'normalize',
-          title: bars.title,
-          axis: {values: [0, 1], labelExpr: 'datum.value ? "all" : "0"'}
-        },
-        y: {field: bars.row, type: 'nominal', title: null, scale: {domain: unique(rows.map(r => r[bars.row])).sort()}, axis: {grid: false}},
-        color: {field: bars.of, type: 'nominal', title: null, scale: {domain: Object.keys(bars.scale), range: Object.values(bars.scale)}},
-        order: {field: 'order', type: 'quantitative'},
-        tooltip: [{field: 'label'}, {field: bars.row}, {field: bars.of}, {field: bars.share}]
-      }
-    }]
-  };
+/// The symbol of a solver: filled, or open with the page behind it.
+export function symbol(look, solver, x, y, open = false, more = '') {
+  const colour = look.colour(solver), size = look.symbol_scale ?? 1;
+  return `<path class="mark" d="${kPaths[look.symbol(solver)]}" transform="translate(${px(x)} ${px(y)})${
+      size === 1 ? '' : ` scale(${size})`}" style="stroke:${colour};fill:${open ? look.back : colour};stroke-width:1.6"${more}/>`;
 }
 
-/// Rules and the shade behind the marks.
-function background({rules = [], shade}, x, y, height) {
-  const out = [];
-  if (shade > 0)
-    out.push({
-      name: 'shade',
-      data: {values: [{[y.field]: shade}]},
-      mark: {type: 'rect', opacity: 0.12, color: '#808080'},
-      encoding: {y, y2: {value: height}, x: {value: 0}, x2: {value: 'width'}}
-    });
-  for (const along of ['x', 'y']) {
-    const here = rules.filter(r => along in r).map(r => ({[along === 'x' ? x.field : y.field]: r[along], text: r.text}));
-    if (!here.length) continue;
-    const place = along === 'x' ? {x, y: {value: 0}} : {y, x: {value: 'width'}};
-    out.push(
-        {name: `rules_${along}`, data: {values: here}, mark: {type: 'rule', strokeDash: [4, 4]}, encoding: along === 'x' ? {x} : {y}}, {
-          name: `rule_text_${along}`,
-          data: {values: here},
-          mark: along === 'x' ? {type: 'text', align: 'left', baseline: 'top', dx: 4, dy: 4} :
-                                {type: 'text', align: 'right', baseline: 'bottom', dx: -4, dy: -2},
-          encoding: {...place, text: {field: 'text'}}
-        });
+const text = (look, x, y, words, {anchor = 'start', colour = look.soft, bold = false, rotate = 0, size = look.size} = {}) =>
+    `<text x="${px(x)}" y="${px(y)}" text-anchor="${anchor}" font-size="${size}" style="fill:${colour}"${bold ? ' font-weight="600"' : ''}${
+        rotate ? ` transform="rotate(${rotate} ${px(x)} ${px(y)})"` : ''}>${escape(words)}</text>`;
+const line = (d, colour, more = '') => `<path d="${d}" style="stroke:${colour};fill:none"${more}/>`;
+
+function draw_axes(look, panel, x, y, box, first) {
+  const {left, right, top, bottom} = box;
+  let out = '';
+  const wide = panel.x.type === 'band' ? x.step : 0;
+  let last = -Infinity;
+  for (const [k, t] of x.ticks.entries()) {
+    if (wide && k % Math.ceil(0.95 * look.size / wide) !== 0) continue;
+    const at = x.at(t), words = x.text(t), half = words.length * look.size * 0.28;
+    if (!wide) {
+      out += line(`M${px(at)} ${top}V${bottom}`, look.line);
+      if (at - half < last + 4) continue;
+      last = at + half;
+    }
+    const upright = wide && panel.x.values.some(v => wide < x.text(v).length * look.size * 0.56);
+    out += upright ? text(look, at + look.size / 3, bottom + 7, words, {anchor: 'end', rotate: -90, size: look.size - 1}) :
+                     text(look, at, bottom + look.size + 4, words, {anchor: 'middle'});
+  }
+  if (panel.x.title) out += text(look, right, bottom + 2 * look.size + 9, panel.x.title, {anchor: 'end', colour: look.ink});
+  if (panel.y.type !== 'band')
+    for (const t of y.ticks) {
+      out += line(`M${left} ${px(y.at(t))}H${right}`, look.line);
+      out += text(look, left - 6, y.at(t) + look.size / 3, y.text(t), {anchor: 'end'});
+    }
+  else if (first)
+    for (const [k, v] of y.ticks.entries())
+      if (k % Math.ceil(0.95 * look.size / y.step) === 0)
+        out += text(look, left - 8, y.at(v) + look.size / 3, y.text(v), {anchor: 'end', colour: panel.y.colour?.(v) ?? look.soft});
+  if (panel.y.title) out += text(look, left - (first ? look.gutter - 2 : 0), top - 8 * look.unit, panel.y.title, {colour: look.ink});
+  return out;
+}
+
+function draw_rules(look, panel, x, y, {left, right, top, bottom}) {
+  let out = '', last = -Infinity, row = 0;
+  for (const r of panel.rules ?? []) {
+    const on_x = 'x' in r, at = on_x ? x.at(r.x) : y.at(r.y);
+    if (!(at >= (on_x ? left : top) - 1 && at <= (on_x ? right : bottom) + 1)) continue;
+    if (r.zone) out += `<path d="M${left} ${px(at)}H${right}V${bottom}H${left}Z" style="fill:${look.soft};fill-opacity:0.1"/>`;
+    out += line(on_x ? `M${px(at)} ${top}V${bottom}` : `M${left} ${px(at)}H${right}`, look.soft, ' stroke-dasharray="4 3"');
+    const before = on_x && at + r.text.length * look.size * 0.55 > right;
+    if (on_x) [row, last] = [Math.abs(at - last) < 5 * look.size ? row + 1 : 0, at];  // names of near rules stand below each other
+    out += on_x ? text(look, at + (before ? -4 : 4), top + (row + 1) * look.size, r.text, {anchor: before ? 'end' : 'start'}) :
+                  text(look, left + 6, r.zone ? at + look.size + 2 : at - 4, r.text);
   }
   return out;
 }
 
-function panel_spec(panel, look, width, height) {
-  if (panel.bars) return bars_spec(panel, width);
-  const {rows, edge = 'bottom'} = panel, kinds = (...k) => rows.filter(r => k.includes(r.kind));
-  const points = kinds('point', 'both', 'line', 'text'), values = a => points.map(r => r[a.field]).filter(v => v > 0);
-  const x = axis(panel.x, [...values(panel.x), ...(panel.rules ?? []).flatMap(r => r.x ?? [])]);
-  const y = axis(panel.y, [...values(panel.y), ...(panel.rules ?? []).flatMap(r => r.y ?? [])]);
-  const {color, strokeDash, shape, opacity, paper} = look;
-  const tip = [
-    {field: 'label', title: 'solver'}, ...(panel.tip ?? []).map(field => ({field})),
-    {field: panel.x.field, title: panel.x.title, format: '.4~g'}, {field: panel.y.field, title: panel.y.title, format: '.4~g'}
+/// Names at the ends of lines, each at the free place nearest to an end.
+function draw_labels(look, lines, taken, {left, right, top, bottom}) {
+  let out = '';
+  const overlap = (a, list) =>
+      list.filter(b => a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]).length;
+  for (const l of lines) {
+    if (!l.label || !l.at.length) continue;
+    const width = l.label.length * look.size * 0.6 + 4, height = look.size + 2;
+    let best = null;
+    for (const [n, [x, y]] of [l.at.at(-1), l.at[0], l.at[l.at.length >> 1]].entries())
+      for (const [k, [dx, dy]] of [[1, 0], [1, -1.4], [1, 1.4], [-1, 0], [0, -1.7], [0, 1.8], [1, -2.9], [1, 2.9], [-1, -1.7], [-1, 1.7]]
+               .map(
+                   ([side, rows]) =>
+                       [side > 0     ? 9 * look.unit :
+                            side < 0 ? -width - 9 * look.unit :
+                                       -width / 2,
+                        rows * 9 * look.unit])
+               .entries()) {
+        const box = [x + dx, y + dy - height / 2, width, height];
+        const out_of = box[0] < left || box[0] + width > right || box[1] < top || box[1] + height > bottom;
+        const cost = 10 * overlap(box, taken) + 2 * n + k / 4 + (out_of ? 100 : 0);
+        if (best === null || cost < best.cost) best = {cost, box};
+      }
+    taken.push(best.box, best.box, best.box);
+    out += `<text class="halo" x="${px(best.box[0])}" y="${px(best.box[1] + height - 4)}" font-size="${
+        look.size}" font-weight="650" style="fill:${look.colour(l.solver)};stroke:${look.back};stroke-width:3.5;paint-order:stroke">${
+        escape(l.label)}</text>`;
+  }
+  return out;
+}
+
+function draw_mark(look, m, x, y, index, box) {
+  const hit = ` data-i="${index}"`, colour = look.colour(m.solver);
+  if (m.kind === 'cell') {
+    const w = Math.max(x.step - 1, 1), h = Math.max(y.step - 1, 1), left = x.at(m.x) - w / 2, top = y.at(m.y) - h / 2;
+    const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:${
+        look.tones[m.tone]}"${hit}/>`;
+    return cell +
+        (m.glyph && h > look.size && w > m.glyph.length * 5 ? text(
+                                                 look, x.at(m.x), y.at(m.y) + 3.5, m.glyph,
+                                                 {anchor: 'middle', colour: look.tone_ink[m.tone], size: Math.min(10, look.size)}) :
+                                             '');
+  }
+  if (m.kind === 'failed')
+    return symbol(
+        {...look, symbol: () => 'x'}, m.solver, m.x > 0 ? x.at(m.x) : box.right, m.edge === 'top' ? box.top : box.bottom, false, hit);
+  const [a, b] = [x.at(m.x), y.at(m.y) + (m.shift ?? 0) * (y.step ?? 0)];
+  if (!Number.isFinite(a + b)) return '';
+  let out = '';
+  const along = m.along === 'x' ? (p, q) => `M${px(x.at(p))} ${px(b)}H${px(x.at(q))}` : (p, q) => `M${px(a)} ${px(y.at(p))}V${px(y.at(q))}`;
+  if (m.high > m.low) out += line(along(m.low, m.high), colour, ` stroke-width="${1.6 * look.unit}"`);
+  if (m.thick) out += line(along(...m.thick), colour, ` stroke-width="${7 * look.unit}" stroke-opacity="0.35"`);
+  if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.size - 1});
+  return out + (m.kind === 'none' ? '' : symbol(look, m.solver, a, b, m.open, hit));
+}
+
+function draw_panel(look, panel, box, first, marks) {
+  const lines = panel.lines ?? [],
+        values = axis => [...panel.marks.flatMap(m => [m[axis], ...((m.along ?? 'y') === axis ? [m.low, m.high, ...(m.thick ?? [])] : [])]),
+                          ...lines.flatMap(l => l.points.map(p => p[axis === 'x' ? 0 : 1])),
+                          ...(panel.rules ?? []).filter(r => !r.optional).map(r => r[axis])]
+                             .filter(v => v !== undefined && v !== null);
+  const x = scale_of(panel.x, values('x'), box.left, box.right);
+  const y = panel.y.type === 'band' ? scale_of(panel.y, [], box.top, box.bottom) : scale_of(panel.y, values('y'), box.bottom, box.top);
+  const placed = lines.map(l => ({...l, at: l.points.map(([a, b]) => [x.at(a), y.at(b)]).filter(p => p.every(Number.isFinite))}));
+  let out = draw_axes(look, panel, x, y, box, first) + draw_rules(look, panel, x, y, box);
+  if (panel.title)
+    out += text(
+        look, box.left, box.top - (panel.y.title && first ? 2 * look.size : 8), panel.title,
+        {colour: panel.solver ? look.colour(panel.solver) : look.ink, bold: true});
+  const taken = [];
+  for (const l of placed) {
+    if (l.at.length > 1)
+      out += line(
+          `M${l.at.map(p => p.map(px).join(' ')).join('L')}`, look.colour(l.solver),
+          ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % 5]}"` : ''}`);
+    l.at.forEach(([a, b], k) => {
+      const next = l.at[k + 1] ?? [a, b];
+      for (let n = 0; n < 5; ++n)
+        taken.push([a + (next[0] - a) * n / 5 - 3 * look.unit, b + (next[1] - b) * n / 5 - 3 * look.unit, 6 * look.unit, 6 * look.unit]);
+    });
+  }
+  for (const m of panel.marks) {
+    const index = marks.push(m) - 1;
+    out += draw_mark(look, m, x, y, index, box);
+    if (m.kind !== 'cell') taken.push([x.at(m.x) - 5 * look.unit, y.at(m.y) - 5 * look.unit, 10 * look.unit, 10 * look.unit]);
+  }
+  return out + draw_labels(look, panel.labels === false ? [] : placed, taken, {...box, right: box.right + look.right});
+}
+
+/// Names below a picture on paper: solvers with their symbols, and meanings of dashes.
+function draw_legend(look, chart, width, top) {
+  const solvers = unique(chart.panels.flatMap(p => [...p.marks.map(m => m.solver), ...(p.lines ?? []).map(l => l.solver)])).filter(Boolean);
+  const items = [
+    ...(look.legend && !chart.panels.every(p => p.marks.every(m => m.kind === 'cell')) ?
+            solvers.map(s => ({words: s, draw: (x, y) => symbol(look, s, x + 6, y)})) :
+            []),
+    ...(chart.dashes?.length > 1 ?
+            chart.dashes.map(
+                (d, k) => ({
+                  words: d,
+                  draw: (x, y) => line(`M${px(x - 4)} ${px(y)}h18`, look.soft, ` stroke-width="1.5" stroke-dasharray="${kDashes[k % 5]}"`)
+                })) :
+            []),
+    ...(chart.tones ?? []).map(([tone, words]) => ({
+                                 words,
+                                 draw: (x, y) =>
+                                     `<rect x="${px(x)}" y="${px(y - 5)}" width="10" height="10" rx="2" style="fill:${look.tones[tone]}"/>`
+                               }))
   ];
-  const layer = (name, data, mark, encoding) => ({name, data: {values: data}, mark, encoding});
-  const at_edge = {value: edge === 'top' ? 0 : height}, cross = {type: 'point', shape: 'cross', angle: 45, filled: true, size: 60};
-  const failed = kinds('failed'), visible = kinds('point', 'both').length > 0;
+  let x = 8, y = top, out = '';
+  for (const i of items) {
+    const wide = 30 + i.words.length * look.size * 0.57;
+    if (x + wide > width && x > 8) [x, y] = [8, y + look.size + 6];
+    out += i.draw(x, y) + text(look, x + 18, y + look.size / 3, i.words);
+    x += wide;
+  }
+  return {out, bottom: items.length ? y + look.size : top - 8};
+}
+
+/// {svg, marks, width, height}: the picture as text, and the marks by their `data-i`. `shrink`: of heights.
+export function draw(chart, look_at, width, title, shrink = 1) {
+  const {panels} = chart, columns = Math.max(1, Math.min(chart.columns ?? 1, panels.length)), marks = [], {unit} = look_at;
+  const banded = panels[0]?.y.type === 'band';
+  const longest = banded ? Math.max(0, ...panels[0].y.values.map(v => (panels[0].y.text ?? String)(v).length)) : 5;
+  const look = {...look_at, gutter: Math.min(width * 0.42, 14 * unit + longest * look_at.size * 0.58), right: unit * (chart.right ?? 8)};
+  const most = banded && panels[0].x.type === 'band' ? 110 * unit * panels[0].x.values.length : Infinity;  // cells stay cells
+  const each = Math.min((width - look.gutter - 10 * unit) / columns, most);
+  const names = panels[0]?.x.type === 'band' ? panels[0].x.values.map(v => (panels[0].x.text ?? String)(v).length * look.size * 0.56) : [];
+  const upright = names.length && Math.max(...names) > (each - look.right) / names.length;
+  const base = upright ? Math.max(...names) + 14 * unit : (names.length ? 1 : 2) * look.size + 20 * unit;
+  let y = 0, svg = '';
+  for (let k = 0; k < panels.length; k += columns) {
+    const row = panels.slice(k, k + columns),
+          top = y + (row.some(p => p.title) ? look.size + 10 * unit : 0) + (row[0].y.title ? look.size + 8 * unit : 8 * unit);
+    const bottom = top + shrink * unit * (row[0].y.type === 'band' ? row[0].y.values.length * (chart.row ?? 22) : chart.height ?? 320);
+    row.forEach((p, n) => {
+      const own = !banded && n > 0 ? 34 * unit : 0, left = look.gutter + n * each + own,
+            right = look.gutter + (n + 1) * each - (columns > 1 ? 14 * unit : 0) - look.right;
+      svg += draw_panel(look, p, {left: px(left), right: px(right), top, bottom}, !banded || n === 0, marks);
+    });
+    y = bottom + base;
+  }
+  const legend = draw_legend(look, chart, width, y + 6 * unit), height = Math.ceil(legend.bottom + 4 * unit), size = look.paper ? 'pt' : '';
+  if (look.paper && height > kPaperHeight && shrink > 0.1) return draw(chart, look_at, width, title, 0.93 * shrink);
   return {
+    marks,
     width,
     height,
-    ...(panel.title ? {title: {text: panel.title, anchor: 'start', fontWeight: 'bold'}} : {}),
-    layer: [
-      ...background(panel, x, y, height),
-      layer(
-          'spread', points.filter(r => r.high > r.low), {type: 'rule', aria: false},
-          {x, y: {...y, field: 'low'}, y2: {field: 'high'}, color, opacity}),
-      layer('lines', kinds('line', 'both'), {type: 'line', strokeWidth: paper ? 1.5 : 1.9}, {x, y, color, strokeDash, opacity}), {
-        ...layer(
-            'points',
-            visible   ? kinds('point', 'both') :
-                paper ? [] :
-                        points,
-            paper ? {type: 'point', fill: '#ffffff', size: 30, strokeWidth: 1.3} :
-                    {type: 'point', filled: visible, size: 44, aria: visible},
-            {x, y, color, shape, opacity: visible ? opacity : {value: 0}, tooltip: tip}),
-        ...(paper ? {} : {params: [{name: 'pick', select: {type: 'point', fields: ['label']}, bind: 'legend'}]})
-      },
-      layer(
-          'texts', points.filter(r => r.text), {type: 'text', align: 'left', baseline: 'bottom', dx: 3, dy: -3, fontSize: 8, aria: false},
-          {x, y, color, text: {field: 'text'}}),
-      layer(
-          'failed', failed.filter(r => r[panel.x.field] > 0 || panel.x.field === 'time'), cross,
-          {x, y: at_edge, color, tooltip: [{field: 'label'}, {field: 'status'}]}),
-      layer(
-          'failed_untimed', failed.filter(r => !(r[panel.x.field] > 0 || panel.x.field === 'time')), cross,
-          {x: {value: 'width'}, y: at_edge, color, tooltip: [{field: 'label'}, {field: 'status'}]})
-    ].filter((l, k, all) => l.data.values.length || (l.name === 'points' && all.every(o => !o.data.values.length)))
+    svg: `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}${size}" height="${height}${
+        size}" role="img" aria-label="${escape(title)}" font-family="${look.font}" stroke-width="${unit}">${
+        look.paper ? `<rect width="${width}" height="${height}" fill="#fff"/>` : ''}${svg}${legend.out}</svg>`
   };
 }
 
-/// Number of panels side by side, at most `most`; without gaps in the last row if possible.
-function across_of(panels, most) {
-  for (let n = Math.min(most, panels); n > 1; --n)
-    if (panels % n === 0) return n;
-  return Math.max(1, Math.min(most, panels));
-}
-
-/// A Vega-Lite specification. Names of layers are unique: those of panel k end in `_k` where there are several.
-export function chart({panels, across = 3, height}, theme, width) {
-  const rows = panels.flatMap(p => p.rows), labels = unique(rows.map(r => r.label)), paper = theme === 'paper';
-  const colours = palette(labels, theme),
-        of = (field, ...kinds) => unique(rows.filter(r => kinds.includes(r.kind)).map(r => r[field] ?? '')),
-        dashes = of('dash', 'line', 'both'), shapes = of('shape', 'point', 'both');
-  const named = list => list.length > 1 || list[0];
-  const look = {
-    paper,
-    color: {field: 'label', type: 'nominal', title: null, scale: {domain: labels, range: labels.map(l => colours[l])}},
-    // Without a meaning of their own, dashes and symbols repeat the colours, for readers who cannot tell these apart.
-    strokeDash: named(dashes) ? by('dash', dashes, kDashes) : by('label', labels, rows.some(r => r.kind === 'point') ? [[1, 0]] : kDashes),
-    shape: named(shapes) ? by('shape', shapes, kShapes) : by('label', labels, kShapes),
-    opacity: paper ? {value: 1} : {condition: {param: 'pick', value: 1, empty: true}, value: 0.1}
-  };
-  const n = across_of(panels.length, across), room = paper ? width : width - 210;
-  const specs = panels.map(
-      p => panel_spec(
-          p, look, Math.max(110, n > 1 ? room / n - 50 : room),
-          height ??
-              (n > 1     ? (paper ? 150 : 210) :
-                   paper ? 280 :
-                           360)));
-  if (specs.length === 1) return specs[0];
-  // A selection belongs to one panel; the others follow it.
-  let chosen = false;
-  specs.forEach((s, k) => s.layer.forEach(l => {
-    l.name += `_${k}`;
-    if (chosen) delete l.params;
-    chosen ||= 'params' in l;
-  }));
-  return {columns: n, concat: specs, ...(panels.some(p => p.bars || p.own_y) ? {} : {resolve: {scale: {x: 'shared', y: 'shared'}}})};
-}
+/// A figure on paper: entries choose their layout by a width in pixels of the page.
+export const draw_on_paper = (entry, rows, state, look, width) =>
+    draw(entry.chart(rows, state, width / look.unit), look, width, entry.title(state));

@@ -12,8 +12,8 @@ function around(time, rate, frames) {
 function capsules(array, rate) {
   const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
   for (let k = 0; k < count; ++k) {
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 40, 1, true)),
-          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 40, 28)));
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16, 1, true)),
+          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10)));
     group.add(shaft, ...ends);
     parts.push({shaft, ends, a: new THREE.Vector3(), b: new THREE.Vector3(), radius: 0});
   }
@@ -66,8 +66,8 @@ function triangle_mesh(arrays, rate, convex) {
   const tree = new MeshBVH(geometry);  // sorts the index
   let move = null;
   if (arrays.joint_matrix) {
-    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values,
-                   index = arrays.joint_index.values, weight = arrays.joint_weight.values;
+    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values, index = arrays.joint_index.values,
+                   weight = arrays.joint_weight.values;
     move = time => {
       const {f, g, w} = around(time, rate, frames);
       for (let v = 0; v < position.length / 3; ++v)
@@ -76,10 +76,8 @@ function triangle_mesh(arrays, rate, convex) {
           for (let s = 0; s < 4; ++s) {
             const share = weight[4 * v + s];
             if (share === 0) continue;
-            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r,
-                  two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
-            for (let c = 0; c < 4; ++c)
-              sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
+            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r, two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
+            for (let c = 0; c < 4; ++c) sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
           }
           position[3 * v + r] = sum;
         }
@@ -109,8 +107,7 @@ function triangle_mesh(arrays, rate, convex) {
 
 /// Small spheres at the points where hands hold the cloth.
 function grips(arrays, rate) {
-  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values,
-                 group = new THREE.Group();
+  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values, group = new THREE.Group();
   const balls = Array.from({length: count}, () => new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
   group.add(...balls);
   return {
@@ -141,14 +138,23 @@ export function make_colliders(groups) {
   return out;
 }
 
-/// Depth of each vertex in m into `out`: 0 outside; -1 where an edge of the cloth from it crosses a mesh.
-export function penetration(colliders, edges, position, out) {
+/// Depth in m at each vertex into `out`: the maximum over the vertex, the middles of its edges and of its triangles, as a
+/// fingertip pokes through between vertices; 0 outside; -1 where an edge of the cloth from it crosses a mesh.
+export function penetration(colliders, edges, triangles, position, out) {
   out.fill(0);
   const x = new THREE.Vector3(), y = new THREE.Vector3();
+  const sample = (c, corners) => {
+    x.set(0, 0, 0);
+    for (const v of corners) x.add(y.fromArray(position, 3 * v));
+    const depth = c.depth(x.divideScalar(corners.length));
+    for (const v of corners) out[v] = Math.max(out[v], depth);
+  };
   for (const c of colliders) {
-    if (c.depth)
-      for (let v = 0; v < out.length; ++v)
-        if (out[v] >= 0) out[v] = Math.max(out[v], c.depth(x.fromArray(position, 3 * v)));
+    if (c.depth) {
+      for (let v = 0; v < out.length; ++v) sample(c, [v]);
+      for (const [a, b] of edges) sample(c, [a, b]);
+      for (let k = 0; k < triangles.length; k += 3) sample(c, [triangles[k], triangles[k + 1], triangles[k + 2]]);
+    }
     if (c.crosses)
       for (const [a, b] of edges)
         if (c.crosses(x.fromArray(position, 3 * a), y.fromArray(position, 3 * b))) out[a] = out[b] = -1;

@@ -1,379 +1,331 @@
-// The figures of a report: entries over the rows of all runs (`doc.runs`) and their series, drawn by chart.js.
-// An entry is made into {id, section, title, caption, hint?, empty, choices, chart(state), rows(state), remark?(state), stills}.
-// `choices`: [{label, options(state), first?(state)}]; `state` has the value of each by its label. `stills`: pictures
-// [{file, title, state, notes}] in theme 'paper'.
-import {chart, unique} from './chart.js';
-import {ask_colours} from './theme.js';
+// The figures of a report: entries over the rows of all runs (`doc.runs`) and their series, drawn by chart.js. An entry:
+//   {id, section, title(state), caption, choices, chart(rows, state, width), rows(state), columns, stills}
+// `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
+// solver; `chart` makes panels of those that the filter of solvers leaves; `columns` are those of its table and CSV.
+// `stills`: pictures beside the report, [{file, state}].
+import {number, unique} from './chart.js';
+import {by_solver, file_of, kFailed, percent, without_floor} from './figure_parts.js';
+import {failure_speed, forest, penetration, stability, verdicts} from './figures_contact.js';
 
-const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
-const kNoResult = ['unsupported', 'missing', 'over_budget'];
-const kGrades = {
-  stable: '#009E73',
-  degraded: '#E69F00',
-  failed: '#D55E00'
-};
-const kVerdicts = {
-  pass: '#009E73',
-  'not measured': '#9AA0A6',
-  ignored: '#C9CDD2',
-  unsupported: '#E8EAED',
-  fail: '#D55E00'
-};
-/// Title of the axis and factor from SI to its unit.
-const kMetrics = {
-  contact_length_m: ['contour [mm]', 1e3],
-  depth_m: ['depth [mm]', 1e3],
-  stretch_max: ['maximum strain [%]', 100]
-};
-const kDeep_mm = 50;  // from here on an axis of depth is logarithmic above 1 mm, since a cloth that fell through keeps falling
-
-/// The harness without a cloth model is decades faster than every solver. It is drawn only if no other solver is.
-let floor = [];
-const without_floor = rows => rows.every(r => floor.includes(r.solver)) ? rows : rows.filter(r => !floor.includes(r.solver));
-const device_note = rows => unique(rows.map(r => r.gpu).filter(Boolean)).sort().join(', ');
-const file_of = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
-const digits = v => Number(v.toPrecision(2));
-
-/// Pareto front of each label: rows that no row of the same label dominates in both fields, by ascending a.
+const kRefresh_Hz = [72, 90];
+const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
+/// Pareto front: rows that no row of the same solver dominates in both fields, by ascending a.
 export const on_front = (rows, a, b) =>
-    rows.filter(p => !rows.some(q => q.label === p.label && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])))
+    rows.filter(p => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])))
         .sort((p, q) => p[a] - q[a]);
 
-const width_axis = rows => ({
-  field: 'width',
-  title: 'vertices along one side',
-  log: true,
-  base: 2,
-  format: '.4~g',
-  ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b)
-});
+// Error against run time -----------------------------------------------------
 
-function rates(runs, family, main) {
-  const all = without_floor(runs).map(r => ({
-                                        ...r,
-                                        shape: r.sides || 'sides not stated',
-                                        dash: r.sides || 'sides not stated',
-                                        kind: r.fps_median > 0         ? 'both' :
-                                            kFailed.includes(r.status) ? 'failed' :
-                                                                         '',
-                                        fps: r.fps_median,
-                                        low: r.fps_median * (1 - (r.fps_spread ?? 0)),
-                                        high: r.fps_median * (1 + (r.fps_spread ?? 0))
-                                      }));
-  const hidden = runs.filter(r => !all.some(a => a.label === r.label) && r.fps_median > 0),
-        fps = hidden.map(r => Math.round(r.fps_median).toLocaleString('en-US'));
+const good = r => r.status === 'ok' && r.error > 0 && r.wall_ms_per_s > 0;
+
+function error_rules(runs) {
+  const {space_error, reference_uncertainty} = runs[0], least = Math.min(...runs.filter(good).map(r => r.error));
+  const floors = [[space_error, 'error of the mesh'], [3 * (reference_uncertainty ?? 0), '3 × uncertainty of the reference']];
+  const [floor, words] = floors.filter(([v]) => v > 0).sort((a, b) => b[0] - a[0])[0] ?? [0, ''];
+  return [{x: 1000, text: 'real time'}, ...(floor > 1e-3 * least ? [{y: floor, text: `${words} ${number(floor, 2)}`, zone: true}] : [])];
+}
+
+function error_time(doc) {
+  const all = doc.runs.filter(r => r.part === 'accuracy');
+  if (!all.some(good)) return null;
+  const scenes = unique(all.map(r => r.scene)), of = scene => all.filter(r => r.scene === scene);
+  const first = [...scenes].sort((a, b) => of(b).filter(good).length - of(a).filter(good).length)[0];
   return {
-    section: 'rates',
-    title: `${main ? 'Fig. 4: ' : ''}Frames per second by resolution (${family})`,
-    caption: 'Uncapped frame rates. Points: median of the trials. Bars: half their range. A cross on the lower edge: a run that failed. ' +
-        (all.some(r => r.published) ? 'Published: values of the paper (Quest 3, capped at 72 Hz, with rendering). ' : ''),
-    panels: () => [{
-      x: width_axis(all),
-      y: {field: 'fps', title: 'frames per second, uncapped', log: true, format: '~s'},
-      rows: all,
-      rules: [{y: 72, text: '72 Hz, refresh rate of the display'}],
-      tip: ['sides', 'resolution']
-    }],
-    columns: ['label', 'sides', 'width', 'fps', 'low', 'high', 'status'],
-    stills: main ? [{
-      file: 'fig4',
-      notes: [
-        hidden.length ? `Not drawn: ${unique(hidden.map(r => r.solver))}, the harness without a cloth model (${fps.at(0)} to ${
-                            fps.at(-1)} frames per second).` :
-                        '',
-        device_note(all)
-      ]
-    }] :
-                   []
-  };
-}
-
-function bandwidth(runs, family, main) {
-  const ways = {read: 'bandwidth_read_peak_B_per_s', written: 'bandwidth_write_peak_B_per_s'}, some = runs.filter(r => r[ways.read] > 0);
-  if (!some.length) return null;
-  const rows = way =>
-      runs.filter(r => r[ways[way]] > 0 || (r.gpu && kFailed.includes(r.status))).map(r => ({
-                                                                                        ...r,
-                                                                                        way,
-                                                                                        GB_per_s: r[ways[way]] / 1e9,
-                                                                                        shape: r.sides || 'sides not stated',
-                                                                                        dash: r.sides || 'sides not stated',
-                                                                                        kind: r[ways[way]] > 0 ? 'both' : 'failed'
-                                                                                      }));
-  const windows = some.map(r => r.bandwidth_window_s).filter(w => w > 0);
-  const absent = unique(runs.filter(r => r.status === 'ok' && !r.published && !some.some(s => s.label === r.label)).map(r => r.solver));
-  return {
-    section: 'rates',
-    title: `${main ? 'Fig. 5: ' : ''}Peak bandwidth by resolution (${family})`,
-    caption: 'Bytes that shaders load and store, computed from the scene and the kernels, per second of wall time, peak' +
-        (windows.length ? ` over windows of ${digits(Math.min(...windows))} to ${digits(Math.max(...windows))} s` : '') +
-        '. The bytes of CPU solvers are not known. The paper publishes its values as a graph only.',
-    panels: () => Object.keys(ways).map(way => ({
-                                          title: way,
-                                          x: width_axis(runs),
-                                          y: {field: 'GB_per_s', title: 'peak bandwidth [GB/s]', log: true},
-                                          rows: rows(way),
-                                          tip: ['sides', 'resolution']
-                                        })),
-    columns: ['label', 'sides', 'width', 'way', 'GB_per_s'],
-    stills: main ? [{file: 'fig5', notes: [absent.length ? `Not known: ${absent.join(', ')}.` : '', device_note(runs)]}] : []
-  };
-}
-
-/// Stretch against GPU time of each setting, one panel per resolution; null if no solver has two settings.
-function stretch(runs, family) {
-  let rows = without_floor(runs)
-                 .map(r => ({
-                        ...r,
-                        label: r.solver,
-                        ms: 1e3 * r.frame_device_median_s,
-                        max: 100 * r.stretch_max_last_second,
-                        mean: 100 * r.stretch_mean_last_second
-                      }))
-                 .filter(r => r.ms > 0 && r.max > 0);
-  if (rows.some(r => r.sides === 'single')) rows = rows.filter(r => r.sides === 'single');
-  if (!rows.some(r => rows.some(q => q.label === r.label && q.setting !== r.setting))) return null;
-  const panel = resolution => {
-    const here = rows.filter(r => r.resolution === resolution);
-    return {
-      title: resolution,
-      x: {field: 'ms', title: 'GPU time per frame [ms]', log: true},
-      y: {field: 'stretch', title: 'stretch, last second [%]', log: true},
-      tip: ['setting', 'sides'],
-      rows: ['max', 'mean'].flatMap(of => {
-        const some = here.filter(r => r[of] > 0).map(r => ({...r, dash: of, shape: of, stretch: r[of]}));
-        return [
-          ...some.map(r => ({...r, kind: 'point', text: of === 'max' ? r.setting : ''})),
-          ...on_front(some, 'ms', of).map(r => ({...r, kind: 'line'}))
-        ];
-      })
-    };
-  };
-  return {
-    section: 'rates',
-    title: `Stretch against GPU time (${family})`,
-    caption:
-        'Stretch of structural edges in the last second of the scene, maximum and mean, against GPU time per frame. Each point is a setting. ' +
-        'Lines join the settings for which no other setting of the solver is faster and stretches less.',
-    panels: () => unique([...rows].sort((a, b) => a.width - b.width).map(r => r.resolution)).map(panel),
-    columns: ['label', 'setting', 'sides', 'resolution', 'ms', 'max', 'mean'],
-    stills: [{file: `${family}-stretch`, notes: [device_note(rows)]}]
-  };
-}
-
-/// Runs of one scene by one clock; a CPU solver has only wall time.
-const work_rows = (runs, clock) => runs.map(r => {
-  const ms_per_s = clock === 'wall' ? r.wall_ms_per_s : r.device_ms_per_s ?? r.wall_ms_per_s,
-        good = r.status === 'ok' && r.error > 0 && ms_per_s > 0;
-  return {...r, label: r.solver, ms_per_s, kind: good ? 'point' : kNoResult.includes(r.status) ? '' : 'failed'};
-});
-
-/// Labelled floors of the error. A floor far below every point is stated in a note; drawn, it would compress the axis.
-function floors_of(runs) {
-  const least = Math.min(...runs.map(r => r.error).filter(e => e > 0)), {space_error, reference_uncertainty} = runs[0];
-  return [{y: space_error, what: 'error of the mesh'}, {y: 3 * (reference_uncertainty ?? 0), what: '3 × the reference’s uncertainty'}]
-      .filter(f => f.y > 0)
-      .map(f => ({...f, text: `${f.what} ${f.y.toExponential(1)}`, far: f.y < 1e-3 * least}));
-}
-
-/// Sentences on what the picture does not show.
-function work_notes(runs) {
-  const rows = work_rows(runs, 'wall'), by_solver = unique(rows.map(r => r.label)).flatMap(label => {
-    const mine = rows.filter(r => r.label === label), count = is => mine.filter(is).length;
-    if (mine.every(r => ['unsupported', 'missing'].includes(r.status))) return [`${label}: unsupported.`];
-    const bad = count(r => r.kind === 'failed'), skipped = count(r => r.status === 'over_budget');
-    const parts = [bad ? `${bad} of ${mine.length} failed` : '', skipped ? `${skipped} of ${mine.length} not run` : ''].filter(Boolean);
-    return parts.length ? [`${label}: ${parts.join(', ')}.`] : [];
-  });
-  return [
-    rows[0].refused ? `No solver is ranked: ${rows[0].refused}.` : '', by_solver.join(' '),
-    ...unique(rows.filter(r => r.not_ranked).map(r => `${r.label} is shown but not ranked: ${r.not_ranked}.`)),
-    ...floors_of(runs).filter(f => f.far).map(f => `Below the axis: ${f.text}.`)
-  ].filter(Boolean);
-}
-
-function work_panel(runs, clock) {
-  const rows = work_rows(runs, clock), good = rows.filter(r => r.kind === 'point'), near = floors_of(runs).filter(f => !f.far),
-        wall = clock === 'wall';
-  const fronts = on_front(good, 'ms_per_s', 'error').map(r => ({...r, kind: 'line', dash: wall ? 'wall time' : 'GPU time'}));
-  const on_gpu = wall ? on_front(good.filter(r => r.device_ms_per_s > 0), 'device_ms_per_s', 'error') : [];
-  const time = wall ? 'wall time, pipelined where the solver can' : 'GPU time; wall time for CPU solvers';
-  return {
-    x: {field: 'ms_per_s', title: `${time} [ms per simulated second]`, log: true},
-    y: {field: 'error', title: `error: ${runs[0].ranking}`, log: true, format: '.0e'},
-    rows: [...fronts, ...on_gpu.map(r => ({...r, kind: 'line', dash: 'GPU time', ms_per_s: r.device_ms_per_s})), ...rows],
-    rules: [...near, {x: 1000, text: 'real time'}],
-    shade: Math.max(0, ...near.map(f => f.y)),
-    edge: 'top',
-    tip: ['setting', 'status']
-  };
-}
-
-function work(runs) {
-  const scenes = unique(runs.map(r => r.scene)), in_scene = name => runs.filter(r => r.scene === name);
-  const words = name => in_scene(name)[0].refused ? `${name} (refused)` : name;
-  return {
+    id: 'error-time',
     section: 'accuracy',
-    id: 'work',
-    title: 'Error against run time: every setting',
+    hero: true,
+    title: s => `Error against run time: ${s.Scene}`,
     caption:
-        'Each point is a setting. Lines: the Pareto front of each solver, by wall time and by GPU time. Crosses on the upper edge: runs that ' +
-        'failed, at their run time, or at the right end if they have none. Shaded: errors that are not distinguished.',
-    hint: 'Hover over a point for its setting.',
-    choices: [
-      {label: 'Scene', options: () => scenes.map(s => ({value: s, text: words(s)}))}, {
-        label: 'Clock',
-        options: () =>
-            [{value: 'wall', text: 'wall time, pipelined where the solver can'},
-             {value: 'device', text: 'GPU time (CPU solvers: wall time)'}]
-      }
-    ],
-    panels: state => [work_panel(in_scene(state.Scene), state.Clock)],
-    empty: 'No run of this scene has an error and a time.',
-    remark: state => work_notes(in_scene(state.Scene)).join(' '),
-    columns: ['scene', 'label', 'setting', 'status', 'ms_per_s', 'error'],
-    stills: scenes.map(s => ({
-                         file: `work-precision-${s}`,
-                         title: `${s}: error against run time`,
-                         state: {Scene: s, Clock: 'wall'},
-                         notes: [`${s}.`, ...work_notes(in_scene(s)), device_note(in_scene(s))]
-                       }))
+        'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
+        'area are not distinguished. Crosses on the upper edge: runs that failed.',
+    choices:
+        [{label: 'Scene', options: () => scenes.map(v => ({value: v, text: of(v)[0].refused ? `${v} (refused)` : v})), first: () => first}],
+    rows: s => of(s.Scene),
+    remark: s => [of(s.Scene)[0].refused && `No solver is ranked: ${of(s.Scene)[0].refused}.`,
+                  ...unique(of(s.Scene).filter(r => r.not_ranked).map(r => `${r.solver} is shown but not ranked: ${r.not_ranked}.`))]
+                     .filter(Boolean)
+                     .join(' '),
+    chart: (rows, s, width) => {
+      const fine = rows.filter(good), fronts = by_solver(fine).map(([solver, mine]) => [solver, on_front(mine, 'wall_ms_per_s', 'error')]),
+            best = fronts.flatMap(f => f[1]);
+      return {
+        height: Math.max(260, Math.min(400, 0.62 * width)),
+        panels: [{
+          x: {type: 'log', title: 'wall time [ms per simulated second]'},
+          y: {type: 'log', title: `error: ${rows[0]?.ranking ?? ''}`.slice(0, Math.max(20, width / 7.2 | 0))},
+          rules: rows.length ? error_rules(of(s.Scene)) : [],
+          lines: fronts.map(([solver, front]) => ({solver, label: solver, points: front.map(r => [r.wall_ms_per_s, r.error])})),
+          marks: [
+            ...fine.map(r => ({kind: 'point', x: r.wall_ms_per_s, y: r.error, solver: r.solver, open: !best.includes(r), row: r})),
+            ...rows.filter(r => kFailed.includes(r.status))
+                .map(r => ({kind: 'failed', x: r.wall_ms_per_s ?? 0, edge: 'top', solver: r.solver, row: r}))
+          ]
+        }]
+      };
+    },
+    tip: r =>
+        [`${r.label}, ${r.scene}`, good(r) ? `error ${number(r.error)}, ${number(r.wall_ms_per_s)} ms per simulated second` : r.status],
+    columns: {
+      solver: r => r.solver,
+      setting: r => r.setting,
+      status: r => r.status,
+      'wall_ms_per_s': r => r.wall_ms_per_s,
+      'device_ms_per_s': r => r.device_ms_per_s,
+      error: r => r.error
+    },
+    stills: scenes.map(v => ({file: `work-precision-${v}`, state: {Scene: v}}))
   };
 }
 
-function penetration(all, series) {
-  const runs = series.map(s => ({...all[s.run], ...s})), scenes = unique(runs.map(r => r.scene)),
-        in_scene = s => without_floor(runs.filter(r => r.scene === s));
-  const points = (scene, metric) => in_scene(scene).flatMap(
-      r => (r.metrics[metric]?.values ?? [])
-               .map((v, k) => ({scene, metric, label: r.label, kind: 'line', time: r.time_s[k], raw: v, value: kMetrics[metric][1] * v}))
-               .filter(d => d.raw !== null));
-  const metrics = scene => Object.keys(kMetrics).filter(m => points(scene, m).length);
-  const panel = (scene, metric, title) => {
-    const rows = points(scene, metric), most = Math.max(0, ...rows.map(r => r.value)), log = /depth/.test(metric) && most > kDeep_mm,
-          top = most > 1e-3 ? 1.04 * most : 1;
-    const failed = in_scene(scene)
-                       .filter(r => kFailed.includes(r.status))
-                       .map(r => ({label: r.label, kind: 'failed', status: r.status, time: r.time_s.at(-1) ?? 0}));
-    return {
-      title,
-      own_y: true,
-      x: {field: 'time', title: 'time [s]'},
-      // A line at 0 must be distinguished from the axis.
-      y: {
-        field: 'value',
-        title: kMetrics[metric]?.[0] ?? '',
-        symlog: log,
-        domain: log ? [-0.15, 1.1 * most] : [-0.04 * top, top],
-        format: '.6~g',
-        ticks: log ? [0, 1, 10, 100, 1e3, 1e4, 1e5].filter(v => v <= 10 * most) : null
-      },
-      rows: [...rows, ...failed]
-    };
-  };
-  const kinds = unique(runs.map(r => r.set_up)), of_kind = kind => unique(runs.filter(r => r.set_up === kind).map(r => r.scene));
+// Frame rates ----------------------------------------------------------------
+
+const width_axis = rows => ({
+  type: 'log',
+  title: 'vertices along one side',
+  ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b),
+  format: t => String(Number(t.toPrecision(4)))
+});
+/// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
+const series_of = rows => unique(rows.map(r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}`))
+                              .map(
+                                  name =>
+                                      [name,
+                                       rows.filter(r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}` === name)
+                                           .sort((a, b) => a.width - b.width)]);
+
+function by_resolution(doc, {id, title, caption, value, unit, low, high, open, rules = [], columns, still, panels = [['', value]]}) {
+  const all = doc.runs.filter(r => r.part === 'rates' && !r.published && panels.some(([, of]) => of(r) > 0));
+  if (!all.length) return null;
+  const families = unique(all.map(r => r.family)), of = family => all.filter(r => r.family === family);
+  const main = all.find(r => r.paper_table === 3)?.family ?? families[0], both = 'all layers and settings';
   return {
-    section: 'contact',
-    id: 'penetration-series',
-    title: 'Penetration over time',
-    caption: 'One line per solver, one value per frame. A cross on the lower edge marks the time at which a run failed.',
-    empty: 'No run of this scene has this metric.',
+    id,
+    section: 'rates',
+    hero: id === 'rates',
+    title: s => `${title}: ${s.Scene}`,
+    caption,
     choices: [
-      {label: 'Scene', options: () => scenes.map(s => ({value: s, text: s}))},
-      // First the metric with a value above 0, because most scenes expect zeros.
-      {
-        label: 'Metric',
-        options: state => metrics(state.Scene).map(m => ({value: m, text: kMetrics[m][0]})),
-        first: state => metrics(state.Scene).find(m => points(state.Scene, m).some(d => d.value > 0))
-      }
+      {label: 'Scene', options: () => families.map(v => ({value: v, text: v})), first: () => main},
+      {label: 'Show', options: () => [{value: 'default', text: 'one layer, default settings'}, {value: 'all', text: both}]}
     ],
-    panels: state => state.kind ? of_kind(state.kind).flatMap(s => metrics(s).slice(0, 2).map((m, k) => panel(s, m, k ? '' : s))) :
-        state.Metric            ? [panel(state.Scene, state.Metric)] :
-                                  [],
-    columns: ['scene', 'metric', 'label', 'time', 'raw'],
-    stills: kinds.map(kind => ({file: `penetration-${kind}`, title: `Penetration over time: ${kind}`, state: {kind}, notes: []})),
-    across: 2
+    rows: s => {
+      const mine = without_floor(of(s.Scene), doc.solvers.floor),
+            plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
+      return s.Show === 'all' || !plain.length ? mine : plain;
+    },
+    chart: (rows, s, width) => ({
+      right: 90,
+      columns: width < 560 ? 1 : panels.length,
+      height: Math.max(240, Math.min(340, 0.5 * width)),
+      panels: panels.map(
+          ([name, value_of]) => ({
+            title: name,
+            x: width_axis(rows),
+            y: {type: 'log', title: unit},
+            rules: rules.map(r => ({...r, optional: true})),
+            lines: by_solver(rows).flatMap(
+                ([solver, mine]) => series_of(mine).map(([label, line], k) => ({
+                                                          solver,
+                                                          label: mine.length > line.length ? label : solver,
+                                                          dash: k,
+                                                          points: line.filter(r => value_of(r) > 0).map(r => [r.width, value_of(r)])
+                                                        }))),
+            marks: rows.filter(r => value_of(r) > 0).map(r => ({
+                                                           kind: 'point',
+                                                           x: r.width,
+                                                           y: value_of(r),
+                                                           low: low?.(r),
+                                                           high: high?.(r),
+                                                           along: 'y',
+                                                           solver: r.solver,
+                                                           open: open?.(r),
+                                                           row: r
+                                                         }))
+          }))
+    }),
+    tip: r =>
+        [`${r.label} at ${r.resolution}${r.sides ? `, ${r.sides}` : ''}`,
+         ...panels.map(([name, f]) => `${name} ${number(f(r))} ${unit}`.trim()),
+         ...(r.fps_low ? [`95 %: ${number(r.fps_low)} to ${number(r.fps_high)}`] : []),
+         ...(r.free_fall_error ? [`free-fall error ${percent(r.free_fall_error)}`] : [])],
+    columns,
+    stills: [{file: still, state: {Scene: main}}]
   };
 }
 
-const bars = (section, id, title, caption, runs, row, of, scale) => ({
-  section,
-  id,
-  title,
-  caption,
-  panels: () => unique(runs.map(r => r.label)).map(label => {
-    const mine = runs.filter(r => r.label === label), names = Object.keys(scale);
-    return {
-      title: label,
-      bars: {share: 'runs', row, of, scale, title: 'share of runs'},
-      rows: unique(mine.map(r => r[row]))
-                .flatMap(
-                    name => names
-                                .map((value, order) => ({
-                                       label,
-                                       [row]: name,
-                                       [of]: value,
-                                       order,
-                                       runs: mine.filter(r => r[row] === name && r[of] === value).length
-                                     }))
-                                .filter(r => r.runs))
-    };
-  }),
-  columns: ['label', row, of, 'runs'],
-  across: 5,
-  stills: [{file: id, notes: []}]
+const rates = doc => by_resolution(doc, {
+  id: 'rates',
+  title: 'Fig. 4: frame rate by resolution',
+  caption:
+      'Uncapped, without rendering. Marks: median of the trials; bars: its 95 % interval. Hollow: the error of free fall is above 1 %, so the rate has no meaning.',
+  value: r => r.fps_median,
+  unit: 'frames per second',
+  low: r => r.fps_low,
+  high: r => r.fps_high,
+  open: r => r.free_fall_error > 0.01,
+  rules: [{y: 72, text: '72 Hz'}],
+  columns: {
+    solver: r => r.label,
+    sides: r => r.sides,
+    resolution: r => r.resolution,
+    fps_median: r => r.fps_median,
+    fps_low: r => r.fps_low,
+    fps_high: r => r.fps_high,
+    free_fall_error: r => r.free_fall_error
+  },
+  still: 'fig4'
 });
 
-/// All figures of the document, by section.
-export function make_figures(doc) {
-  floor = doc.solvers.floor;
-  ask_colours(doc.solvers.colours);
-  const part = name => doc.runs.filter(r => r.part === name), rated = part('rates'), families = unique(rated.map(r => r.family)),
-        main = rated.find(r => r.paper_table === 3)?.family ?? families[0];
-  const judged = [
-    ...part('contact'), ...part('generated')
-  ].map(r => ({
-          ...r,
-          verdict: r.verdict in kVerdicts      ? r.verdict :
-              /^(–|missing)/.test(r.verdict) ? '' :
-                                                 'fail'
-        })).filter(r => r.verdict);
-  const graded = part('stability').filter(r => r.grade >= 0).map(r => ({...r, grade: Object.keys(kGrades)[r.grade]}));
-  const entries = [
-    ...families.flatMap((f, k) => [['rates', rates], ['bandwidth', bandwidth], ['stretch', stretch]].map(([id, make]) => {
-      const entry = make(rated.filter(r => r.family === f), f, f === main);
-      return entry && {id: `${id}-${k}`, ...entry};
-    })),
-    part('accuracy').length && work(part('accuracy')), doc.series.length && penetration(doc.runs, doc.series),
-    judged.length &&
-        bars(
-            'contact', 'verdicts', 'Verdicts by set-up',
-            'Share of the runs of each kind of contact that met all acceptance criteria of their scenes.', judged, 'set_up', 'verdict',
-            kVerdicts),
-    graded.length &&
-        bars(
-            'stability', 'stability-cases', 'Robustness by case', 'Share of the runs of each case that were stable, degraded or failed.',
-            graded, 'case', 'grade', kGrades)
-  ].filter(Boolean);
-  return entries.map(({panels, columns, across, choices = [], stills, empty = 'There are no data for this choice.', ...rest}) => {
-    const rows = state =>
-        panels(state).flatMap(p => p.rows).filter(r => r.kind !== 'line' || !panels(state).some(p => p.rows.some(q => q.kind === 'point')));
-    const draw = (theme, width, state) => chart({panels: panels(state), across}, theme, width);
-    const no_rows = state => !rows(state).some(r => r.kind !== '');
-    return {
-      ...rest,
-      choices,
-      empty,
-      spec: draw,
-      rows: state => [columns, ...rows(state).map(r => columns.map(c => r[c]))],
-      stills: stills.map(({file, title = rest.title, state = {}, notes}) => ({
-                           file: file_of(file),
-                           title,
-                           notes,
-                           empty: no_rows(state) ? empty : '',
-                           labels: unique(panels(state).flatMap(p => p.rows.map(r => r.label))),
-                           make: width => draw('paper', width, state)
-                         }))
-    };
-  });
+const bandwidth = doc => by_resolution(doc, {
+  id: 'bandwidth',
+  title: 'Fig. 5: peak bandwidth by resolution',
+  caption:
+      'Bytes that shaders load and store, computed from the scene and the kernels, per second of wall time. The bytes of CPU solvers are not known.',
+  unit: 'GB/s',
+  panels: [['read', r => r.bandwidth_read_peak_B_per_s / 1e9], ['written', r => r.bandwidth_write_peak_B_per_s / 1e9]],
+  columns: {
+    solver: r => r.label,
+    sides: r => r.sides,
+    resolution: r => r.resolution,
+    bandwidth_read_peak_B_per_s: r => r.bandwidth_read_peak_B_per_s,
+    bandwidth_write_peak_B_per_s: r => r.bandwidth_write_peak_B_per_s
+  },
+  still: 'fig5'
+});
+
+/// Stretch against GPU time of each setting; null if no solver has two settings.
+function stretch(doc) {
+  const all = doc.runs.filter(
+      r => r.part === 'rates' && !r.published && r.frame_device_median_s > 0 && r.stretch_max_last_second > 0 &&
+          (!r.sides || r.sides === 'single'));
+  const several = all.filter(r => all.some(q => q.solver === r.solver && q.family === r.family && q.setting !== r.setting));
+  if (!several.length) return null;
+  const names = unique(several.map(r => `${r.family} ${r.resolution}`)),
+        of = name => all.filter(r => `${r.family} ${r.resolution}` === name);
+  return {
+    id: 'stretch',
+    section: 'rates',
+    title: s => `Stretch against GPU time: ${s.Scene}`,
+    caption:
+        'Maximum stretch of structural edges in the last second of the scene. One mark per setting; filled: no other setting of the solver is faster and stretches less.',
+    choices: [{label: 'Scene', options: () => names.map(v => ({value: v, text: v})), first: () => names.at(-1)}],
+    rows: s => of(s.Scene).map(r => ({...r, time: 1e3 * r.frame_device_median_s, value: 100 * r.stretch_max_last_second})),
+    chart: (rows, s, width) => {
+      const fronts = by_solver(rows).map(([solver, mine]) => [solver, on_front(mine, 'time', 'value')]), best = fronts.flatMap(f => f[1]);
+      return {
+        height: Math.max(240, Math.min(340, 0.5 * width)),
+        panels: [{
+          x: {type: 'log', title: 'GPU time per frame [ms]'},
+          y: {type: 'log', title: 'maximum stretch [%]'},
+          lines: fronts.map(([solver, f]) => ({solver, label: solver, points: f.map(r => [r.time, r.value])})),
+          marks: rows.map(r => ({kind: 'point', x: r.time, y: r.value, solver: r.solver, open: !best.includes(r), row: r}))
+        }]
+      };
+    },
+    tip: r => [r.label, `${number(r.time)} ms, maximum stretch ${number(r.value)} %`],
+    columns: {
+      solver: r => r.solver,
+      setting: r => r.setting,
+      frame_device_median_s: r => r.frame_device_median_s,
+      stretch_max_last_second: r => r.stretch_max_last_second,
+      stretch_mean_last_second: r => r.stretch_mean_last_second
+    },
+    stills: names.map(v => ({file: `${file_of(v)}-stretch`, state: {Scene: v}}))
+  };
+}
+
+// Frame times ----------------------------------------------------------------
+
+const kClocks = {
+  contact_gpu_time: 'GPU time, frames with contact',
+  contact_wall: 'wall time, frames with contact',
+  gpu_time: 'GPU time, all frames',
+  wall: 'wall time, all frames'
+};
+
+const kTimesCaption = 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.';
+
+function frame_times(doc) {
+  const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));
+  const solvers = unique(all.map(r => r.solver)), first = clocks.includes('contact_wall') ? 'contact_wall' : 'wall';
+  return clocks.length && {
+    id: 'frame-times',
+    section: 'time',
+    hero: true,
+    title: s => `Distribution of frame times${s.Solver === 'all' ? '' : `: ${s.Solver}`}`,
+    caption: kTimesCaption,
+    choices: [
+      {label: 'Time', options: () => clocks.map(c => ({value: c, text: kClocks[c]})), first: () => first}, {
+        label: 'Solver',
+        options: s =>
+            [...(unique(all.map(r => r.scene)).length <= 8 ? [{value: 'all', text: 'all'}] : []),
+             ...solvers.filter(n => all.some(r => r.solver === n && r[s.Time])).map(n => ({value: n, text: n}))]
+      }
+    ],
+    rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => ({...r, shown: r[s.Time]})),
+    chart: rows => {
+      const scenes = unique(rows.map(r => r.scene)), present = unique(rows.map(r => r.solver)),
+            worst = Math.max(0, ...rows.map(r => 1e3 * r.shown[4]));
+      return {
+        row: Math.max(22, 13 * present.length + 6),
+        right: 20,
+        panels: [{
+          x: {type: 'log', title: 'time per frame [ms]'},
+          y: {type: 'band', values: scenes},
+          rules: kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({x: 1e3 / hz, text: `${hz} Hz`, optional: worst < 1e3 / hz / 3})),
+          marks: rows.map(r => ({
+                            kind: 'point',
+                            x: 1e3 * r.shown[0],
+                            y: r.scene,
+                            shift: present.length > 1 ? (present.indexOf(r.solver) - (present.length - 1) / 2) / (present.length + 0.6) : 0,
+                            thick: [1e3 * r.shown[0], 1e3 * r.shown[3]],
+                            low: 1e3 * r.shown[0],
+                            high: 1e3 * r.shown[4],
+                            along: 'x',
+                            solver: r.solver,
+                            row: r
+                          }))
+        }]
+      };
+    },
+    tip: r =>
+        [`${r.label}, ${r.scene}`, `p50 ${ms(r.shown[0])} (95 %: ${ms(r.shown[1])} to ${ms(r.shown[2])})`,
+         `p95 ${ms(r.shown[3])}, p99 ${ms(r.shown[4])}, worst ${ms(r.shown[5])}`, `${r.trials} trials, ${r.trust}`],
+    columns: {
+      scene: r => r.scene,
+      solver: r => r.label,
+      p50_s: r => r.shown[0],
+      low_s: r => r.shown[1],
+      high_s: r => r.shown[2],
+      p95_s: r => r.shown[3],
+      p99_s: r => r.shown[4],
+      worst_s: r => r.shown[5],
+      trials: r => r.trials
+    },
+    stills: [{file: 'frame-times', state: {}}]
+  };
+}
+
+/// All figures that the document has runs for.
+export const make_figures =
+    doc => [error_time, rates, bandwidth, stretch, frame_times, verdicts, failure_speed, penetration, forest, stability]
+               .map(make => make(doc))
+               .filter(Boolean);
+
+/// The choices of a figure with their defaults, where `given` has none that fits.
+export function settled(figure, given) {
+  const state = {};
+  for (const {label, options, first} of figure.choices) {
+    const list = options(state).map(o => o.value);
+    state[label] = list.includes(given[label]) ? given[label] : first?.(state) ?? list[0] ?? '';
+  }
+  return state;
+}
+
+/// The command that makes one run again, and the file that holds it.
+export function command_of(doc, r) {
+  const study = doc.studies[r.study];
+  if (!study?.command) return null;
+  const plain = study.command.replace(/^\S*clothbench/, 'clothbench').replace(/ (--out|-o)[ =]\S+/, '').replace(/ --resume/, '');
+  return r.job === undefined || !/ study /.test(plain) ? plain : `${plain} --out again --job ${r.job}`;
 }

@@ -1,58 +1,154 @@
-import {element} from './dom.js';
+// Builds the page from its document: figures and tables by section, the filter of solvers, contents, theme and motions.
+import {symbol, unique} from './chart.js';
+import {element, say} from './dom.js';
 import {make_figures} from './figures.js';
-import {plot_figure, start_plots} from './plot.js';
-import {table_block} from './tables.js';
-import {start_theme} from './theme.js';
-import {start_viewer} from './viewer.js';
+import {all_figures, figure_block, start_figures} from './plot.js';
+import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
+import {start_tables, table_block} from './tables.js';
 
-const kAfterViewer = ['features', 'failed', 'environment'];
+const $ = id => document.getElementById(id);
+const kMethod = ['features', 'failed', 'environment'];
 
-/// "**" marks warnings; blank lines separate paragraphs.
-function headline(text) {
-  return text.split(/\n+/).filter(Boolean).map(line => {
-    const parts = line.split('**');
-    return element(
-        'p', {class: parts.length > 1 ? 'warning' : 'soft'}, parts.map((p, k) => k % 2 ? element('strong', {}, p) : p));
+function start_theme() {
+  const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
+  const dark = () => root.dataset.theme ? root.dataset.theme === 'dark' : system.matches;
+  const tell = () => $('theme').setAttribute('aria-pressed', String(dark()));
+  $('theme').addEventListener('click', () => {
+    root.dataset.theme = dark() ? 'light' : 'dark';
+    tell();
+    dispatchEvent(new Event('theme'));
   });
+  system.addEventListener('change', tell);
+  tell();
 }
 
-/// Figures come first: they show at a glance what the tables state.
-function section(s, figures) {
-  return element(
-      'section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, element('h2', {id: `${s.id}-title`}, s.title),
-      figures.map(plot_figure), s.tables.map(table_block));
+function chips(doc, look) {
+  const known = Object.keys(doc.solvers.look), place = s => known.includes(s) ? known.indexOf(s) : known.length;
+  const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b)),
+        plugins = new Set(doc.runs.filter(r => r.plugin).map(r => r.solver));
+  $('chips').append(...solvers.map(s => {
+    const chip = element('button', {
+      type: 'button',
+      'aria-pressed': String(shown(s)),
+      onclick: () => {
+        toggle_solver(s);
+        chip.setAttribute('aria-pressed', String(shown(s)));
+        say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
+      }
+    });
+    chip.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(look), s, 0, 0)}</svg>`;
+    chip.append(s + (plugins.has(s) ? '†' : ''));
+    return chip;
+  }));
+}
+
+/// The first figure and the first table stand side by side on the first screen.
+function first_screen(doc, look, figures) {
+  const hero = figures.find(f => f.hero), overview = doc.sections.find(s => s.id === 'overview'), tables = overview?.tables ?? [];
+  $('hero').replaceChildren(...(hero ? [figure_block(doc, look, hero)] : []));
+  $('first-table').replaceChildren(...tables.slice(0, 1).map(t => table_block(doc, look, t)));
+  $('overview').append(...tables.slice(1).map(t => table_block(doc, look, t)));
+  return hero;
+}
+
+function sections(doc, look) {
+  const figures = make_figures(doc), hero = first_screen(doc, look, figures), links = [['overview', 'Overview']];
+  for (const s of doc.sections.filter(s => s.id !== 'overview')) {
+    const method = kMethod.includes(s.id), blocks = [
+      ...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)),
+      ...s.tables.map(t => table_block(doc, look, t))
+    ];
+    if (method)
+      $('method-tables').append(...blocks);
+    else {
+      $('sections')
+          .append(
+              element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, element('h2', {id: `${s.id}-title`}, s.title), blocks));
+      links.push([s.id, s.title]);
+    }
+  }
+  const motions = JSON.parse($('clothbench-motions').textContent);
+  if (motions.runs.length) {
+    $('motions').hidden = false;
+    links.push(['motions', 'Motions']);
+    start_motions(doc, motions);
+  }
+  links.push(['method', 'Method and limits']);
+  $('contents').append(element('ol', {}, links.map(([id, title]) => element('li', {}, element('a', {href: `#${id}`}, title)))));
+}
+
+/// The viewer is a program of its own, which runs when its section comes near the window.
+function start_motions(doc, motions) {
+  const load = () => {
+    if (window.clothbench.viewer) return;
+    (0, eval)($('viewer-program').textContent);
+    window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);
+  };
+  new IntersectionObserver((list, self) => {
+    if (!list.some(e => e.isIntersecting)) return;
+    self.disconnect();
+    load();
+  }, {rootMargin: '300px'}).observe($('motions'));
+  window.clothbench.load_viewer = load;
+}
+
+function conditions(text) {
+  return text.split(/\n+/).filter(Boolean).filter(l => !l.startsWith('**')).map(l => element('p', {class: 'note'}, l.replaceAll('**', '')));
+}
+
+function start_navigation() {
+  const links = [...document.querySelectorAll('#contents a')], all = links.map(l => document.querySelector(l.hash));
+  const bar = () => document.documentElement.style.setProperty('--bar', `${document.querySelector('header').offsetHeight}px`);
+  const spy = () => {
+    const edge = 0.3 * innerHeight, end = scrollY + innerHeight >= document.documentElement.scrollHeight - 2;
+    const now = end ? all.at(-1) : all.findLast(s => s.getBoundingClientRect().top < edge) ?? all[0];
+    links.forEach((l, k) => all[k] === now ? l.setAttribute('aria-current', 'true') : l.removeAttribute('aria-current'));
+  };
+  let waiting = false;
+  addEventListener('scroll', () => {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      spy();
+    });
+  }, {passive: true});
+  addEventListener('resize', bar);
+  const open = on => {
+    $('contents').classList.toggle('open', on);
+    $('menu').setAttribute('aria-expanded', String(on));
+  };
+  $('menu').addEventListener('click', () => open(!$('contents').classList.contains('open')));
+  addEventListener('click', e => {
+    const link = e.target.closest?.('a[href^="#"]');
+    if (!link || link.classList.contains('skip')) return;
+    e.preventDefault();  // the address also holds the reader's choices
+    save_state(link.hash.slice(1));
+    open(false);
+    document.querySelector(link.hash)?.scrollIntoView();
+  });
+  bar();
+  spy();
 }
 
 function start() {
-  const doc = JSON.parse(document.getElementById('clothbench-data').textContent);
+  const doc = JSON.parse($('clothbench-data').textContent), anchor = load_state();
+  const look = looks(unique(doc.runs.map(r => r.solver)), doc.solvers);
+  document.head.append(element('style', {}, style_of(look)));
+  document.documentElement.classList.add('js');
+  window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
   start_theme();
-  document.getElementById('headline')
+  chips(doc, look);
+  sections(doc, look);
+  $('conditions').append(...conditions(doc.conditions));
+  $('commands')
       .append(
-          ...headline(doc.headline),
-          ...(doc.commands.length ? [element(
-                                        'p', {class: 'soft'}, 'Written by ',
-                                        doc.commands.flatMap((c, k) => [k ? ', ' : '', element('code', {}, c)]), '.')] :
-                                    []));
-
-  const figures = make_figures(doc), links = [];
-  for (const s of doc.sections) {
-    const later = kAfterViewer.includes(s.id);
-    document.getElementById(later ? 'later' : 'sections').append(section(s, figures.filter(f => f.section === s.id)));
-    links.push({id: s.id, title: s.title, later});
-  }
-  const has_viewer = doc.motions.runs.length > 0;
-  const all = [
-    ...links.filter(l => !l.later), ...(has_viewer ? [{id: 'viewer-section', title: 'Motions'}] : []),
-    ...links.filter(l => l.later), {id: 'rules', title: 'Rules and limits'}
-  ];
-  document.getElementById('contents')
-      .append(element('ul', {}, all.map(l => element('li', {}, element('a', {href: `#${l.id}`}, l.title)))));
-  start_plots();
-  // Used by tests and the browser's console.
-  window.clothbench = {document: doc};
-  if (!has_viewer) return;
-  document.getElementById('viewer-section').hidden = false;
-  window.clothbench.viewer = start_viewer(document.getElementById('viewer'), doc.motions);
+          ...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));
+  start_figures();
+  start_tables();
+  start_navigation();
+  if (anchor) document.getElementById(anchor)?.scrollIntoView();
+  window.clothbench.ready_ms = performance.now();
 }
 
 start();

@@ -1,15 +1,23 @@
 // Packed motions and colliders back into numbers; layout: harness/report/web/page.hpp.
 
+async function inflated(index) {
+  const packed = Uint8Array.from(atob(document.getElementById(`blob-${index}`).textContent), c => c.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate')));
+}
+
 /// zlib in base64, of all first bytes, then all second, ... of words -> bytes of the words in turn.
 async function words(index, size) {
-  const text = atob(document.getElementById(`blob-${index}`).textContent);
-  const packed = Uint8Array.from(text, c => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer()), count = planes.length / size;
+  const planes = new Uint8Array(await (await inflated(index)).arrayBuffer()), count = planes.length / size;
   const out = new Uint8Array(planes.length);
   for (let b = 0; b < size; ++b)
     for (let k = 0; k < count; ++k) out[k * size + b] = planes[b * count + k];
   return out.buffer;
+}
+
+/// Unpacks the metrics over time of a document, once.
+export async function load_series(doc) {
+  if (typeof doc.series === 'number') doc.series = (await inflated(doc.series)).json();
+  doc.series = await doc.series;
 }
 
 export class Motion {
@@ -47,8 +55,10 @@ export class Motion {
     let low = 0, high = t.length - 1;
     while (high - low > 1) {
       const middle = (low + high) >> 1;
-      if (t[middle] <= time) low = middle;
-      else high = middle;
+      if (t[middle] <= time)
+        low = middle;
+      else
+        high = middle;
     }
     return [low, (time - t[low]) / (t[high] - t[low])];
   }
@@ -101,11 +111,9 @@ export class Motion {
   places() {
     if (!this.corners)
       return Array.from(
-          {length: this.vertices},
-          (_, v) => [(v % this.columns) / (this.columns - 1), Math.floor(v / this.columns) / (this.rows - 1)]);
+          {length: this.vertices}, (_, v) => [(v % this.columns) / (this.columns - 1), Math.floor(v / this.columns) / (this.rows - 1)]);
     const {low, sides} = this.sides(), axes = this.longest(sides);
-    return Array.from(
-        {length: this.vertices}, (_, v) => axes.map(a => (this.position[3 * v + a] - low[a]) / (sides[a] || 1)));
+    return Array.from({length: this.vertices}, (_, v) => axes.map(a => (this.position[3 * v + a] - low[a]) / (sides[a] || 1)));
   }
 
   /// Width and height [m] of the cloth.
@@ -120,9 +128,7 @@ export class Motion {
     return {low, sides: high.map((h, a) => h - low[a])};
   }
 
-  longest(sides) {
-    return [0, 1, 2].sort((a, b) => sides[b] - sides[a]).slice(0, 2);
-  }
+  longest(sides) { return [0, 1, 2].sort((a, b) => sides[b] - sides[a]).slice(0, 2); }
 
   /// Least and greatest corner of one frame.
   box(frame) {
@@ -138,8 +144,7 @@ export class Motion {
   /// A sentence on what was left out of the motion.
   thinning() {
     const {run} = this, kept = run.frames.length, grid = this.corners ? this.vertices : run.grid[0] * run.grid[1];
-    const step =
-        run.step_m >= 1e-3 ? `${(1e3 * run.step_m).toPrecision(2)} mm` : `${(1e6 * run.step_m).toPrecision(2)} µm`;
+    const step = run.step_m >= 1e-3 ? `${(1e3 * run.step_m).toPrecision(2)} mm` : `${(1e6 * run.step_m).toPrecision(2)} µm`;
     return `${kept === run.frames_stored ? 'every frame' : `${kept} of ${run.frames_stored} frames`}, ` +
         `${this.vertices === grid ? 'every vertex' : `${this.vertices} of ${grid} vertices`}, positions to ${step}` +
         (this.corners ? ', stretch against the first frame' : '') +
@@ -153,8 +158,7 @@ export function strain(edges, position, out) {
   for (const [a, b, rest] of edges) {
     const e = Math.abs(
         Math.hypot(
-            position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1],
-            position[3 * a + 2] - position[3 * b + 2]) /
+            position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1], position[3 * a + 2] - position[3 * b + 2]) /
             rest -
         1);
     if (e > out[a]) out[a] = e;

@@ -36,17 +36,18 @@ export class Panel {
     this.edges = motion.structural();
     const g = this.geometry = new THREE.BufferGeometry();
     g.setAttribute('position', new THREE.BufferAttribute(this.position, 3).setUsage(THREE.DynamicDrawUsage));
-    g.setAttribute(
-        'color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
+    g.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
     g.setIndex(motion.triangles());
     g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(motion.places().flat()), 2));
     this.checks = checks(motion.size_m());
-    this.cloth = new THREE.Mesh(
-        g, new THREE.MeshStandardMaterial({vertexColors: true, side: THREE.DoubleSide, roughness: 0.85, metalness: 0}));
+    // The colliders behind the cloth stay visible. Colours of values are not lit: they equal those of the ramp.
+    const shared =
+        {vertexColors: true, side: THREE.DoubleSide, transparent: this.hides(colliders), opacity: this.hides(colliders) ? 0.8 : 1};
+    this.lit = new THREE.MeshStandardMaterial({...shared, map: this.checks, roughness: 0.85, metalness: 0});
+    this.unlit = new THREE.MeshBasicMaterial(shared);
+    this.cloth = new THREE.Mesh(g, this.lit);
     this.wires = new THREE.LineSegments(
-        new THREE.BufferGeometry()
-            .setAttribute('position', g.attributes.position)
-            .setIndex(this.edges.flatMap(e => [e[0], e[1]])),
+        new THREE.BufferGeometry().setAttribute('position', g.attributes.position).setIndex(this.edges.flatMap(e => [e[0], e[1]])),
         new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35}));
     this.solid = new THREE.MeshStandardMaterial({
       color: 0xb9a58c,
@@ -71,6 +72,9 @@ export class Panel {
     this.scene.add(this.cloth, this.wires, this.group, sky, sun);
   }
 
+  /// Whether moving capsules are behind the cloth in most views.
+  hides(colliders) { return colliders.some(c => c.arrays.capsules); }
+
   static async load(motions, run) {
     const groups = run.colliders === undefined ? [] : motions.colliders[run.colliders];
     const [motion, colliders] = await Promise.all([Motion.load(run), load_colliders(groups)]);
@@ -84,8 +88,8 @@ export class Panel {
       const {low, high} = this.motion.box(frame);
       return new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high));
     };
-    const start = box(0), extent = start.getSize(new THREE.Vector3()),
-          near = start.clone().expandByScalar(0.6 * Math.max(...extent)), out = start.clone();
+    const start = box(0), extent = start.getSize(new THREE.Vector3()), near = start.clone().expandByScalar(0.6 * Math.max(...extent)),
+          out = start.clone();
     const add = other => {
       other.intersect(near);
       if (!other.isEmpty()) out.union(other);
@@ -117,10 +121,9 @@ export class Panel {
     for (const c of this.colliders) c.move?.(time);
     let greatest = null, crossing = 0;
     if (colouring === 'strain') strain(this.edges, position, this.value);
-    if (colouring === 'penetration') penetration(this.colliders, this.edges, position, this.value);
-    const colour = new THREE.Color(), out = geometry.attributes.color.array,
-          map = colouring === 'checks' ? this.checks : null;
-    if (this.cloth.material.map !== map) Object.assign(this.cloth.material, {map, needsUpdate: true});
+    if (colouring === 'penetration') penetration(this.colliders, this.edges, this.geometry.index.array, position, this.value);
+    const colour = new THREE.Color(), out = geometry.attributes.color.array;
+    this.cloth.material = colouring === 'checks' ? this.lit : this.unlit;
     for (let v = 0; v < motion.vertices; ++v) {
       if (colouring === 'checks')
         colour.set(0xffffff);
@@ -130,9 +133,7 @@ export class Panel {
           ++crossing;
         else
           greatest = Math.max(greatest ?? 0, x);
-        x < 0                                      ? colour.copy(kCrossing) :
-            colouring === 'penetration' && x === 0 ? colour.set(0xc9d1da) :
-                                                     ramp(x / most, colour);
+        x < 0 ? colour.copy(kCrossing) : colouring === 'penetration' && x === 0 ? colour.set(0xc9d1da) : ramp(x / most, colour);
       }
       colour.toArray(out, 3 * v);
     }
@@ -146,6 +147,6 @@ export class Panel {
       o.geometry?.dispose();
     });
     this.checks.dispose();
-    for (const m of [this.cloth.material, this.wires.material, this.solid]) m.dispose();
+    for (const m of [this.lit, this.unlit, this.wires.material, this.solid]) m.dispose();
   }
 }

@@ -4,9 +4,10 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
 import {element, say, select} from './dom.js';
 import {crossing_css, Panel, ramp_css} from './panel.js';
-import {on_theme, theme} from './theme.js';
 
 const kMostPanels = 6;
+const kFirst = ['push', 'stretch', 'sweep', 'drop'];  // scenes that show a difference at once
+const is_dark = () => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).every(c => Number(c) < 80);
 const kViews = {
   front: [0, 0.12, 1],
   top: [0, 1, 0.001],
@@ -26,10 +27,11 @@ const kWords = {
 };
 
 class Viewer {
-  constructor(root, motions) {
+  constructor(root, motions, results) {
     Object.assign(this, {
       root,
       motions,
+      results,
       panels: [],
       time: 0,
       end: 0,
@@ -48,9 +50,8 @@ class Viewer {
     try {
       this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
     } catch (error) {
-      this.stage.replaceWith(element(
-          'p', {class: 'warning'},
-          'Motions need WebGL, which this browser lacks or has disabled. The rest of the page is complete.'));
+      this.root.replaceChildren(element(
+          'p', {class: 'warning'}, 'Motions need WebGL, which this browser lacks or has disabled. The rest of the page is complete.'));
       this.broken = String(error);
       return;
     }
@@ -60,7 +61,8 @@ class Viewer {
     this.controls.addEventListener('change', () => Object.assign(this, {stale: true}));
     this.controls.enablePan = true;
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    on_theme(() => this.draw());  // at once: printing does not wait for a frame
+    addEventListener('theme', () => Object.assign(this, {stale: true}));
+    addEventListener('solvers', () => this.show_scene(this.scene));
     const frame = now => {
       this.tick(now);
       requestAnimationFrame(frame);
@@ -73,8 +75,7 @@ class Viewer {
     this.canvas = element('canvas', {
       role: 'img',
       tabindex: '0',
-      'aria-label':
-          'Motions side by side. Space: play or pause. Arrow keys: one frame. Home and End: first and last frame. ' +
+      'aria-label': 'Motions side by side. Space: play or pause. Arrow keys: one frame. Home and End: first and last frame. ' +
           'Drag: rotate.'
     });
     this.overlay = element('div', {class: 'panels'});
@@ -92,15 +93,10 @@ class Viewer {
     });
     this.clock = element('output', {id: 'clock'});
     this.legend = element('span', {class: 'bar'});
-    this.scene_list =
-        select('Scene, all solvers', scenes.map(s => ({value: s, text: s})), scenes[0], s => this.show_scene(s));
+    this.scene_list = select('Scene, all solvers', scenes.map(s => ({value: s, text: s})), scenes[0], s => this.show_scene(s));
     this.add_button = element('button', {type: 'button', onclick: () => this.add()}, 'Add a motion');
     const colouring = select(
-        'Colour',
-        [
-          {value: 'checks', text: 'checks'}, {value: 'strain', text: 'strain'},
-          {value: 'penetration', text: 'penetration'}
-        ],
+        'Colour', [{value: 'checks', text: 'checks'}, {value: 'strain', text: 'strain'}, {value: 'penetration', text: 'penetration'}],
         'checks', v => this.colour(v));
     this.colour_list = colouring.querySelector('select');
     this.lay_out(colouring);
@@ -122,7 +118,7 @@ class Viewer {
     };
     this.root.append(
         element(
-            'p', {class: 'soft'},
+            'p', {class: 'note'},
             'Positions from the result files, thinned and rounded to fit this page; the details are below. ' +
                 'Between stored frames, positions are interpolated linearly.'),
         element(
@@ -130,30 +126,29 @@ class Viewer {
             element(
                 'span', {class: 'bar', role: 'group', 'aria-label': 'View'},
                 Object.keys(kViews).map(
-                    v => element(
-                        'button', {type: 'button', onclick: () => this.view(v)}, v[0].toUpperCase() + v.slice(1)))),
+                    v => element('button', {type: 'button', onclick: () => this.view(v)}, v[0].toUpperCase() + v.slice(1)))),
             element('button', {type: 'button', onclick: () => this.picture()}, 'PNG')),
         element(
             'div', {class: 'bar'}, colouring, this.legend, toggle('colliders', 'colliders'), toggle('grid', 'wires'),
             toggle('follow', 'follow')),
-        this.stage,
+        this.stage, this.absent = element('p', {class: 'note'}),
         element(
             'div', {class: 'bar'}, this.play_button,
             element('button', {type: 'button', 'aria-label': 'One frame back', onclick: () => this.step(-1)}, '◂'),
-            element('button', {type: 'button', 'aria-label': 'One frame forward', onclick: () => this.step(1)}, '▸'),
-            this.scrub, this.clock,
+            element('button', {type: 'button', 'aria-label': 'One frame forward', onclick: () => this.step(1)}, '▸'), this.scrub,
+            this.clock,
             select(
                 'Speed', [0.1, 0.25, 0.5, 1, 2].map(v => ({value: String(v), text: `${v}×`})), '1',
                 v => Object.assign(this, {speed: Number(v)}))),
         element(
-            'details', {}, element('summary', {}, 'Thinning and colours'), this.notes = element('ul', {class: 'soft'}),
+            'details', {}, element('summary', {}, 'Thinning and colours'), this.notes = element('ul', {class: 'note'}),
             element(
-                'p', {class: 'soft'},
+                'p', {class: 'note'},
                 'Strain: greatest |length / rest − 1| of the edges along rows and columns at a vertex. Penetration: ' +
-                    'depth of the vertices in planes, spheres, boxes and capsules, without the margin; for meshes, ' +
+                    'depth in planes, spheres, boxes and capsules at vertices and at the middles of edges and triangles, without the margin; for meshes, ' +
                     'vertices with an edge that crosses the surface. Colours are computed from the rounded positions and ' +
                     'are approximate. The numbers under a motion and in the tables are computed from the full positions.'),
-            ...this.motions.left_out.map(t => element('p', {class: 'soft'}, `Left out: ${t}`))));
+            ...this.motions.left_out.map(t => element('p', {class: 'note'}, `Left out: ${t}`))));
   }
 
   key(e) {
@@ -172,13 +167,18 @@ class Viewer {
 
   /// All solvers on a scene, as many as fit; further settings only if there is room.
   async show_scene(scene) {
-    const runs = this.motions.runs.filter(c => c.scene === scene);
-    const first = runs.filter((c, k) => runs.findIndex(d => d.solver === c.solver) === k),
-          others = runs.filter(c => !first.includes(c));
+    this.scene = scene;
+    const off = window.clothbench.state?.off ?? new Set(), runs = this.motions.runs.filter(c => c.scene === scene && !off.has(c.solver));
+    const first = runs.filter((c, k) => runs.findIndex(d => d.solver === c.solver) === k), others = runs.filter(c => !first.includes(c));
     const list = this.scene_list.querySelector('select');
     list.value = scene;
     await this.set([...first, ...others].slice(0, Math.min(kMostPanels, Math.max(first.length, 2))));
     this.view('corner');
+    const shown_here = new Set(this.motions.runs.filter(c => c.scene === scene).map(c => c.solver));
+    this.absent.textContent =
+        [...new Map(this.results.filter(r => r.scene === scene && !shown_here.has(r.solver)).map(r => [r.solver, r])).values()]
+            .map(r => `${r.solver}: ${r.status === 'ok' ? 'its motion is not in this page' : r.status}`)
+            .join('; ');
     say(`${scene}: ${this.panels.length} motions`);
   }
 
@@ -194,8 +194,8 @@ class Viewer {
 
   async add() {
     const used = this.panels.map(p => p.motion.run);
-    const next = this.motions.runs.find(c => !used.includes(c) && c.scene === used[0]?.scene) ??
-        this.motions.runs.find(c => !used.includes(c));
+    const next =
+        this.motions.runs.find(c => !used.includes(c) && c.scene === used[0]?.scene) ?? this.motions.runs.find(c => !used.includes(c));
     if (next && this.panels.length < kMostPanels) await this.set([...used, next]);
   }
 
@@ -220,14 +220,12 @@ class Viewer {
       this.radius = Math.max(this.radius, box.getSize(new THREE.Vector3()).length() / 2);
     }
     this.colour(this.colouring);
-    const columns = this.columns = Math.min(
-              this.panels.length === 4 ? 2 : 3, this.panels.length,
-              Math.max(1, Math.floor(this.stage.clientWidth / 230))),
+    const columns = this.columns =
+              Math.min(this.panels.length === 4 ? 2 : 3, this.panels.length, Math.max(1, Math.floor(this.stage.clientWidth / 230))),
           rows = this.rows = Math.ceil(this.panels.length / Math.max(columns, 1));
     this.overlay.style.grid = `repeat(${rows}, 1fr) / repeat(${columns}, 1fr)`;
     this.overlay.replaceChildren(...this.panels.map((p, k) => this.label(p, k)));
-    this.notes.replaceChildren(
-        ...this.panels.map(p => element('li', {}, `${this.name(p.motion.run)}: ${p.motion.thinning()}.`)));
+    this.notes.replaceChildren(...this.panels.map(p => element('li', {}, `${this.name(p.motion.run)}: ${p.motion.thinning()}.`)));
     this.add_button.disabled = this.panels.length >= kMostPanels || this.panels.length >= this.motions.runs.length;
     this.resize();
   }
@@ -240,16 +238,12 @@ class Viewer {
               s => element(
                   'optgroup', {label: s},
                   runs.map(
-                      (c, n) => c.scene === s ?
-                          element('option', {value: String(n), selected: c === panel.motion.run}, this.name(c)) :
-                          null)));
-    const list = element(
-        'select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, runs[Number(list.value)])}, groups);
-    const close = element(
-        'button', {type: 'button', 'aria-label': `Remove motion ${k + 1}`, onclick: () => this.replace(k, null)}, '×');
+                      (c, n) =>
+                          c.scene === s ? element('option', {value: String(n), selected: c === panel.motion.run}, this.name(c)) : null)));
+    const list = element('select', {'aria-label': `Motion ${k + 1}`, onchange: () => this.replace(k, runs[Number(list.value)])}, groups);
+    const close = element('button', {type: 'button', 'aria-label': `Remove motion ${k + 1}`, onclick: () => this.replace(k, null)}, '×');
     panel.readout = element('output', {});
-    return element(
-        'div', {class: 'panel'}, element('div', {}, list, this.panels.length > 1 ? close : null), panel.readout);
+    return element('div', {class: 'panel'}, element('div', {}, list, this.panels.length > 1 ? close : null), panel.readout);
   }
 
   resize() {
@@ -279,31 +273,25 @@ class Viewer {
     this.legend.replaceChildren();
     if (kind === 'strain' && !this.chosen.strain) {
       // The least that holds nine of ten frames' greatest strain to a half.
-      const all = this.panels.flatMap(p => p.motion.run.metrics.stretch_max ?? [])
-                      .filter(v => v !== null)
-                      .sort((a, b) => a - b);
+      const all = this.panels.flatMap(p => p.motion.run.metrics.stretch_max ?? []).filter(v => v !== null).sort((a, b) => a - b);
       const most = all[Math.floor(0.9 * all.length)] ?? 0.05;
       this.most.strain = (kScales.strain.find(s => s.value >= most / 2) ?? kScales.strain.at(-1)).value;
     }
     if (kind !== 'checks') {
-      const scale = select(
-          '0 to', kScales[kind].map(s => ({value: String(s.value), text: s.text})), String(this.most[kind]), v => {
-            this.most[kind] = Number(v);
-            this.chosen[kind] = true;
-            this.stale = true;
-          });
+      const scale = select('0 to', kScales[kind].map(s => ({value: String(s.value), text: s.text})), String(this.most[kind]), v => {
+        this.most[kind] = Number(v);
+        this.chosen[kind] = true;
+        this.stale = true;
+      });
       this.legend.append(
-          element('span', {
-            class: 'ramp',
-            style: `background: ${ramp_css}`,
-            role: 'img',
-            'aria-label': 'colour ramp from dark violet to yellow'
-          }),
+          element(
+              'span',
+              {class: 'ramp', style: `background: ${ramp_css}`, role: 'img', 'aria-label': 'colour ramp from dark violet to yellow'}),
           scale);
       if (kind === 'penetration')
         this.legend.append(
             element('span', {class: 'ramp', style: `background: ${crossing_css}; width: .9rem`}),
-            element('span', {class: 'soft'}, 'crosses a mesh'));
+            element('span', {class: 'note'}, 'crosses a mesh'));
     }
     this.stale = true;
   }
@@ -356,8 +344,8 @@ class Viewer {
         p.scene.position.copy(this.middles[p.motion.run.scene]);
       p.group.visible = this.colliders;
       p.wires.visible = this.wires;
-      p.scene.background = new THREE.Color(theme() === 'dark' ? 0x1a2028 : 0xf2f4f6);
-      p.wires.material.color.set(theme() === 'dark' ? 0xffffff : 0x000000);
+      p.scene.background = new THREE.Color(is_dark() ? 0x1a2028 : 0xf2f4f6);
+      p.wires.material.color.set(is_dark() ? 0xffffff : 0x000000);
       p.readout.textContent = this.readout(p, shown);
       const x = (k % this.columns) * width, y = this.stage.clientHeight - (Math.floor(k / this.columns) + 1) * height;
       this.renderer.setViewport(x, y, width, height);
@@ -368,8 +356,7 @@ class Viewer {
 
   readout(panel, shown) {
     const {run} = panel.motion, [f] = panel.motion.place(this.time), words = [];
-    if (run.status !== 'ok')
-      words.push(run.failed_frame >= 0 ? `${run.status} at frame ${run.failed_frame}` : run.status);
+    if (run.status !== 'ok') words.push(run.failed_frame >= 0 ? `${run.status} at frame ${run.failed_frame}` : run.status);
     for (const [key, [word, text]] of Object.entries(kWords)) {
       const v = run.metrics[key]?.[f];
       if (v !== undefined && v !== null) words.push(`${word} ${text(v)}`);
@@ -380,19 +367,17 @@ class Viewer {
 
   picture() {
     this.draw();
-    const link = element(
-        'a',
-        {href: this.canvas.toDataURL('image/png'), download: `${this.panels[0]?.motion.run.scene ?? 'motion'}.png`});
+    const link = element('a', {href: this.canvas.toDataURL('image/png'), download: `${this.panels[0]?.motion.run.scene ?? 'motion'}.png`});
     link.click();
   }
 }
 
-export function start_viewer(root, motions) {
-  const viewer = new Viewer(root, motions);
+window.clothbench_viewer = (root, motions, rows) => {
+  const viewer = new Viewer(root, motions, rows);
   if (!viewer.broken) {
-    // The first scene with a collider shows most.
-    const run = motions.runs.find(c => c.colliders !== undefined && c.setting !== 'all-on') ?? motions.runs[0];
+    const touching = motions.runs.filter(c => c.colliders !== undefined && c.setting !== 'all-on');
+    const run = kFirst.map(word => touching.find(c => c.scene.includes(word))).find(Boolean) ?? touching[0] ?? motions.runs[0];
     viewer.ready = viewer.show_scene(run.scene);
   }
   return viewer;
-}
+};

@@ -1,0 +1,182 @@
+#include "report/frame_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "report/run_table.hpp"
+
+namespace clothbench {
+namespace {
+
+constexpr std::size_t kResamples = 400, kBlock = 16, kMinBlocks = 8, kMinFrames = 6;
+constexpr double kWide = 0.2;
+constexpr double kMeasurable_s = 2e-5;  // CPU time of shorter frames is mostly that of reading the clock
+
+/// SplitMix64: the same numbers on every machine.
+class Random {
+ public:
+  std::size_t below(std::size_t n) {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return static_cast<std::size_t>((z ^ (z >> 31)) % n);
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+using Series = std::vector<double>;
+
+Interval95 percentiles(Series estimates) {
+  std::sort(estimates.begin(), estimates.end());
+  return {quantile(estimates, 0.025), quantile(estimates, 0.975)};
+}
+
+/// Bootstrap over trials and blocks of their frames.
+class Bootstrap {
+ public:
+  explicit Bootstrap(const std::vector<Series>& trials) {
+    for (const Series& t : trials) {
+      if (t.empty()) continue;
+      const std::size_t length = std::clamp<std::size_t>(t.size() / kMinBlocks, 1, kBlock);
+      const std::size_t count = std::max<std::size_t>(1, t.size() / length), first = sum_.size();
+      sum_.resize(first + count);
+      frames_.resize(first + count);
+      for (std::size_t f = 0; f < t.size(); ++f) {
+        const std::size_t block = first + std::min(f / length, count - 1);  // the rest joins the last block
+        pooled_.emplace_back(t[f], block);
+        sum_[block] += t[f];
+        frames_[block] += 1;
+      }
+      trials_.emplace_back(first, count);
+    }
+    std::sort(pooled_.begin(), pooled_.end());
+  }
+
+  /// Calls `with(weights of the blocks)` and `trial(sum, frames)` for every trial drawn, `kResamples` times.
+  template <class With, class Trial>
+  void resample(With with, Trial trial) const {
+    Random random;
+    std::vector<std::size_t> weight(sum_.size());
+    for (std::size_t n = 0; n < kResamples; ++n) {
+      std::fill(weight.begin(), weight.end(), 0);
+      for (std::size_t t = 0; t < trials_.size(); ++t) {
+        const auto [first, count] = trials_[random.below(trials_.size())];
+        double sum = 0, frames = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t block = first + random.below(count);
+          ++weight[block];
+          sum += sum_[block];
+          frames += frames_[block];
+        }
+        trial(sum, frames);
+      }
+      with(weight);
+    }
+  }
+
+  bool enough() const { return pooled_.size() >= kMinFrames; }
+  const std::vector<std::pair<double, std::size_t>>& pooled() const { return pooled_; }
+
+ private:
+  std::vector<std::pair<double, std::size_t>> pooled_;       ///< (time, block), ascending
+  Series sum_, frames_;                                      ///< by block
+  std::vector<std::pair<std::size_t, std::size_t>> trials_;  ///< first block and their number
+};
+
+double weighted_median(const std::vector<std::pair<double, std::size_t>>& pooled, const std::vector<std::size_t>& w) {
+  std::size_t all = 0, below = 0;
+  for (const auto& [unused, block] : pooled) all += w[block];
+  for (const auto& [time, block] : pooled)
+    if (below += w[block]; 2 * below >= all) return time;
+  return kMissing;
+}
+
+FrameTimes pooled(const std::vector<Series>& trials) {
+  FrameTimes out;
+  for (const Series& t : trials) out.sorted.insert(out.sorted.end(), t.begin(), t.end());
+  std::sort(out.sorted.begin(), out.sorted.end());
+  const Bootstrap b(trials);
+  if (!b.enough()) return out;
+  Series medians;
+  b.resample([&](const auto& weight) { medians.push_back(weighted_median(b.pooled(), weight)); },
+             [](double, double) {});
+  out.median = percentiles(std::move(medians));
+  return out;
+}
+
+Interval95 rate_of(const std::vector<Series>& trials) {
+  const Bootstrap b(trials);
+  if (!b.enough()) return {};
+  Series rates, drawn;
+  b.resample(
+      [&](const auto&) {
+        std::sort(drawn.begin(), drawn.end());
+        rates.push_back(middle(drawn));
+        drawn.clear();
+      },
+      [&](double sum, double frames) { drawn.push_back(frames / sum); });
+  return percentiles(std::move(rates));
+}
+
+/// The finite times of each trial; only those of frames with contact if `contact` is not empty.
+std::vector<Series> trials_of(const RunRecord& c, Series TimedTrial::*clock, const std::vector<bool>& contact = {}) {
+  std::vector<Series> out;
+  for (const TimedTrial& t : c.trials) {
+    Series kept;
+    for (std::size_t f = 0; f < (t.*clock).size(); ++f)
+      if (std::isfinite((t.*clock)[f]) && (contact.empty() || (f + 1 < contact.size() && contact[f + 1])))
+        kept.push_back((t.*clock)[f]);
+    out.push_back(std::move(kept));
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* const kIntervalMethod =
+    "In brackets: 95 % interval of the median, by a bootstrap over trials and blocks of at most 16 consecutive frames "
+    "(400 resamples); one trial has no variation between trials in it. ~: the interval is wider than 20 % of the "
+    "median, so the run is not ranked.";
+
+double FrameTimes::at(double q) const { return quantile(sorted, q); }
+
+double FrameTimes::missed(double rate_hz) const {
+  if (sorted.empty()) return kMissing;
+  const auto late = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), 1 / rate_hz);
+  return static_cast<double>(late) / static_cast<double>(sorted.size());
+}
+
+bool RunTimes::uncertain() const { return wall.median.high - wall.median.low > kWide * wall.at(0.5); }
+
+std::vector<bool> frames_with_contact(const RunRecord& c) {
+  std::vector<bool> out;
+  for (const MetricSeries& m : c.accuracy.metrics) {
+    if (m.name != "touching_fraction" && m.name != "contact_length_m" && m.name != "depth_m" &&
+        m.name != "self_contact_length_m")
+      continue;
+    out.resize(std::max(out.size(), m.values.size()));
+    for (std::size_t f = 0; f < m.values.size(); ++f) out[f] = out[f] || m.values[f] > 0;
+  }
+  return out;
+}
+
+RunTimes times_of(const RunRecord& c) {
+  RunTimes out;
+  const std::vector<Series> wall = trials_of(c, &TimedTrial::frame_wall_s);
+  out.wall = pooled(wall);
+  out.device = pooled(trials_of(c, &TimedTrial::frame_device_s));
+  out.rate = rate_of(wall);
+  const double cpu_s = summary_value(c, "frame_cpu_median_s");
+  if (cpu_s > kMeasurable_s) out.threads = std::max(1.0, std::round(cpu_s / out.wall.at(0.5)));
+  if (const std::vector<bool> contact = frames_with_contact(c); !contact.empty()) {
+    out.contact_wall = pooled(trials_of(c, &TimedTrial::frame_wall_s, contact));
+    out.contact_device = pooled(trials_of(c, &TimedTrial::frame_device_s, contact));
+  }
+  return out;
+}
+
+}  // namespace clothbench
