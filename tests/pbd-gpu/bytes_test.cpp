@@ -33,11 +33,11 @@ std::vector<Row> rows() {
           {"xpbd", sheet(33, 9), {{"substeps", 2}, {"tuning", {{"splitting_correction", "always"}}}}},
           {"xpbd", with_pins(bent), {{"substeps", 2}}, false},
           {"xpbd", mesh, springs},
-          {"xpbd", bending_mesh, springs},
-          {"xpbd", bending_mesh, {{"substeps", 2}}},
+          {"xpbd", bending_mesh, springs, false},
+          {"xpbd", bending_mesh, {{"substeps", 2}}, false},
           {"xpbd", with_pins(uneven(sheet(17, 9), 3, 1e-3)), {{"substeps", 2}}, false},
-          {"xpbd", everything(with_pins(sheet(9, 7))), {{"substeps", 2}}},
-          {"xpbd", folded(with_pins(sheet(9, 7))), {{"substeps", 1}}},
+          {"xpbd", everything(with_pins(sheet(9, 7))), {{"substeps", 2}}, false},
+          {"xpbd", folded(with_pins(sheet(9, 7))), {{"substeps", 1}}, false},
           {"xpbd", with_collider(mesh_sheet(9), sphere({0, -0.1, 0}, 0.08)), {{"substeps", 2}}, false}};
 }
 
