@@ -122,6 +122,18 @@ double draw_fold(json& scene, DrawnValues& draw) {
   return after_fall(0, height);
 }
 
+/// Each range is a dotted key of the scene. A range of positive numbers that spans a decade or more is sampled by its
+/// logarithm, because stiffness, density and size have no natural scale.
+double draw_keys(json& scene, DrawnValues& draw) {
+  constexpr double kDecade = 10;
+  for (const std::string& key : draw.names()) {
+    const auto [low, high] = draw.bounds(key);
+    const double x = low > 0 && high >= kDecade * low ? draw.log_between(key) : draw.between(key);
+    apply_override(scene, key + "=" + json(x).dump(), draw.at());
+  }
+  return 0;
+}
+
 double draw_crumple(json& scene, DrawnValues& draw) {
   const double height = draw.between("height_m"), thrown = draw.between("throw_m_per_s"),
                yaw = draw.between("yaw_deg") * pi / 180;
@@ -197,8 +209,10 @@ ContactDrawer::~ContactDrawer() = default;
 json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std::uint64_t seed) {
   DrawnValues draw(Dice(seed, kind.name), kind.ranges, kind.at + "/ranges");
   json scene = kind.base;
-  const int grid = draw.whole("grid");
-  scene["cloth"]["grid"] = {grid, grid};
+  if (kind.how != "keys") {
+    const int grid = draw.whole("grid");
+    scene["cloth"]["grid"] = {grid, grid};
+  }
   double speed = 0;
   if (kind.how == "desk") {
     if (!tables_) {
@@ -208,8 +222,8 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
     speed = tables_->draw(scene, draw);
   } else {
     static constexpr std::pair<const char*, double (*)(json&, DrawnValues&)> kHow[] = {
-        {"shape", draw_shape},     {"sweep", draw_sweep}, {"push", draw_push},
-        {"stretch", draw_stretch}, {"fold", draw_fold},   {"crumple", draw_crumple}};
+        {"shape", draw_shape}, {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
+        {"fold", draw_fold},   {"crumple", draw_crumple}, {"keys", draw_keys}};
     const auto how = std::find_if(std::begin(kHow), std::end(kHow), [&](const auto& h) { return kind.how == h.first; });
     if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": nothing draws that");
     speed = how->second(scene, draw);
@@ -240,7 +254,7 @@ Vec3 euler_deg(const std::array<Vec3, 3>& m) {
 DrawnValues::DrawnValues(Dice dice, const json& ranges, std::string at)
     : dice_(std::move(dice)), ranges_(ranges), at_(std::move(at)) {}
 
-std::array<double, 2> DrawnValues::range(const std::string& name) {
+std::array<double, 2> DrawnValues::bounds(const std::string& name) {
   if (!ranges_.contains(name)) throw Error(fmt::format("{}: \"{}\" is missing", at_, name));
   used_.insert(name);
   const std::array<double, 2> r = {ranges_[name][0].get<double>(), ranges_[name][1].get<double>()};
@@ -249,14 +263,14 @@ std::array<double, 2> DrawnValues::range(const std::string& name) {
 }
 
 double DrawnValues::between(const std::string& name, const std::string& as) {
-  const auto [low, high] = range(name);
+  const auto [low, high] = bounds(name);
   const double x = rounded(dice_.between(low, high));
   note(as, x);
   return x;
 }
 
 double DrawnValues::log_between(const std::string& name) {
-  const auto [low, high] = range(name);
+  const auto [low, high] = bounds(name);
   if (!(low > 0)) throw Error(fmt::format("{}/{}: expected a range above 0", at_, name));
   const double x = rounded(dice_.log_between(low, high));
   note(name, x);
@@ -264,12 +278,18 @@ double DrawnValues::log_between(const std::string& name) {
 }
 
 int DrawnValues::whole(const std::string& name) {
-  const auto [low, high] = range(name);
+  const auto [low, high] = bounds(name);
   if (low != std::floor(low) || high != std::floor(high))
     throw Error(fmt::format("{}/{}: expected whole numbers", at_, name));
   const int x = dice_.whole(static_cast<int>(low), static_cast<int>(high));
   note(name, x);
   return x;
+}
+
+std::vector<std::string> DrawnValues::names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, unused] : ranges_.items()) out.push_back(name);
+  return out;
 }
 
 void DrawnValues::check_all_used() const {

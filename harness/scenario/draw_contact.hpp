@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "assets/assets.hpp"
 #include "base/dice.hpp"
@@ -43,6 +44,7 @@ class ContactDrawer {
   ///   push     a hand's pose, orientation, way, depth and the durations of push and hold
   ///   stretch  speed and way of two hands, and where they hold the cloth
   ///   fold     radius, height, thickness and unevenness of a cloth folded over
+  ///   keys     any numbers of the scene, each range named by its dotted key; the scene's grid stays
   ///   crumple  height, throw, thickness and unevenness of a cloth that stands on edge
   /// Hands come, leave and stay away for 1 s. Drops have a floor 1 m below. Hands and grips of more than 5 m/s have
   /// shorter frames: a hand moves by at most 70 mm in one. Throws Error naming a range that is missing, unknown or
@@ -67,6 +69,11 @@ class DrawnValues {
   double log_between(const std::string& range);
   int whole(const std::string& range);
 
+  /// Lower and upper bound of a range. Throws Error if it is missing or empty.
+  std::array<double, 2> bounds(const std::string& name);
+  std::vector<std::string> names() const;
+  const std::string& at() const { return at_; }
+
   void note(const std::string& name, nlohmann::json value) { values_[name] = std::move(value); }
   Dice& dice() { return dice_; }
   const nlohmann::json& values() const { return values_; }
@@ -74,8 +81,6 @@ class DrawnValues {
   void check_all_used() const;
 
  private:
-  std::array<double, 2> range(const std::string& name);
-
   Dice dice_;
   const nlohmann::json& ranges_;
   const std::string at_;
