@@ -167,7 +167,7 @@ void add_outputs(std::vector<Fault>& f) {
   state("positions in whole millimetres", "fall", [](int, ClothState& s) {
     for (double& x : s.position) x = std::round(x * 1e3) / 1e3;
   });
-  state("velocities not written", "swing",
+  state("velocities not written", "undamped",
         [](int, ClothState& s) { std::fill(s.velocity.begin(), s.velocity.end(), 0.0); });
   Fault gave_up{"gives up at frame 10", "fall"};
   gave_up.status = [](int frame) { return frame == 10 ? StepStatus::Diverged : StepStatus::Ok; };

@@ -115,6 +115,9 @@ double down(int frame, double from, double to, int frames) { return -(from + (to
 std::vector<Stage> stages() {
   std::vector<Stage> out;
   out.push_back(solved("fall", load_scene("paper/gravity", {"cloth.grid=[9,9]", "time.duration_s=0.75"}), 2));
+  out.push_back(
+      solved("undamped",
+             load_scene("paper/gravity", {"cloth.grid=[9,9]", "time.duration_s=0.5", "material.damping_per_s=0"}), 2));
   out.push_back(solved("swing", load_scene("validation/swing-strip")));
   out.push_back(solved("cantilever", load_scene("validation/cantilever-10", {"time.duration_s=2"})));
   out.push_back(solved("heavy", load_scene("validation/heavy-strip", {"time.duration_s=2"})));

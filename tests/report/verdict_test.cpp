@@ -55,7 +55,7 @@ TEST(Verdict, ASolverWithoutContactPassesNothingAnywhere) {
   const std::vector<RunRecord> runs = {without_contact()};
   EXPECT_EQ(verdict(runs[0]), "ignored");
   EXPECT_EQ(count_verdicts(runs).text(), "0 of 1 runs passed, 1 ignored contact");
-  EXPECT_EQ(in_short_table(runs).rows[1][3], "ignored");
+  EXPECT_EQ(in_short_table(runs).rows[1][2], "ignored");
   EXPECT_EQ(table_of(runs, "Randomly generated contact scenes: pass rate by speed [m/s]").rows[1].back().substr(0, 3),
             "0/1");
   EXPECT_EQ(runs_json(runs)[0]["verdict"], "ignored");
