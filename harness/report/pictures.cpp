@@ -83,7 +83,8 @@ bool draw_png(const fs::path& folder) {
   const auto convert = [](fs::path file, const std::string& kind, const std::string& options) {
     const fs::path to = fs::path(file).replace_extension(kind);
     // A PDF file states when it was made; the same runs are to give the same file.
-    return runs(fmt::format("SOURCE_DATE_EPOCH=0 rsvg-convert {} {} -o {} 2>/dev/null", options, quoted(file), quoted(to)));
+    return runs(
+        fmt::format("SOURCE_DATE_EPOCH=0 rsvg-convert {} {} -o {} 2>/dev/null", options, quoted(file), quoted(to)));
   };
   const bool drawn = std::all_of(svg.begin(), svg.end(), [&](const fs::path& file) {
     return convert(file, ".pdf", "--format pdf") &&

@@ -203,7 +203,7 @@ View other_clocks() {
       "CPU: sum over a solver's threads. Pipelined: two frames in flight, median of the trials' means; –: the solver "
       "waits for each frame. Rendered: a frame and the images for both eyes, one after the other; the paper's rates "
       "include rendering. Load: once, before the first frame.",
-      [](const Row& r) { return r.published < 0; }};
+      [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   const auto ms = [](const char* head, const char* name) {
     return column(head, [name](const Row& r) { return milliseconds(r.value(name)); });

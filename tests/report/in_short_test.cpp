@@ -27,8 +27,8 @@ TEST(InShort, TheFastestFirstAndWhatDidNotRunLast) {
                                   run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})});
   ASSERT_EQ(t.rows.size(), 5u);
   using Cells = std::vector<std::string>;
-  EXPECT_EQ(t.rows[1],
-            (Cells{"drop", "quick", "ok", "–", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0.00 / 0.00", "3", "0.500×"}));
+  EXPECT_EQ(t.rows[1], (Cells{"drop", "quick", "ok", "–", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0.00 / 0.00", "3",
+                              "0.500×"}));
   EXPECT_EQ(t.rows[2][8], "1.00×") << "relative to bullet-soft, not to the fastest";
   EXPECT_EQ(t.rows[3][2] + " " + t.rows[3][8], "fail not ranked");
   EXPECT_EQ(t.rows[4], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "0", "–"}));

@@ -42,7 +42,8 @@ std::vector<RunRecord> study() {
 
 TEST(Tables, PublishedColumnsStandBesideOurs) {
   const Table t = table_of(study(), kCapped);
-  EXPECT_EQ(entry(t, "published: PBD single-sided", "72", "128²"), "42");
+  std::cout << t.markdown();
+  EXPECT_EQ(entry(t, "published: PBD single-sided", "single", "128²"), "42");
   EXPECT_EQ(entry(t, "published: PBD double-sided", "double-duplicated", "128²"), "16");
   EXPECT_EQ(entry(t, "published: Unity Cloth", "–", "8²"), "72");
   EXPECT_EQ(entry(t, "xpbd", "single", "8²"), "72.0");
@@ -353,7 +354,7 @@ TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
   const Table t = table_of(runs, "Table 3: speed and error");
   EXPECT_EQ(entry(t, "xpbd", "10.0k", "128²"), "50.0");
   EXPECT_EQ(entry(t, "xpbd", "10.0k", "free-fall error"), "7.4e-01 !") << "a rate without meaning is marked";
-  EXPECT_EQ(entry(t, "published: PBD single-sided", "single", "128²"), "42");
+  EXPECT_EQ(entry(t, "published: PBD single-sided", "72", "128²"), "42");
   const Table all = table_of(runs, "All solvers in one table");
   EXPECT_EQ(entry(all, "xpbd", "50.0", "device"), "Fake GPU");
   EXPECT_EQ(entry(all, "bullet-soft", "1000", "device"), "CPU");
