@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "gpu_fixture.hpp"
+#include "metrics/truth_errors.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -124,6 +126,16 @@ TEST_F(Gpu, UniaxialStiffnessIsYOnSquareAndOblongCells) {
     const std::size_t middle_of_last_row = 3 * (32 * 9 + 4) + 1;
     // The clamped edge cannot contract sideways, which stiffens the first few cells; hence 5 %.
     EXPECT_NEAR(-(state.position[middle_of_last_row] + 0.5), expected, 0.05 * expected) << cell_ratio;
+  }
+}
+
+/// Tethers must not carry the load of elastic cloth, however short its stiff links stretch.
+TEST_F(Gpu, StiffStripsHangByTheirLinks) {
+  for (const char* Y : {"1000", "30000", "300000"}) {
+    const Scene s = load_scene("validation/heavy-strip", {std::string("material.membrane_stiffness_N_per_m=") + Y});
+    const auto solver = make("xpbd");
+    solver->load(s);
+    EXPECT_LE(TruthJudge(s).judge(s.time.frames(), after(*solver, s, s.time.frames())).quantity_error, 0.01) << Y;
   }
 }
 
