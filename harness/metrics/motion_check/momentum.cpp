@@ -24,7 +24,7 @@ constexpr std::size_t kWindow = 12;
 /// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
 /// Of cloth that slides steadily on a face: change of the normal force, and what is left over friction [weights].
-constexpr double kSteady = 0.05, kSliding = 0.015, kFrictionShare = 0.02;
+constexpr double kSteady = 0.05, kSliding = 0.03, kFrictionShare = 0.05;
 /// Intervals over which sliding is averaged.
 constexpr std::size_t kSlidingSpans[] = {4, 12};
 
@@ -301,7 +301,8 @@ Momentum::Slip Momentum::slip_of(std::size_t k) const {
   out.slides = true;
   std::vector<V3> ways;
   for (std::size_t v = 0; v < m_.vertices; ++v) {
-    if (!bodies_.touched(k, v)) continue;
+    // A sheet that lies on the face as a whole; a heap moves inside itself, and its contacts slide in turns.
+    if (!bodies_.touched(k, v)) return {};
     for (const V3& way : {V3(m_.at(k, v) - m_.at(k - 1, v)), V3(m_.at(k + 1, v) - m_.at(k, v))}) {
       const V3 along = way - way.dot(up) * up;
       out.slides = out.slides && along.norm() > stops_m;
