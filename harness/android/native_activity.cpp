@@ -16,6 +16,7 @@
 #include "android/packed_assets.hpp"
 #include "android/session.hpp"
 #include "android/stdout_tap.hpp"
+#include "base/plugin_environment.hpp"
 #include "cli/command_line.hpp"
 #ifdef CLOTHBENCH_WITH_XR
 #include "xr/instance.hpp"
@@ -96,6 +97,8 @@ std::optional<std::string> read_asset(AAssetManager* manager, const std::string&
 void prepare(ANativeActivity* a, const std::string& files) {
   const std::filesystem::path packed = std::filesystem::path(a->internalDataPath) / "packed";
   unpack_assets([a](const std::string& path) { return read_asset(a->assetManager, path); }, packed);
+  // An app is a library in a process of the system: there is no program to start as a worker.
+  run_solvers_in_process();
   setenv("CLOTHBENCH_SCENARIOS", (packed / "scenarios").c_str(), 1);
   if (std::filesystem::exists(packed / "assets")) setenv("CLOTHBENCH_ASSETS", (packed / "assets").c_str(), 1);
   std::filesystem::create_directories(files);
