@@ -165,9 +165,9 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   if (laid && !driven && !shears && !tethered) per_frame = std::max(per_frame, substeps_for_sliding_strip(scene, k));
   if (scene.needs.has(Feature::SelfCollision) && laid) per_frame *= kLayers;
   if (scene.needs.has(Feature::SelfCollision) && fast) per_frame = std::max(per_frame, substeps_for_layers(scene));
-  if (const double needed = std::ceil(substeps_for_splitting(scene));
-      needed <= max_substeps_for_splitting(links, k) && needed > per_frame)
-    if (may_correct_splitting(scene, settings).enabled) per_frame = needed;
+  if (may_correct_splitting(scene, settings).enabled)
+    if (const double needed = std::ceil(substeps_for_splitting(scene)); needed <= max_substeps_for_splitting(links, k))
+      per_frame = std::max(per_frame, needed);
   const double for_speed = fast ? substeps_for_speed(scene, k) : 1;
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
