@@ -10,6 +10,7 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "report/run_table.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {
@@ -126,6 +127,9 @@ class Check {
 
   void add_new(const RunKey& key, const RunRecord& r) {
     std::vector<Finding> findings = motion_findings(r);
+    const std::string motion = kExpect + "motion";
+    if (const auto at = r.summary.find(motion); at != r.summary.end() && !(at->second == 1))
+      findings.push_back({Verdict::Failed, motion, "–", "fail", "", r.outcome.expect});
     findings.push_back({Verdict::New, "run", "–", outcome_of(r), "", "not in the baseline; --update adds it"});
     add(key, std::move(findings));
   }
@@ -179,7 +183,8 @@ void add_conditions(const Pair& p, const std::vector<std::string>& allowed, Chec
   for (const auto* side : {&p.a, &p.b})
     for (const RunRecord* r : *side)
       for (ConditionDifference d : differences(conditions, conditions_of(*r))) {
-        if (d.kind == "scene") d.what += " (" + scene_difference(first, *r) + ")";
+        if (const std::string keys = d.kind == "scene" ? scene_difference(first, *r) : ""; !keys.empty())
+          d.what += " (" + keys + ")";
         differing.add(p.key.file_name(), d);
         if (!contains(kinds, d.kind)) kinds.push_back(d.kind);
       }
@@ -190,6 +195,14 @@ void add_conditions(const Pair& p, const std::vector<std::string>& allowed, Chec
     run.in_turns = true;
   }
   run.marks = joined(kinds);
+}
+
+/// A file whose positions are damaged proves nothing about a build.
+void require_motions(const Pair& p) {
+  for (const auto* side : {&p.a, &p.b})
+    for (const RunRecord* r : *side)
+      if (const std::string fault = r->file.empty() ? "" : trajectory_fault(r->file); !fault.empty())
+        throw Error(fmt::format("{}: {}; repeat the run", r->file, fault));
 }
 
 double median(std::vector<double> times) {
@@ -282,6 +295,7 @@ Checked compare_processes(const Processes& a, const Processes& b, const std::vec
     if (!p.a.empty() && !p.b.empty()) add_conditions(p, allowed, run, out.differing);
   }
   out.differing.refuse("A", "B");
+  for (const Pair& p : pairs) require_motions(p);
   for (std::size_t k = 0; k < pairs.size(); ++k) compare_pair(pairs[k], out.runs[k]);
   return out;
 }

@@ -150,6 +150,8 @@ TEST_F(CheckCommand, PositionsAreLookedAt) {
     EXPECT_NE(text_.find("is not finite"), std::string::npos) << text_;
     EXPECT_NE(text_.find("sweep__xpbd__default"), std::string::npos) << text_;
     EXPECT_EQ(check("--update"), 2) << "no baseline of it";
+    EXPECT_EQ(command("compare " + run().string() + " " + run().string()), 2) << text_;
+    EXPECT_NE(text_.find("is not finite"), std::string::npos) << text_;
   }
   write({});
   EXPECT_EQ(check(), 2) << text_;

@@ -209,6 +209,9 @@ TEST(Check, MissingRunsFailNewOnesDoNot) {
   EXPECT_TRUE(more.passed());
   EXPECT_EQ(more.count(Verdict::New), 1u);
   EXPECT_EQ(more.count(Verdict::Same), 2u);
+  EXPECT_TRUE(check_runs(baseline_of({a}), {a, with(b, "expect.motion", 1)}).passed());
+  for (const double motion : {0.0, kMissing})
+    EXPECT_FALSE(check_runs(baseline_of({a}), {a, with(b, "expect.motion", motion)}).passed()) << "impossible";
 
   EXPECT_FALSE(check_runs(baseline_of({a}), {}).passed());
   EXPECT_NE(error_of([&] { check_runs(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
