@@ -92,26 +92,27 @@ VerdictCounts verdicts_in(const std::filesystem::path& out) {
   return count_verdicts(runs);
 }
 
-/// Summaries of a study whose runs are apart: verdicts of drawn scenes, else stability grades.
+/// Summaries of a study whose runs are apart: verdicts, and stability grades unless its scenes are drawn.
 void summarise_apart(const RunResult& r, bool drawn, StudyEnd& end) {
   const Grades n = r.grades;
   const std::filesystem::path out = end.out;
-  if (drawn) {
-    end.json = [=] {
-      const VerdictCounts counts = verdicts_in(out);
-      return nlohmann::json{{"out", out.string()}, {"passed", counts.passed}, {"runs", counts.runs}};
-    };
-    end.text = [=] { return fmt::format("\n{}; results in {}\n", verdicts_in(out).text(), out.string()); };
-    return;
-  }
   end.json = [=] {
-    return nlohmann::json{{"out", out.string()}, {"stable", n.stable},           {"degraded", n.degraded},
-                          {"failed", n.failed},  {"unsupported", n.unsupported}, {"crashed", n.crashed}};
+    const VerdictCounts counts = verdicts_in(out);
+    nlohmann::json j = {{"out", out.string()}, {"passed", counts.passed}, {"runs", counts.runs}};
+    if (!drawn)
+      j.update({{"stable", n.stable},
+                {"degraded", n.degraded},
+                {"failed", n.failed},
+                {"unsupported", n.unsupported},
+                {"crashed", n.crashed}});
+    return j;
   };
   end.text = [=] {
-    return fmt::format(
-        "\n{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; results in {}\n",
-        n.stable, n.degraded, n.failed, n.crashed, n.unsupported, out.string());
+    const std::string grades =
+        drawn ? ""
+              : fmt::format("{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; ",
+                            n.stable, n.degraded, n.failed, n.crashed, n.unsupported);
+    return fmt::format("\n{}{}; results in {}\n", grades, verdicts_in(out).text(), out.string());
   };
 }
 

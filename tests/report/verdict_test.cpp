@@ -76,6 +76,9 @@ TEST(Verdict, AScenesOutcomeAloneIsNoBound) {
   RunRecord ended = judged("a", true, R"({"colliders":[{"type":"sphere"}],"expect":{"outcome":"ok"}})");
   ended.summary = {{"expect.outcome", 1}};
   EXPECT_EQ(bounds_of(ended), 0u);
+  RunRecord crashed = with_outcome(judged("b", true, R"({"cloth":{},"truth":{"case":"free-fall"}})"), "crashed", 4, "");
+  crashed.summary.clear();
+  EXPECT_EQ(count_verdicts({crashed}).text(), "0 of 1 runs passed, 1 failed") << "it has no motion that is right";
   RunRecord missing = judged("c", true);
   missing.outcome.status = "missing";
   EXPECT_EQ(count_verdicts({ended, missing, judged("d", true)}).text(), "1 of 1 runs passed");
