@@ -13,8 +13,13 @@
 namespace clothbench {
 namespace {
 
+/// A path at which no file can be is a wrong argument; a full or broken disk is not.
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
-  throw Error(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)), ExitCode::CheckFailed);
+  const int why = errno;
+  const bool wrong_path = why == ENOENT || why == ENOTDIR || why == EISDIR || why == ENAMETOOLONG || why == EACCES ||
+                          why == EROFS || why == EPERM;
+  throw Error(fmt::format("{}: {}: {}", path.string(), what, std::strerror(why)),
+              wrong_path ? ExitCode::BadInput : ExitCode::CheckFailed);
 }
 
 /// A file descriptor that closes itself.
@@ -60,19 +65,19 @@ void write_file_atomically(const std::filesystem::path& path, const std::string&
   const std::filesystem::path temporary = temporary_name(path);
   try {
     const Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-    if (file.get() < 0) fail(temporary, "cannot be created");
+    if (file.get() < 0) fail(path, "cannot be created");
     for (std::size_t at = 0; at < content.size();) {
       const ssize_t n = write(file.get(), content.data() + at, content.size() - at);
       if (n < 0 && errno == EINTR) continue;
-      if (n < 0) fail(temporary, "cannot be written");
+      if (n < 0) fail(path, "cannot be written");
       at += static_cast<std::size_t>(n);
     }
+    publish(temporary, path);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
     throw;
   }
-  publish(temporary, path);
 }
 
 }  // namespace clothbench

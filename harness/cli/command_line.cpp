@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/plugin_environment.hpp"
 #include "base/tint.hpp"
@@ -76,10 +77,14 @@ int run_command_line(const std::vector<std::string>& words) {
     // CLI11 takes the words last first.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
     suggest_command(app, words);
-    return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
+    console.json = contains(words, "--json");  // not every word was read
+    return report_error(console, std::string(e.what()) + "; --help explains", ExitCode::BadInput);
   } catch (const Error& e) {
     return report_error(console, e.what(), e.code());
+  } catch (const std::filesystem::filesystem_error& e) {  // of a path that the user gave
+    return report_error(console, e.path1().string() + ": " + e.code().message(), ExitCode::BadInput);
   } catch (const std::exception& e) {
     return report_error(console, std::string("internal error: ") + e.what(), ExitCode::CheckFailed);
   }

@@ -1,8 +1,19 @@
 #include "base/tint.hpp"
 #include "cli/command.hpp"
+#include "results/result_folder.hpp"
+#include "runner/study_plan.hpp"
 #include "scenario/study.hpp"
 
 namespace clothbench {
+namespace {
+
+void validate(const std::string& file) {
+  if (!is_study(file)) return static_cast<void>(load_scene(file));
+  const Study study = load_study(file);
+  for (const std::string& run : run_names(plan_study(study))) require_short_name(".", run);
+}
+
+}  // namespace
 
 void add_validate(CLI::App& app, Console& console) {
   auto& files = console.arguments<std::vector<std::string>>();
@@ -16,10 +27,7 @@ void add_validate(CLI::App& app, Console& console) {
     for (const std::string& file : files) {
       std::string fault;
       try {
-        if (is_study(file))
-          load_study(file);
-        else
-          load_scene(file);
+        validate(file);
       } catch (const Error& e) {
         fault = message_of(e.what());
         console.exit_code = ExitCode::BadInput;

@@ -80,9 +80,7 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   const auto write = [&](const std::string& name, const std::string& text) {
     write_file_atomically(options.out / name, text);
   };
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error) throw Error(options.out.string() + ": cannot be made a folder: " + error.message());
+  fs::create_directories(options.out);
   write("runs.csv", runs_csv(table));
   write("runs.json", runs_json(table.runs()).dump(1) + "\n");
   write("series.csv", series_csv(table));

@@ -42,6 +42,24 @@ TEST_F(Out, ThatCannotBeAFolderExitsTwo) {
   EXPECT_EQ(text, "mine");
 }
 
+TEST_F(Out, OfOtherCommandsThatCannotBeMadeExitsTwo) {
+  std::ofstream(dir_ / "file") << "mine";
+  const std::string file = (dir_ / "file").string(), results = (dir_ / "out").string();
+  ASSERT_EQ(run(results, "--set time.duration_s=0.1").code, 0);
+  for (const std::string& arguments :
+       {"report " + results + " -o " + file, "render " + results + " --frames 0 --no-movie -o " + file,
+        "compare " + results + " " + results + " --markdown " + dir_.string(),
+        "check " + results + " --update --baseline " + file + "/b.json",
+        "check " + results + " --baseline " + std::string(300, 'x')}) {
+    const Answer a = command(arguments);
+    EXPECT_EQ(a.code, 2) << arguments << ": " << a.text;
+    EXPECT_EQ(a.text.find("internal error"), std::string::npos) << a.text;
+  }
+  for (const fs::path& folder : {dir_, dir_.parent_path()})
+    for (const auto& entry : fs::directory_iterator(folder))
+      EXPECT_FALSE(entry.path().string().starts_with(dir_.string() + ".tmp.")) << "left behind";
+}
+
 TEST_F(Out, OfTwoCommandsAtOnceTheSecondIsRefused) {
   const std::string out = (dir_ / "out").string();
   Answer first;
@@ -61,6 +79,17 @@ TEST_F(Out, NamesTooLongForFilesExitTwo) {
   const Answer a = run((dir_ / "out").string(), "--set name=" + std::string(120, 'a'));
   EXPECT_EQ(a.code, 2) << a.text;
   EXPECT_NE(a.text.find("/name: 120 characters"), std::string::npos) << a.text;
+  const std::string study = (dir_ / "study.json").string();
+  std::ofstream(study) << R"({"name":"long","why":"A label too long.","protocol":"fps","trials":1,"scenes":[{"file":")"
+                       << CLOTHBENCH_SOURCE_DIR
+                       << R"(/scenarios/paper/gravity.json"}],"solvers":[{"solver":"ballistic",)"
+                       << R"("label":")" << std::string(250, 'a') << R"("}],)"
+                       << R"("rules":{"frames":1,"max_wall_s":0,"min_frames":1,"warmup_s":0}})";
+  for (const std::string& arguments : {"validate " + study, "study " + study + " --out " + (dir_ / "out").string()}) {
+    const Answer b = command(arguments);
+    EXPECT_EQ(b.code, 2) << b.text;
+    EXPECT_NE(b.text.find("the names of its result files would have"), std::string::npos) << b.text;
+  }
 }
 
 TEST_F(Out, MoreRunsThanAStudyMayHaveExitTwo) {
