@@ -100,9 +100,6 @@ class MeshReader {
   void primitive(const tinygltf::Primitive& p, const Eigen::Affine3d& place, const std::vector<double>& weights,
                  const std::string& where) {
     if (p.mode != TINYGLTF_MODE_TRIANGLES) fail(source_, where + "/mode: expected triangles");
-    for (const char* compressed : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
-      if (p.extensions.count(compressed) != 0)
-        fail(source_, fmt::format("{}: {}: expected a mesh that is not compressed", where, compressed));
     const std::vector<double> x = positions(p, weights, where);
     const std::size_t count = x.size() / 3;
     const std::vector<double> corners = indices(p, count);
