@@ -77,7 +77,7 @@ void add_require_assets(CLI::App& app, bool& required) {
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
   app.add_option("--seed", seed,
                  "Choose the parameters of scenes with an exact solution at random from this seed, and evaluate the "
-                 "solution for them; in a study of random contact scenes, the seed of the first scene");
+                 "solution for them; in the studies contact and physics, the seed of the first scene (default 1)");
 }
 
 Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {

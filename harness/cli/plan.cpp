@@ -71,13 +71,15 @@ std::string plan_text(const json& p) {
   for (const auto& b : p["buffers"])
     out += fmt::format("  {:<28} {:>14}  {}\n", text(b["name"]), b["bytes"].get<std::uint64_t>(),
                        b["device_local"].get<bool>() ? "device" : "host");
-  if (!p["contact_margins"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "cloth is held off", "by [m]");
+  if (!p["contact_margins"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "contact offset from", "[m]");
   for (const auto& m : p["contact_margins"])
     out += fmt::format("  {:<28} {:>14g}\n", text(m["collider"]), m["margin_m"].get<double>());
-  if (!p["left_out"].empty()) out += "\n  left out\n";
+  if (!p["left_out"].empty()) out += "\n  disabled features\n";
   for (const auto& l : p["left_out"])
     out += fmt::format("  {:<28} {}{}\n", text(l["what"]), text(l["why"]),
-                       l.contains("no_parameter") ? "; no parameter: " + text(l["no_parameter"]) : "");
+                       l.contains("no_parameter")
+                           ? "; without it the cloth does not have the stiffness " + text(l["no_parameter"])
+                           : "");
   return out + "\n";
 }
 

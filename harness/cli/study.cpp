@@ -67,7 +67,9 @@ void check_options(const Study& study, const StudyArguments& a) {
   if (is_drawn(study)) return;
   if (a.count > 0)
     throw Error(
-        "--count: the scenes of this study are given in its file; only studies with protocol contact generate scenes");
+        "--count: the scenes of this study are given in its file; only studies with protocol contact (contact and "
+        "physics) "
+        "generate scenes");
   if (a.procedural)
     throw Error("--procedural: this study has no random contact scenes; set CLOTHBENCH_ASSETS=procedural instead");
   if (a.jobs > 0 && study.protocol != "stability-map")
@@ -137,7 +139,8 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
   add_seed(*cmd, a.seed);
   cmd->add_option("--count", a.count,
-                  "Number of scenes to generate in a study of random contact scenes, from --seed on")
+                  "Number of scenes to generate in the studies contact and physics, from seed --seed on; default: the "
+                  "study's count")
       ->check(CLI::Range(1, 100000));
   cmd->add_flag("--procedural", a.procedural,
                 "Generate contact scenes from procedural rooms and hands, which need no download; tables state this");

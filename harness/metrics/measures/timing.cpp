@@ -181,7 +181,7 @@ MetricGroup timing_metrics() {
   using B = Bandwidth;
   MetricGroup g;
   g.scalars = {
-      reported("jobs", "1", "maximum number of clothbench jobs on the machine while the run was loaded and timed",
+      reported("jobs", "1", "maximum number of clothbench processes on the machine while the run was loaded and timed",
                jobs_beside),
       reported("trials", "1", "timed trials",
                [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),

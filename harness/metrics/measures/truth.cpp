@@ -143,10 +143,13 @@ MetricGroup truth_metrics() {
             [](const RunView& r) { return max_or_nan(0, greatest_of(whole_series(r, "energy_rise"))); }, "1"),
         No, nullptr, with_energy},
        of_the_study("truth_value", "exact quantity of the analytic test case, in SI units"),
-       of_the_study("truth_space_error", "what ranks runs, of the mesh's own truth against the continuum", &kErrorGate),
-       of_the_study("truth_dependence_*", "change of what ranks runs with the logarithm of a modulus"),
+       of_the_study(
+           "truth_space_error",
+           "error of the mesh itself: distance of its exact solution from the continuum, measured as truth_error",
+           &kErrorGate),
+       of_the_study("truth_dependence_*", "change of truth_error with the logarithm of a modulus"),
        of_the_study("reference_*",
-                    "the reference solver's value of the reference case's quantity, and how sure it is")}};
+                    "quantity of the analytic test case as computed by the reference solver, and its uncertainty")}};
 }
 
 }  // namespace clothbench

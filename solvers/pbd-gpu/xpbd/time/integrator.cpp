@@ -195,7 +195,7 @@ FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& setti
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
   if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty() &&
       may_leave_tension_to_tethers(scene, xpbd_substeps(scene, settings)))
-    return {false, "tethers hold the cloth, for less"};
+    return {false, "tethers limit the stretch at lower cost"};
   if (is_strip(scene)) return {true, ""};
   if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
   if (is_pulled_far(scene)) return {false, kPulledFar};
