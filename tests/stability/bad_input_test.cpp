@@ -27,7 +27,7 @@ std::string mesh(const std::string& positions, const std::string& triangles) {
 }
 
 struct Case {
-  const char* name;  ///< as in the README's table
+  const char* name;  ///< of the input, also of the test
   std::vector<std::string> set;
   const char* refused = "";  ///< how the error reads; "" = simulated
   const char* text = kSheet;
