@@ -16,7 +16,7 @@ SolverInfo describe() {
   SolverInfo info;
   info.name = "reference";
   info.folder = "solvers/reference";
-  info.summary = "double precision, implicit, sparse direct: the baseline for errors, not for time";
+  info.summary = "double precision, implicit, sparse direct: computes reference solutions; slow";
   info.version = "1";
   info.precision = "float64";
   info.time_order = 2;
