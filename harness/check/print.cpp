@@ -70,12 +70,12 @@ Table times_table(const Checked& c) {
       {"", "verdict", &CheckedRun::time_verdict}};
   return columns.table(
       {"Time per frame, A against B",
-       fmt::format(
-           "Median over the processes; runs that shared the machine with other jobs are left out. Change: ratio "
-           "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
-           "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
-           "faster or slower by chance.",
-           timed.size(), 0.05 * static_cast<double>(timed.size())),
+       fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
+                   "omitted. Change: ratio "
+                   "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
+                   "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
+                   "faster or slower by chance.",
+                   timed.size(), 0.05 * static_cast<double>(timed.size())),
        {}},
       timed);
 }

@@ -124,7 +124,7 @@ std::string overhead_line(const std::vector<RunRecord>& runs) {
   const double t = summary_value(*most, "frame_wall_median_s"), share = t * kDisplayHz;
   return fmt::format(
       "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed. Measured: "
-      "{:.3g} µs a frame of {} with {}, whose particles only fall.\n",
+      "{:.3g} µs per frame of {} with {}, whose particles only fall.\n",
       100 * share, share < kAllowedOverhead ? "below" : "**above**", 1e6 * t, most->header.scene, most->header.solver);
 }
 

@@ -129,10 +129,9 @@ void put_in_place(const fs::path& out, const fs::path& from) {
 
 Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
   const auto without = [&](const std::string& why) {
-    return Drawn{
-        "Figures were left out: " + why + "." +
-            (listed_pictures(out).empty() ? "" : " The pictures in this folder are those of an earlier report."),
-        ""};
+    return Drawn{"Figures were left out: " + why + "." +
+                     (listed_pictures(out).empty() ? "" : " The pictures in this folder come from an earlier report."),
+                 ""};
   };
   if (page.figures.empty())
     return without(page.missing.empty() ? "this build was made without them (CLOTHBENCH_WITH_PAGE)" : page.missing);

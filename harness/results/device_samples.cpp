@@ -147,7 +147,7 @@ StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::str
       StoredArray start{
           name + "_window_start_unix_s", "s", "start of the window, since 1970 UTC", {name + "_window"}, {}, false, {}};
       StoredArray most{
-          name + "_window_max", a.units, a.long_name + ", greatest within 5 s", {name + "_window"}, {}, false, {}};
+          name + "_window_max", a.units, a.long_name + ", maximum within 5 s", {name + "_window"}, {}, false, {}};
       for (const Window& w : window_maxima(taken, a.values)) {
         start.values.push_back(w.start_unix_s);
         most.values.push_back(w.greatest);

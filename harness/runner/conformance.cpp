@@ -227,7 +227,7 @@ ConformanceResult run_conformance(const SolverEntry& entry, const json& settings
   if (!c.profile.empty()) options.profile = c.profile;
   const auto solver = entry.make(settings, options);
   ConformanceResult refused;
-  if (solver->info().name != entry.info.name) refused.faults = {"info: another name than that of the solver"};
+  if (solver->info().name != entry.info.name) refused.faults = {"info: the name differs from the solver's"};
   if (!(entry.info.supports & entry.info.ignores).empty())
     refused.faults.push_back("supports, ignores: a feature is in both");
   try {

@@ -142,7 +142,7 @@ void read_self_collision(const json& cloth, Cloth& c, const std::string& source)
   const double most = c.least_height_m();
   if (!(c.self_collision.thickness_m <= most))
     refuse(source, "/cloth/self_collision/thickness_m",
-           fmt::format("expected at most the least height of a triangle, {:.6g} m, or the cloth would touch itself "
+           fmt::format("expected at most the smallest height of a triangle, {:.6g} m, or the cloth would touch itself "
                        "where it lies flat; found {:.6g}",
                        most, c.self_collision.thickness_m));
 }

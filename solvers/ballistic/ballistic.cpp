@@ -11,7 +11,8 @@ SolverInfo describe() {
   SolverInfo info;
   info.name = "ballistic";
   info.folder = "solvers/ballistic";
-  info.summary = "particles that only fall: the floor of the harness, and what every penetration check must fail";
+  info.summary =
+      "particles that only fall: measures the overhead of the harness, and must fail every penetration check";
   info.version = "1";
   info.precision = "float64";
   info.supports = {};

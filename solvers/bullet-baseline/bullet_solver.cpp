@@ -29,8 +29,7 @@ SolverInfo common_info() {
 }
 
 SettingSpec collision_margin_spec() {
-  return {"collision_margin_m", "0.02",
-          "distance at which contact holds the cloth [m]: PyBullet's default. 0: the scene's margin_m"};
+  return {"collision_margin_m", "0.02", "contact offset [m]: PyBullet's default. 0: the scene's margin_m"};
 }
 
 SettingSpec mesh_spec() {

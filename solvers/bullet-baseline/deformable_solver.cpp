@@ -88,7 +88,8 @@ SolverInfo deformable_info() {
   info.supports.add(Feature::Regions);
   info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
   info.settings = {
-      {"substeps", "0", "substeps a frame; 0: explicit, as many as keep the stiffest vertex stable, implicit, 4"},
+      {"substeps", "0",
+       "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
       {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
       collision_margin_spec(),
       mesh_spec(),

@@ -12,9 +12,9 @@ SolverInfo soft_info() {
   info.name = "bullet-soft";
   info.summary = "Bullet's position-based soft body (btSoftBody) on one CPU core";
   info.settings = {
-      {"iterations", "10", "position iterations a substep (piterations)"},
-      {"substeps", "4", "substeps a frame"},
-      {"relaxation", "1.0", "kLST: share of a link's error removed in an iteration, 0 to 1; not a stiffness"},
+      {"iterations", "10", "position iterations per substep (piterations)"},
+      {"substeps", "4", "substeps per frame"},
+      {"relaxation", "1.0", "kLST: fraction of a link's error removed per iteration, 0 to 1; not a stiffness"},
       collision_margin_spec(),
       mesh_spec(),
       voxel_spec()};

@@ -22,7 +22,7 @@ SolverInfo describe() {
   info.time_order = 2;
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,    Feature::Damping, Feature::Pins,
                    Feature::MovingPins, Feature::UnevenGrid, Feature::Regions, Feature::Spin,    Feature::ClothMesh};
-  info.settings = {{"substeps", "16", "steps a frame"},
+  info.settings = {{"substeps", "16", "steps per frame"},
                    {"integrator", "\"bdf2\"",
                     "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible | euler: "
                     "backward Euler, order 1"},

@@ -151,7 +151,7 @@ TEST_F(ReportFiles, WhatCannotBeDrawnLeavesTheOlderPictures) {
     write_report({run_}, {out});
     EXPECT_EQ(text(out / "fig4.svg"), picture);
     EXPECT_EQ(text(out / "report-pictures.json"), list);
-    EXPECT_NE(text(out / "report.md").find(why + " The pictures in this folder are those of an earlier report."),
+    EXPECT_NE(text(out / "report.md").find(why + " The pictures in this folder come from an earlier report."),
               std::string::npos);
   };
   {

@@ -126,7 +126,8 @@ MetricGroup popping_metrics() {
   return {{},
           {{"pop_max_m",
             own({},
-                "maximum displacement of a vertex within 1/36 s, minus twice that of its neighbours, colliders and "
+                "maximum displacement of a vertex within 1/36 s, minus twice the displacement of its neighbours, "
+                "colliders and "
                 "attachments",
                 pop, "m"),
             Expect::Yes, &kHalf}}};

@@ -23,7 +23,7 @@ Flight::Flight(double before_s, double after_s, double c) {
 Motion::Motion(const Scene& s, const Frames& f)
     : scene(s), vertices(s.cloth.vertex_count()), frames(f.time_s.size()), time_s_(f.time_s), position_(f.position) {
   if (position_.size() != 3 * vertices * frames)
-    throw Error("motion check: the positions are not those of " + std::to_string(frames) + " frames of " +
+    throw Error("motion check: the number of positions differs from " + std::to_string(frames) + " frames of " +
                 std::to_string(vertices) + " vertices");
   masses_kg = vertex_masses(s);
   mass_kg = std::accumulate(masses_kg.begin(), masses_kg.end(), 0.0);

@@ -29,7 +29,7 @@ std::span<const Statistic> statistics() {
       {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},
       {"speed_change", Dynamic, "change of velocity in one interval over the speed that the scene can cause"},
       {"strain", Dynamic, "elastic energy over what gravity, colliders and attachments can supply"},
-      {"tear", Dynamic, "change of an edge's strain in one interval over that of the other edges"},
+      {"tear", Dynamic, "change of an edge's strain in one interval over the change of the other edges' strain"},
       {"compression", Dynamic, "mean compression of edges over what the weight can cause"},
       {"spike", Dynamic, "displacement of a single vertex for a single frame"},
       {"roughness", Dynamic, "acceleration of a vertex over its neighbours'"},

@@ -219,7 +219,7 @@ Motions motions_of(const std::vector<RunRecord>& runs, std::size_t budget_B) {
   const auto say = [&](std::size_t n, const char* why) {
     if (n > 0) packer.left_out().push_back(fmt::format("{} {} {}.", n, n == 1 ? "motion:" : "motions:", why));
   };
-  say(beyond, "the page holds 120; those of other settings are left out first");
+  say(beyond, "the page holds 120; motions of other settings are omitted first");
   say(too_large, "too large at the coarsest thinning, or not finite from the start");
   say(without_cloth, "its file has no triangles of its cloth");
   Motions out = packer.take();

@@ -258,7 +258,7 @@ SolverInfo paper_info() {
       {"stiffness", "0.8", "PBD's k, 0 to 1"},
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
       {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
-      {"hand_depth_m", "0.01", "the same for the mesh of a hand"},
+      {"hand_depth_m", "0.01", "as mesh_depth_m, for the mesh of a hand"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   return info;
 }

@@ -63,7 +63,7 @@ class Xpbd final : public GpuSolver {
     if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
       disable(std::to_string(wanted) + " substeps",
               "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
-                  " are the most a frame may cost; the cloth is overstretched for some frames, and nothing is passed");
+                  " are the maximum per frame; the cloth is overstretched for some frames, but passes through nothing");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
       throw Error(fmt::format(
@@ -267,7 +267,7 @@ SolverInfo xpbd_info() {
   SolverInfo info;
   info.name = "xpbd";
   info.folder = "solvers/pbd-gpu";
-  info.summary = "extended PBD in small steps: whole grid lines solved at once, tethers; bitwise repeatable";
+  info.summary = "extended PBD in small steps with a direct solve of each grid line, and tethers; bitwise repeatable";
   info.version = "2";
   info.precision = "float32";
   info.time_order = 2;
@@ -279,11 +279,12 @@ SolverInfo xpbd_info() {
                    Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {
       {"quality", "\"default\"",
-       "fast, default or accurate: how many substeps, by resolution and what holds the cloth"},
+       "fast, default or accurate: selects the number of substeps, by resolution and attachments"},
       {"substeps", "0", "substeps per frame; 0: by quality"},
       {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
       {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
-      {"tethers", "true", "keep vertices within reach of pinned ones where that is right: see README"},
+      {"tethers", "true",
+       "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
       {"contact_frame", "\"auto\"",

@@ -91,7 +91,7 @@ static int32_t step(void* self, const ClothbenchFrame* frame) {
 }
 
 const ClothbenchPlugin* clothbench_plugin(void) {
-  static const ClothbenchSetting settings[] = {{"substeps", "steps a frame", 20, 1}};
+  static const ClothbenchSetting settings[] = {{"substeps", "steps per frame", 20, 1}};
   static const ClothbenchPlugin plugin = {
       CLOTHBENCH_PLUGIN_HEADER,
       .name = "example-xpbd",

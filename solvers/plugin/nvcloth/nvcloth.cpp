@@ -195,8 +195,8 @@ double free_fall_m(const double* values, double dt_s, double gravity, double vel
 }
 
 const ClothbenchSetting kSettings[] = {
-    {"solver_frequency_hz", "solver iterations a second (setSolverFrequency)", 300, 0},
-    {"substeps", "solver iterations a frame, in place of the solver frequency; 0: by the frequency", 0, 1},
+    {"solver_frequency_hz", "solver iterations per second (setSolverFrequency)", 300, 0},
+    {"substeps", "solver iterations per frame, in place of the solver frequency; 0: by the frequency", 0, 1},
     {"tethers", "1: geodesic tethers to the pins", 1, 1},
     {"collision_margin_m", "distance at which colliders hold the cloth; 0: the scene's margins", 0, 0},
     {"frictionless_triangles", "1: run scenes whose meshes have friction, without it; 0: refuse them", 0, 1}};
