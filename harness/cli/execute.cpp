@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/tint.hpp"
 #include "base/words.hpp"
@@ -131,9 +132,13 @@ StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& ca
   settle_device(plan, call.device);
   StudyEnd end;
   end.out = call.out.empty() ? default_folder(manifest.study) : call.out;
-  const ResultFolder held(end.out, call.part ? ResultFolder::Use::Shared : ResultFolder::Use::Alone, call.command_line);
-  require_same_runs(end.out, plan, call.resume);
   const std::vector<std::string> names = run_names(plan);
+  const std::set<std::string> mine(names.begin(), names.end());
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; call.part && k < manifest.runs.size(); ++k)
+    if (mine.contains(manifest.runs[k])) numbers.push_back(k);
+  const ResultFolder held(end.out, numbers, call.command_line);
+  require_same_runs(end.out, plan, call.resume);
   manifest.created = utc_now();
   manifest.command_line = call.command_line;
   if (manifest.runs.empty()) manifest.runs = names;

@@ -2,10 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <climits>
@@ -34,6 +34,15 @@ bool is_named(int file, const fs::path& path) {
          open_file.st_dev == named.st_dev;
 }
 
+/// Locks one byte, or all with `count` 0; record locks also work over NFS. False if another process has one of them.
+bool lock(int file, std::size_t first, int count) {
+  struct flock range {};
+  range.l_type = F_WRLCK;
+  range.l_start = static_cast<off_t>(first);
+  range.l_len = count;
+  return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // a file system without locks
+}
+
 std::string holder(const fs::path& file) {
   const std::string text = content_of(file);
   return text.empty() ? "another process" : shortened(text, kShown);
@@ -41,7 +50,9 @@ std::string holder(const fs::path& file) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const fs::path& folder, Use use, const std::string& command_line) : file_(folder / ".lock") {
+ResultFolder::ResultFolder(const fs::path& folder, const std::vector<std::size_t>& runs,
+                           const std::string& command_line)
+    : file_(folder / ".lock") {
   std::error_code ec;
   if (fs::exists(folder, ec) && !fs::is_directory(folder, ec))
     refuse_folder(folder, "it is a file; expected a folder for the result files");
@@ -50,9 +61,8 @@ ResultFolder::ResultFolder(const fs::path& folder, Use use, const std::string& c
   for (;;) {
     lock_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (lock_ < 0) refuse_folder(folder, std::string("no file can be made in it: ") + std::strerror(errno));
-    if (flock(lock_, (use == Use::Alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
-      const int why = errno;
-      if (why != EWOULDBLOCK) return;  // a file system without locks
+    if (runs.empty() ? !lock(lock_, 0, 0)
+                     : !std::all_of(runs.begin(), runs.end(), [&](std::size_t run) { return lock(lock_, run, 1); })) {
       const std::string by = holder(file_);
       close(lock_);
       refuse_folder(folder, fmt::format("{} writes its results there", by));
@@ -69,7 +79,7 @@ ResultFolder::ResultFolder(const fs::path& folder, Use use, const std::string& c
 
 ResultFolder::~ResultFolder() {
   // The last one removes the file; one that waits for the same name opens it anew.
-  if (flock(lock_, LOCK_EX | LOCK_NB) == 0 && is_named(lock_, file_)) unlink(file_.c_str());
+  if (lock(lock_, 0, 0) && is_named(lock_, file_)) unlink(file_.c_str());
   close(lock_);
 }
 

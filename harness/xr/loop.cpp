@@ -339,7 +339,7 @@ class Loop {
 
 LoopResult run_loop(const LoopOptions& options) {
   const Instance xr(options.runtime);
-  const ResultFolder held(options.out, ResultFolder::Use::Alone, "clothbench xr");
+  const ResultFolder held(options.out, {}, "clothbench xr");
   LiveScene live(options.scenario, options.overrides, options.out / "scenario", xr.tracks_hands());
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
   Session session(xr, device, {options.rate_hz, options.place_m.value_or(live.place_m()), options.passthrough});

@@ -15,13 +15,14 @@ namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
-using Use = ResultFolder::Use;
+using Runs = std::vector<std::size_t>;
+const Runs kAlone;
 
 class Folder : public WithFolder {
  protected:
-  static std::string refusal_of(const fs::path& folder, Use use) {
+  static std::string refusal_of(const fs::path& folder, const Runs& runs) {
     try {
-      const ResultFolder held(folder, use, "clothbench study second");
+      const ResultFolder held(folder, runs, "clothbench study second");
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ExitCode::BadInput);
       return e.what();
@@ -33,27 +34,29 @@ class Folder : public WithFolder {
 TEST_F(Folder, IsMadeAndHeldByOneAtATime) {
   const fs::path out = dir_ / "a" / "b";
   {
-    const ResultFolder held(out, Use::Alone, "clothbench study first");
-    for (const Use use : {Use::Alone, Use::Shared}) {
-      const std::string why = refusal_of(out, use);
+    const ResultFolder held(out, kAlone, "clothbench study first");
+    for (const Runs& runs : {kAlone, Runs{0}}) {
+      const std::string why = refusal_of(out, runs);
       EXPECT_NE(why.find("process " + std::to_string(getpid()) + " on "), std::string::npos) << why;
       EXPECT_NE(why.find("clothbench study first"), std::string::npos) << why;
       EXPECT_NE(why.find(out.string()), std::string::npos) << why;
     }
-    EXPECT_EQ(refusal_of(dir_ / "a", Use::Alone), "") << "another folder";
+    EXPECT_EQ(refusal_of(dir_ / "a", kAlone), "") << "another folder";
   }
-  EXPECT_EQ(refusal_of(out, Use::Alone), "");
+  EXPECT_EQ(refusal_of(out, kAlone), "");
   EXPECT_TRUE(fs::is_empty(out)) << "nothing stays behind";
 }
 
 TEST_F(Folder, PartsOfOneStudyShareIt) {
-  const ResultFolder one(dir_, Use::Shared, "clothbench study --job 0");
+  const ResultFolder one(dir_, {0}, "clothbench study --job 0");
   {
-    const ResultFolder two(dir_, Use::Shared, "clothbench study --job 1");
-    EXPECT_NE(refusal_of(dir_, Use::Alone), "");
+    const ResultFolder two(dir_, {1, 3}, "clothbench study --job 1,3");
+    EXPECT_NE(refusal_of(dir_, kAlone), "");
+    EXPECT_NE(refusal_of(dir_, {2, 3}), "") << "one run in two processes";
+    EXPECT_EQ(refusal_of(dir_, {2}), "");
   }
-  EXPECT_NE(refusal_of(dir_, Use::Alone), "") << "the first still writes";
-  EXPECT_EQ(refusal_of(dir_, Use::Shared), "");
+  EXPECT_NE(refusal_of(dir_, kAlone), "") << "the first still writes";
+  EXPECT_EQ(refusal_of(dir_, {1, 3}), "");
 }
 
 TEST_F(Folder, OneThatDiedBlocksNothing) {
@@ -61,32 +64,32 @@ TEST_F(Folder, OneThatDiedBlocksNothing) {
   ASSERT_EQ(pipe(ready), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const ResultFolder held(dir_, Use::Alone, "clothbench study first");
+    const ResultFolder held(dir_, kAlone, "clothbench study first");
     if (write(ready[1], "x", 1) == 1) pause();
     _exit(1);
   }
   char byte = 0;
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
-  EXPECT_NE(refusal_of(dir_, Use::Alone).find("process " + std::to_string(child)), std::string::npos);
+  EXPECT_NE(refusal_of(dir_, kAlone).find("process " + std::to_string(child)), std::string::npos);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_TRUE(fs::exists(dir_ / ".lock"));
-  EXPECT_EQ(refusal_of(dir_, Use::Alone), "");
+  EXPECT_EQ(refusal_of(dir_, kAlone), "");
   EXPECT_FALSE(fs::exists(dir_ / ".lock"));
 }
 
 TEST_F(Folder, ThatCannotBeIsRefusedInPlainWords) {
   std::ofstream(dir_ / "file") << "x";
-  EXPECT_NE(refusal_of(dir_ / "file", Use::Alone).find("it is a file; expected a folder"), std::string::npos);
-  EXPECT_NE(refusal_of(dir_ / "file" / "below", Use::Alone).find("Not a directory"), std::string::npos);
-  const std::string too_long = refusal_of(dir_ / std::string(5000, 'x'), Use::Alone);
+  EXPECT_NE(refusal_of(dir_ / "file", kAlone).find("it is a file; expected a folder"), std::string::npos);
+  EXPECT_NE(refusal_of(dir_ / "file" / "below", kAlone).find("Not a directory"), std::string::npos);
+  const std::string too_long = refusal_of(dir_ / std::string(5000, 'x'), kAlone);
   EXPECT_NE(too_long.find("File name too long"), std::string::npos) << too_long;
   EXPECT_LT(too_long.size(), 400u);
-  EXPECT_NE(refusal_of("/proc/clothbench", Use::Alone).find("cannot be made"), std::string::npos);
+  EXPECT_NE(refusal_of("/proc/clothbench", kAlone).find("cannot be made"), std::string::npos);
   if (geteuid() == 0) return;  // may write anywhere
   fs::permissions(dir_, fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_NE(refusal_of(dir_, Use::Alone).find("no file can be made in it: Permission denied"), std::string::npos);
-  EXPECT_NE(refusal_of(dir_ / "new", Use::Alone).find("Permission denied"), std::string::npos);
+  EXPECT_NE(refusal_of(dir_, kAlone).find("no file can be made in it: Permission denied"), std::string::npos);
+  EXPECT_NE(refusal_of(dir_ / "new", kAlone).find("Permission denied"), std::string::npos);
   fs::permissions(dir_, fs::perms::owner_all);
 }
 
