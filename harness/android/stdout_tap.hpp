@@ -6,8 +6,8 @@
 
 namespace clothbench::android {
 
-/// Redirects stdout and stderr of the process to `line`, line by line, until the process ends; Android discards those
-/// of an activity. Create one object and keep it.
+/// Redirects stdout and stderr of the process to `line`, line by line, until the process ends; Android discards the
+/// output of an activity. Create one object and keep it.
 class StdoutTap {
  public:
   explicit StdoutTap(std::function<void(const std::string&)> line);

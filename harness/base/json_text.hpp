@@ -14,7 +14,7 @@ std::string read_text(const std::filesystem::path&, std::uintmax_t most_bytes = 
 /// `source` and line and column, or the JSON pointer of a repeated key.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
-/// What an exception of the JSON library says, without the text that it had read.
+/// The message of an exception of the JSON library, without the text that it had read.
 std::string what_without_text(const std::exception&);
 
 /// Throws Error for an invalid value that the schema cannot detect, with its place and what was expected.

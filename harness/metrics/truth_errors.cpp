@@ -150,7 +150,7 @@ namespace {
 
 constexpr double kNothing = 1e-12;  // a motion of rounding errors only
 
-/// What the mesh changes, as a share of the exact motion. A triangle mesh has no exact solution of its own and is
+/// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
 /// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
 /// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
 /// their own.
@@ -160,7 +160,7 @@ double mesh_error(const TruthJudge& judge, double moved_quantity) {
   return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
 }
 
-/// Half a unit in the last place of float32, of the coordinate that is farthest from the origin.
+/// Half a unit in the last place of float32, of the coordinate with the maximum magnitude.
 double rounding_m(const std::vector<Vec3>& columns) {
   double largest_m = 0;
   for (const Vec3& x : columns)

@@ -52,7 +52,7 @@ bool keeps_energy(const Scene&);
 /// change of what ranks the scene's runs (quantity or positions, truth::ReferenceCase) with the logarithm of the
 /// membrane stiffness or the bending rigidity, from evaluating the reference case at 10 % more of each. 1 means that it
 /// changes by 1 % for 1 % more stiffness; 0 that the scene has no such stiffness. For truths in motion it is the
-/// greatest of a few frames. Empty for a scene without a reference case.
+/// maximum over a few frames. Empty for a scene without a reference case.
 std::map<std::string, double> truth_dependence(const Scene&);
 
 /// Bounds on two scalars of a whole run of a scene with an exact solution: the distance of the positions (`truth_e2`)

@@ -20,7 +20,7 @@ std::vector<BoundResult> bound_results(const RunRecord&);
 /// proves nothing. If the run did not end well, its ending. Tables, consoles, JSON and the page print this.
 std::string verdict(const RunRecord&);
 
-/// Bounds that the run's scene sets on a value, and the check of its motion; `"outcome": "ok"` alone is none.
+/// Bounds that the run's scene sets on a value, and the check of its motion; only `"outcome": "ok"` is none.
 std::size_t bounds_of(const RunRecord&);
 
 /// Counted by `verdict`, of the runs whose scene has a bound. Missing runs are not counted.

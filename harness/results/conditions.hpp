@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// What must be the same of two runs that are compared. `kind` is the word for `--allow`; a kind has several
+/// A condition that must be equal in two runs that are compared. `kind` is the word for `--allow`; a kind has several
 /// conditions.
 struct Condition {
   std::string kind, what, value;  ///< `value`: "–" if the run does not state it

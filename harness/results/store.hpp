@@ -74,7 +74,7 @@ Replay read_replay(const std::filesystem::path&, std::size_t stride);
 /// Files store it with the outcome, so that a verdict belongs to one motion. Empty without frames.
 std::string trajectory_sha256(const AccuracyPass&);
 
-/// What is wrong with the motion in a result file, whatever its summary states: positions that are missing, not finite,
+/// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite,
 /// not one set for each time, or another motion than the one that the file's outcome is of. Empty if nothing is. A run
 /// that did not end well may lack frames and have values that are not finite. Throws Error naming the file if it cannot
 /// be read.

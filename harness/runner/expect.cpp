@@ -21,8 +21,8 @@ double value_of(const std::map<std::string, double>& summary, const std::string&
   return at == summary.end() ? kMissing : at->second;
 }
 
-/// What the scene's file states, and what follows from the scene itself: the bounds of its exact solution, and none of
-/// the outcome classes that its stability block judges.
+/// Bounds that the scene's file states and that follow from the scene itself: the bounds of its exact solution, and
+/// none of the outcome classes that its stability block judges.
 std::vector<Expectation> expectations(const Scene& scene, const std::map<std::string, double>& summary) {
   std::vector<Expectation> all = scene.expect;
   if (!scene.reference_case.empty())
@@ -36,7 +36,7 @@ std::string expected_outcome(const Scene& scene) {
   return scene.expected_outcome.empty() && implied ? "ok" : scene.expected_outcome;
 }
 
-/// What is wrong with a value, or nothing.
+/// The fault of a value, or nothing.
 std::string fault(const Expectation& e, double value) {
   if (!std::isfinite(value)) return e.name + " has no value";
   if (e.at_most && !(value <= *e.at_most)) return fmt::format("{} {:.4g} > {:.4g}", e.name, value, *e.at_most);

@@ -15,7 +15,7 @@ void hold_runs(bool held);
 /// How often runs have been held so far.
 int times_held();
 
-/// While there is one, stop_if_interrupted calls `report` at most once a second: the sign of life of a worker.
+/// While there is one, stop_if_interrupted calls `report` at most once per second: the sign of life of a worker.
 class FrameReports {
  public:
   explicit FrameReports(std::function<void()> report);

@@ -34,7 +34,7 @@ bool all_finite(const std::vector<double>& values) {
   return true;
 }
 
-/// What the declared bytes of a stage are.
+/// The kind of the declared bytes of a stage.
 std::string bytes_word(const StagePlan& s) {
   if (!std::isfinite(s.read_B) && !std::isfinite(s.write_B)) return "";
   return s.at_least ? "at least" : "computed";

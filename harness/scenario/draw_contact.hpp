@@ -37,7 +37,7 @@ class ContactDrawer {
   explicit ContactDrawer(Assets assets);
   ~ContactDrawer();
 
-  /// An ordinary scene, not completed, named `<study>-<seed>-<kind>`, with "seed" and "drawn". What is drawn:
+  /// An ordinary scene, not completed, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Drawn are:
   ///   desk     any table of any room; place on it, height, yaw, tilt, throw (any direction not upwards)
   ///   shape    size, place, height, yaw, tilt and throw of a cloth over a ball, or over a box in any orientation
   ///   sweep    a hand's pose, orientation, way (any direction, either side), depth and speed

@@ -134,7 +134,8 @@ Cloth read_cloth(json& j, const std::string& source, const SceneParts& parts) {
   return c;
 }
 
-/// Needs the cells of the cloth: a thickness above the least height of a triangle would make a flat cloth touch itself.
+/// Needs the cells of the cloth: a thickness above the smallest height of a triangle would make a flat cloth touch
+/// itself.
 void read_self_collision(const json& cloth, Cloth& c, const std::string& source) {
   if (!cloth.contains("self_collision")) return;
   c.self_collision = {cloth["self_collision"]["thickness_m"].get<double>(),

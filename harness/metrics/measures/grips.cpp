@@ -53,7 +53,7 @@ bool has_grips(const RunView& r) {
   return !r.scene.grips.vertices.empty() && r.pass.time_s.size() <= r.scene.motion.size();
 }
 
-/// The greatest ratio of an edge to its rest length, over the stretch that the hands impose, while they hold.
+/// The maximum ratio of an edge to its rest length, divided by the stretch that the hands impose, while they hold.
 double edge_ratio(const RunView& r) {
   const std::vector<double>* most = r.series("stretch_max");
   if (!has_grips(r) || most == nullptr) return kMissing;

@@ -56,7 +56,7 @@ std::vector<double> driven_m(const RunView& r) {
   return way;
 }
 
-/// The vertices up to two edges away from each, without itself: so far a fold is wide at the least.
+/// The vertices up to two edges away from each, without itself: a fold is at least this wide.
 std::vector<std::vector<std::uint32_t>> neighbours(const Cloth& cloth) {
   std::vector<std::set<std::uint32_t>> beside(cloth.vertex_count());
   for (const auto& t : triangles(cloth))

@@ -85,8 +85,8 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// The greatest number of clothbench jobs that ran at the same time while the run was loaded and timed; missing if any
-/// part of the run does not state it.
+/// The maximum number of clothbench processes that ran at the same time while the run was loaded and timed; missing if
+/// any part of the run does not state it.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
@@ -139,7 +139,7 @@ Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*b
 /// Adds what the code that runs a study and reads the device stores, and says which values are the machine's.
 void add_readings(std::vector<Scalar>& scalars) {
   static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
-  // What the solver's own buffers and kernels give on any machine.
+  // Values that follow from the solver's buffers and kernels on any machine.
   static const std::set<std::string> kOfSolver = {"read_B_per_frame", "write_B_per_frame", "device_memory_B",
                                                   "dispatches"};
   const std::vector<Scalar> readings = {

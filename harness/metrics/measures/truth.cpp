@@ -71,7 +71,7 @@ Reduction over_time(const char* series) {
           }};
 }
 
-/// The greatest value for truths in motion; the last frame for truths at rest.
+/// The maximum over frames if the exact solution moves; the last frame if it is at rest.
 Reduction worst(const char* series) {
   return {{series}, "maximum over the frames; at rest, the last frame", [name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);

@@ -74,7 +74,7 @@ double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   return most;
 }
 
-/// Greatest distance of the start from the sheet at rest, and the start's greatest structural strain.
+/// Maximum distance of the start from the sheet at rest, and the start's maximum structural strain.
 std::pair<double, double> start_of(const Scene& s) {
   const std::vector<double> x = initial_positions(s);
   double far = 0, strain = 0;

@@ -11,8 +11,8 @@ struct Bounds {
   double speed_m_per_s = 0;  ///< v_char: max of free fall, hands, colliders, the start, and strain times wave speed
   double jump_speed_m_per_s =
       0;                ///< of the last jump (a teleport, a start that is not at rest), over its frame; 0 = none yet
-  double strain = 0;    ///< greatest strain that loads, hands and colliders can cause (not a prediction)
-  double work_J = 0;    ///< most work that hands and colliders can have done so far
+  double strain = 0;    ///< maximum strain that loads, hands and colliders can cause (not a prediction)
+  double work_J = 0;    ///< maximum work that hands and colliders can have done so far
   bool jumped = false;  ///< something jumped in this frame
 };
 

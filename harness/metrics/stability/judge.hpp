@@ -15,7 +15,7 @@ struct TruthErrors;
 namespace stability {
 inline constexpr double kSpeed = 10;        ///< F0: times v_char
 inline constexpr double kGain = 0.1;        ///< F1: energy gained over M g L
-inline constexpr double kStrain = 0.10;     ///< F2: greatest strain beyond the truth, for more than ...
+inline constexpr double kStrain = 0.10;     ///< F2: maximum strain beyond the truth, for more than ...
 inline constexpr int kStrainFrames = 3;     ///< ... so many frames in a row
 inline constexpr double kStrainP99 = 0.05;  ///< F2: 99th percentile, in any frame
 inline constexpr double kTorn = 1;          ///< F2: strain beyond the truth in any frame
@@ -28,18 +28,18 @@ inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F2 at th
 /// scene, or not yet counted.
 struct StabilityFrame {
   unsigned classes = 0;             ///< bit k: Fk, only classes that the scene judges
-  double speed = kMissing;          ///< greatest vertex speed over v_char
+  double speed = kMissing;          ///< maximum vertex speed over v_char
   double energy_gain = kMissing;    ///< over M g L (M v_char^2 without gravity)
-  double strain_excess = kMissing;  ///< greatest
+  double strain_excess = kMissing;  ///< maximum
   /// Whether the run cannot recover.
   bool lost() const { return (classes & 3u) != 0; }
 };
 
 /// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
 ///
-/// The energy gain compares visible energy (kinetic and gravitational) with all energy available: that at the start,
-/// including elastic energy (from the strain, E = Y A e^2/2), and the most work that hands and colliders can have done.
-/// So the elastic energy of a model, which solvers without a modulus do not have, is never counted twice.
+/// The energy gain compares visible energy (kinetic and gravitational) with the available energy: the energy at the
+/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. So
+/// the elastic energy of a model, which solvers without a modulus do not have, is never counted twice.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const Scene&);

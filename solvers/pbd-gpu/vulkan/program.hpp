@@ -49,7 +49,7 @@ class Program {
   std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
   int dispatches(int stage) const;
 
-  /// What was recorded, in order, so that a test finds missing and superfluous barriers.
+  /// The recorded commands, in order, so that a test finds missing and superfluous barriers.
   struct Recorded {
     // A barrier, where `is_barrier`:
     bool is_barrier = false;
@@ -80,9 +80,9 @@ class Program {
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Unordered& since);
-  /// What each submission of the program needs separately.
+  /// Objects that each submission of the program needs separately.
   struct Copy {
-    std::vector<VkCommandBuffer> buffers;  ///< one a submission, reused by later recordings
+    std::vector<VkCommandBuffer> buffers;  ///< one per submission, reused by later recordings
     VkFence fence = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     bool in_flight = false;

@@ -12,7 +12,7 @@
 
 namespace clothbench::pbd_gpu {
 
-// What lines and chains both say of the constraints of a scene. Springs are those of clothbench/scene.hpp.
+// Constraints of a scene that lines and chains share. Springs: clothbench/scene.hpp.
 
 /// Length of a vector.
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }

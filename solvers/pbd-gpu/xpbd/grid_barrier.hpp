@@ -9,7 +9,7 @@
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/integrator.hpp"
 
-// What lines and chains share: constants of a substep, and one dispatch of many workgroups that wait for one another.
+// Shared by lines and chains: constants of a substep, and one dispatch of many workgroups that wait for one another.
 
 namespace clothbench::pbd_gpu {
 

@@ -26,7 +26,7 @@ class FusedFrame {
       : frame_(frame), lines_(lines), contact_(contact) {}
   bool add_kernels();
   /// The kernel of frames in which no collider can be near: of one workgroup where that holds the cloth
-  /// (shaders/contact_free_frame.glsl), else that of many without contact, which lists the pairs too.
+  /// (shaders/contact_free_frame.glsl), else the kernel of many without contact, which also lists the pairs.
   void add_contact_free(const std::vector<std::uint32_t>& constants, std::uint32_t threads);
 
   LineConstants constants(double dt_s, const Steps&, bool listed) const;

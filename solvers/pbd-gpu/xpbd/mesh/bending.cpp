@@ -68,7 +68,7 @@ class FlatMesh {
 /// The triangles near an edge, unfolded into one plane with the edge from 0 to (1, 0): lengths are in edges.
 class Patch {
  public:
-  /// The edge is that of triangle t from corner k; t lies to its left.
+  /// The edge starts at corner k of triangle t; t lies to its left.
   Patch(const FlatMesh& mesh, std::uint32_t t, int k) : mesh_(mesh) {
     const double l =
         norm2(minus2(mesh.flat(t)[static_cast<std::size_t>((k + 1) % 3)], mesh.flat(t)[static_cast<std::size_t>(k)]));
@@ -99,7 +99,8 @@ class Patch {
   }
 
   /// The derivative across the edge at its middle, to the left and per edge length, of the quadratic that fits best.
-  /// Vertices of the edge's own triangles weigh most. Quadratics that the vertices do not determine are the least.
+  /// Vertices of the edge's own triangles weigh most. A quadratic that the vertices do not determine is the smallest
+  /// one.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;

@@ -16,7 +16,7 @@ struct BendingMatrix {
 };
 
 /// Morley's primitive (1968): second derivatives are constant in a triangle, from positions along its edges and
-/// derivatives across them. A derivative is that of the weighted least-squares quadratic through the vertices of the
+/// derivatives across them. A derivative is taken from the weighted least-squares quadratic through the vertices of the
 /// triangles near its edge, so that there are no unknowns but positions. Exact for quadratic deflections on any mesh,
 /// in energy and in force. A triangle whose vertices are all pinned is a clamp: derivatives across its edges are its
 /// own. `reference` solves for the derivatives instead.
@@ -26,7 +26,7 @@ BendingMatrix bending_matrix(const Scene&);
 /// 2 to 1000, from the maximum eigenvalue of h^2 M^-1 K.
 std::uint32_t bending_iterations(double largest);
 
-/// What the kernel reads. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
+/// Data of the kernel. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
 SlicedRows<BendingEntry> bending_table(const BendingMatrix&);
 
 }  // namespace clothbench::pbd_gpu

@@ -125,8 +125,8 @@ std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   for (const std::size_t end : {0u, 1u})
     for (std::uint32_t e = 0; e < count; ++e)
       if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
-  // What is left are rings. A ring is cut where it begins, and the link there stretches by far the most. If the cuts of
-  // neighbouring rings lie apart, what is between them holds it.
+  // The rest are rings. A ring is cut where it begins, and the link there stretches far more than others. If the cuts
+  // of neighbouring rings lie apart, what is between them holds it.
   constexpr double kGolden = 0.6180339887498949;
   double begin = 0;
   for (std::uint32_t e = 0; e < count; ++e) {

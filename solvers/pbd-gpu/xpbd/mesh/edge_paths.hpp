@@ -51,7 +51,7 @@ struct ChainColour {
 /// which they are solved: the last colour has the edge paths to be solved last.
 std::vector<ChainColour> colours_of(std::vector<EdgePath> edge_paths, std::size_t vertices, std::uint32_t block);
 
-/// What a kernel reads of a colour: whole chains in blocks, padded with CHAIN_NO_VERTEX. `with_others` adds the
+/// Data of one colour for a kernel: whole chains in blocks, padded with CHAIN_NO_VERTEX. `with_others` adds the
 /// vertices that are on no chain.
 std::vector<ChainEntry> entries_of(const ChainColour&, const Scene&, const ChainCloth&, std::uint32_t block,
                                    bool with_others);

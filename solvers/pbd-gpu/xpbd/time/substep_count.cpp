@@ -45,8 +45,8 @@ TravelLimit travel_limit(const Scene& scene, int quality) {
   return rule;
 }
 
-/// Of colliders. What a user's hand will do is not known when a live session begins, and its replay is to take as many
-/// substeps: it counts as fast as hands usually go.
+/// Speed of colliders. The motion of a user's hand is not known when a live session begins, and its replay must take as
+/// many substeps, so the hand counts as fast as hands usually are.
 double speed_m_per_s(const Scene& scene) {
   constexpr double kUsersHand_m_per_s = 2;
   const bool by_user =
@@ -95,8 +95,8 @@ double max_substeps_for_splitting(double links, int quality) {
   return std::max(kMax[quality], links / 6);
 }
 
-/// The assumed speed is the sum of the scene's initial speed, that of a fall by the cloth's length, and that of the
-/// fastest grip or collider.
+/// The assumed speed is the sum of the scene's initial speed, the speed of a fall by the cloth's length, and the speed
+/// of the fastest grip or collider.
 double substeps_for_layers(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double longer = std::max(c.width_m, c.height_m);
@@ -133,8 +133,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool tethered = is_tethered(scene, settings);
   const auto Y = scene.material.membrane_stiffness_N_per_m;
   const bool stiff = !Y || *Y >= 1e4;
-  // Substeps are counted a frame, whatever its duration: a constant in seconds would differ between scaled copies of a
-  // scene. A link must not turn by more than about half a radian a substep.
+  // Substeps are counted per frame, whatever its duration: a constant in seconds would differ between scaled copies of
+  // a scene. A link must not turn by more than about half a radian per substep.
   constexpr Rule kStiff[] = {{2, 24}, {6, 12}, {20, 6}}, kTethered[] = {{3, 24}, {5, 12}, {20, 6}},
                  kStrips[] = {{5, 12}, {10, 6}, {20, 3}}, kSheet[] = {{5, 6}, {10, 3}, {20, 1.5}},
                  kKinematicContact[] = {{4, 8}, {5, 6}, {20, 1.5}}, kReleased[] = {{4, 8}, {5, 8}, {20, 6}},
@@ -209,7 +209,7 @@ void SubstepController::next(double cloth_m) {
   const int before = now_;
   halve_if_quiescent(cloth_m);
   const int smallest = std::max(1, (base_ + (1 << halvings_) - 1) >> halvings_);
-  // What an impact has strained relaxes in the frames after it.
+  // Strain of an impact relaxes in the frames after it.
   constexpr double kLess = 0.75;
   const double wanted = std::max(rule_.wanted(cloth_m), before > base_ ? kLess * before : 0.0);
   // By fours, so that a frame is not recorded anew each time.

@@ -12,18 +12,18 @@ double links_of_longer_side(const Cloth&);
 /// scene with contact the maximum of a frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Of a frame in which no collider can be near: those of the scene without colliders, and more where something moving
-/// may have left the cloth strained in directions that tethers do not limit.
+/// Substeps of a frame in which no collider can be near: as in the scene without colliders, and more where a kinematic
+/// collider may have left the cloth strained in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Substeps that the speed of colliders needs, where that is more than they get: beyond, the cloth is overstretched
-/// for some frames, and nothing is passed. 0 where it is not.
+/// Substeps that the speed of colliders needs, if that is more than the maximum. The cloth is then overstretched for
+/// some frames, but passes through nothing. 0 if the maximum is sufficient.
 int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 
-/// Substeps by the way of what moves farthest in a frame.
+/// Substeps from the largest displacement in a frame.
 struct TravelLimit {
   double travel_m = 0;  ///< in a substep, where things are slow; infinity without colliders
-  double faster = 1;    ///< the way of what is fast is that much shorter
+  double faster = 1;    ///< divisor of travel_m for fast motion
   double layers_m = 0;  ///< in a substep, for layers of the cloth that touch; infinity without
   double wanted(double max_displacement_m) const;
 };
@@ -32,9 +32,8 @@ struct TravelLimit {
 /// cloth in contact with static colliders or itself. An impact needs many substeps; most frames have none.
 /// - Displacement above the travel limit: more substeps, up to the scene's maximum.
 /// - After an impact: at most 25 % fewer substeps per frame.
-/// - At rest (four frames with less than 1/24 cell of displacement): half of the base, later a quarter. A displacement
-/// of
-///   more than 1/6 cell restores the base. The two thresholds differ so that the count does not oscillate.
+/// - At rest (four frames with less than 1/24 cell of displacement): half of the base, later a quarter. More than 1/6
+///   cell restores the base. The two thresholds differ so that the count does not oscillate.
 class SubstepController {
  public:
   SubstepController() = default;
@@ -42,10 +41,10 @@ class SubstepController {
   SubstepController(const Scene&, const nlohmann::json& settings, bool adapts);
   void reset();
   bool adapts() const { return adapts_; }
-  /// Of a frame as long as the scene's.
+  /// Substeps of a frame as long as the scene's.
   int substeps() const { return now_; }
-  /// Before a frame. `cloth_m`: the farthest way of a vertex in the last frame, in the time of a frame of the scene;
-  /// infinity: unknown.
+  /// Before a frame. `cloth_m`: the largest displacement of a vertex in the last frame, in the time of a frame of the
+  /// scene; infinity: unknown.
   void next(double cloth_m);
 
  private:
