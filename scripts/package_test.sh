@@ -71,11 +71,11 @@ study_and_report() {
   [ "$runs" -gt 10 ] || fail "the study has $runs runs"
   [ "$(($(wc -l <"$report/runs.csv") - 1))" = "$runs" ] || fail "report/runs.csv has not the study's $runs runs"
   for solver in ballistic bullet-soft paper xpbd; do
-    grep -qE "^\| $solver \| single \|.* [0-9.]+ \|" "$report/report.md" || fail "report/report.md: no values of $solver"
+    grep -qE "^\| gravity-8-single \| $solver \| single \|.* [0-9.]+ \|" "$report/report.md" || fail "report/report.md: no values of $solver"
   done
   [ -s "$report/index.html" ] || fail "no report/index.html"
   [ "$(grep -c 'Figures were left out: ' "$report/report.md")" = 1 ] || fail "report/report.md: expected one sentence on what is missing"
-  ! ls "$report"/*.svg >/dev/null 2>&1 || fail "figures, without what draws them"
+  ! ls "$report"/figures/*.svg >/dev/null 2>&1 || fail "figures, without what draws them"
   ok "study of $runs runs, complete tables; $(grep -o 'Figures were left out: .*' "$report/report.md")"
 }
 
@@ -102,8 +102,8 @@ is_tidy() {
 figures() {
   get nodejs librsvg2-bin
   quietly as_user clothbench report study -o report
-  for name in fig4.svg fig5.png; do
-    [ -s "$root$home/report/$name" ] || fail "no $name although what is recommended is there"
+  for name in fig4.svg fig5.pdf; do
+    [ -s "$root$home/report/figures/$name" ] || fail "no $name although what is recommended is there"
   done
   ok "figures are drawn"
 }

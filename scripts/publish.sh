@@ -76,9 +76,8 @@ if [ -n "$report" ]; then
     for file in "${complete[@]}"; do [ "$(basename "${file%.done}" | sed 's/+.*//')" != "$name" ] || parts+=("${file%.done}"); done
     "$bench" report "${parts[@]}" -o "$scratch/$name" >"$scratch/$name.log" || { tail -5 "$scratch/$name.log" >&2; exit 1; }
     mkdir "$to/$name"
-    sed 's/^\(!\[.*\)\.svg)$/\1.png)/' "$scratch/$name/report.md" >"$to/$name/report.md"
-    cp "$scratch/$name/runs.csv" "$to/$name"
-    find "$scratch/$name" -name '*.png' -exec cp {} "$to/$name" \;
+    cp "$scratch/$name/report.md" "$scratch/$name/runs.csv" "$to/$name"
+    [ ! -d "$scratch/$name/figures" ] || { mkdir "$to/$name/figures" && cp "$scratch/$name"/figures/*-wide.svg "$to/$name/figures"; }
   done
   "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null
   cp "$scratch/all/index.html" "$to"

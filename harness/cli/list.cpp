@@ -110,7 +110,7 @@ std::vector<SolverFeatures> features() {
   return out;
 }
 
-nlohmann::json list_features() { return feature_json(features(), false); }
+nlohmann::json list_features() { return feature_json(features()); }
 
 const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
     {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios},
@@ -149,7 +149,7 @@ nlohmann::json list_of(const std::string& what) {
 }
 
 std::string list_text(const std::string& what) {
-  if (what == "features") return feature_table(features(), false).console();
+  if (what == "features") return feature_table(features()).console();
   const nlohmann::json rows = list_of(what);
   return rows.empty() ? "no " + what + "\n" : rows_text(rows);
 }

@@ -15,12 +15,10 @@ void add_report(CLI::App& app, Console& console) {
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
   cmd->callback([&console, &runs, &out] {
     std::vector<std::filesystem::path> paths(runs.begin(), runs.end());
-    ReportOptions options;
-    options.out = out;
-    write_report(paths, options);
+    write_report(paths, out);
     if (console.json) return Console::print({{"out", out}});
     print_console_report(paths);
-    const bool page = std::filesystem::exists(options.out / "index.html");
+    const bool page = std::filesystem::exists(std::filesystem::path(out) / "index.html");
     fmt::print("\nreport: {}/{}\n", out, page ? "index.html (open it in a browser), report.md" : "report.md");
   });
 }

@@ -50,8 +50,7 @@ std::string runs_csv(const RunTable& table) {
   Columns<Item> columns = {{"family", In::Both, [](auto& i) { return i.row->family; }},
                            {"paper_table", In::Both, [](auto& i) { return grid_side(i.row->paper_table); }}};
   columns.add(run_columns())
-      .add({{"set_up", In::Both, [](auto& i) { return i.row->set_up; }},
-            {"resolution", In::Both, [](auto& i) { return i.row->resolution.label(); }},
+      .add({{"resolution", In::Both, [](auto& i) { return i.row->resolution.label(); }},
             {"grid_x", In::Both, [](auto& i) { return grid_side(i.row->resolution.grid[0]); }},
             {"grid_y", In::Both, [](auto& i) { return grid_side(i.row->resolution.grid[1]); }},
             {"status", In::Both, [](auto& i) { return i.row->status(); }},

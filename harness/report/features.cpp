@@ -45,8 +45,6 @@ void add_run(SolverFeatures& s, const RunRecord& c) {
       if (f && beside && !contains(s.only_with, std::pair{*f, *beside})) s.only_with.emplace_back(*f, *beside);
     }
   }
-  if (c.outcome.status != "ok") return;
-  for (const StageRecord& stage : c.header.stages) s.shown |= feature_set(stage.serves);
 }
 
 }  // namespace
@@ -60,40 +58,36 @@ std::vector<SolverFeatures> solver_features(const std::vector<RunRecord>& runs) 
 }
 
 SolverFeatures declared_features(const SolverInfo& info) {
-  return {info.name, true, info.supports, info.ignores, info.only_with, {}};
+  return {info.name, true, info.supports, info.ignores, info.only_with};
 }
 
-std::string feature_text(const SolverFeatures& s, Feature f, bool with_results) {
+std::string feature_text(const SolverFeatures& s, Feature f) {
   if (!s.known) return "not built";
   if (s.ignores.has(f)) return "ignored";
   if (!s.supports.has(f)) return "no";
-  std::string text = with_results && !s.shown.has(f) ? "declared" : "yes";
+  std::string text = "yes";
   for (const auto& [what, beside] : s.only_with)
     if (what == f) text += " (only with " + words(name_of(beside)) + ")";
   return text;
 }
 
-Table feature_table(const std::vector<SolverFeatures>& solvers, bool with_results) {
-  const std::string note = with_results
-                               ? "Yes: a stage of the solver served the feature in a run that ended ok. Declared: the "
-                                 "solver states support and no run here needed it. "
-                               : "";
+Table feature_table(const std::vector<SolverFeatures>& solvers) {
   return Columns<FeatureRow>{{"", "feature", [](auto& f) { return words(f.name); }}}
       .across(solvers, &SolverFeatures::solver,
               [&](const FeatureRow& f, const SolverFeatures& s) {
-                return feature_text(s, static_cast<Feature>(&f - kFeatures.data()), with_results);
+                return feature_text(s, static_cast<Feature>(&f - kFeatures.data()));
               })
-      .table({"Table 4: features", note + "Ignored: the solver runs the scene and leaves the feature out.", {}},
+      .table({"Table 4: features",
+              "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+              {}},
              kFeatures);
 }
 
-json feature_json(const std::vector<SolverFeatures>& solvers, bool with_results) {
+json feature_json(const std::vector<SolverFeatures>& solvers) {
   json rows = json::array();
   for (std::size_t k = 0; k < kFeatureCount; ++k) {
-    json row = {{"name", kFeatures[k].name}, {"solvers", json::object()}};
-    if (!with_results) row["doc"] = kFeatures[k].doc;
-    for (const SolverFeatures& s : solvers)
-      row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k), with_results);
+    json row = {{"name", kFeatures[k].name}, {"doc", kFeatures[k].doc}, {"solvers", json::object()}};
+    for (const SolverFeatures& s : solvers) row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k));
     rows.push_back(std::move(row));
   }
   return rows;

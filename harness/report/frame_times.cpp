@@ -56,13 +56,15 @@ class Bootstrap {
     std::sort(pooled_.begin(), pooled_.end());
   }
 
-  /// Calls `with(weights of the blocks)` and `trial(sum, frames)` for every trial drawn, `kResamples` times.
-  template <class With, class Trial>
-  void resample(With with, Trial trial) const {
+  /// 95 % intervals of the median time and of the median over trials of the rate [1/s].
+  std::pair<Interval95, Interval95> intervals() const {
+    if (pooled_.size() < kMinFrames) return {};
     Random random;
-    std::vector<std::size_t> weight(sum_.size());
+    std::vector<std::size_t> weight(sum_.size());  // of the blocks
+    Series medians, rates, drawn;
     for (std::size_t n = 0; n < kResamples; ++n) {
       std::fill(weight.begin(), weight.end(), 0);
+      drawn.clear();
       for (std::size_t t = 0; t < trials_.size(); ++t) {
         const auto [first, count] = trials_[random.below(trials_.size())];
         double sum = 0, frames = 0;
@@ -72,67 +74,61 @@ class Bootstrap {
           sum += sum_[block];
           frames += frames_[block];
         }
-        trial(sum, frames);
+        drawn.push_back(frames / sum);
       }
-      with(weight);
+      std::sort(drawn.begin(), drawn.end());
+      rates.push_back(middle(drawn));
+      medians.push_back(median(weight));
     }
+    return {percentiles(std::move(medians)), percentiles(std::move(rates))};
   }
 
-  bool enough() const { return pooled_.size() >= kMinFrames; }
-  const std::vector<std::pair<double, std::size_t>>& pooled() const { return pooled_; }
+  Series times() const {
+    Series out;
+    for (const auto& [time, unused] : pooled_) out.push_back(time);
+    return out;
+  }
 
  private:
+  double median(const std::vector<std::size_t>& weight) const {
+    std::size_t all = 0, below = 0;
+    for (const auto& [unused, block] : pooled_) all += weight[block];
+    for (const auto& [time, block] : pooled_)
+      if (below += weight[block]; 2 * below >= all) return time;
+    return kMissing;
+  }
+
   std::vector<std::pair<double, std::size_t>> pooled_;       ///< (time, block), ascending
   Series sum_, frames_;                                      ///< by block
   std::vector<std::pair<std::size_t, std::size_t>> trials_;  ///< first block and their number
 };
 
-double weighted_median(const std::vector<std::pair<double, std::size_t>>& pooled, const std::vector<std::size_t>& w) {
-  std::size_t all = 0, below = 0;
-  for (const auto& [unused, block] : pooled) all += w[block];
-  for (const auto& [time, block] : pooled)
-    if (below += w[block]; 2 * below >= all) return time;
-  return kMissing;
-}
-
-FrameTimes pooled(const std::vector<Series>& trials) {
-  FrameTimes out;
-  for (const Series& t : trials) out.sorted.insert(out.sorted.end(), t.begin(), t.end());
-  std::sort(out.sorted.begin(), out.sorted.end());
-  const Bootstrap b(trials);
-  if (!b.enough()) return out;
-  Series medians;
-  b.resample([&](const auto& weight) { medians.push_back(weighted_median(b.pooled(), weight)); },
-             [](double, double) {});
-  out.median = percentiles(std::move(medians));
+/// Whether the cloth touches something in each frame of the scene, frame 0 included; empty if no metric states it.
+std::vector<bool> frames_with_contact(const RunRecord& c) {
+  std::vector<bool> out;
+  for (const MetricSeries& m : c.accuracy.metrics) {
+    if (m.name != "touching_fraction" && m.name != "contact_length_m" && m.name != "depth_m" &&
+        m.name != "self_contact_length_m")
+      continue;
+    out.resize(std::max(out.size(), m.values.size()));
+    for (std::size_t f = 0; f < m.values.size(); ++f) out[f] = out[f] || m.values[f] > 0;
+  }
   return out;
 }
 
-Interval95 rate_of(const std::vector<Series>& trials) {
-  const Bootstrap b(trials);
-  if (!b.enough()) return {};
-  Series rates, drawn;
-  b.resample(
-      [&](const auto&) {
-        std::sort(drawn.begin(), drawn.end());
-        rates.push_back(middle(drawn));
-        drawn.clear();
-      },
-      [&](double sum, double frames) { drawn.push_back(frames / sum); });
-  return percentiles(std::move(rates));
-}
-
-/// The finite times of each trial; only those of frames with contact if `contact` is not empty.
-std::vector<Series> trials_of(const RunRecord& c, Series TimedTrial::*clock, const std::vector<bool>& contact = {}) {
-  std::vector<Series> out;
+/// The finite times of all trials; only those of frames with contact if `contact` is not empty.
+FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::vector<bool>& contact = {}) {
+  std::vector<Series> trials;
   for (const TimedTrial& t : c.trials) {
     Series kept;
     for (std::size_t f = 0; f < (t.*clock).size(); ++f)
       if (std::isfinite((t.*clock)[f]) && (contact.empty() || (f + 1 < contact.size() && contact[f + 1])))
         kept.push_back((t.*clock)[f]);
-    out.push_back(std::move(kept));
+    trials.push_back(std::move(kept));
   }
-  return out;
+  const Bootstrap b(trials);
+  const auto [median, rate] = b.intervals();
+  return {b.times(), median, rate};
 }
 
 }  // namespace
@@ -150,31 +146,17 @@ double FrameTimes::missed(double rate_hz) const {
   return static_cast<double>(late) / static_cast<double>(sorted.size());
 }
 
-bool RunTimes::uncertain() const { return wall.median.high - wall.median.low > kWide * wall.at(0.5); }
-
-std::vector<bool> frames_with_contact(const RunRecord& c) {
-  std::vector<bool> out;
-  for (const MetricSeries& m : c.accuracy.metrics) {
-    if (m.name != "touching_fraction" && m.name != "contact_length_m" && m.name != "depth_m" &&
-        m.name != "self_contact_length_m")
-      continue;
-    out.resize(std::max(out.size(), m.values.size()));
-    for (std::size_t f = 0; f < m.values.size(); ++f) out[f] = out[f] || m.values[f] > 0;
-  }
-  return out;
-}
+bool FrameTimes::uncertain() const { return median.high - median.low > kWide * at(0.5); }
 
 RunTimes times_of(const RunRecord& c) {
   RunTimes out;
-  const std::vector<Series> wall = trials_of(c, &TimedTrial::frame_wall_s);
-  out.wall = pooled(wall);
-  out.device = pooled(trials_of(c, &TimedTrial::frame_device_s));
-  out.rate = rate_of(wall);
+  out.wall = times_by(&TimedTrial::frame_wall_s, c);
+  out.device = times_by(&TimedTrial::frame_device_s, c);
   const double cpu_s = summary_value(c, "frame_cpu_median_s");
   if (cpu_s > kMeasurable_s) out.threads = std::max(1.0, std::round(cpu_s / out.wall.at(0.5)));
   if (const std::vector<bool> contact = frames_with_contact(c); !contact.empty()) {
-    out.contact_wall = pooled(trials_of(c, &TimedTrial::frame_wall_s, contact));
-    out.contact_device = pooled(trials_of(c, &TimedTrial::frame_device_s, contact));
+    out.contact_wall = times_by(&TimedTrial::frame_wall_s, c, contact);
+    out.contact_device = times_by(&TimedTrial::frame_device_s, c, contact);
   }
   return out;
 }

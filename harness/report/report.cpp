@@ -29,7 +29,7 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
 ViewTable features_of(const RunTable& table) {
   const auto solvers = solver_features(table.runs());
   if (std::none_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; })) return {};
-  ViewTable t{feature_table(solvers, true)};
+  ViewTable t{feature_table(solvers)};
   t.in_full = true;
   t.solvers = {""};
   for (const SolverFeatures& s : solvers) t.solvers.push_back(s.solver);
@@ -51,11 +51,6 @@ std::vector<PageSection> filled_sections(const RunTable& table) {
   return out;
 }
 
-std::string verdict_line(const std::vector<RunRecord>& runs) {
-  const VerdictCounts n = count_verdicts(runs);
-  return n.runs == 0 ? "" : n.text() + ", of those whose scene has acceptance criteria.\n";
-}
-
 /// Names of the studies among the results, each once.
 std::vector<std::string> names_of(const std::vector<fs::path>& results) {
   std::vector<std::string> out;
@@ -66,28 +61,37 @@ std::vector<std::string> names_of(const std::vector<fs::path>& results) {
   return out;
 }
 
-std::string tiles_markdown(const std::vector<Tile>& tiles) {
-  std::string out;
-  for (const Tile& t : tiles)
+Page page_of(const RunTable& table, const std::vector<fs::path>& results) {
+  return {heading_of(table, names_of(results)), warnings_of(table), tiles_of(table), notes_of(table),
+          filled_sections(table)};
+}
+
+std::string facts_of(const Heading& h) {
+  return joined(h.facts, " · ", [](const auto& f) { return f.first + " " + f.second; });
+}
+
+/// What stands above the tables in report.md.
+std::string head_markdown(const Page& page) {
+  std::string out = "# " + page.heading.title + "\n\n";
+  for (const std::string& w : page.warnings) out += "**" + w + "**\n\n";
+  out += facts_of(page.heading) + "\n\n";
+  for (const std::string& n : page.notes) out += n + "\n\n";
+  for (const Tile& t : page.tiles)
     out += fmt::format("- {}: **{}** ({}){}\n", t.title, t.value, t.interval, t.others.empty() ? "" : "; " + t.others);
-  return out.empty() ? "" : out + "\n";
+  return out + (page.tiles.empty() ? "" : "\n");
 }
 
 }  // namespace
 
-void write_report(const std::vector<fs::path>& results, const ReportOptions& options) {
+void write_report(const std::vector<fs::path>& results, const fs::path& out) {
   const RunTable table(printable(results));
-  const auto write = [&](const std::string& name, const std::string& text) {
-    write_file_atomically(options.out / name, text);
-  };
-  fs::create_directories(options.out);
+  const auto write = [&](const std::string& name, const std::string& text) { write_file_atomically(out / name, text); };
+  fs::create_directories(out);
   write("runs.csv", runs_csv(table));
   write("runs.json", runs_json(table.runs()).dump(1) + "\n");
   write("series.csv", series_csv(table));
   write("trials.csv", trials_csv(table));
-  const std::string head = headline(table.runs(), Format::Markdown) + verdict_line(table.runs());
-  const Page page{heading_of(table, names_of(results)), warnings_of(table.runs()), tiles_of(table), head,
-                  filled_sections(table)};
+  const Page page = page_of(table, results);
   std::string all, latex = "% Tables of this report for LaTeX; \\usepackage{booktabs}.\n";
   for (const PageSection& s : page.sections) {
     all += "## " + s.title + "\n\n";
@@ -98,13 +102,13 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
   }
   write("tables.tex", latex);
   const PageTemplate with = page_template();
-  const std::string no_page = write_page(options.out, table, page, with);
-  const auto [no_figures, figures] = draw_pictures(options.out, with);
+  const std::string no_page = write_page(out, table, page, with);
+  const auto [no_figures, figures] = draw_pictures(out, with);
   for (const std::string& why : {no_page, no_figures})
     if (!why.empty()) fmt::print(stderr, "{}\n", why);
   write("report.md",
-        "# " + page.heading.title + "\n\n" + head + "\n" + tiles_markdown(page.tiles) + all +
-            (figures.empty() ? "" : "## Figures\n\n" + figures) + (no_figures.empty() ? "" : no_figures + "\n\n") +
+        head_markdown(page) + all + (figures.empty() ? "" : "## Figures\n\n" + figures) +
+            (no_figures.empty() ? "" : no_figures + "\n\n") +
             (no_page.empty() ? "`index.html` shows all of this interactively, with the motions. " : no_page + "\n\n") +
             "`runs.csv` and `runs.json` hold every summary value of every run in full precision, `series.csv` the "
             "metrics by frame, `trials.csv` the timed trials.\n");
@@ -113,10 +117,13 @@ void write_report(const std::vector<fs::path>& results, const ReportOptions& opt
 void print_console_report(const std::vector<fs::path>& results) {
   constexpr std::size_t kShown = 2;
   const RunTable table(printable(results));
-  fmt::print("{}{}", headline(table.runs(), Format::Console),
-             wrapped(verdict_line(table.runs()), 0, console_columns()));
+  const Page page = page_of(table, results);
+  std::vector<std::string> head = page.warnings;
+  head.push_back(facts_of(page.heading));
+  head.insert(head.end(), page.notes.begin(), page.notes.end());
+  for (const std::string& line : head) fmt::print("{}", wrapped(line, 0, console_columns()));
   std::size_t shown = 0, rest = 0;
-  for (const PageSection& s : filled_sections(table))
+  for (const PageSection& s : page.sections)
     for (const ViewTable& t : s.tables) {
       // Messages are sentences and are printed as lines, not columns; a failed run is never left out.
       if (s.id == "failed" && !t.in_full) {

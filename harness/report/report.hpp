@@ -9,10 +9,6 @@
 
 namespace clothbench {
 
-struct ReportOptions {
-  std::filesystem::path out;
-};
-
 /// All runs of study folders, or result files, without trajectories. Planned runs without a file have the
 /// status "missing". Throws Error naming the file that cannot be read.
 std::vector<RunRecord> collect(const std::vector<std::filesystem::path>& results);
@@ -26,20 +22,28 @@ void withhold_times(std::vector<RunRecord>&);
 /// A sentence for the note of a table of times: why some of the runs show "–". Empty if no time is withheld.
 std::string withheld_note(const std::vector<const Row*>&);
 
-enum class Format { Markdown, Console };
+/// A number of the first screen, of the best solver present, with its interval; `others`: the solvers that follow.
+struct Tile {
+  std::string title, value, interval, others;
+};
 
-/// Head of a report: whether the device is software; whose times are withheld; device, protocol and commit, one line
-/// for each combination among the runs; the plugins; the overhead of the harness.
-std::string headline(const std::vector<RunRecord>& runs, Format);
+/// At most four tiles: rate, error, generated contact, contact, stability, as far as the runs have them.
+std::vector<Tile> tiles_of(const RunTable&);
+
+/// Title of a report and what its runs state of device, commit, date and trials.
+struct Heading {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> facts;
+};
+Heading heading_of(const RunTable&, const std::vector<std::string>& studies);
 
 /// Sentences about the whole report: a software device, measurements that are not valid, withheld times.
-std::vector<std::string> warnings_of(const std::vector<RunRecord>& runs);
+std::vector<std::string> warnings_of(const RunTable&);
 
-/// The ballistic solver's slowest run as a percentage of a 72 Hz frame, against the 1 % allowed; empty without one.
-std::string overhead_line(const std::vector<RunRecord>& runs);
+/// Sentences about the plugins, the overhead of the harness, and the number of runs that passed.
+std::vector<std::string> notes_of(const RunTable&);
 
-/// One row per run, the fastest of each scene first: ending, stretch, frame times, ratio to time_baseline(). Runs that
-/// failed, or whose cloth is stretched to more than twice its length, follow without a rank.
+/// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank.
 Table in_short_table(const std::vector<RunRecord>& runs);
 
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
@@ -54,7 +58,7 @@ std::string trials_csv(const RunTable&);
 /// Writes report.md, tables.tex, runs.csv, runs.json, series.csv and trials.csv into `out`; also the page index.html if
 /// this was built with Node, and its figures as pictures (draw_pictures) if Node is installed; otherwise a line that
 /// states the reason. Throws Error if a file cannot be read or written.
-void write_report(const std::vector<std::filesystem::path>& results, const ReportOptions&);
+void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
 
 /// Head, failures and the first two tables on the terminal, and where the rest is.
 void print_console_report(const std::vector<std::filesystem::path>& results);

@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kThrottled = 0.95;  // of the GPU's clock at the start
+constexpr double kTornApart = 1;     // strain of edges of twice their length
 
 json at(const json& scenario, const char* pointer) {
   return scenario.is_object() ? scenario.value(json::json_pointer(pointer), json()) : json();
@@ -33,19 +34,6 @@ bool filled(const json& scenario, const char* key) {
 }
 
 bool touches(const json& scenario) { return filled(scenario, "/colliders") || filled(scenario, "/grips"); }
-
-/// Kind of contact, by the collider that is rarest.
-std::string set_up_of(const json& scenario) {
-  if (!touches(scenario)) return "";
-  if (text_at(scenario, "/truth/case") == "two-hand-pull") return "wave";
-  if (filled(scenario, "/grips")) return "grip";
-  std::set<std::string> types;
-  for (const json& c : scenario.value("colliders", json::array()))
-    if (c.is_object()) types.insert(c.value("type", ""));
-  if (types.contains("hand_mesh")) return "hand";
-  if (types.contains("hand_capsules")) return "capsules";
-  return types.contains("room") || types.contains("mesh") ? "rooms" : "shapes";
-}
 
 Part part_of(const RunRecord& c, const json& scenario) {
   if (c.header.scenario_json.empty() && c.outcome.status == "missing") return Part::None;
@@ -64,7 +52,7 @@ std::string read_scenario(Row& row) {
   row.setting = c.header.setting;
   row.scenario = scenario_of(c);
   row.part = part_of(c, row.scenario);
-  row.set_up = set_up_of(row.scenario);
+  row.contact = touches(row.scenario);
   if (!row.scenario.is_object()) return "\n" + row.scene;  // no scene's JSON starts with a line break
   if (const std::string name = text_at(row.scenario, "/name"); !name.empty()) row.name = name;
   if (const json table = at(row.scenario, "/paper/table"); table.is_number_integer()) row.paper_table = table;
@@ -201,6 +189,11 @@ std::string Row::frames_mark() const {
   return frames() > 0 && frames() < most_frames ? fmt::format(" (first {} frames)", frames()) : "";
 }
 
+std::string Row::environment(const char* key) const {
+  const json e = environment_of(*run, key);
+  return e.is_string() ? e.get<std::string>() : "";
+}
+
 double Row::frame_rate_hz() const {
   const json rate = at(scenario, "/time/frame_rate_hz");
   return rate.is_number() ? rate.get<double>() : kMissing;
@@ -258,14 +251,13 @@ std::string Row::trust() const {
   if (!clocks) out += ", clocks not readable";
   const json load = environment_of(*run, "load_average");
   if (load.is_number()) out += fmt::format(", load {:.1f}", load.get<double>());
-  if (times && times->uncertain()) out += ", ~ wide interval";
-  return out;
+  if (times && times->wall.uncertain()) out += ", ~ wide interval";
+  return out + frames_mark();
 }
 
 json Row::drawn() const { return at(scenario, "/drawn"); }
 
 bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
-bool has_truth(const RunRecord& c) { return !text_at(scenario_of(c), "/truth/case").empty(); }
 
 json published_table3() { return json::parse(kPublishedTable3); }
 
@@ -299,21 +291,15 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= largest[r.family];
     // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
-    if (r.part == Part::Truth && r.set_up == "wave" && !timed.contains(r.scene)) r.part = Part::Contact;
+    if (text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene)) r.part = Part::Contact;
     if (r.part != Part::Truth) continue;
     auto& shared = facts.try_emplace(r.scene, std::make_shared<TruthFacts>()).first->second;
     add_facts(*shared, r);
     r.truth = shared;
   }
   add_published();
-  const json columns = published_table3().at("columns");
   const auto key = [&](const Row& r) {
-    std::size_t peer = columns.size();
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      if (!engine_of(*r.run).empty() && columns[k].value("engine", "") == engine_of(*r.run)) peer = k;
-    if (r.published >= 0) peer = static_cast<std::size_t>(r.published);
-    const auto scene = scenes.find(r.part == Part::Rates ? r.family : r.scene);
-    return std::tuple(scene == scenes.end() ? 0 : scene->second, peer, r.published < 0, r.solver, r.setting, r.repeat,
+    return std::tuple(scenes.at(r.part == Part::Rates ? r.family : r.scene), r.published, r.solver, r.setting, r.repeat,
                       rank_of_sides(r.sides), r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
@@ -334,8 +320,9 @@ void RunTable::compare_times() {
       if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
         baseline_s = r->times->wall.at(0.5);
       const std::string v = verdict(*r->run);
-      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->uncertain() &&
-          std::isfinite(r->times->wall.median.low) && r->repeat == 1)
+      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
+          std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
+          !(r->value("stretch_max_last_second") > kTornApart))
         ranked.push_back(r);
     }
     for (Row* r : rows) r->baseline_s = baseline_s;

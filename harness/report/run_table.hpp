@@ -100,7 +100,7 @@ struct Row {
   std::string name = {};    ///< in the scene's file, without the labels of axes
   std::string family = {};  ///< name shared by runs whose scenes differ only in resolution and sides; "x (2)" if taken
   std::string solver = {}, setting = {}, sides = {};
-  std::string set_up = {};  ///< kind of contact: "rooms", "capsules", "hand", "grip", "wave", "shapes"; "" without
+  bool contact = false;  ///< the scene has colliders or hands that grip the cloth
   Resolution resolution = {};
   int repeat = 1;        ///< 2, 3, … where several files hold the same run
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
@@ -118,6 +118,8 @@ struct Row {
   std::string frames_mark() const;
   double value(const std::string& name) const { return summary_value(*run, name); }
   std::string status() const { return run->outcome.status; }
+  /// The environment's text of `key`; empty if there is none.
+  std::string environment(const char* key) const;
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined where the solver supports it.
   double wall_ms_per_s() const;
@@ -138,9 +140,8 @@ struct Row {
   nlohmann::json drawn() const;
 };
 
-/// True if the run's scene has colliders or hands that grip the cloth; and if it states an exact solution.
+/// True if the run's scene has colliders or hands that grip the cloth.
 bool has_contact(const RunRecord&);
-bool has_truth(const RunRecord&);
 
 /// results/paper-table3.json, as it was at build time.
 nlohmann::json published_table3();
@@ -153,8 +154,8 @@ class RunTable {
   RunTable& operator=(const RunTable&) = delete;
 
   const std::vector<RunRecord>& runs() const { return runs_; }
-  /// In the order of tables: peers of the paper's columns first, then by solver, setting and sides, by ascending
-  /// resolution; scenes in the order of first appearance. Includes the published values if a run has paper_table 3.
+  /// In the order of tables: scenes in the order of first appearance; then by solver, setting and sides, by ascending
+  /// resolution. Includes the published values if a run has paper_table 3, after its scene's runs.
   const std::vector<Row>& rows() const { return rows_; }
 
  private:

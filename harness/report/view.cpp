@@ -62,7 +62,6 @@ std::vector<TableRow> rows_of(const View& v, const Group& runs) {
 
 /// Values of the columns that the runs give, in order.
 Texts values_across(const Across& a, const Group& runs) {
-  if (!a.values.empty()) return a.values;
   Texts out;
   std::map<std::string, double> order;
   for (const Row* r : runs)
@@ -135,19 +134,16 @@ Key key(std::string head, std::function<std::string(const Row&)> of) {
   return {std::move(head), [of = std::move(of)](const Row& r) -> Texts { return {of(r)}; }};
 }
 
+Key solver_key(std::string head, std::function<std::string(const Row&)> of) {
+  Key k = key(std::move(head), std::move(of));
+  k.is_solver = true;
+  return k;
+}
+
 Key scene_key() {
   return key("scene", [](const Row& r) { return r.scene; });
 }
-Key label_key() {
-  Key k = key("solver", [](const Row& r) { return label_of(*r.run); });
-  k.is_solver = true;
-  return k;
-}
-Key solver_key() {
-  Key k = key("solver", &Row::label);
-  k.is_solver = true;
-  return k;
-}
+Key solver_key() { return solver_key("solver", &Row::label); }
 Key sides_key() {
   return key("sides", [](const Row& r) { return or_dash(r.sides); });
 }
@@ -155,6 +151,18 @@ Key sides_key() {
 ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs) {
   return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) { return text(*g.front()); },
           if_differs};
+}
+
+ViewColumn trials_column() {
+  return column("trials", [](const Row& r) {
+    return r.run->trials.empty() ? std::string() : std::to_string(r.run->trials.size());
+  });
+}
+
+Across resolution_across(std::function<std::string(const Group&)> cell) {
+  const auto ended = [](const Group& g) { return g.front()->status() == "ok" ? "" : ending(g.front()->run->outcome); };
+  return {key("", [](const Row& r) { return r.resolution.label(); }), std::move(cell),
+          [](const Row& r) { return r.resolution.size(); }, ended};
 }
 
 std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
@@ -177,10 +185,10 @@ std::string rate_text(double v) {
 }
 
 std::string rate_with_interval(const Row& r) {
-  const Interval95 i = r.times->rate;
+  const Interval95 i = r.times->wall.rate;
   const std::string rate = rate_text(r.value("fps_median"));
   if (rate == "–" || !std::isfinite(i.low)) return rate;
-  return fmt::format("{} ({}–{}){}", rate, rate_text(i.low), rate_text(i.high), r.times->uncertain() ? " ~" : "");
+  return fmt::format("{} ({}–{}){}", rate, rate_text(i.low), rate_text(i.high), r.times->wall.uncertain() ? " ~" : "");
 }
 
 std::string share_text(std::size_t passed, std::size_t all) {
@@ -208,11 +216,15 @@ const std::vector<View>& views() {
 }
 
 const std::vector<Section>& sections() {
-  static const std::vector<Section> all = {
-      {"overview", "Overview"},      {"rates", "Frame rates"},           {"time", "Frame times"},
-      {"contact", "Contact"},        {"generated", "Generated contact"}, {"accuracy", "Error against run time"},
-      {"stability", "Stability"},    {"features", "Features"},           {"failed", "Runs without a result"},
-      {"environment", "Environment"}};
+  static const std::vector<Section> all = {{"overview", "Overview"},
+                                           {"rates", "Frame rates"},
+                                           {"time", "Frame times"},
+                                           {"contact", "Contact"},
+                                           {"accuracy", "Error against run time"},
+                                           {"stability", "Stability"},
+                                           {"failed", "Failures"},
+                                           {"features", "Features"},
+                                           {"environment", "Environment"}};
   return all;
 }
 

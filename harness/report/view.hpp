@@ -22,9 +22,11 @@ struct Key {
 /// A key with one value per run.
 Key key(std::string head, std::function<std::string(const Row&)> of);
 
-/// The scene; the solver with its setting, without and with the number of a repeated run; the sides.
+/// A key whose values name solvers.
+Key solver_key(std::string head, std::function<std::string(const Row&)> of);
+
+/// The scene; the solver with its setting and the number of a repeated run; the sides.
 Key scene_key();
-Key label_key();
 Key solver_key();
 Key sides_key();
 
@@ -37,14 +39,19 @@ struct ViewColumn {
 /// A column that shows the row's first run.
 ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs = false);
 
-/// Columns that the runs themselves give: one per value of `key`, ascending by `order` or in the order of `values`.
+/// The number of timed trials of the row's first run.
+ViewColumn trials_column();
+
+/// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
   Key key;
   std::function<std::string(const Group&)> cell;
   std::function<double(const Row&)> order = nullptr;
-  Texts values = {};
   std::function<std::string(const Group&)> without = nullptr;  ///< text of a cell without a value
 };
+
+/// A column per resolution, ascending. A cell without a value says how its run ended.
+Across resolution_across(std::function<std::string(const Group&)> cell);
 
 /// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is one of these.
 struct View {
@@ -96,7 +103,6 @@ int grade_of(const Row&);
 
 // Parts of views(), by file.
 std::vector<View> overview_views();
-View cost_view();
 std::vector<View> rate_views();
 std::vector<View> contact_views();
 std::vector<View> accuracy_views();

@@ -89,7 +89,7 @@ class Tree(unittest.TestCase):
         out = self.out()
         self.command("run", "paper/gravity", "--solver", "ballistic", *SMALL, "--out", out)
         self.command("report", out, "-o", out + "-report")
-        picture = pathlib.Path(out + "-report", "fig4.svg").read_text(encoding="utf-8")
+        picture = pathlib.Path(out + "-report", "figures", "fig4.svg").read_text(encoding="utf-8")
         self.assertIn("ballistic", picture)
         again = pathlib.Path(self.out())
         again.mkdir()

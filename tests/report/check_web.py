@@ -61,10 +61,10 @@ assert set(static) <= set(titles), set(static) - set(titles)
 for t in tables:
     if t["title"] in static:
         assert [[c.strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
-assert any(r[0].startswith("published") for r in static["Table 3: frames per second, capped at 72"])
+assert any(r[0].startswith("published") for r in static["Table 3: speed and error"])
 
-# Rows of the figures, and the series.
-KEYS = {"fps_median", "free_fall_error", "frame_device_median_s", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
+# Rows of the figures.
+KEYS = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
 points = errors = quantiles = 0
 for r in doc["runs"]:
     if r.get("published"):
@@ -90,52 +90,36 @@ for r in doc["runs"]:
             assert abs(r["wall_ms_per_s"] / (1e3 * rate * a["frame_wall_median_s"]) - 1) < 1e-12
             errors += 1
 assert points >= 12 and errors == 2 and quantiles >= 40, f"only {points} rates, {errors} errors and {quantiles} times were compared"
-series = 0
-for s in json.loads(zlib.decompress(base64.b64decode(blobs[doc["series"]]))):
-    r = doc["runs"][s["run"]]
-    with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
-        for name, m in s["metrics"].items():
-            stored = f["metrics"][name][:]
-            assert len(stored) == len(m["values"]) == len(s["time_s"])
-            told = np.array([np.nan if v is None else v for v in m["values"]])
-            np.testing.assert_allclose(told, np.where(np.isfinite(stored), stored, np.nan), rtol=1e-5, atol=0)
-            series += 1
-assert series > 10, series
 
 
 def words(index, size):
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(blobs[index], validate=True)), np.uint8)
-    return planes.reshape(size, -1).T.copy().view(f"<u{size}").ravel()
+    return np.frombuffer(zlib.decompress(base64.b64decode(blobs[index], validate=True)), f"<u{size}")
 
 
-# Motions: within half a step of the stored positions, in the order of the grid.
-moved = 0
+# Motions: within half a step of the stored positions, with the numbers shown under them.
+moved = series = 0
 for c in motions["runs"]:
-    with h5py.File(files[c["scene"], c["solver"], c["setting"]]) as f:
+    r = doc["runs"][c["run"]]
+    with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
         stored = f["trajectory/position"][:].astype(float)
         times = f["trajectory/time_s"][:]
-    assert c["frames_stored"] == len(stored)
+        for name, values in c["metrics"].items():
+            told = np.array([np.nan if v is None else v for v in values])
+            np.testing.assert_allclose(told, f["metrics"][name][:][c["frames"]], rtol=1e-5)
+            series += 1
+    assert c["frames_stored"] == len(stored) and c["grid"][0] * c["grid"][1] == stored.shape[1]
     np.testing.assert_array_equal(c["time_s"], times[c["frames"]])
-    kept = np.add.outer(c["grid"][0] * np.array(c["rows"]), c["columns"]).ravel()
-    residual = words(c["blob"], 2).reshape(len(c["frames"]), 3, len(kept)).astype(np.int64)
-    origin = np.array(c["origin"]).reshape(-1, 3)
+    residual = words(c["blob"], 2).reshape(len(c["frames"]), -1).astype(np.int64)
     x = np.zeros_like(residual)
     for k in range(len(x)):
-        for a in range(3):
-            o = origin[k, a]
-            if k == 0:
-                last = o
-                for v, r in enumerate(residual[0, a]):
-                    last = o + (last - o + r) % 65536
-                    x[0, a, v] = last
-                continue
-            predicted = x[k - 1, a] if k == 1 else 2 * x[k - 1, a] - x[k - 2, a]
-            x[k, a] = o + (predicted - o + residual[k, a]) % 65536
-    error = np.abs(x.transpose(0, 2, 1) * c["step_m"] - stored[c["frames"]][:, kept]).max()
-    assert error <= 0.5001 * c["step_m"], (c["scene"], error, c["step_m"])
-    assert c["step_m"] <= np.ptp(stored[c["frames"]], axis=1).max() / 32000
+        predicted = 0 if k == 0 else x[0] if k == 1 else 2 * x[k - 1] - x[k - 2]
+        x[k] = (np.cumsum(residual[0]) if k == 0 else predicted + residual[k]) % 65536
+    x = x.reshape(len(x), 3, -1).transpose(0, 2, 1)
+    error = np.abs(c["low_m"] + x * c["step_m"] - stored[c["frames"]]).max()
+    assert error <= 0.5001 * c["step_m"], (r["scene"], error, c["step_m"])
+    assert c["step_m"] <= np.ptp(stored.reshape(-1, 3), axis=0).max() / 65000
     moved += np.ptp(x, axis=0).max() > 0
-assert moved == len(motions["runs"]) >= 14, moved
+assert moved == len(motions["runs"]) >= 14 and series >= 30, (moved, series)
 
 # Colliders: every shape is there, and an array of each kind reads back.
 shapes = {}
@@ -148,7 +132,7 @@ with h5py.File(files["capsule-sweep", "bullet-soft", "default"]) as f:
     told = words(a["blob"], 4).view("<f4").reshape(a["shape"])
     np.testing.assert_array_equal(told, f["colliders/0/capsules"][:].astype("f4"))
 with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
-    run = next(c for c in motions["runs"] if (c["scene"], c["solver"]) == ("open-sheet", "bullet-soft"))
+    run = next(c for c in motions["runs"] if doc["runs"][c["run"]]["scene"] == "open-sheet")
     sheet = next(g for g in motions["colliders"][run["colliders"]] if g["path"] == "colliders/0")
     a = sheet["arrays"]["triangles"]
     np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])

@@ -48,29 +48,17 @@ RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& sce
 constexpr const char* kContact = "Contact";
 constexpr const char* kVerdicts = "Verdict on the acceptance criteria of each scene";
 
-TEST(Penetration, SetUpsAreToldByWhatTouches) {
+TEST(Penetration, AnySceneMayHaveContact) {
   const RunRecord any = desk_run("xpbd", "default", "any_vertex_inside");
-  const std::vector<RunRecord> runs = {
-      any,
-      of_scene(any, "free", R"({"cloth":{"grid":[8,8]},"colliders":[],"grips":[]})"),
-      of_scene(any, "ball", R"({"colliders":[{"type":"sphere"}]})"),
-      of_scene(any, "sweep", R"({"paper":{"section":"4.3","table":6},"colliders":[{"type":"hand_capsules"}]})"),
-      of_scene(any, "push", R"({"colliders":[{"type":"plane"},{"type":"hand_mesh"}]})"),
-      of_scene(any, "pull", R"({"paper":{"section":"4.4"},"grips":[{"track":"x"}]})"),
-      of_scene(any, "sheet", R"({"colliders":[{"type":"mesh"}]})"),
-      of_scene(any, "odd", "not JSON"),
-      of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
-      of_scene(any, "oddest", R"({"colliders":[7]})")};
-  EXPECT_FALSE(has_contact(runs[1]));
+  const RunTable table({any, of_scene(any, "free", R"({"cloth":{"grid":[8,8]},"colliders":[],"grips":[]})"),
+                        of_scene(any, "ball", R"({"colliders":[{"type":"sphere"}]})"),
+                        of_scene(any, "pull", R"({"paper":{"section":"4.4"},"grips":[{"track":"x"}]})"),
+                        of_scene(any, "odd", "not JSON"), of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
+                        of_scene(any, "oddest", R"({"colliders":[7]})")});
   std::string text;
-  const RunTable table(runs);
   for (const Row& r : table.rows())
-    if (r.published < 0) text += r.scene + ":" + r.set_up + " ";
-  EXPECT_EQ(text,
-            "desk-flat-low:rooms free: ball:shapes sweep:capsules push:hand pull:grip sheet:rooms odd: odder: "
-            "oddest:shapes ");
-  EXPECT_EQ(tables_titled(runs, kContact).at(0).title, "Contact: Cloth on static meshes");
-  EXPECT_EQ(tables_titled(runs, kContact).size(), 5u);
+    if (r.contact) text += r.scene + " ";
+  EXPECT_EQ(text, "desk-flat-low ball pull oddest ");
 }
 
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
@@ -114,7 +102,6 @@ TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   RunRecord c = desk_run("xpbd", "default", "none");
   c.summary["expect.stretch_max"] = kMissing;
   EXPECT_TRUE(tables_titled({c}, "Acceptance criteria that are violated").empty());
-  EXPECT_TRUE(tables_titled({c}, "Acceptance criteria that failed").empty());
   const RunTable table({c});
   EXPECT_EQ(tiles_of(table).at(0).value, "0 / 1") << "it has not passed either";
   std::string all;
@@ -123,17 +110,17 @@ TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   for (const char* word : {" nan", "(nan", " inf", "(inf"}) EXPECT_EQ(all.find(word), std::string::npos) << word;
 }
 
-TEST(Penetration, OverviewHasAColumnForEverySetting) {
-  std::vector<RunRecord> runs = {
+TEST(Penetration, VerdictsHaveAColumnForEverySettingAndASum) {
+  const std::vector<RunRecord> runs = {
       desk_run("xpbd", "default", "any_vertex_inside"), desk_run("paper", "whole-room", "none"),
-      with_outcome(desk_run("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1,
-                   "not in this build"),
+      with_outcome(desk_run("bullet-deformable", "default", "any_vertex_inside"), "unsupported", -1, "not built"),
       of_scene(desk_run("xpbd", "default", ""), "ball", R"({"colliders":[{"type":"sphere"}]})")};
-  const auto rows = parse_markdown(table_of(runs, kVerdicts).markdown());
-  ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0], (std::vector<std::string>{"scene", "bullet-deformable", "paper whole-room", "xpbd"}));
-  EXPECT_EQ(rows[1], (std::vector<std::string>{"desk-flat-low", "unsupported", "pass", "pass"}));
-  EXPECT_EQ(rows[2], (std::vector<std::string>{"ball", "–", "–", "pass"}));
+  const Table t = table_of(runs, kVerdicts);
+  using Cells = std::vector<std::vector<std::string>>;
+  EXPECT_EQ(t.rows, (Cells{{"scene", "bullet-deformable", "paper whole-room", "xpbd"},
+                           {"ball", "–", "–", "pass"},
+                           {"desk-flat-low", "unsupported", "pass", "pass"},
+                           {"all", "unsupported", "pass", "2/2 (34–100 %)"}}));
 }
 
 TEST(Penetration, SeriesHaveOneRowPerFrame) {
@@ -156,8 +143,7 @@ TEST(Features, ComeFromTheResultFilesAlone) {
   runs[1].header.environment.erase("solver_features");
   runs[2].header.environment["solver_features"] = {
       {"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
-  runs[2].header.stages.clear();
-  const Table t = feature_table(solver_features(runs), true);
+  const Table t = feature_table(solver_features(runs));
   const auto text = [&](const std::string& feature, std::size_t column) {
     for (const auto& row : t.rows)
       if (row[0] == feature) return row.at(column);
@@ -167,19 +153,14 @@ TEST(Features, ComeFromTheResultFilesAlone) {
   EXPECT_EQ(t.rows.size(), kFeatureCount + 1);
   EXPECT_EQ(text("static mesh", 1), "yes (only with duplicated layer)");
   EXPECT_EQ(text("friction", 1), "yes");
-  EXPECT_EQ(text("sphere", 1), "declared") << "no run shows it";
+  EXPECT_EQ(text("sphere", 1), "yes");
   EXPECT_EQ(text("plane", 1), "no");
   EXPECT_EQ(text("plane", 2), "not built");
   EXPECT_EQ(text("sphere", 3), "ignored");
-  EXPECT_EQ(text("plane", 3), "declared");
-  runs[0].outcome.status = "diverged";
-  EXPECT_EQ(feature_text(solver_features(runs).at(0), Feature::Friction, true), "declared")
-      << "a run that failed shows nothing";
-  EXPECT_EQ(feature_json(solver_features(runs), true)
-                .at(static_cast<std::size_t>(Feature::Sphere))
-                .at("solvers")
-                .at("ignorant"),
-            "ignored");
+  EXPECT_EQ(text("plane", 3), "yes");
+  EXPECT_EQ(
+      feature_json(solver_features(runs)).at(static_cast<std::size_t>(Feature::Sphere)).at("solvers").at("ignorant"),
+      "ignored");
 }
 
 TEST(Penetration, TablesStateTheContactOffset) {
@@ -200,7 +181,6 @@ TEST(Penetration, TablesStateTheContactOffset) {
 }
 
 constexpr const char* kRates = "Randomly generated contact scenes: pass rate by speed [m/s]";
-constexpr const char* kWorst = "Randomly generated contact scenes: the worst run of each kind";
 
 RunRecord generated(const std::string& solver, const std::string& kind, int seed, double speed,
                     const std::string& ending, double contour = 0, const std::string& assets = "npm") {
@@ -257,16 +237,13 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
   EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
 }
 
-TEST(PassRates, TheWorstRunDidNotEndThenHasTheLongestContour) {
-  const Table t = table_of(sample(), kWorst);
-  ASSERT_EQ(t.rows.size(), 4u) << "an unsupported scene is none, a kind without a fault has none";
-  const auto scene = [&](const std::string& solver, const std::string& kind) {
-    return entry(t, solver, kind, "scene");
-  };
-  EXPECT_EQ(scene("xpbd", "sweep"), "contact-7-sweep");
-  EXPECT_EQ(scene("xpbd", "desk"), "contact-2-desk");
-  EXPECT_EQ(scene("paper", "desk"), "contact-4-desk");
-  EXPECT_EQ(entry(t, "xpbd", "sweep", "runs it again"), "clothbench study contact --seed 7 --count 1 --solver xpbd");
+TEST(PassRates, RunsThatDidNotPassAreListedWithTheirScenes) {
+  const Table violated = table_of(sample(), "Acceptance criteria that are violated"),
+              failed = table_of(sample(), "Runs that failed");
+  ASSERT_EQ(violated.rows.size(), 3u);
+  EXPECT_EQ(violated.rows[1], (std::vector<std::string>{"contact-5-sweep", "xpbd", "contact_length_max_m", "0.02"}));
+  ASSERT_EQ(failed.rows.size(), 4u);
+  EXPECT_TRUE(contains(failed.rows, std::vector<std::string>{"xpbd", "timed_out", "contact-2-desk"}));
 }
 
 TEST(Stability, RunsOfEachCaseByGrade) {
@@ -286,10 +263,10 @@ TEST(Stability, RunsOfEachCaseByGrade) {
             (std::vector<std::string>{"S01 stiffness", "1/2 stable, 1 failed (F1)", "0/1 stable, 1 failed (F3)"}));
   EXPECT_EQ(t.rows[2][1], "0/1 stable, 1 degraded (F2)");
   EXPECT_EQ(t.rows[3][0] + ": " + t.rows[3][1], "all: 1/3 stable, 1 degraded (F2), 1 failed (F1)");
-  const Table failures = table_of(runs, "Runs that were not stable");
+  const Table failures = table_of(runs, "Runs that failed");
   ASSERT_EQ(failures.rows.size(), 4u);
-  EXPECT_EQ(failures.rows[2], (std::vector<std::string>{"a", "failed", "F1", "S01-stiff-aF1 (7)"}));
-  EXPECT_EQ(failures.rows[3][3], "S01-stiff-bF3 (7) crashed");
+  EXPECT_EQ(failures.rows[1], (std::vector<std::string>{"a", "ok (F1)", "S01-stiff-aF1 (frame 7)"}));
+  EXPECT_EQ(failures.rows[3], (std::vector<std::string>{"b", "crashed (F3)", "S01-stiff-bF3 (frame 7)"}));
 }
 
 }  // namespace

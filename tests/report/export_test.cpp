@@ -48,17 +48,12 @@ TEST(Export, InfinityIsSaid) {
   EXPECT_EQ(field(csv, 1, "up"), "inf");
   EXPECT_EQ(field(csv, 1, "down"), "-inf");
   EXPECT_EQ(field(csv, 1, "missing"), "");
-  const nlohmann::json summary = nlohmann::json::parse(runs_json(runs).dump()).at(0).at("summary");
+  const nlohmann::json run = nlohmann::json::parse(runs_json(runs).dump()).at(0), summary = run.at("summary");
+  EXPECT_EQ(run.at("environment").at("cpu"), "Fake CPU");
+  EXPECT_EQ(summary.at("fps_median"), 1);
   EXPECT_EQ(summary.at("up"), "inf");
   EXPECT_EQ(summary.at("down"), "-inf");
   EXPECT_TRUE(summary.at("missing").is_null());
-}
-
-TEST(Export, RunsJsonHasNullForMissing) {
-  const nlohmann::json j = nlohmann::json::parse(runs_json({fake_run("bullet-soft", 8, "single", 0.25, false)}).dump());
-  EXPECT_TRUE(j.at(0).at("summary").at("read_B_per_frame").is_null());
-  EXPECT_EQ(j.at(0).at("summary").at("fps_median"), 4);
-  EXPECT_EQ(j.at(0).at("environment").at("cpu"), "Fake CPU");
 }
 
 TEST(Export, TheNoteOnWindowsSpansTheRunsWithBytes) {
@@ -66,7 +61,7 @@ TEST(Export, TheNoteOnWindowsSpansTheRunsWithBytes) {
                                  fake_run("bullet-soft", 16, "single", 1, false)};
   runs[1].summary["bandwidth_window_s"] = 5;
   runs[2].summary["bandwidth_window_s"] = 0.001;
-  const std::string note = table_of(runs, "Peak bandwidth, read / written [GB/s]").note;
+  const std::string note = table_of(runs, "Bytes and device memory per frame").note;
   EXPECT_NE(note.find("0.5 to 5"), std::string::npos) << note;
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "report/overview.hpp"
 #include "report/report.hpp"
 #include "report/view.hpp"
 
@@ -83,6 +82,14 @@ inline std::string entry(const Table& t, const std::string& solver, const std::s
   for (std::size_t k = 0; k < rows.at(0).size(); ++k)
     for (const auto& row : rows)
       if (rows[0][k] == column && row.at(0) == solver && row.at(1) == sides) return row.at(k);
+  return "";
+}
+
+/// The same of a table whose first column tells its rows apart.
+inline std::string entry(const Table& t, const std::string& row, const std::string& column) {
+  for (std::size_t k = 0; k < t.rows.at(0).size(); ++k)
+    for (const auto& cells : t.rows)
+      if (t.rows[0][k] == column && cells.at(0) == row) return cells.at(k);
   return "";
 }
 

@@ -107,7 +107,7 @@ async function check_places(id, x_of, y_of) {
 /// Every figure shows as many marks as it has values, for every choice; its table of values has the stored ones.
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
-  check(ids.length >= 5, `${ids.length} figures: ${ids.join(', ')}`);
+  equal(ids, ['error-time', 'rates', 'frame-times', 'verdicts'], 'figures');
   for (const id of ids) {
     const options = await page.$$eval(`#${id} .head select`, list => list[0] && !list[0].closest('label').hidden ? [...list[0].options].map(o => o.value) : []);
     for (const option of options.length ? options.slice(0, 8) : [null]) {
@@ -118,7 +118,7 @@ async function check_figures() {
         return [f.rows.length, f.marks.filter(m => m.kind !== 'none').length, f.plot.querySelectorAll('[data-i]').length];
       }, id);
       equal(drawn, marks, `${id} ${option ?? ''}: marks drawn`);
-      check(rows > 0 || id === 'penetration', `${id} ${option ?? ''}: ${rows} values`);
+      check(rows > 0, `${id} ${option ?? ''}: ${rows} values`);
     }
   }
   if (ids.includes('rates')) await check_places('rates', Math.log, Math.log);
@@ -230,9 +230,7 @@ const text_of = file => Buffer.from(file.bytes).toString('utf8');
 
 async function check_downloads() {
   const table = doc.sections.flatMap(s => s.tables).find(t => t.rows.length > 2), name = table.title;
-  const csv = text_of(await saved(`${name}: download as CSV`)), markdown = text_of(await saved(`${name}: download as Markdown`));
-  equal(csv.trim().split('\n').length, table.rows.length, 'lines of a table as CSV');
-  equal(markdown.split('\n').filter(l => l.startsWith('|')).length, table.rows.length + 1, 'lines of a table as Markdown');
+  equal(text_of(await saved(`${name}: download as CSV`)).trim().split('\n').length, table.rows.length, 'lines of a table as CSV');
   const svg = text_of(await saved('rates: download as SVG')), png = await saved('rates: download as PNG');
   check(svg.startsWith('<svg') && /width="493pt"/.test(svg) && !/var\(/.test(svg), 'a figure as SVG is 174 mm wide and has its own colours');
   const width = Buffer.from(png.bytes).readUInt32BE(16);
@@ -302,7 +300,7 @@ async function check_colours() {
   const results = await page.evaluate(async () => {
     const v = window.clothbench.viewer, out = [];
     for (const run of v.motions.runs) {
-      if (!run.metrics.stretch_max || run.columns.length !== run.grid[0]) continue;
+      if (!run.metrics.stretch_max) continue;
       await v.set([run]);
       const contour = run.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
       const [p] = v.panels, f = touching > 0 ? touching : run.frames.length - 1;
@@ -310,7 +308,7 @@ async function check_colours() {
       const strain = p.show(run.time_s[f], 'strain', 1).greatest,
             penetration = p.show(run.time_s[f], 'penetration', 1);
       out.push({
-        name: `${run.scene} ${run.label}`,
+        name: `${run.row.scene} ${run.row.label}`,
         strain,
         stored: run.metrics.stretch_max[f],
         tolerance,

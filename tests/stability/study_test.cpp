@@ -91,7 +91,7 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   for (const Row& r : rows.rows()) EXPECT_EQ(r.part, Part::Stability);
   std::vector<Table> tables;
   for (const View& v : views())
-    if (v.section == "stability")
+    if (v.section == "stability" || v.section == "failed")
       for (Table& t : tables_of(v, rows)) tables.push_back(std::move(t));
   ASSERT_EQ(tables.size(), 2u);
   const Table& table = tables[0];
@@ -99,7 +99,7 @@ TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
   for (std::size_t k = 1; k < 3; ++k)
     EXPECT_EQ(table.rows[1][k], table.rows[0][k] == "falls" ? "1/1 stable" : "0/1 stable, 1 failed (F3)");
   ASSERT_EQ(tables[1].rows.size(), 2u);
-  EXPECT_NE(tables[1].rows[1][3].find("crashed"), std::string::npos);
+  EXPECT_NE(tables[1].rows[1][1].find("crashed"), std::string::npos);
 }
 
 std::string refusal(const std::function<void()>& what) {

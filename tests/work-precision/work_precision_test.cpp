@@ -40,7 +40,7 @@ TEST(QuickStudy, RunsReportsAndDraws) {
   ASSERT_EQ(errors.size(), 2u);
   for (const auto& [scene, error] : errors) {
     EXPECT_LT(error.at("substeps=64"), 1e-2 * error.at("substeps=1"));
-    EXPECT_GT(fs::file_size(dir / "report" / ("work-precision-" + scene + ".png")), 5000u);
+    EXPECT_GT(fs::file_size(dir / "report/figures" / ("work-precision-" + scene + ".pdf")), 5000u);
   }
   std::ifstream page(dir / "report/report.md");
   const std::string text{std::istreambuf_iterator<char>(page), {}};

@@ -1,6 +1,6 @@
 # Included by harness/report: makes template.cpp, the page without data, from src/ and the packages of package-lock.json.
 # Run as a script (cmake -P) by the build: gets the packages, bundles; where that fails, writes a template.cpp that says
-# why. Nothing in the packages is executed but esbuild and marked.
+# why. Nothing in the packages is executed but esbuild.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(web ${CMAKE_CURRENT_SOURCE_DIR}/web)
   set(template ${CMAKE_BINARY_DIR}/web/template.cpp)
@@ -8,9 +8,8 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
   find_program(CLOTHBENCH_NPM npm)
   file(GLOB sources CONFIGURE_DEPENDS ${web}/src/*)
   add_custom_command(OUTPUT ${template}
-    COMMAND ${CMAKE_COMMAND} -DWEB=${web} -DWORK=${CMAKE_BINARY_DIR}/web -DREADME=${PROJECT_SOURCE_DIR}/README.md
-      -DNODE=${CLOTHBENCH_NODE} -DNPM=${CLOTHBENCH_NPM} -P ${web}/bundle.cmake
-    DEPENDS ${sources} ${web}/bundle.cmake ${web}/bundle.mjs ${web}/package-lock.json ${PROJECT_SOURCE_DIR}/README.md
+    COMMAND ${CMAKE_COMMAND} -DWEB=${web} -DWORK=${CMAKE_BINARY_DIR}/web -DNODE=${CLOTHBENCH_NODE} -DNPM=${CLOTHBENCH_NPM} -P ${web}/bundle.cmake
+    DEPENDS ${sources} ${web}/bundle.cmake ${web}/bundle.mjs ${web}/package-lock.json
     COMMENT "Bundling the report's page" VERBATIM)
   target_sources(clothbench_report PRIVATE ${template})
   return()
@@ -55,4 +54,4 @@ if(NOT "${have}" STREQUAL "${want}")
 endif()
 # Beside the packages, so that Node finds them.
 file(COPY_FILE ${WEB}/bundle.mjs ${WORK}/bundle.mjs)
-execute_process(COMMAND ${NODE} ${WORK}/bundle.mjs ${WEB}/src ${README} ${WORK} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${NODE} ${WORK}/bundle.mjs ${WEB}/src ${WORK} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,11 +1,17 @@
-// Which motions the viewer gets, and how much of each.
+// Motions of the page: which runs have one, in how many frames, and how it is packed.
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <tuple>
 
+#include "assets/json_at.hpp"
 #include "clothbench/error.hpp"
 #include "report/web/page.hpp"
 #include "results/replay.hpp"
@@ -15,221 +21,190 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostRuns = 120;
-constexpr std::size_t kMostFloats = 40'000'000;     // of one run in memory: 160 MB
-constexpr std::size_t kMostCollider_B = 3'000'000;  // of one scene's colliders, packed
+constexpr std::size_t kMostOfScene = 6;  // the viewer shows six side by side
+constexpr std::size_t kMostFrames = 150;
+constexpr double kMostGrowth = 20;  // of a cloth that still shows something
 
-/// Coarser from line to line: frames first, as between them the viewer interpolates.
-struct Level {
-  std::size_t frame_stride, most_width;
-};
-constexpr Level kLevels[] = {{1, 65}, {2, 65}, {3, 65},  {4, 65},  {4, 33},
-                             {6, 33}, {8, 33}, {12, 33}, {12, 17}, {24, 17}};
-
-struct Candidate {
-  const RunRecord* run = nullptr;
-  json scenario;
-  std::size_t columns = 0, rows = 0;  // of a mesh: its vertices and 1
-  bool mesh = false;
-  int rank = 0;
-  std::size_t turn = 0;  // among those of its scene, solver and rank
-};
-
-/// Order in which runs get a place on the page.
-int rank_of(const RunRecord& c) {
-  if (has_contact(c) && !has_truth(c)) return 0;
-  return c.header.setting == "default" ? 1 : 2;
+/// zlib of the words, little-endian as on every machine that this is built for.
+template <class Word>
+std::string deflated(const std::vector<Word>& words) {
+  const uLong bytes = words.size() * sizeof(Word);
+  uLongf size = compressBound(bytes);
+  std::string out(size, '\0');
+  const int status =
+      compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(words.data()), bytes, 6);
+  if (status != Z_OK) throw Error("zlib: compress2 failed with " + std::to_string(status), ExitCode::CheckFailed);
+  out.resize(size);
+  return out;
 }
 
-std::vector<Candidate> candidates(const std::vector<RunRecord>& runs, std::size_t& without) {
-  std::vector<Candidate> out;
-  std::map<std::tuple<int, std::string, std::string>, std::size_t> turns;
-  for (const RunRecord& c : runs) {
-    if (c.file.empty() || c.accuracy.time_s.empty()) continue;
-    Candidate k{&c, scenario_of(c)};
-    const json grid = k.scenario.is_object() ? k.scenario.value(json::json_pointer("/cloth/grid"), json()) : json();
-    if (grid.is_array() && grid.size() == 2 && grid[0].is_number_unsigned() && grid[1].is_number_unsigned()) {
-      k.columns = grid[0];
-      k.rows = grid[1];
-    }
-    if (k.scenario.is_object() && k.scenario.contains(json::json_pointer("/cloth/mesh"))) {
-      k.mesh = true;
-      k.columns = c.header.vertices;
-      k.rows = 1;
-    }
-    if (!(k.mesh ? c.header.triangles.size() >= 3 : k.columns >= 2 && k.rows >= 2) ||
-        k.columns * k.rows != c.header.vertices) {
-      ++without;
-      continue;
-    }
-    k.rank = rank_of(c);
-    k.turn = turns[{k.rank, c.header.scene, c.header.solver}]++;
-    out.push_back(std::move(k));
+std::string deflated(const StoredArray& a) {
+  std::vector<std::uint32_t> words;
+  for (const double v : a.values)
+    words.push_back(a.integer ? static_cast<std::uint32_t>(v) : std::bit_cast<std::uint32_t>(static_cast<float>(v)));
+  return deflated(words);
+}
+
+struct Box {
+  std::array<double, 3> low = {}, high = {};
+  double extent() const {
+    double most = 0;
+    for (std::size_t a = 0; a < 3; ++a) most = std::max(most, high[a] - low[a]);
+    return most;
   }
-  // Every solver's first run of each scene comes before any second.
-  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
-    return std::pair(a.rank, a.turn) < std::pair(b.rank, b.turn);
-  });
+};
+
+/// The box around the positions of one frame; without a value if one is not finite.
+std::optional<Box> box_of(std::span<const float> position) {
+  Box b;
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    const double x = position[k];
+    if (!std::isfinite(x)) return std::nullopt;
+    b.low[k % 3] = k < 3 ? x : std::min(b.low[k % 3], x);
+    b.high[k % 3] = k < 3 ? x : std::max(b.high[k % 3], x);
+  }
+  return b;
+}
+
+/// Rows with a trajectory in the order in which they get a place on the page: scenes with contact first, then default
+/// settings, then the first run of every solver; at most six of a scene.
+std::vector<const Row*> candidates(const RunTable& table) {
+  std::vector<std::pair<std::tuple<bool, bool, std::size_t>, const Row*>> order;
+  std::map<std::pair<std::string, std::string>, std::size_t> of_solver;
+  std::map<std::string, std::size_t> of_scene;
+  for (const Row& r : table.rows()) {
+    if (r.run->file.empty() || r.run->accuracy.time_s.empty()) continue;
+    const bool contact = r.contact && r.part != Part::Truth;
+    order.push_back({{!contact, r.setting != "default", of_solver[{r.scene, r.solver}]++}, &r});
+  }
+  std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first < b.first; });
+  std::vector<const Row*> out;
+  for (const auto& [unused, row] : order)
+    if (++of_scene[row->scene] <= kMostOfScene) out.push_back(row);
   return out;
 }
 
 class Packer {
  public:
-  explicit Packer(std::size_t budget_B) : left_B_(budget_B) {
-    out_.document = {{"runs", json::array()}, {"colliders", json::array()}, {"left_out", json::array()}};
-  }
+  explicit Packer(std::size_t budget_B) : left_B_(budget_B) {}
 
-  /// The run's motion in at most its share of what is left; false if it does not fit even at the coarsest.
-  bool add(const Candidate& k, std::size_t runs_left) {
-    const std::size_t share = left_B_ / std::max<std::size_t>(runs_left, 1);
-    const std::size_t frames = k.run->accuracy.time_s.size();
-    for (const Level& level : kLevels) {
-      if (frames / level.frame_stride * 3 * k.run->header.vertices > kMostFloats) continue;
-      // A mesh keeps all of its vertices.
-      const std::size_t width = std::max(k.columns, k.rows),
-                        step = k.mesh ? 1 : (width + level.most_width - 1) / level.most_width;
-      // Six bytes a vertex, deflated to a fifth at best: what is sure not to fit is not read.
-      const std::size_t least_B = frames / level.frame_stride * (k.columns / step) * (k.rows / step) * 6 / 5;
-      if (least_B > share) continue;
-      const Replay replay = read_replay(k.run->file, level.frame_stride);
-      const PackedMotion motion = pack_motion(replay, k.columns, k.rows, step);
-      if (motion.frames.empty()) return false;
-      if (const std::size_t size = (motion.bytes.size() + 2) / 3 * 4; size > share) continue;
-      store(k, replay, motion);
-      return true;
-    }
-    return false;
-  }
-
-  Motions take() { return std::move(out_); }
-  json& left_out() { return out_.document["left_out"]; }
-
- private:
-  std::size_t blob(const std::string& bytes) {
-    out_.blobs.push_back(base64(bytes));
-    left_B_ -= std::min(left_B_, out_.blobs.back().size());
-    return out_.blobs.size() - 1;
-  }
-
-  void store(const Candidate& k, const Replay& replay, const PackedMotion& motion) {
-    const RunRecord& c = *k.run;
-    const auto size = [&](int axis) {
-      return k.scenario.value(json::json_pointer(fmt::format("/cloth/size_m/{}", axis)), 0.0);
-    };
+  /// Adds the motion of a row; false if there is no room for it, or its cloth is not finite from the start.
+  bool add(const Row& r, std::size_t index) {
+    const RunRecord& c = *r.run;
+    const std::size_t stride = 1 + c.accuracy.time_s.size() / kMostFrames;
+    // Six bytes per vertex, deflated to a twentieth at best: a motion that certainly does not fit is not read.
+    if (c.accuracy.time_s.size() / stride * c.header.vertices * 6 / 20 > left_B_) return false;
+    const Replay replay = read_replay(c.file, stride);
+    const PackedMotion motion = pack_motion(replay);
+    if (motion.frames.empty() || motion.bytes.size() * 4 / 3 > left_B_) return false;
     json time_s = json::array(), metrics = json::object();
     for (std::size_t f = 0; f < motion.frames.size(); ++f) time_s.push_back(replay.time_s[f]);
-    for (const char* name : {"stretch_max", "contact_length_m", "depth_m"})
-      for (const MetricSeries& m : c.accuracy.metrics)
-        if (m.name == name) {
-          json values = json::array();
-          for (const std::size_t f : motion.frames)
-            values.push_back(f < m.values.size() && std::isfinite(m.values[f])
-                                 ? json(std::stod(fmt::format("{:.6g}", m.values[f])))
-                                 : json());
-          metrics[name] = std::move(values);
-        }
-    json e = {{"scene", c.header.scene},
-              {"solver", c.header.solver},
-              {"setting", c.header.setting},
-              {"label", label_of(c)},
-              {"sides", k.scenario.value(json::json_pointer("/cloth/sides"), "")},
-              {"status", c.outcome.status},
-              {"failed_frame", c.outcome.failed_frame},
-              {"message", c.outcome.message},
+    for (const MetricSeries& m : c.accuracy.metrics) {
+      if (m.name != "stretch_max" && m.name != "contact_length_m" && m.name != "depth_m") continue;
+      for (const std::size_t f : motion.frames)
+        metrics[m.name].push_back(rounded(f < m.values.size() ? m.values[f] : kMissing));
+    }
+    json e = {{"run", index},
               {"frames_stored", c.accuracy.time_s.size()},
               {"frames", motion.frames},
               {"time_s", std::move(time_s)},
               {"step_m", motion.step_m},
-              {"origin", motion.origin},
+              {"low_m", motion.low_m},
               {"cut_at", motion.cut_at},
-              {"metrics", std::move(metrics)}};
-    if (k.mesh) {
-      e["vertices"] = k.columns;
-      e["triangles"] = blob(pack_words(c.header.triangles));
-    } else {
-      e["grid"] = {k.columns, k.rows};
-      e["size_m"] = {size(0), size(1)};
-      e["columns"] = motion.columns;
-      e["rows"] = motion.rows;
-    }
-    if (const std::string which = colliders(c, replay.groups); !which.empty()) e["colliders"] = std::stoul(which);
-    e["blob"] = blob(motion.bytes);
-    out_.document["runs"].push_back(std::move(e));
+              {"metrics", std::move(metrics)},
+              {"colliders", colliders(c, replay.groups)},
+              {"blob", blob(motion.bytes)}};
+    if (r.resolution.grid[0] > 0)
+      e["grid"] = r.resolution.grid;
+    else
+      e["triangles"] = blob(deflated(c.header.triangles));
+    runs_.push_back(std::move(e));
+    return true;
   }
 
-  /// Index of the colliders among those of the page, as text; "" if there are none or they are too large.
-  std::string colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
+  Motions take() {
+    std::sort(runs_.begin(), runs_.end(), [](const json& a, const json& b) { return a["run"] < b["run"]; });
+    out_.document = {{"runs", std::move(runs_)}, {"colliders", std::move(colliders_)}};
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t blob(const std::string& bytes) {
+    out_.blobs.push_back(assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+    left_B_ -= std::min(left_B_, out_.blobs.back().size());
+    return out_.blobs.size() - 1;
+  }
+
+  /// Index of the scene's colliders and grips among those of the page.
+  std::size_t colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
+    const auto [at, is_new] = scenes_.try_emplace(c.header.scenario_sha256, colliders_.size());
+    if (!is_new) return at->second;
     std::erase_if(groups, [](const StoredGroup& g) { return !g.path.starts_with("colliders"); });
-    if (groups.empty()) return "";
     json described = json::array();
-    std::vector<std::string> packed;
-    std::size_t total = 0;
-    std::string key;
     for (StoredGroup& g : groups) {
       try {
         show_shape(g);
-      } catch (const json::exception& e) {
-        throw Error(c.file + ": /" + g.path + ": " + e.what());
+      } catch (const json::exception& error) {
+        throw Error(c.file + ": /" + g.path + ": " + error.what());
       }
       json arrays = json::object();
-      for (const StoredArray& a : g.arrays) {
-        packed.push_back(a.integer ? pack_words({a.values.begin(), a.values.end()}) : pack_floats(a.values));
-        total += packed.back().size();
-        arrays[a.name] = {{"shape", a.shape}, {"integer", a.integer}};
-      }
+      for (const StoredArray& a : g.arrays)
+        arrays[a.name] = {{"shape", a.shape}, {"integer", a.integer}, {"blob", blob(deflated(a))}};
       described.push_back({{"path", g.path}, {"attributes", g.attributes}, {"arrays", std::move(arrays)}});
     }
-    key = described.dump();
-    for (const std::string& p : packed) key += '\n' + p;
-    const auto [at, is_new] = seen_.try_emplace(key, "");
-    if (!is_new) return at->second;
-    if (total > kMostCollider_B) {
-      left_out().push_back(
-          fmt::format("The colliders of {}: {:.1f} MB.", c.header.scene, 1e-6 * static_cast<double>(total)));
-      return "";
-    }
-    std::size_t next = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      for (const StoredArray& a : groups[g].arrays) described[g]["arrays"][a.name]["blob"] = blob(packed[next++]);
-    out_.document["colliders"].push_back(std::move(described));
-    return at->second = std::to_string(out_.document["colliders"].size() - 1);
+    colliders_.push_back(std::move(described));
+    return at->second;
   }
 
   std::size_t left_B_;
   Motions out_;
-  std::map<std::string, std::string> seen_;
+  std::vector<json> runs_, colliders_;
+  std::map<std::string, std::size_t> scenes_;  ///< index into colliders_ by the hash of a scenario
 };
 
 }  // namespace
 
-Motions motions_of(const std::vector<RunRecord>& runs, std::size_t budget_B) {
-  std::size_t without_cloth = 0, too_large = 0, beyond = 0;
-  std::vector<Candidate> all = candidates(runs, without_cloth);
-  if (all.size() > kMostRuns) {
-    beyond = all.size() - kMostRuns;
-    all.resize(kMostRuns);
+PackedMotion pack_motion(const Replay& replay) {
+  PackedMotion out;
+  if (replay.frames.empty()) return out;
+  const std::size_t vertices = replay.position.size() / 3 / replay.frames.size(), size = 3 * vertices;
+  Box all;
+  double first = 0;
+  for (std::size_t f = 0; f < replay.frames.size(); ++f) {
+    const std::optional<Box> b = box_of({&replay.position[size * f], size});
+    if (!b || (f > 0 && b->extent() > kMostGrowth * first)) {
+      out.cut_at = static_cast<long>(replay.frames[f]);
+      break;
+    }
+    if (f == 0) first = (all = *b).extent();
+    for (std::size_t a = 0; a < 3; ++a) {
+      all.low[a] = std::min(all.low[a], b->low[a]);
+      all.high[a] = std::max(all.high[a], b->high[a]);
+    }
+    out.frames.push_back(replay.frames[f]);
   }
-  // Small ones first: what they leave of their share is for the others.
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    const auto size = [](const Candidate& k) { return k.columns * k.rows * k.run->accuracy.time_s.size(); };
-    return size(a) < size(b);
-  });
+  out.low_m = all.low;
+  out.step_m = all.extent() > 0 ? all.extent() / 65535 : 1;
+  std::vector<std::uint16_t> q, residuals;
+  for (std::size_t f = 0; f < out.frames.size(); ++f)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t v = 0; v < vertices; ++v) {
+        const std::size_t k = q.size();
+        q.push_back(static_cast<std::uint16_t>(
+            std::lround((replay.position[size * f + 3 * v + a] - out.low_m[a]) / out.step_m)));
+        const int predicted = f > 1 ? 2 * q[k - size] - q[k - 2 * size] : f == 1 ? q[k - size] : k > 0 ? q[k - 1] : 0;
+        residuals.push_back(static_cast<std::uint16_t>(q[k] - predicted));
+      }
+  out.bytes = deflated(residuals);
+  return out;
+}
+
+Motions motions_of(const RunTable& table, std::size_t budget_B) {
   Packer packer(budget_B);
-  for (std::size_t k = 0; k < all.size(); ++k) too_large += !packer.add(all[k], all.size() - k);
-  const auto say = [&](std::size_t n, const char* why) {
-    if (n > 0) packer.left_out().push_back(fmt::format("{} {} {}.", n, n == 1 ? "motion:" : "motions:", why));
-  };
-  say(beyond, "the page holds 120; motions of other settings are omitted first");
-  say(too_large, "too large at the coarsest thinning, or not finite from the start");
-  say(without_cloth, "its file has no triangles of its cloth");
+  std::size_t left_out = 0;
+  for (const Row* r : candidates(table)) left_out += !packer.add(*r, static_cast<std::size_t>(r - table.rows().data()));
   Motions out = packer.take();
-  auto& shown = out.document["runs"];
-  std::stable_sort(shown.begin(), shown.end(), [](const json& a, const json& b) {
-    const auto key = [](const json& j) {
-      return std::tuple(j["scene"].get<std::string>(), j["solver"].get<std::string>(), j["setting"].get<std::string>());
-    };
-    return key(a) < key(b);
-  });
+  out.document["left_out"] = left_out;
   return out;
 }
 

@@ -23,17 +23,9 @@ constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothb
                kTitleMark[] = "<!--clothbench:title-->";
 
 /// Summary values that a figure shows.
-constexpr const char* kFigureValues[] = {"fps_median",
-                                         "free_fall_error",
-                                         "frame_device_median_s",
-                                         "bandwidth_read_peak_B_per_s",
-                                         "bandwidth_write_peak_B_per_s",
-                                         "bandwidth_window_s",
-                                         "stretch_max_last_second",
-                                         "stretch_mean_last_second"};
+constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
+                                         "bandwidth_write_peak_B_per_s", "stretch_max_last_second"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "accuracy", "stability", ""};
-
-json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
 
 /// Vertices along one side; for a grid that is no square, the side of the square with as many.
 double width_of(const Resolution& r) { return std::sqrt(r.size()); }
@@ -77,7 +69,6 @@ json figure_row(const Row& r) {
     if (!text.empty()) out[name] = text;
   };
   add("sides", r.sides);
-  add("set_up", r.set_up);
   add("plugin", engine_of(*r.run));
   add("message", r.run->outcome.message);
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
@@ -95,8 +86,8 @@ json figure_row(const Row& r) {
     out["width"] = width_of(r.resolution);
     out["resolution"] = r.resolution.label();
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
-    out["fps_low"] = finite_or_null(r.times->rate.low);
-    out["fps_high"] = finite_or_null(r.times->rate.high);
+    out["fps_low"] = finite_or_null(r.times->wall.rate.low);
+    out["fps_high"] = finite_or_null(r.times->wall.rate.high);
     if (r.published >= 0) out["fps_median"] = r.value("fps_at_72");
   }
   if (r.part == Part::Stability) {
@@ -208,33 +199,11 @@ std::string script_safe(const std::string& json_text) {
 
 }  // namespace
 
+json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
+
 json figure_rows(const RunTable& table) {
   json out = json::array();
   for (const Row& r : table.rows()) out.push_back(figure_row(r));
-  return out;
-}
-
-json figure_series(const RunTable& table) {
-  json out = json::array();
-  for (std::size_t k = 0; k < table.rows().size(); ++k) {
-    const Row& r = table.rows()[k];
-    if (r.part != Part::Contact) continue;
-    json time_s = json::array(), series = json::object();
-    for (const double t : r.run->accuracy.time_s) time_s.push_back(rounded(t));
-    for (const MetricSeries& m : r.run->accuracy.metrics) {
-      const auto drawn = std::find_if(metrics().begin(), metrics().end(),
-                                      [&](const Metric& d) { return d.drawn.place > 0 && d.name == m.name; });
-      if (drawn == metrics().end()) continue;
-      if (std::none_of(m.values.begin(), m.values.end(), [](double v) { return std::isfinite(v); })) continue;
-      json values = json::array();
-      for (const double v : m.values) values.push_back(rounded(v));
-      series[m.name] = {{"units", m.units},
-                        {"words", drawn->drawn.words},
-                        {"place", drawn->drawn.place},
-                        {"values", std::move(values)}};
-    }
-    out.push_back({{"run", k}, {"time_s", std::move(time_s)}, {"metrics", std::move(series)}});
-  }
   return out;
 }
 
@@ -247,19 +216,18 @@ json page_document(const RunTable& table, const Page& page) {
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
   return {{"format", "clothbench-report"}, {"format_version", 2},      {"title", page.heading.title},
-          {"conditions", page.headline},   {"sections", shown},        {"runs", std::move(rows)},
+          {"notes", page.notes},           {"sections", shown},        {"runs", std::move(rows)},
           {"studies", std::move(studies)}, {"solvers", solver_roles()}};
 }
 
-std::string page_html(const std::string& html, const Page& page, const json& document, const json& motions,
-                      const std::vector<std::string>& blobs) {
+std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
   const auto data = [](const char* id, const json& j) {
     return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
                        script_safe(j.dump(-1, ' ', true, json::error_handler_t::replace)));
   };
-  std::string all = data("clothbench-data", document) + data("clothbench-motions", motions);
-  for (std::size_t k = 0; k < blobs.size(); ++k)
-    all += "<script type=\"text/plain\" id=\"blob-" + std::to_string(k) + "\">" + blobs[k] + "</script>\n";
+  std::string all = data("clothbench-data", document) + data("clothbench-motions", motions.document);
+  for (std::size_t k = 0; k < motions.blobs.size(); ++k)
+    all += fmt::format("<script type=\"text/plain\" id=\"blob-{}\">{}</script>\n", k, motions.blobs[k]);
   std::string out = html;
   for (const auto& [mark, text] : {std::pair<std::string, std::string>{kDataMark, all},
                                    {kHeadMark, head_html(page)},
@@ -278,13 +246,8 @@ std::string write_page(const fs::path& out, const RunTable& table, const Page& p
     fs::remove(out / "index.html");  // an older run's page is not this report's
     return "The interactive page was left out: " + from.missing + ".";
   }
-  Motions motions = motions_of(table.runs());
-  json document = page_document(table, page);
-  if (const json series = figure_series(table); !series.empty()) {
-    document["series"] = motions.blobs.size();
-    motions.blobs.push_back(base64(pack_text(series.dump())));
-  }
-  write_file_atomically(out / "index.html", page_html(from.html, page, document, motions.document, motions.blobs));
+  const Motions motions = motions_of(table);
+  write_file_atomically(out / "index.html", page_html(from.html, page, page_document(table, page), motions));
   return "";
 }
 #else

@@ -1,9 +1,9 @@
 // The one drawing of all figures: a chart becomes the text of an SVG, on the page and on paper.
-//   {panels, columns?, height?, dashes?}
-// A panel: {title?, solver?, x, y, marks, lines?, rules?, labels?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
-// a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, solver, kind: 'point', 'cell', 'failed' or 'none',
-// open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], tone?, glyph?, note?, row}. A line:
-// {solver, points: [[x, y]], dash?, label?}. Rules: [{x or y, text, zone?}]. `labels`: names at the ends of lines.
+//   {panels, columns? of panels, height? or row? (of a band), right? (room for labels), tones? [[tone, meaning]]}
+// Several panels share a band axis y. A panel: {title?, solver?, x, y, marks, lines?, rules?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
+// a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, row (with its solver), kind: 'point', 'cell', 'failed'
+// (at the upper edge) or 'none', open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], shift? (in bands),
+// tone?, glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
 
 export const unique = list => [...new Set(list)];
 export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
@@ -85,12 +85,12 @@ const px = v => Number(v.toFixed(1));
 
 /// The symbol of a solver: filled, or open with the page behind it.
 export function symbol(look, solver, x, y, open = false, more = '') {
-  const colour = look.colour(solver), size = look.symbol_scale ?? 1;
+  const colour = look.colour(solver), size = look.symbol_scale;
   return `<path class="mark" d="${kPaths[look.symbol(solver)]}" transform="translate(${px(x)} ${px(y)})${
-      size === 1 ? '' : ` scale(${size})`}" style="stroke:${colour};fill:${open ? look.back : colour};stroke-width:1.6"${more}/>`;
+      size === 1 ? '' : ` scale(${size})`}" style="stroke:${colour};fill:${open ? 'var(--back)' : colour};stroke-width:1.6"${more}/>`;
 }
 
-const text = (look, x, y, words, {anchor = 'start', colour = look.soft, bold = false, rotate = 0, size = look.size} = {}) =>
+const text = (look, x, y, words, {anchor = 'start', colour = 'var(--soft)', bold = false, rotate = 0, size = look.size} = {}) =>
     `<text x="${px(x)}" y="${px(y)}" text-anchor="${anchor}" font-size="${size}" style="fill:${colour}"${bold ? ' font-weight="600"' : ''}${
         rotate ? ` transform="rotate(${rotate} ${px(x)} ${px(y)})"` : ''}>${escape(words)}</text>`;
 const line = (d, colour, more = '') => `<path d="${d}" style="stroke:${colour};fill:none"${more}/>`;
@@ -104,7 +104,7 @@ function draw_axes(look, panel, x, y, box, first) {
     if (wide && k % Math.ceil(0.95 * look.size / wide) !== 0) continue;
     const at = x.at(t), words = x.text(t), half = words.length * look.size * 0.28;
     if (!wide) {
-      out += line(`M${px(at)} ${top}V${bottom}`, look.line);
+      out += line(`M${px(at)} ${top}V${bottom}`, 'var(--line)');
       if (at - half < last + 4) continue;
       last = at + half;
     }
@@ -112,17 +112,17 @@ function draw_axes(look, panel, x, y, box, first) {
     out += upright ? text(look, at + look.size / 3, bottom + 7, words, {anchor: 'end', rotate: -90, size: look.size - 1}) :
                      text(look, at, bottom + look.size + 4, words, {anchor: 'middle'});
   }
-  if (panel.x.title) out += text(look, right, bottom + 2 * look.size + 9, panel.x.title, {anchor: 'end', colour: look.ink});
+  if (panel.x.title) out += text(look, right, bottom + 2 * look.size + 9, panel.x.title, {anchor: 'end', colour: 'var(--ink)'});
   if (panel.y.type !== 'band')
     for (const t of y.ticks) {
-      out += line(`M${left} ${px(y.at(t))}H${right}`, look.line);
+      out += line(`M${left} ${px(y.at(t))}H${right}`, 'var(--line)');
       out += text(look, left - 6, y.at(t) + look.size / 3, y.text(t), {anchor: 'end'});
     }
   else if (first)
     for (const [k, v] of y.ticks.entries())
       if (k % Math.ceil(0.95 * look.size / y.step) === 0)
-        out += text(look, left - 8, y.at(v) + look.size / 3, y.text(v), {anchor: 'end', colour: panel.y.colour?.(v) ?? look.soft});
-  if (panel.y.title) out += text(look, left - (first ? look.gutter - 2 : 0), top - 8 * look.unit, panel.y.title, {colour: look.ink});
+        out += text(look, left - 8, y.at(v) + look.size / 3, y.text(v), {anchor: 'end'});
+  if (panel.y.title) out += text(look, left - look.gutter + 2, top - 8 * look.unit, panel.y.title, {colour: 'var(--ink)'});
   return out;
 }
 
@@ -131,8 +131,8 @@ function draw_rules(look, panel, x, y, {left, right, top, bottom}) {
   for (const r of panel.rules ?? []) {
     const on_x = 'x' in r, at = on_x ? x.at(r.x) : y.at(r.y);
     if (!(at >= (on_x ? left : top) - 1 && at <= (on_x ? right : bottom) + 1)) continue;
-    if (r.zone) out += `<path d="M${left} ${px(at)}H${right}V${bottom}H${left}Z" style="fill:${look.soft};fill-opacity:0.1"/>`;
-    out += line(on_x ? `M${px(at)} ${top}V${bottom}` : `M${left} ${px(at)}H${right}`, look.soft, ' stroke-dasharray="4 3"');
+    if (r.zone) out += `<path d="M${left} ${px(at)}H${right}V${bottom}H${left}Z" style="fill:var(--soft);fill-opacity:0.1"/>`;
+    out += line(on_x ? `M${px(at)} ${top}V${bottom}` : `M${left} ${px(at)}H${right}`, 'var(--soft)', ' stroke-dasharray="4 3"');
     const before = on_x && at + r.text.length * look.size * 0.55 > right;
     if (on_x) [row, last] = [Math.abs(at - last) < 5 * look.size ? row + 1 : 0, at];  // names of near rules stand below each other
     out += on_x ? text(look, at + (before ? -4 : 4), top + (row + 1) * look.size, r.text, {anchor: before ? 'end' : 'start'}) :
@@ -166,27 +166,22 @@ function draw_labels(look, lines, taken, {left, right, top, bottom}) {
       }
     taken.push(best.box, best.box, best.box);
     out += `<text class="halo" x="${px(best.box[0])}" y="${px(best.box[1] + height - 4)}" font-size="${
-        look.size}" font-weight="650" style="fill:${look.colour(l.solver)};stroke:${look.back};stroke-width:3.5;paint-order:stroke">${
+        look.size}" font-weight="650" style="fill:${look.colour(l.solver)};stroke:var(--back);stroke-width:3.5;paint-order:stroke">${
         escape(l.label)}</text>`;
   }
   return out;
 }
 
 function draw_mark(look, m, x, y, index, box) {
-  const hit = ` data-i="${index}"`, colour = look.colour(m.solver);
+  const hit = ` data-i="${index}"`, {solver} = m.row, colour = look.colour(solver);
   if (m.kind === 'cell') {
     const w = Math.max(x.step - 1, 1), h = Math.max(y.step - 1, 1), left = x.at(m.x) - w / 2, top = y.at(m.y) - h / 2;
-    const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:${
-        look.tones[m.tone]}"${hit}/>`;
+    const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${m.tone})"${hit}/>`;
+    if (h <= look.size || w <= m.glyph.length * 5) return cell;
     return cell +
-        (m.glyph && h > look.size && w > m.glyph.length * 5 ? text(
-                                                 look, x.at(m.x), y.at(m.y) + 3.5, m.glyph,
-                                                 {anchor: 'middle', colour: look.tone_ink[m.tone], size: Math.min(10, look.size)}) :
-                                             '');
+        text(look, x.at(m.x), y.at(m.y) + 3.5, m.glyph, {anchor: 'middle', colour: `var(--on-${m.tone})`, size: Math.min(10, look.size)});
   }
-  if (m.kind === 'failed')
-    return symbol(
-        {...look, symbol: () => 'x'}, m.solver, m.x > 0 ? x.at(m.x) : box.right, m.edge === 'top' ? box.top : box.bottom, false, hit);
+  if (m.kind === 'failed') return symbol({...look, symbol: () => 'x'}, solver, m.x > 0 ? x.at(m.x) : box.right, box.top, false, hit);
   const [a, b] = [x.at(m.x), y.at(m.y) + (m.shift ?? 0) * (y.step ?? 0)];
   if (!Number.isFinite(a + b)) return '';
   let out = '';
@@ -194,7 +189,7 @@ function draw_mark(look, m, x, y, index, box) {
   if (m.high > m.low) out += line(along(m.low, m.high), colour, ` stroke-width="${1.6 * look.unit}"`);
   if (m.thick) out += line(along(...m.thick), colour, ` stroke-width="${7 * look.unit}" stroke-opacity="0.35"`);
   if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.size - 1});
-  return out + (m.kind === 'none' ? '' : symbol(look, m.solver, a, b, m.open, hit));
+  return out + (m.kind === 'none' ? '' : symbol(look, solver, a, b, m.open, hit));
 }
 
 function draw_panel(look, panel, box, first, marks) {
@@ -209,8 +204,8 @@ function draw_panel(look, panel, box, first, marks) {
   let out = draw_axes(look, panel, x, y, box, first) + draw_rules(look, panel, x, y, box);
   if (panel.title)
     out += text(
-        look, box.left, box.top - (panel.y.title && first ? 2 * look.size : 8), panel.title,
-        {colour: panel.solver ? look.colour(panel.solver) : look.ink, bold: true});
+        look, box.left, box.top - 8, panel.title,
+        {colour: panel.solver ? look.colour(panel.solver) : 'var(--ink)', bold: true});
   const taken = [];
   for (const l of placed) {
     if (l.at.length > 1)
@@ -228,34 +223,22 @@ function draw_panel(look, panel, box, first, marks) {
     out += draw_mark(look, m, x, y, index, box);
     if (m.kind !== 'cell') taken.push([x.at(m.x) - 5 * look.unit, y.at(m.y) - 5 * look.unit, 10 * look.unit, 10 * look.unit]);
   }
-  return out + draw_labels(look, panel.labels === false ? [] : placed, taken, {...box, right: box.right + look.right});
+  return out + draw_labels(look, placed, taken, {...box, right: box.right + look.right});
 }
 
-/// Names below a picture on paper: solvers with their symbols, and meanings of dashes.
+/// Below a picture: on paper solvers with their symbols; meanings of the tones of cells.
 function draw_legend(look, chart, width, top) {
-  const solvers = unique(chart.panels.flatMap(p => [...p.marks.map(m => m.solver), ...(p.lines ?? []).map(l => l.solver)])).filter(Boolean);
+  const points = chart.panels.flatMap(p => p.marks).filter(m => m.kind !== 'cell'), box = (x, y, tone) =>
+      `<rect x="${px(x)}" y="${px(y - 5)}" width="10" height="10" rx="2" style="fill:var(--${tone})"/>`;
   const items = [
-    ...(look.legend && !chart.panels.every(p => p.marks.every(m => m.kind === 'cell')) ?
-            solvers.map(s => ({words: s, draw: (x, y) => symbol(look, s, x + 6, y)})) :
-            []),
-    ...(chart.dashes?.length > 1 ?
-            chart.dashes.map(
-                (d, k) => ({
-                  words: d,
-                  draw: (x, y) => line(`M${px(x - 4)} ${px(y)}h18`, look.soft, ` stroke-width="1.5" stroke-dasharray="${kDashes[k % 5]}"`)
-                })) :
-            []),
-    ...(chart.tones ?? []).map(([tone, words]) => ({
-                                 words,
-                                 draw: (x, y) =>
-                                     `<rect x="${px(x)}" y="${px(y - 5)}" width="10" height="10" rx="2" style="fill:${look.tones[tone]}"/>`
-                               }))
+    ...(look.paper ? unique(points.map(m => m.row.solver)) : []).map(s => [s, (x, y) => symbol(look, s, x + 6, y)]),
+    ...(chart.tones ?? []).map(([tone, words]) => [words, (x, y) => box(x, y, tone)])
   ];
   let x = 8, y = top, out = '';
-  for (const i of items) {
-    const wide = 30 + i.words.length * look.size * 0.57;
+  for (const [words, picture] of items) {
+    const wide = 30 + words.length * look.size * 0.57;
     if (x + wide > width && x > 8) [x, y] = [8, y + look.size + 6];
-    out += i.draw(x, y) + text(look, x + 18, y + look.size / 3, i.words);
+    out += picture(x, y) + text(look, x + 18, y + look.size / 3, words);
     x += wide;
   }
   return {out, bottom: items.length ? y + look.size : top - 8};
@@ -278,22 +261,17 @@ export function draw(chart, look_at, width, title, shrink = 1) {
           top = y + (row.some(p => p.title) ? look.size + 10 * unit : 0) + (row[0].y.title ? look.size + 8 * unit : 8 * unit);
     const bottom = top + shrink * unit * (row[0].y.type === 'band' ? row[0].y.values.length * (chart.row ?? 22) : chart.height ?? 320);
     row.forEach((p, n) => {
-      const own = !banded && n > 0 ? 34 * unit : 0, left = look.gutter + n * each + own,
-            right = look.gutter + (n + 1) * each - (columns > 1 ? 14 * unit : 0) - look.right;
-      svg += draw_panel(look, p, {left: px(left), right: px(right), top, bottom}, !banded || n === 0, marks);
+      const left = look.gutter + n * each, right = look.gutter + (n + 1) * each - (columns > 1 ? 14 * unit : 0) - look.right;
+      svg += draw_panel(look, p, {left: px(left), right: px(right), top, bottom}, n === 0, marks);
     });
     y = bottom + base;
   }
   const legend = draw_legend(look, chart, width, y + 6 * unit), height = Math.ceil(legend.bottom + 4 * unit), size = look.paper ? 'pt' : '';
   if (look.paper && height > kPaperHeight && shrink > 0.1) return draw(chart, look_at, width, title, 0.93 * shrink);
-  return {
-    marks,
-    width,
-    height,
-    svg: `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}${size}" height="${height}${
-        size}" role="img" aria-label="${escape(title)}" font-family="${look.font}" stroke-width="${unit}">${
-        look.paper ? `<rect width="${width}" height="${height}" fill="#fff"/>` : ''}${svg}${legend.out}</svg>`
-  };
+  const whole = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}${size}" height="${height}${
+      size}" role="img" aria-label="${escape(title)}" font-family="${look.font}" stroke-width="${unit}">${
+      look.paper ? `<rect width="${width}" height="${height}" fill="#fff"/>` : ''}${svg}${legend.out}</svg>`;
+  return {marks, width, height, svg: look.paper ? whole.replace(/var\(--([\w-]+)\)/g, (_, name) => look.paper[name]) : whole};
 }
 
 /// A figure on paper: entries choose their layout by a width in pixels of the page.

@@ -10,29 +10,25 @@ function around(time, rate, frames) {
 
 /// Ends a and b and radius of each capsule at a time; `rate`: frames per second.
 function capsules(array, rate) {
-  const [frames, count] = array.shape, group = new THREE.Group(), parts = [];
-  for (let k = 0; k < count; ++k) {
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16, 1, true)),
-          ends = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10)));
-    group.add(shaft, ...ends);
-    parts.push({shaft, ends, a: new THREE.Vector3(), b: new THREE.Vector3(), radius: 0});
-  }
-  const up = new THREE.Vector3(0, 1, 0), line = new THREE.Line3(), nearest = new THREE.Vector3();
+  const [frames, count] = array.shape, value = (f, k, j) => array.values[(f * count + k) * 7 + j], group = new THREE.Group();
+  const parts = Array.from({length: count}, (_, k) => {
+    const radius = value(0, k, 6), length = Math.hypot(...[0, 1, 2].map(j => value(0, k, j + 3) - value(0, k, j)));
+    const mesh = new THREE.Mesh(new THREE.CapsuleGeometry(radius, length, 6, 14));
+    group.add(mesh);
+    return {mesh, whole: length + 2 * radius, line: new THREE.Line3(), radius: 0};
+  });
+  const up = new THREE.Vector3(0, 1, 0), nearest = new THREE.Vector3(), axis = new THREE.Vector3();
   const move = time => {
     const {f, g, w} = around(time, rate, frames);
     parts.forEach((p, k) => {
-      const value = j => array.values[(f * count + k) * 7 + j] * (1 - w) + array.values[(g * count + k) * 7 + j] * w;
-      p.a.set(value(0), value(1), value(2));
-      p.b.set(value(3), value(4), value(5));
-      p.radius = value(6);
-      const axis = p.b.clone().sub(p.a), length = axis.length();
-      p.shaft.position.copy(p.a).addScaledVector(axis, 0.5);
-      p.shaft.scale.set(p.radius, Math.max(length, 1e-9), p.radius);
-      if (length > 0) p.shaft.quaternion.setFromUnitVectors(up, axis.normalize());
-      p.ends.forEach((e, n) => {
-        e.position.copy(n ? p.b : p.a);
-        e.scale.setScalar(p.radius);
-      });
+      const at = j => value(f, k, j) * (1 - w) + value(g, k, j) * w;
+      p.line.start.set(at(0), at(1), at(2));
+      p.line.end.set(at(3), at(4), at(5));
+      p.radius = at(6);
+      p.line.getCenter(p.mesh.position);
+      const length = p.line.delta(axis).length();
+      if (length > 0) p.mesh.quaternion.setFromUnitVectors(up, axis.divideScalar(length));
+      p.mesh.scale.y = (length + 2 * p.radius) / p.whole;
     });
   };
   move(0);
@@ -41,7 +37,7 @@ function capsules(array, rate) {
     move,
     depth: x => Math.max(...parts.map(p => {
       // A capsule of length 0 has no axis.
-      const on = p.a.equals(p.b) ? p.a : line.set(p.a, p.b).closestPointToPoint(x, true, nearest);
+      const on = p.line.start.equals(p.line.end) ? p.line.start : p.line.closestPointToPoint(x, true, nearest);
       return p.radius - on.distanceTo(x);
     }))
   };

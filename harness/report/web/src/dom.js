@@ -28,12 +28,6 @@ export function download(name, type, content) {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
-/// A bar of buttons that download a figure or table: `makers` by the label of each.
-export const downloads = (title, makers) => element(
-    'div', {class: 'bar small', role: 'group', 'aria-label': `Downloads of ${title}`},
-    Object.entries(makers).map(
-        ([label, onclick]) => element('button', {type: 'button', 'aria-label': `${title}: download as ${label}`, onclick}, label)));
-
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
 

@@ -1,16 +1,25 @@
-// The figures of a report: entries over the rows of all runs (`doc.runs`) and their series, drawn by chart.js. An entry:
-//   {id, section, title(state), caption, choices, chart(rows, state, width), rows(state), columns, stills}
+// The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by chart.js. An entry:
+//   {id, section, title(state), caption, choices?, rows(state), chart(rows, state, width), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `chart` makes panels of those that the filter of solvers leaves; `columns` are those of its table and CSV.
-// `stills`: pictures beside the report, [{file, state}].
+// solver; `chart` makes panels of those that the filter of solvers leaves. `columns`: fields of a row, for the table and the
+// CSV. `stills`: pictures beside the report, [{file, state}]. `hero`: may be the figure of the first screen.
 import {number, unique} from './chart.js';
-import {by_solver, file_of, kFailed, percent, without_floor} from './figure_parts.js';
-import {failure_speed, forest, penetration, stability, verdicts} from './figures_contact.js';
 
+const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
 const kRefresh_Hz = [72, 90];
+const percent = v => v === null || v === undefined ? '–' : `${number(100 * v, 3)} %`;
 const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
+const file_of = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
+const by_solver = rows => unique(rows.map(r => r.solver)).map(solver => [solver, rows.filter(r => r.solver === solver)]);
+const choice = (label, values, first, text = String) =>
+    ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
+
+/// The harness without a cloth model is decades faster than every solver. It is drawn only if no other solver is.
+const without_floor = (doc, rows) =>
+    rows.every(r => doc.solvers.floor.includes(r.solver)) ? rows : rows.filter(r => !doc.solvers.floor.includes(r.solver));
+
 /// Pareto front: rows that no row of the same solver dominates in both fields, by ascending a.
-export const on_front = (rows, a, b) =>
+const on_front = (rows, a, b) =>
     rows.filter(p => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])))
         .sort((p, q) => p[a] - q[a]);
 
@@ -38,8 +47,7 @@ function error_time(doc) {
     caption:
         'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
         'area are not distinguished. Crosses on the upper edge: runs that failed.',
-    choices:
-        [{label: 'Scene', options: () => scenes.map(v => ({value: v, text: of(v)[0].refused ? `${v} (refused)` : v})), first: () => first}],
+    choices: [choice('Scene', scenes, first, v => of(v)[0].refused ? `${v} (refused)` : v)],
     rows: s => of(s.Scene),
     remark: s => [of(s.Scene)[0].refused && `No solver is ranked: ${of(s.Scene)[0].refused}.`,
                   ...unique(of(s.Scene).filter(r => r.not_ranked).map(r => `${r.solver} is shown but not ranked: ${r.not_ranked}.`))]
@@ -56,181 +64,92 @@ function error_time(doc) {
           rules: rows.length ? error_rules(of(s.Scene)) : [],
           lines: fronts.map(([solver, front]) => ({solver, label: solver, points: front.map(r => [r.wall_ms_per_s, r.error])})),
           marks: [
-            ...fine.map(r => ({kind: 'point', x: r.wall_ms_per_s, y: r.error, solver: r.solver, open: !best.includes(r), row: r})),
-            ...rows.filter(r => kFailed.includes(r.status))
-                .map(r => ({kind: 'failed', x: r.wall_ms_per_s ?? 0, edge: 'top', solver: r.solver, row: r}))
+            ...fine.map(r => ({kind: 'point', x: r.wall_ms_per_s, y: r.error, open: !best.includes(r), row: r})),
+            ...rows.filter(r => kFailed.includes(r.status)).map(r => ({kind: 'failed', x: r.wall_ms_per_s ?? 0, row: r}))
           ]
         }]
       };
     },
     tip: r =>
         [`${r.label}, ${r.scene}`, good(r) ? `error ${number(r.error)}, ${number(r.wall_ms_per_s)} ms per simulated second` : r.status],
-    columns: {
-      solver: r => r.solver,
-      setting: r => r.setting,
-      status: r => r.status,
-      'wall_ms_per_s': r => r.wall_ms_per_s,
-      'device_ms_per_s': r => r.device_ms_per_s,
-      error: r => r.error
-    },
+    columns: ['solver', 'setting', 'status', 'wall_ms_per_s', 'device_ms_per_s', 'error'],
     stills: scenes.map(v => ({file: `work-precision-${v}`, state: {Scene: v}}))
   };
 }
 
 // Frame rates ----------------------------------------------------------------
 
-const width_axis = rows => ({
-  type: 'log',
-  title: 'vertices along one side',
-  ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b),
-  format: t => String(Number(t.toPrecision(4)))
-});
-/// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
-const series_of = rows => unique(rows.map(r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}`))
-                              .map(
-                                  name =>
-                                      [name,
-                                       rows.filter(r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}` === name)
-                                           .sort((a, b) => a.width - b.width)]);
+const kRates = {
+  'Fig. 4: frame rate': {unit: 'frames per second', field: 'fps_median', scale: 1, still: 'fig4'},
+  'Fig. 5: peak read bandwidth': {unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'},
+  'peak write bandwidth': {unit: 'GB/s', field: 'bandwidth_write_peak_B_per_s', scale: 1e-9},
+  'maximum stretch': {unit: '%', field: 'stretch_max_last_second', scale: 100}
+};
 
-function by_resolution(doc, {id, title, caption, value, unit, low, high, open, rules = [], columns, still, panels = [['', value]]}) {
-  const all = doc.runs.filter(r => r.part === 'rates' && !r.published && panels.some(([, of]) => of(r) > 0));
+/// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
+function lines_of(rows) {
+  const name = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}`;
+  return by_solver(rows).flatMap(([solver, mine]) => unique(mine.map(name)).map((label, dash, all) => ({
+    solver,
+    dash,
+    label: all.length > 1 ? label : solver,
+    points: mine.filter(r => name(r) === label).sort((a, b) => a.width - b.width).map(r => [r.width, r.value])
+  })));
+}
+
+function rates(doc) {
+  const all = doc.runs.filter(r => r.part === 'rates' && !r.published && r.fps_median > 0);
   if (!all.length) return null;
-  const families = unique(all.map(r => r.family)), of = family => all.filter(r => r.family === family);
-  const main = all.find(r => r.paper_table === 3)?.family ?? families[0], both = 'all layers and settings';
+  const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
+  const of = s => all.filter(r => r.family === s.Scene), has = ({field}) => r => r[field] > 0;
   return {
-    id,
+    id: 'rates',
     section: 'rates',
-    hero: id === 'rates',
-    title: s => `${title}: ${s.Scene}`,
-    caption,
+    hero: true,
+    title: s => `${s.Value} by resolution, ${s.Scene}`,
+    caption:
+        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
+        'above 1 %, so the rate has no meaning. Bandwidth: bytes that shaders load and store, computed from the scene and the kernels, ' +
+        'per second of wall time; the bytes of CPU solvers are not known.',
     choices: [
-      {label: 'Scene', options: () => families.map(v => ({value: v, text: v})), first: () => main},
-      {label: 'Show', options: () => [{value: 'default', text: 'one layer, default settings'}, {value: 'all', text: both}]}
+      choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v])))),
+      choice('Show', ['one layer, default settings', 'all layers and settings'])
     ],
     rows: s => {
-      const mine = without_floor(of(s.Scene), doc.solvers.floor),
+      const {field, scale} = kRates[s.Value], mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return s.Show === 'all' || !plain.length ? mine : plain;
+      return (s.Show.startsWith('all') || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field], row: r}));
     },
     chart: (rows, s, width) => ({
       right: 90,
-      columns: width < 560 ? 1 : panels.length,
       height: Math.max(240, Math.min(340, 0.5 * width)),
-      panels: panels.map(
-          ([name, value_of]) => ({
-            title: name,
-            x: width_axis(rows),
-            y: {type: 'log', title: unit},
-            rules: rules.map(r => ({...r, optional: true})),
-            lines: by_solver(rows).flatMap(
-                ([solver, mine]) => series_of(mine).map(([label, line], k) => ({
-                                                          solver,
-                                                          label: mine.length > line.length ? label : solver,
-                                                          dash: k,
-                                                          points: line.filter(r => value_of(r) > 0).map(r => [r.width, value_of(r)])
-                                                        }))),
-            marks: rows.filter(r => value_of(r) > 0).map(r => ({
-                                                           kind: 'point',
-                                                           x: r.width,
-                                                           y: value_of(r),
-                                                           low: low?.(r),
-                                                           high: high?.(r),
-                                                           along: 'y',
-                                                           solver: r.solver,
-                                                           open: open?.(r),
-                                                           row: r
-                                                         }))
-          }))
+      panels: [{
+        x: {
+          type: 'log',
+          title: 'vertices along one side',
+          ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b),
+          format: t => String(Number(t.toPrecision(4)))
+        },
+        y: {type: 'log', title: kRates[s.Value].unit},
+        rules: s.Value.includes('rate') ? [{y: 72, text: '72 Hz', optional: true}] : [],
+        lines: lines_of(rows),
+        marks: rows.map(r => ({
+                          kind: 'point',
+                          x: r.width,
+                          y: r.value,
+                          ...(s.Value.includes('rate') ? {low: r.fps_low, high: r.fps_high} : {}),
+                          along: 'y',
+                          open: r.free_fall_error > 0.01,
+                          row: r
+                        }))
+      }]
     }),
     tip: r =>
-        [`${r.label} at ${r.resolution}${r.sides ? `, ${r.sides}` : ''}`,
-         ...panels.map(([name, f]) => `${name} ${number(f(r))} ${unit}`.trim()),
-         ...(r.fps_low ? [`95 %: ${number(r.fps_low)} to ${number(r.fps_high)}`] : []),
+        [`${r.label} at ${r.resolution}${r.sides ? `, ${r.sides}` : ''}`, number(r.value),
+         ...(r.fps_low ? [`frames per second, 95 %: ${number(r.fps_low)} to ${number(r.fps_high)}`] : []),
          ...(r.free_fall_error ? [`free-fall error ${percent(r.free_fall_error)}`] : [])],
-    columns,
-    stills: [{file: still, state: {Scene: main}}]
-  };
-}
-
-const rates = doc => by_resolution(doc, {
-  id: 'rates',
-  title: 'Fig. 4: frame rate by resolution',
-  caption:
-      'Uncapped, without rendering. Marks: median of the trials; bars: its 95 % interval. Hollow: the error of free fall is above 1 %, so the rate has no meaning.',
-  value: r => r.fps_median,
-  unit: 'frames per second',
-  low: r => r.fps_low,
-  high: r => r.fps_high,
-  open: r => r.free_fall_error > 0.01,
-  rules: [{y: 72, text: '72 Hz'}],
-  columns: {
-    solver: r => r.label,
-    sides: r => r.sides,
-    resolution: r => r.resolution,
-    fps_median: r => r.fps_median,
-    fps_low: r => r.fps_low,
-    fps_high: r => r.fps_high,
-    free_fall_error: r => r.free_fall_error
-  },
-  still: 'fig4'
-});
-
-const bandwidth = doc => by_resolution(doc, {
-  id: 'bandwidth',
-  title: 'Fig. 5: peak bandwidth by resolution',
-  caption:
-      'Bytes that shaders load and store, computed from the scene and the kernels, per second of wall time. The bytes of CPU solvers are not known.',
-  unit: 'GB/s',
-  panels: [['read', r => r.bandwidth_read_peak_B_per_s / 1e9], ['written', r => r.bandwidth_write_peak_B_per_s / 1e9]],
-  columns: {
-    solver: r => r.label,
-    sides: r => r.sides,
-    resolution: r => r.resolution,
-    bandwidth_read_peak_B_per_s: r => r.bandwidth_read_peak_B_per_s,
-    bandwidth_write_peak_B_per_s: r => r.bandwidth_write_peak_B_per_s
-  },
-  still: 'fig5'
-});
-
-/// Stretch against GPU time of each setting; null if no solver has two settings.
-function stretch(doc) {
-  const all = doc.runs.filter(
-      r => r.part === 'rates' && !r.published && r.frame_device_median_s > 0 && r.stretch_max_last_second > 0 &&
-          (!r.sides || r.sides === 'single'));
-  const several = all.filter(r => all.some(q => q.solver === r.solver && q.family === r.family && q.setting !== r.setting));
-  if (!several.length) return null;
-  const names = unique(several.map(r => `${r.family} ${r.resolution}`)),
-        of = name => all.filter(r => `${r.family} ${r.resolution}` === name);
-  return {
-    id: 'stretch',
-    section: 'rates',
-    title: s => `Stretch against GPU time: ${s.Scene}`,
-    caption:
-        'Maximum stretch of structural edges in the last second of the scene. One mark per setting; filled: no other setting of the solver is faster and stretches less.',
-    choices: [{label: 'Scene', options: () => names.map(v => ({value: v, text: v})), first: () => names.at(-1)}],
-    rows: s => of(s.Scene).map(r => ({...r, time: 1e3 * r.frame_device_median_s, value: 100 * r.stretch_max_last_second})),
-    chart: (rows, s, width) => {
-      const fronts = by_solver(rows).map(([solver, mine]) => [solver, on_front(mine, 'time', 'value')]), best = fronts.flatMap(f => f[1]);
-      return {
-        height: Math.max(240, Math.min(340, 0.5 * width)),
-        panels: [{
-          x: {type: 'log', title: 'GPU time per frame [ms]'},
-          y: {type: 'log', title: 'maximum stretch [%]'},
-          lines: fronts.map(([solver, f]) => ({solver, label: solver, points: f.map(r => [r.time, r.value])})),
-          marks: rows.map(r => ({kind: 'point', x: r.time, y: r.value, solver: r.solver, open: !best.includes(r), row: r}))
-        }]
-      };
-    },
-    tip: r => [r.label, `${number(r.time)} ms, maximum stretch ${number(r.value)} %`],
-    columns: {
-      solver: r => r.solver,
-      setting: r => r.setting,
-      frame_device_median_s: r => r.frame_device_median_s,
-      stretch_max_last_second: r => r.stretch_max_last_second,
-      stretch_mean_last_second: r => r.stretch_mean_last_second
-    },
-    stills: names.map(v => ({file: `${file_of(v)}-stretch`, state: {Scene: v}}))
+    columns: ['label', 'sides', 'resolution', 'fps_median', 'fps_low', 'fps_high', 'free_fall_error', 'value'],
+    stills: Object.entries(kRates).filter(([, v]) => v.still).map(([Value, v]) => ({file: v.still, state: {Scene: main, Value}}))
   };
 }
 
@@ -243,81 +162,227 @@ const kClocks = {
   wall: 'wall time, all frames'
 };
 
-const kTimesCaption = 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.';
+/// Solvers of one scene stand below each other.
+const shift_of = (solver, all) => all.length > 1 ? (all.indexOf(solver) - (all.length - 1) / 2) / (all.length + 0.6) : 0;
 
 function frame_times(doc) {
   const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));
-  const solvers = unique(all.map(r => r.solver)), first = clocks.includes('contact_wall') ? 'contact_wall' : 'wall';
-  return clocks.length && {
+  if (!clocks.length) return null;
+  const few = unique(all.map(r => r.scene)).length <= 8;
+  return {
     id: 'frame-times',
     section: 'time',
     hero: true,
     title: s => `Distribution of frame times${s.Solver === 'all' ? '' : `: ${s.Solver}`}`,
-    caption: kTimesCaption,
+    caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
     choices: [
-      {label: 'Time', options: () => clocks.map(c => ({value: c, text: kClocks[c]})), first: () => first}, {
-        label: 'Solver',
-        options: s =>
-            [...(unique(all.map(r => r.scene)).length <= 8 ? [{value: 'all', text: 'all'}] : []),
-             ...solvers.filter(n => all.some(r => r.solver === n && r[s.Time])).map(n => ({value: n, text: n}))]
-      }
+      choice('Time', clocks, clocks.includes('contact_wall') ? 'contact_wall' : 'wall', c => kClocks[c]),
+      choice('Solver', s => [...(few ? ['all'] : []), ...unique(all.filter(r => r[s.Time]).map(r => r.solver))])
     ],
-    rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => ({...r, shown: r[s.Time]})),
+    rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => {
+      const [p50_s, low_s, high_s, p95_s, p99_s, worst_s] = r[s.Time];
+      return {...r, p50_s, low_s, high_s, p95_s, p99_s, worst_s, row: r};
+    }),
     chart: rows => {
-      const scenes = unique(rows.map(r => r.scene)), present = unique(rows.map(r => r.solver)),
-            worst = Math.max(0, ...rows.map(r => 1e3 * r.shown[4]));
+      const present = unique(rows.map(r => r.solver)), worst = Math.max(0, ...rows.map(r => 1e3 * r.p99_s));
       return {
         row: Math.max(22, 13 * present.length + 6),
         right: 20,
         panels: [{
           x: {type: 'log', title: 'time per frame [ms]'},
-          y: {type: 'band', values: scenes},
+          y: {type: 'band', values: unique(rows.map(r => r.scene))},
           rules: kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({x: 1e3 / hz, text: `${hz} Hz`, optional: worst < 1e3 / hz / 3})),
           marks: rows.map(r => ({
                             kind: 'point',
-                            x: 1e3 * r.shown[0],
+                            x: 1e3 * r.p50_s,
                             y: r.scene,
-                            shift: present.length > 1 ? (present.indexOf(r.solver) - (present.length - 1) / 2) / (present.length + 0.6) : 0,
-                            thick: [1e3 * r.shown[0], 1e3 * r.shown[3]],
-                            low: 1e3 * r.shown[0],
-                            high: 1e3 * r.shown[4],
+                            shift: shift_of(r.solver, present),
+                            thick: [1e3 * r.p50_s, 1e3 * r.p95_s],
+                            low: 1e3 * r.p50_s,
+                            high: 1e3 * r.p99_s,
                             along: 'x',
-                            solver: r.solver,
                             row: r
                           }))
         }]
       };
     },
     tip: r =>
-        [`${r.label}, ${r.scene}`, `p50 ${ms(r.shown[0])} (95 %: ${ms(r.shown[1])} to ${ms(r.shown[2])})`,
-         `p95 ${ms(r.shown[3])}, p99 ${ms(r.shown[4])}, worst ${ms(r.shown[5])}`, `${r.trials} trials, ${r.trust}`],
-    columns: {
-      scene: r => r.scene,
-      solver: r => r.label,
-      p50_s: r => r.shown[0],
-      low_s: r => r.shown[1],
-      high_s: r => r.shown[2],
-      p95_s: r => r.shown[3],
-      p99_s: r => r.shown[4],
-      worst_s: r => r.shown[5],
-      trials: r => r.trials
-    },
+        [`${r.label}, ${r.scene}`, `p50 ${ms(r.p50_s)} (95 %: ${ms(r.low_s)} to ${ms(r.high_s)})`,
+         `p95 ${ms(r.p95_s)}, p99 ${ms(r.p99_s)}, worst ${ms(r.worst_s)}`, `${r.trials} trials, ${r.trust}`],
+    columns: ['scene', 'label', 'p50_s', 'low_s', 'high_s', 'p95_s', 'p99_s', 'worst_s', 'trials'],
     stills: [{file: 'frame-times', state: {}}]
   };
 }
 
+// Contact and stability ------------------------------------------------------
+
+/// A cell per pair of `x` and `y`, both fields of the rows; in wide windows many rows become columns.
+function heat_map(rows, x, y, tones, width, cell) {
+  const across = unique(rows.map(r => r[x])), down = unique(rows.map(r => r[y])), turned = width >= 740 && down.length >= 12;
+  const axes = [{type: 'band', values: across}, {type: 'band', values: down, text: v => v.length > 30 ? `${v.slice(0, 29)}…` : v}];
+  if (turned) axes.reverse();
+  return {
+    row: turned ? 24 : 18,
+    tones,
+    panels: [{
+      x: axes[0],
+      y: axes[1],
+      marks: rows.map(r => {
+        const [tone, glyph] = cell(r);
+        return {kind: 'cell', x: turned ? r[y] : r[x], y: turned ? r[x] : r[y], tone, glyph, row: r};
+      })
+    }]
+  };
+}
+
+const kVerdicts = {
+  pass: ['pass', '✓'],
+  fail: ['fail', '×'],
+  ignored: ['ignored', '○'],
+  unsupported: ['none', '–'],
+  'not measured': ['none', '·'],
+  missing: ['none', '·']
+};
+const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
+const why = r => r.violated?.map(([name, found]) => `${name} = ${found === null ? 'not met' : number(found)}`) ?? [];
+const judged = (doc, part) => doc.runs.filter(r => r.part === part && !r.verdict.startsWith('–'));
+
+function verdicts(doc) {
+  const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));
+  return all.length && {
+    id: 'verdicts',
+    section: 'contact',
+    hero: true,
+    title: () => 'Verdicts by scene and solver',
+    caption: 'Passed: the run meets every acceptance criterion of its scene. Select a cell for the criteria that a run violates.',
+    rows: () => all.map(r => ({...r, criteria: why(r).join('; '), row: r})),
+    chart: (rows, s, width) => heat_map(
+        rows, 'label', 'scene',
+        [['pass', 'pass'], ['fail', 'fail'], ['ignored', 'ignored: no contact simulated'], ['none', 'unsupported, or not measured']], width,
+        tone_of),
+    tip: r => [`${r.label}, ${r.scene}: ${r.verdict}`, ...why(r), ...(r.message ? [r.message] : [])],
+    columns: ['scene', 'label', 'verdict', 'criteria'],
+    stills: [{file: 'verdicts', state: {}}]
+  };
+}
+
+/// The scene without its speed: "capsule-sweep-0p8mps" and "stretch[v=2]" are of one kind.
+const kind_of = scene => scene.replace(/-?\d+(p\d+)?mps.*$|\[.*\]$/, '').replace(/-at$/, '');
+
+function failure_speed(doc) {
+  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && /pass|fail/.test(tone_of(r)[0]) && r.setting === 'default')
+                  .map(r => ({...r, kind: kind_of(r.scene), row: r}));
+  const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)), name = r => `${r.kind} · ${r.solver}`;
+  return rows.length && {
+    id: 'failure-speed',
+    section: 'contact',
+    title: () => 'Speeds that are passed and failed',
+    caption: 'Filled: the run passed at this speed of the hand; hollow: it failed. Runs whose criteria were not measured are not drawn.',
+    rows: () => rows,
+    chart: given => ({
+      row: 18,
+      panels: [{
+        x: {type: 'log', title: 'speed [m/s]'},
+        y: {type: 'band', values: unique(given.map(name)).sort()},
+        marks: given.map(r => ({kind: 'point', x: r.speed, y: name(r), open: r.verdict !== 'pass', row: r}))
+      }]
+    }),
+    tip: r => [`${r.label}, ${r.scene}`, `${number(r.speed)} m/s: ${r.verdict}`, ...why(r)],
+    columns: ['scene', 'label', 'speed', 'verdict'],
+    stills: [{file: 'failure-speed', state: {}}]
+  };
+}
+
+/// 95 % interval of a share: Wilson's score.
+export function wilson(passed, all) {
+  const z = 1.959964, p = passed / all, d = 1 + z * z / all, middle = (p + z * z / (2 * all)) / d,
+        half = z / d * Math.sqrt(p * (1 - p) / all + z * z / (4 * all * all));
+  return [Math.max(0, middle - half), Math.min(1, middle + half)];
+}
+
+/// One row for each label and value of `field`, with `count(runs)`; `first`: a value that stands for all runs.
+function tally(runs, field, count, first = []) {
+  return unique(runs.map(r => r.label)).flatMap(label => [...first, ...unique(runs.map(r => r[field])).sort()].flatMap(value => {
+    const mine = runs.filter(r => r.label === label && (first.includes(value) || r[field] === value));
+    return mine.length ? [{solver: mine[0].solver, label, [field]: value, ...count(mine)}] : [];
+  }));
+}
+
+function forest(doc) {
+  const all = judged(doc, 'generated').filter(r => r.status !== 'missing');
+  if (!all.length) return null;
+  const rows = tally(all, 'kind', mine => {
+    const scenes = mine.length, passed = mine.filter(r => r.verdict === 'pass').length, [low, high] = wilson(passed, scenes);
+    return {scenes, passed, low, high, unsupported: mine.filter(r => r.status === 'unsupported').length};
+  }, ['all']);
+  return {
+    id: 'forest',
+    section: 'contact',
+    hero: true,
+    title: () => 'Pass rate by kind of generated scene',
+    caption:
+        'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.',
+    rows: () => rows,
+    chart: (given, s, width) => ({
+      right: 16,
+      columns: width < 560 ? 2 : 6,
+      panels: unique(given.map(r => r.label)).map(label => {
+        const mine = given.filter(r => r.label === label), along = 'x';
+        return {
+          title: label,
+          solver: mine[0].solver,
+          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => `${100 * t} %`, title: ''},
+          y: {type: 'band', values: unique(rows.map(r => r.kind))},
+          marks: mine.map(
+              r => r.unsupported === r.scenes ? {kind: 'none', x: 0.02, y: r.kind, note: 'unsupported', row: r} :
+                                                {kind: 'point', x: r.passed / r.scenes, y: r.kind, low: r.low, high: r.high, along, row: r})
+        };
+      })
+    }),
+    tip: r => [`${r.label}, ${r.kind}`, `${r.passed} of ${r.scenes} passed (95 %: ${percent(r.low)} to ${percent(r.high)})`],
+    columns: ['label', 'kind', 'passed', 'scenes', 'unsupported', 'low', 'high'],
+    stills: [{file: 'forest', state: {}}]
+  };
+}
+
+function stability(doc) {
+  const all = doc.runs.filter(r => r.part === 'stability' && (r.grade >= 0 || r.status === 'unsupported'));
+  const rows = tally(all, 'case', mine => {
+    const [stable, degraded, failed] = [0, 1, 2].map(k => mine.filter(r => r.grade === k).length);
+    return {stable, degraded, failed, runs: stable + degraded + failed, row: mine.find(r => r.grade > 0) ?? mine[0]};
+  });
+  return rows.length && {
+    id: 'stability',
+    section: 'stability',
+    hero: true,
+    title: () => 'Stable runs by case',
+    caption:
+        'Stable runs of all runs of a case. A run is degraded if only its strain is beyond the load, and failed with any other failure class.',
+    rows: () => rows,
+    chart: given => heat_map(
+        given, 'label', 'case',
+        [['pass', 'all stable'], ['part', 'some stable or degraded'], ['fail', 'none stable'], ['none', 'unsupported']], 0,
+        r => !r.runs ? ['none', '–'] :
+                       [r.stable === r.runs        ? 'pass' :
+                            r.stable + r.degraded ? 'part' :
+                                                     'fail',
+                        `${r.stable}/${r.runs}`]),
+    tip: r => [`${r.label}, ${r.case}`, `${r.stable} stable, ${r.degraded} degraded, ${r.failed} failed`],
+    columns: ['label', 'case', 'stable', 'degraded', 'failed'],
+    stills: [{file: 'stability-cases', state: {}}]
+  };
+}
+
 /// All figures that the document has runs for.
-export const make_figures =
-    doc => [error_time, rates, bandwidth, stretch, frame_times, verdicts, failure_speed, penetration, forest, stability]
-               .map(make => make(doc))
-               .filter(Boolean);
+export const make_figures = doc =>
+    [error_time, rates, frame_times, verdicts, failure_speed, forest, stability].map(make => make(doc)).filter(Boolean);
 
 /// The choices of a figure with their defaults, where `given` has none that fits.
 export function settled(figure, given) {
   const state = {};
-  for (const {label, options, first} of figure.choices) {
+  for (const {label, options, first} of figure.choices ?? []) {
     const list = options(state).map(o => o.value);
-    state[label] = list.includes(given[label]) ? given[label] : first?.(state) ?? list[0] ?? '';
+    state[label] = [given[label], first?.(state)].find(v => list.includes(v)) ?? list[0] ?? '';
   }
   return state;
 }

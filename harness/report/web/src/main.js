@@ -7,7 +7,7 @@ import {load_state, looks, page_look, save_state, shown, state, style_of, toggle
 import {start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
-const kMethod = ['features', 'failed', 'environment'];
+const kMethod = ['features', 'environment'];
 
 function start_theme() {
   const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
@@ -73,7 +73,7 @@ function sections(doc, look) {
     links.push(['motions', 'Motions']);
     start_motions(doc, motions);
   }
-  links.push(['method', 'Method and limits']);
+  links.push(['method', 'Method']);
   $('contents').append(element('ol', {}, links.map(([id, title]) => element('li', {}, element('a', {href: `#${id}`}, title)))));
 }
 
@@ -90,10 +90,6 @@ function start_motions(doc, motions) {
     load();
   }, {rootMargin: '300px'}).observe($('motions'));
   window.clothbench.load_viewer = load;
-}
-
-function conditions(text) {
-  return text.split(/\n+/).filter(Boolean).filter(l => !l.startsWith('**')).map(l => element('p', {class: 'note'}, l.replaceAll('**', '')));
 }
 
 function start_navigation() {
@@ -140,7 +136,7 @@ function start() {
   start_theme();
   chips(doc, look);
   sections(doc, look);
-  $('conditions').append(...conditions(doc.conditions));
+  $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
   $('commands')
       .append(
           ...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));

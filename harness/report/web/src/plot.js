@@ -1,28 +1,16 @@
 // The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
-// its values and downloads.
+// its values and downloads as a picture.
 import {draw, draw_on_paper, paper_widths} from './chart.js';
 import {download, element, file_name, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
-import {load_series} from './motion.js';
-import {on_change, page_look, paper_look, set_value, shown, state} from './state.js';
-import {to_csv} from './tables.js';
+import {page_look, paper_look, set_value, shown, state} from './state.js';
+import {copy_command, near_window, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
 const figures = [];
 export {figures as all_figures};  // for tests
 
-/// Rows of a figure as a table of text.
-export function values_of(figure, rows) {
-  const columns = Object.entries(figure.columns);
-  return [
-    columns.map(([name]) => name), ...rows.map(r => columns.map(([, of]) => {
-      const v = of(r);
-      return v === null || v === undefined || Number.isNaN(v) ? '' : String(v);
-    }))
-  ];
-}
-
-function show_tip(at, lines, x, y) {
+function show_tip(lines, x, y) {
   tip.textContent = lines.filter(Boolean).join('\n');
   tip.hidden = !lines.length;
   if (!lines.length) return;
@@ -43,9 +31,9 @@ class Figure {
     this.heading = element('span', {});
     this.remark = element('p', {class: 'note'});
     this.values = element('div', {});
-    this.controls = entry.choices.map(c => select(c.label, [], '', v => this.choose(c.label, v)));
-    const details = element('details', {ontoggle: () => details.open && this.show_values()}, element('summary', {}, 'Values'), this.values);
-    this.details = details;
+    this.choices = entry.choices ?? [];
+    this.controls = this.choices.map(c => select(c.label, [], '', v => this.choose(c.label, v)));
+    this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
     this.block = element(
         'figure', {id: entry.id},
         element(
@@ -56,8 +44,8 @@ class Figure {
             ...this.controls),
         this.plot, element('figcaption', {}, entry.caption), this.remark,
         element(
-            'div', {class: 'bar small'}, details,
-            ...['SVG', 'PNG', 'CSV'].map(
+            'div', {class: 'bar small'}, this.details,
+            ...['SVG', 'PNG'].map(
                 kind => element(
                     'button', {type: 'button', 'aria-label': `${entry.id}: download as ${kind}`, onclick: () => this.save(kind)}, kind))));
     this.listen();
@@ -93,7 +81,7 @@ class Figure {
     }
     this.at = at;
     const row = this.marks[at]?.row, command = row && command_of(this.doc, row.row ?? row);
-    show_tip(this.plot, row ? [...this.entry.tip(row), row.file, command && `Click: ${command}`] : [], x, y);
+    show_tip(row ? [...this.entry.tip(row), row.file, command && `Click: ${command}`] : [], x, y);
     return row;
   }
 
@@ -108,9 +96,9 @@ class Figure {
   }
 
   settle() {
-    const given = Object.fromEntries(this.entry.choices.map(c => [c.label, state.values[`${this.entry.id}.${c.label}`]]));
+    const given = Object.fromEntries(this.choices.map(c => [c.label, state.values[`${this.entry.id}.${c.label}`]]));
     const chosen = settled(this.entry, given);
-    this.entry.choices.forEach(({label, options}, k) => {
+    this.choices.forEach(({label, options}, k) => {
       const list = options(chosen), box = this.controls[k].querySelector('select');
       box.replaceChildren(...list.map(o => new Option(o.text, o.value, o.value === chosen[label], o.value === chosen[label])));
       this.controls[k].hidden = list.length < 2;
@@ -118,42 +106,43 @@ class Figure {
     return chosen;
   }
 
-  async redraw() {
+  redraw() {
     const {entry} = this;
-    if (entry.needs_series) await load_series(this.doc);
     this.state = this.settle();
-    this.rows = entry.rows(this.state);
-    const rows = this.rows.filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
+    const rows = this.rows = entry.rows(this.state).filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
     this.heading.textContent = entry.title(this.state);
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;
     if (!rows.length) {
       this.marks = [];
       return void this.plot.replaceChildren(
-          element('p', {class: 'note'}, entry.empty ?? 'No run is left: see the filter of solvers above.'));
+          element('p', {class: 'note'}, 'No run is left: see the filter of solvers above.'));
     }
     const drawn = draw(entry.chart(rows, this.state, width), page_look(this.look, width < 560), width, entry.title(this.state));
     this.plot.innerHTML = drawn.svg;  // text in it is escaped (chart.js)
     this.marks = drawn.marks;
-    if (this.details.open) this.show_values();
+    this.show_values();
   }
 
   show_values() {
-    const rows = this.rows.filter(r => shown(r.solver)), [head, ...body] = values_of(this.entry, rows), most = 200;
-    this.values.replaceChildren(
-        element(
-            'div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Values of ${this.entry.title(this.state)}`},
-            element(
-                'table', {}, element('thead', {}, element('tr', {}, head.map(h => element('th', {scope: 'col'}, h)))),
-                element('tbody', {}, body.slice(0, most).map(r => element('tr', {}, r.map(v => element('td', {}, v))))))),
-        element('p', {class: 'note'}, body.length > most ? `The first ${most} of ${body.length} values; the CSV has all.` : ''));
+    if (!this.details.open) return;
+    const {entry, doc, rows} = this;
+    const table = {
+      title: `Values: ${entry.title(this.state)}`,
+      rows: [entry.columns, ...rows.map(r => entry.columns.map(name => String(r[name] ?? '')))],
+      runs: rows.map(r => doc.runs.indexOf(r.row ?? r)),
+      solver_column: -1,
+      solvers: []
+    };
+    const values = new ShownTable(doc, this.look, table, `${entry.id}-values`);
+    values.fill();
+    this.values.replaceChildren(values.block);
   }
 
   async save(kind) {
-    if (!this.drawn) await this.redraw();
-    const name = file_name(this.entry.title(this.state)), rows = this.rows.filter(r => shown(r.solver));
-    if (kind === 'CSV') return download(`${name}.csv`, 'text/csv', to_csv(values_of(this.entry, rows)));
-    const {svg, width, height} = draw_on_paper(this.entry, rows, this.state, paper_look(this.look), paper_widths['-wide']);
+    if (!this.drawn) this.redraw();
+    const name = file_name(this.entry.title(this.state));
+    const {svg, width, height} = draw_on_paper(this.entry, this.rows, this.state, paper_look(this.look), paper_widths['-wide']);
     if (kind === 'SVG') return download(`${name}.svg`, 'image/svg+xml', svg);
     const image = new Image(), canvas = Object.assign(document.createElement('canvas'), {width: 4 * width, height: 4 * height});
     image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
@@ -163,34 +152,16 @@ class Figure {
   }
 }
 
-export function copy_command(command) {
-  navigator.clipboard?.writeText(command).catch(() => {});
-  say(`Copied: ${command}`);
-  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, command));
-  document.getElementById('copied')?.remove();
-  document.body.append(note);
-  setTimeout(() => note.remove(), 6000);
-}
-
 export const figure_block = (doc, look, entry) => new Figure(doc, look, entry).block;
 
-/// Draws figures as they come near the window; again after a change of the filter, the address or the width.
+/// Draws figures as they come near the window; again after a change of the filter or the width.
 export function start_figures() {
   document.body.append(tip);
-  const near = new IntersectionObserver(
-      list => list.filter(e => e.isIntersecting).forEach(e => {
-        const figure = figures.find(f => f.block === e.target);
-        if (figure && !figure.drawn) figure.redraw();
-      }),
-      {rootMargin: '500px'});
-  figures.forEach(f => near.observe(f.block));
-  on_change(() => figures.filter(f => f.drawn).forEach(f => f.redraw()));
+  near_window(figures, f => f.drawn, f => f.redraw());
   let timer = 0;
   addEventListener('resize', () => {
     clearTimeout(timer);
-    timer = setTimeout(
-        () => figures.filter(f => f.drawn && f.plot.clientWidth && f.drawn !== Math.floor(f.plot.clientWidth)).forEach(f => f.redraw()),
-        150);
+    const changed = f => f.drawn && f.plot.clientWidth && f.drawn !== Math.floor(f.plot.clientWidth);
+    timer = setTimeout(() => figures.filter(changed).forEach(f => f.redraw()), 150);
   });
-  addEventListener('beforeprint', () => figures.filter(f => !f.drawn && !f.entry.needs_series).forEach(f => f.redraw()));
 }

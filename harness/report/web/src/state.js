@@ -43,47 +43,33 @@ export function looks(solvers, roles) {
   }));
 }
 
-const kFont = 'system-ui, -apple-system, Segoe UI, Roboto, DejaVu Sans, sans-serif';
-const kTones = ['pass', 'part', 'fail', 'none', 'ignored'];
-
-/// How charts look on the page: every colour is a variable of the style sheet, so a change of theme draws nothing again.
-export function page_look(all, narrow) {
-  const names = Object.keys(all);
-  return {
-    colour: s => s in all ? `var(--s${names.indexOf(s)})` : 'var(--soft)',
-    symbol: s => all[s]?.symbol ?? 'circle',
-    ink: 'var(--ink)',
-    soft: 'var(--soft)',
-    line: 'var(--line)',
-    back: 'var(--back)',
-    tones: Object.fromEntries(kTones.map(t => [t, `var(--${t})`])),
-    tone_ink: Object.fromEntries(kTones.map(t => [t, `var(--on-${t})`])),
-    size: narrow ? 11 : 12,
-    unit: 1,
-    stroke: 2,
-    font: kFont
-  };
-}
-
+/// The variables of the colours of solvers, for the style sheet.
 export const style_of = all => `:root{${Object.values(all).map((l, k) => `--s${k}:light-dark(${l.light},${l.dark})`).join(';')}}`;
 
-/// Black on white; sizes are in points, since a picture's width is that of a column of text.
-export function paper_look(all) {
-  return {
-    colour: s => all[s]?.light ?? '#777777',
-    symbol: s => all[s]?.symbol ?? 'circle',
-    ink: '#000000',
-    soft: '#222222',
-    line: '#dddddd',
-    back: '#ffffff',
-    tones: {pass: '#8fcab6', part: '#f3d48b', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de'},
-    tone_ink: {pass: '#000000', part: '#000000', fail: '#ffffff', none: '#555555', ignored: '#000000'},
-    size: 7.5,
-    unit: 0.625,  // points for a pixel of the page
-    stroke: 1.1,
-    symbol_scale: 0.55,
-    font: 'DejaVu Sans, Verdana, sans-serif',
-    paper: true,
-    legend: true
-  };
-}
+/// How charts look. Every colour is a variable of the style sheet, so a change of theme draws nothing again.
+export const page_look = (all, narrow) => ({
+  colour: s => s in all ? `var(--s${Object.keys(all).indexOf(s)})` : 'var(--soft)',
+  symbol: s => all[s]?.symbol ?? 'circle',
+  size: narrow ? 11 : 12,
+  unit: 1,
+  stroke: 2,
+  symbol_scale: 1,
+  font: 'system-ui, -apple-system, Segoe UI, Roboto, DejaVu Sans, sans-serif'
+});
+
+const kPaper = {
+  ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
+  pass: '#8fcab6', part: '#f3d48b', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
+  'on-pass': '#000000', 'on-part': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
+};
+
+/// Black on white; sizes are in points, since a picture's width is that of a column of text. `paper`: values of the variables.
+export const paper_look = all => ({
+  ...page_look(all),
+  size: 7.5,
+  unit: 0.625,  // points for a pixel of the page
+  stroke: 1.1,
+  symbol_scale: 0.55,
+  font: 'DejaVu Sans, Verdana, sans-serif',
+  paper: {...kPaper, ...Object.fromEntries(Object.values(all).map((l, k) => [`s${k}`, l.light]))}
+});

@@ -1,15 +1,11 @@
 // Tables: sorted by a click on a head, folded at 15 rows, filtered by solver, each with an anchor and the command of a row.
 import {symbol} from './chart.js';
-import {download, element, file_name} from './dom.js';
+import {download, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
-import {copy_command} from './plot.js';
 import {on_change, page_look, set_value, shown, state} from './state.js';
 
 const csv_field = text => /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-export const to_csv = rows => rows.map(row => row.map(csv_field).join(',') + '\n').join('');
-const markdown_field = text => text.replaceAll('|', '\\|').replace(/\s+/g, ' ');
-const to_markdown =
-    ([head, ...body]) => [head, head.map(() => '--'), ...body].map(r => `| ${r.map(markdown_field).join(' | ')} |\n`).join('');
+const to_csv = rows => rows.map(row => row.map(csv_field).join(',') + '\n').join('');
 
 const kFolded = 15;
 const kBad = /^(fail\b|diverged|not_finite|timed_out|device_lost|crashed|error\b)/;
@@ -19,7 +15,6 @@ const kScale = {
   k: 1e3,
   M: 1e6
 };
-const names = new Set();
 
 /// The number or share ("3/5", "3 of 5") that a cell starts with, for sorting and alignment; NaN for text.
 export function value_of(text) {
@@ -29,12 +24,19 @@ export function value_of(text) {
   return m && !/^\d+-\D|^\d{4}-/.test(text) ? Number(m[1].replace('−', '-')) * (kScale[m[2]] ?? 1) : NaN;
 }
 
-class ShownTable {
-  constructor(doc, look, table) {
-    Object.assign(this, {doc, look, table, open: false});
-    const [head, ...body] = table.rows, base = `t-${file_name(table.title)}`;
-    for (let k = 1; names.has(this.id = k > 1 ? `${base}-${k}` : base);) ++k;
-    names.add(this.id);
+export function copy_command(command) {
+  navigator.clipboard?.writeText(command).catch(() => {});
+  say(`Copied: ${command}`);
+  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, command));
+  document.getElementById('copied')?.remove();
+  document.body.append(note);
+  setTimeout(() => note.remove(), 6000);
+}
+
+export class ShownTable {
+  constructor(doc, look, table, id) {
+    Object.assign(this, {doc, look, table, id, open: false});
+    const [head, ...body] = table.rows;
     this.numeric = head.map(
         (_, k) => body.filter(r => !Number.isNaN(value_of(r[k])) || r[k] === '–').length * 2 >= body.length &&
             body.some(r => !Number.isNaN(value_of(r[k]))));
@@ -59,20 +61,19 @@ class ShownTable {
         this.place,
         element(
             'div', {class: 'bar small'}, this.more,
-            ...[['CSV', 'text/csv', 'csv', to_csv], ['Markdown', 'text/markdown', 'md', to_markdown]].map(
-                ([label, type, ending, make]) => element(
-                    'button', {
-                      type: 'button',
-                      'aria-label': `${table.title}: download as ${label}`,
-                      onclick: () => download(`${file_name(table.title)}.${ending}`, type, make(table.rows))
-                    },
-                    label))),
+            element(
+                'button', {
+                  type: 'button',
+                  'aria-label': `${table.title}: download as CSV`,
+                  onclick: () => download(`${file_name(table.title)}.csv`, 'text/csv', to_csv(table.rows))
+                },
+                'CSV')),
         table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : '');
   }
 
   /// The commands of the studies that the table's runs come from.
   reproduce() {
-    const studies = [...new Set(this.table.runs.map(k => this.doc.runs[k].study).filter(s => s !== undefined))];
+    const studies = [...new Set(this.table.runs.map(k => this.doc.runs[k]?.study).filter(s => s !== undefined))];
     const commands = studies.map(s => this.doc.studies[s].command).filter(Boolean);
     return commands.length ? element(
                                  'button', {
@@ -175,20 +176,21 @@ class ShownTable {
 const tables = [];
 
 export function table_block(doc, look, table) {
-  const t = new ShownTable(doc, look, table);
+  const base = `t-${file_name(table.title)}`, same = tables.filter(t => t.id.startsWith(base)).length;
+  const t = new ShownTable(doc, look, table, same ? `${base}-${same + 1}` : base);
   tables.push(t);
   return t.block;
 }
 
-/// Fills tables as they come near the window; again after a change of the filter.
-export function start_tables() {
+/// Makes blocks as they come near the window, and all of them to print; those that are made again after a change of the
+/// filter.
+export function near_window(list, made, make) {
   const near = new IntersectionObserver(
-      list => list.filter(e => e.isIntersecting).forEach(e => {
-        const t = tables.find(x => x.block === e.target);
-        if (t && !t.filled) t.fill();
-      }),
+      entries => list.filter(t => !made(t) && entries.some(e => e.isIntersecting && e.target === t.block)).forEach(make),
       {rootMargin: '500px'});
-  tables.forEach(t => near.observe(t.block));
-  on_change(() => tables.filter(t => t.filled).forEach(t => t.fill()));
-  addEventListener('beforeprint', () => tables.filter(t => !t.filled).forEach(t => t.fill()));
+  list.forEach(t => near.observe(t.block));
+  on_change(() => list.filter(made).forEach(make));
+  addEventListener('beforeprint', () => list.filter(t => !made(t)).forEach(make));
 }
+
+export const start_tables = () => near_window(tables, t => t.filled, t => t.fill());
