@@ -68,22 +68,13 @@ inline bool touches_nothing(const Scene& s) {
 
 inline constexpr Needs kGravity{"gravity", [](const Scene& s) { return s.gravity_m_per_s2 != Vec3{}; }};
 
-/// How the page and series.csv show a series; without `words` they do not show it.
-struct Plotted {
-  const char* words = "";  ///< on its axis
-  int place = 0;           ///< among the page's choices
-  int column = 0;          ///< among the file's columns
-};
-
-constexpr Plotted plotted(const char* words, int place, int column) { return {words, place, column}; }
-
 /// One number per frame, computed only for scenes that meet its needs. A state that is not finite gives NaN.
 struct Metric {
   std::string name, units;
   std::string long_name;  ///< one plain phrase: help, result files, documents and the page show it
   Needs needs;
   std::function<double(const MetricFrame&)> value;
-  Plotted drawn = {};
+  int series_column = 0;  ///< place among the columns of series.csv, from 1; 0: not there
   bool applies(const Scene& s) const { return needs.met(s); }
 };
 

@@ -54,7 +54,7 @@ const Scalar* find_scalar(const std::string& name) {
 std::vector<std::string> series_columns() {
   std::map<int, std::string> names;
   for (const Metric& m : metrics())
-    if (m.drawn.column > 0) names[m.drawn.column] = m.name;
+    if (m.series_column > 0) names[m.series_column] = m.name;
   std::vector<std::string> out;
   for (const auto& [unused, name] : names) out.push_back(name);
   return out;

@@ -115,12 +115,11 @@ TEST_F(Metrics, ASceneOnlyGetsWhatAppliesToIt) {
 
 TEST(Registry, EveryEntryIsWhole) {
   std::set<std::string> series, names;
-  std::set<int> columns, places;
+  std::set<int> columns;
   for (const Metric& m : metrics()) {
     EXPECT_TRUE(series.insert(m.name).second) << m.name << " stands twice";
     EXPECT_FALSE(m.units.empty() || m.long_name.empty() || std::string(m.needs.words).empty()) << m.name;
-    for (const auto& [taken, place] : {std::pair(&columns, m.drawn.column), {&places, m.drawn.place}})
-      EXPECT_TRUE(place == 0 || taken->insert(place).second) << m.name << ": place " << place << " is taken";
+    EXPECT_TRUE(m.series_column == 0 || columns.insert(m.series_column).second) << m.name << ": its column is taken";
   }
   for (const Scalar& s : scalars()) {
     EXPECT_TRUE(names.insert(s.name).second) << s.name << " stands twice";

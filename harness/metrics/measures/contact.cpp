@@ -31,9 +31,9 @@ MetricGroup contact_metrics() {
       kDepth{5e-4, Length, 0.1, false, "half a millimetre on a cloth of 1 m"}, kPoints{0, One, 0, true, "none"};
   constexpr Needs kInside{"colliders with an inside", has_depth};
   return {{{"contact_length_m", "m", "length of the intersection contour of cloth and colliders", kColliders,
-            [](const MetricFrame& f) { return f.contact->length_m; }, plotted("contour [m]", 1, 1)},
+            [](const MetricFrame& f) { return f.contact->length_m; }, 1},
            {"depth_m", "m", "maximum depth of the cloth in a collider, also between vertices", kInside,
-            [](const MetricFrame& f) { return f.contact->depth_m; }, plotted("depth [m]", 2, 2)}},
+            [](const MetricFrame& f) { return f.contact->depth_m; }, 2}},
           {{"contact_length_max_m", greatest("contact_length_m"), Yes, &kImpact},
            {"contact_length_settled_m", greatest_settled("contact_length_m"), Yes, &kAtRest},
            {"depth_max_m", greatest("depth_m"), Yes, &kDepth},
