@@ -174,7 +174,7 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds what differs between the first run of A and every other one. An order without turns is no difference of the
+/// Adds what differs between the first run of A and every other one. Another order is no difference of the
 /// runs, only no basis for a statement on times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
@@ -190,7 +190,7 @@ void add_conditions(const Pair& p, const std::vector<std::string>& allowed, Chec
       }
   run.in_turns = in_turns(p.a, p.b);
   if (!run.in_turns && contains(allowed, std::string("order"))) {
-    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not in turns"});
+    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not mixed"});
     kinds.emplace_back("order");
     run.in_turns = true;
   }
@@ -269,7 +269,7 @@ std::size_t Checked::count(Verdict v) const {
 std::string CheckedRun::time_verdict() const {
   const std::string out = !std::isfinite(time.ratio) ? "not timed"
                           : !time.enough() ? fmt::format("too few processes: at least {} a side", kMinProcesses)
-                          : !in_turns      ? "no statement: A and B did not run in turns"
+                          : !in_turns      ? "no statement: A and B ran one after the other"
                           : time.noise()   ? "noise"
                           : time.ratio < 1 ? "faster"
                                            : "slower";

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxProcesses = 12;  ///< of each side; all C(24, 1
 /// processes to the two sides, twice the smaller tail. `low`, `high`: the ratios that this test does not reject at 5 %
 /// (equal tails of 2.5 % at most). Source: Good, Permutation, Parametric and Bootstrap Tests of Hypotheses (3rd
 /// ed.), 3.2. It assumes that processes are exchangeable if the builds are equally fast, so run those of A and B in
-/// turns.
+/// random order; in strict turns the test rejects less than 5 %.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
   std::size_t processes_a = 0, processes_b = 0;
@@ -33,8 +33,8 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
 /// Frame times [s] of one run in several processes: of each that has trials the median of the trials' means.
 std::vector<double> process_times(const std::vector<const RunRecord*>&);
 
-/// Whether the processes of the two sides ran in turns, by the start of their trials: from one side to the other at
-/// least as often as in a random order, 2 a b/(a + b) times of a and b processes. Otherwise a drift of the machine is
+/// Whether the processes of the two sides ran mixed, by the start of their trials: from one side to the other at least
+/// half as often as in a random order, m n/(m + n) times of m and n processes. Otherwise a drift of the machine is
 /// taken for a difference of the builds. True if a start is not known.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 

@@ -89,7 +89,7 @@ bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const Ru
   double changes = 0;
   for (std::size_t k = 1; k < order.size(); ++k) changes += order[k].second != order[k - 1].second ? 1 : 0;
   const auto m = static_cast<double>(a.size()), n = static_cast<double>(b.size());
-  return changes >= std::floor(2 * m * n / (m + n));
+  return changes >= m * n / (m + n);
 }
 
 }  // namespace clothbench

@@ -49,7 +49,8 @@ void add_compare(CLI::App& app, Console& console) {
       "Compare two results of the same study: which runs are faster or slower beyond noise, and which "
       "results differ");
   const std::string several = fmt::format(
-      "; for a statement about times {} or more of separate processes, run in turns: A,B,C,D,E or the folder that "
+      "; for a statement about times {} or more of separate processes, run in random order: A,B,C,D,E or the folder "
+      "that "
       "holds "
       "them",
       kMinProcesses);

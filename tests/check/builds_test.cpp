@@ -242,7 +242,7 @@ TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
   }
 }
 
-TEST(CompareRuns, ProcessesThatDidNotRunInTurnsMakeNoStatement) {
+TEST(CompareRuns, ProcessesOneAfterTheOtherMakeNoStatement) {
   const auto started = [](Processes side, double first_s, double step_s) {
     for (std::size_t k = 0; k < side.size(); ++k)
       for (TimedTrial& t : side[k][0].trials) t.start_unix_s = first_s + step_s * static_cast<double>(k);
@@ -252,7 +252,10 @@ TEST(CompareRuns, ProcessesThatDidNotRunInTurnsMakeNoStatement) {
   const Processes a = started(one, 0, 2), turns = started(other, 1, 2), after = started(other, 100, 2);
   EXPECT_EQ(comparison_json(compare_processes(a, turns))["runs"][0]["time"]["verdict"], "slower");
   const std::string without = comparison_json(compare_processes(a, after))["runs"][0]["time"]["verdict"];
-  EXPECT_NE(without.find("did not run in turns"), std::string::npos) << without;
+  EXPECT_NE(without.find("one after the other"), std::string::npos) << without;
+  const Processes mixed = started(other, 5, 1), inside = started(other, 0.5, 0.1);
+  EXPECT_EQ(comparison_json(compare_processes(a, mixed))["runs"][0]["time"]["verdict"], "slower") << "changes often";
+  EXPECT_EQ(comparison_json(compare_processes(a, inside))["runs"][0]["time"]["verdict"], without) << "changes twice";
   const nlohmann::json allowed = comparison_json(compare_processes(a, after, {"order"}));
   EXPECT_EQ(allowed["runs"][0]["time"]["verdict"], "slower; other order");
   EXPECT_EQ(allowed["overridden"][0]["kind"], "order");
