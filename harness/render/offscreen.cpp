@@ -7,7 +7,7 @@
 
 #include "clothbench/vector.hpp"
 #include "common/gpu_solver.hpp"
-#include "vulkan/make.hpp"
+#include "vulkan/device.hpp"
 
 namespace clothbench::render {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/render_shared.h"
-#include "vulkan/make.hpp"
+#include "vulkan/device.hpp"
 
 namespace clothbench::render {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "clothbench/record.hpp"
-#include "vulkan/make.hpp"
+#include "vulkan/device.hpp"
 
 namespace clothbench::xr {
 namespace {

@@ -1,8 +1,7 @@
-#include "vulkan/profile.hpp"
-
 #include <numeric>
 
 #include "gpu_fixture.hpp"
+#include "vulkan/kernel.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

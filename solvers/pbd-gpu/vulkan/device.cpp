@@ -14,8 +14,6 @@
 #include <tuple>
 #include <utility>
 
-#include "vulkan/device_info.hpp"
-
 namespace clothbench::vulkan {
 namespace {
 
@@ -97,6 +95,12 @@ Made& made() {
 }
 
 }  // namespace
+
+const Profile& find_profile(const std::string& name) {
+  static const Profile adreno = {"adreno-like", 32u << 10, 256, 64};
+  if (name == adreno.name) return adreno;
+  throw Error("device profile \"" + name + "\": expected " + adreno.name);
+}
 
 std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
   const std::lock_guard lock(made().mutex);

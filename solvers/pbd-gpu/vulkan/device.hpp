@@ -9,7 +9,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "vulkan/profile.hpp"
 
 namespace clothbench::vulkan {
 
@@ -35,6 +34,24 @@ class Maker {
   virtual VkPhysicalDevice physical_device(VkInstance) = 0;
   virtual VkResult create_device(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) = 0;
 };
+
+/// A class of devices that any device can emulate: its limits are reduced to these, larger workgroups are rejected, and
+/// a frame is split into submissions as short as on such a device.
+struct Profile {
+  std::string name;
+  std::uint32_t shared_memory_B = 0;    ///< of a workgroup
+  std::uint32_t group_invocations = 0;  ///< workgroups are one-dimensional and at most this wide
+  std::uint32_t dispatches_per_submit = 0;
+};
+
+/// "adreno-like": what is known of the Adreno 740 of a Quest 3, 32 KiB of shared memory (Mesa, freedreno_devices.py,
+/// cs_shared_mem_size). The limits of 256 threads a group and 64 dispatches a submission are our precaution. Throws
+/// Error naming it for any other name.
+const Profile& find_profile(const std::string& name);
+
+/// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps, queue families,
+/// and the limits that compute meets; `vulkaninfo` has all others.
+DeviceInfo describe(VkPhysicalDevice physical);
 
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). A process has one for each
 /// (index, validation, profile), shared by all solvers and kept until the process ends.
@@ -116,5 +133,16 @@ class Device {
   std::shared_ptr<std::atomic<int>> blamed_;
   int of_making_ = 0;
 };
+
+// Objects that several classes make in the same way. The caller destroys them; each throws Error if Vulkan fails.
+
+/// From the device's command pool.
+VkCommandBuffer make_commands(const Device&);
+VkFence make_fence(const Device&);
+VkQueryPool make_timestamps(const Device&, std::uint32_t count);
+
+/// One set of storage buffers, with its layout and the pool that it lies in. Handles are filled in as they are made.
+void make_storage_set(const Device&, const std::vector<VkDescriptorSetLayoutBinding>&, VkDescriptorSetLayout&,
+                      VkDescriptorPool&, VkDescriptorSet&);
 
 }  // namespace clothbench::vulkan

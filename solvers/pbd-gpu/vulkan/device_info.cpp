@@ -1,9 +1,9 @@
-#include "vulkan/device_info.hpp"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "vulkan/device.hpp"
 
 namespace clothbench::vulkan {
 namespace {

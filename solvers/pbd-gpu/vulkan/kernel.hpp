@@ -9,6 +9,16 @@
 
 namespace clothbench::vulkan {
 
+struct SpirV {
+  const std::uint32_t* words;
+  std::size_t bytes;
+};
+
+enum class Access { Read, Write, ReadWrite };
+
+/// What a kernel's code does with storage buffers, by binding: its loads, stores and atomics through every pointer.
+std::map<std::uint32_t, Access> accesses_of(SpirV code);
+
 /// Buffers by binding number, in set 0.
 using Buffers = std::map<std::uint32_t, const Buffer*>;
 

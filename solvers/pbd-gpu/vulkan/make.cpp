@@ -1,4 +1,4 @@
-#include "vulkan/make.hpp"
+#include "vulkan/device.hpp"
 
 namespace clothbench::vulkan {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "vulkan/make.hpp"
-
 namespace clothbench::vulkan {
 namespace {
 
