@@ -1,9 +1,13 @@
 #include "contact_check.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include "runner/solver_run.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -167,6 +171,36 @@ PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before
       check.separated += separated(swept[a].start, swept[a].end, swept[b]) ? 1 : 0;
     }
   return check;
+}
+
+std::string fault_of(GpuSolver& solver, const Scene& s, long& pairs, long& own_pairs) {
+  solver.load(s);
+  std::vector<double> before = initial_positions(s);
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const ClothState state = after_frame(solver, s, f);
+    const PairCheck check = check_pairs(s, before, state.position, f);
+    if (!(check.separated == check.pairs))
+      return fmt::format("{} of {} pairs in step {}", check.pairs - check.separated, check.pairs, f);
+    pairs += check.pairs;
+    if (s.needs.has(Feature::SelfCollision)) {
+      const PairCheck own = check_self_pairs(s, before, state.position);
+      if (!(own.separated == own.pairs))
+        return fmt::format("{} of {} pairs of the cloth with itself in step {}", own.pairs - own.separated, own.pairs,
+                           f);
+      own_pairs += own.pairs;
+    }
+    before = state.position;
+  }
+  for (const SolverCount& c : solver.counts())
+    if (!(c.count <= 0)) return fmt::format("{} {}", c.count, c.name);
+  return {};
+}
+
+void expect_all_separated(GpuSolver& solver, const Scene& s, long least) {
+  long pairs = 0, own_pairs = 0;
+  EXPECT_EQ(fault_of(solver, s, pairs, own_pairs), "");
+  EXPECT_EQ(check_stages(s, solver.info(), solver.plan()), "");
+  EXPECT_GT(s.needs.has(Feature::SelfCollision) ? own_pairs : pairs, least) << "or this says nothing";
 }
 
 }  // namespace clothbench::pbd_gpu

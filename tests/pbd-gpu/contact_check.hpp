@@ -1,7 +1,8 @@
 #pragma once
+#include <string>
 #include <vector>
 
-#include "clothbench/scene.hpp"
+#include "gpu_fixture.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -19,5 +20,12 @@ PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, con
 
 /// The same of the cloth's triangles with each other, those without a common vertex.
 PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after);
+
+/// What is wrong with the run of a scene whose frames are steps; empty if nothing is. Adds up its pairs with convex
+/// shapes, and those of the cloth with itself.
+std::string fault_of(GpuSolver& solver, const Scene& s, long& pairs, long& own_pairs);
+
+/// Expects that nothing is, and more than `least` pairs: of the cloth with itself where the scene has self-contact.
+void expect_all_separated(GpuSolver& solver, const Scene& s, long least = 0);
 
 }  // namespace clothbench::pbd_gpu

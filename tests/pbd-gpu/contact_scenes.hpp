@@ -23,6 +23,14 @@ inline Scene with_collider(Scene s, const Collider& c) {
   return s;
 }
 
+/// Touched on both sides, as `xpbd` has it.
+inline Scene two_sided(Scene s) {
+  s.cloth.sides = Sides::Double;
+  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
+  s.needs.add(Feature::DoubleSided);
+  return s;
+}
+
 inline Scene doubled(Scene s) {
   s.cloth.sides = Sides::DoubleDuplicated;
   s.needs.add(Feature::DuplicatedLayer);
@@ -33,6 +41,13 @@ inline Collider sphere(Vec3 center, double radius, double friction = 0) {
   Collider c = touching(Collider::Shape::Sphere, friction);
   c.center_m = center;
   c.radius_m = radius;
+  return c;
+}
+
+inline Collider half_space(Vec3 point, Vec3 normal, double friction) {
+  Collider c = touching(Collider::Shape::Plane, friction);
+  c.center_m = point;
+  c.normal = normal;
   return c;
 }
 

@@ -1,20 +1,8 @@
-// Contact of `xpbd` at any speed: nothing passes a thin sheet, from either side. And the clusters that convex shapes
-// are made of.
-#include <cmath>
-#include <set>
-
+// Contact of `xpbd` at any speed: nothing passes a thin sheet.
 #include "contact_scenes.hpp"
-#include "xpbd/contact/convex_shapes.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
-
-Scene two_sided(Scene s) {
-  s.cloth.sides = Sides::Double;
-  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
-  s.needs.add(Feature::DoubleSided);
-  return s;
-}
 
 /// Two triangles in the plane z = `at`, 4 m wide, that a single joint carries along z.
 Collider carried_wall(double at) {

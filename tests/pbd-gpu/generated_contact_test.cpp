@@ -47,8 +47,7 @@ Scene drawn(unsigned seed) {
   Draw draw(seed);
   Scene s = sheet(12, 10);
   s.name = "drawn " + std::to_string(seed);
-  s.cloth.sides = Sides::Double;
-  s.needs.add(Feature::DoubleSided);
+  s = two_sided(s);
   s.cloth.center_m = {0, 0.35, 0};
   s.cloth.initial_velocity_m_per_s = {draw.between(-2, 2), draw.between(-6, -1), draw.between(-2, 2)};
   s.time = {draw.between(300, 1300), 0.15};
@@ -70,39 +69,13 @@ Scene random_heap(unsigned seed) {
   s.needs.add(Feature::Spin);
   s.cloth.self_collision = {draw.between(0.05, 0.5) * s.cloth.least_height_m(), draw.between(0, 0.6)};
   s.needs.add(Feature::SelfCollision);
-  Collider floor = touching(Collider::Shape::Plane, draw.between(0, 0.6));
-  floor.center_m = {0, -0.2, 0};
-  floor.normal = {0, 1, 0};
+  Collider floor = half_space({0, -0.2, 0}, {0, 1, 0}, draw.between(0, 0.6));
   floor.margin_m = draw.between(0.002, 0.02);
   s = with_collider(s, floor);
   s.time.duration_s = 0.4;
   if (s.motion.empty()) return s;
   s.motion.clear();
   return moving(s);
-}
-
-/// What is wrong with the run of a scene; empty if nothing is.
-std::string fault_of(GpuSolver& solver, const Scene& s, long& pairs, long& own_pairs) {
-  solver.load(s);
-  std::vector<double> before = initial_positions(s);
-  for (int f = 0; f < s.time.frames(); ++f) {
-    const ClothState state = after_frame(solver, s, f);
-    const PairCheck check = check_pairs(s, before, state.position, f);
-    if (!(check.separated == check.pairs))
-      return fmt::format("{} of {} pairs in step {}", check.pairs - check.separated, check.pairs, f);
-    pairs += check.pairs;
-    if (s.needs.has(Feature::SelfCollision)) {
-      const PairCheck own = check_self_pairs(s, before, state.position);
-      if (!(own.separated == own.pairs))
-        return fmt::format("{} of {} pairs of the cloth with itself in step {}", own.pairs - own.separated, own.pairs,
-                           f);
-      own_pairs += own.pairs;
-    }
-    before = state.position;
-  }
-  for (const SolverCount& c : solver.counts())
-    if (!(c.count <= 0)) return fmt::format("{} {}", c.count, c.name);
-  return {};
 }
 
 class GeneratedContacts : public Gpu {

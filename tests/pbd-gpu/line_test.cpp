@@ -108,23 +108,6 @@ TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
   }
 }
 
-/// Copies of a cloth ride in one dispatch and know nothing of one another.
-TEST_F(LineScenes, CopiesOfAClothMoveAlike) {
-  Scene s = with_damping(with_pins(sheet(17, 23)));
-  s.material.membrane_stiffness_N_per_m.reset();
-  const auto one = make("xpbd"), many = make("xpbd", {{"batch", 5}});
-  one->load(s);
-  many->load(s);
-  after(*one, s, 10);
-  after(*many, s, 10);
-  const std::vector<float> single = one->device_positions(), all = many->device_positions();
-  ASSERT_EQ(all.size(), 5 * single.size());
-  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], single[i % single.size()]) << i;
-  EXPECT_THROW(make("xpbd", {{"batch", 0}}), Error);
-  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(sheet(33, 33)), Error);
-  EXPECT_THROW(make("xpbd", {{"batch", 2}})->load(moving(sheet(9, 9), {0}, 5)), Error);
-}
-
 /// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as one dispatch per colour
 /// does, or is refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of
 /// its threads.
@@ -158,6 +141,30 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   }
   EXPECT_GE(agreed, 1) << "one workgroup has none to wait for";
 }
+
+/// The modulus of elastic sheets is the scene's, at every resolution: a sheet that shears hangs to rest by its weight.
+class Moduli : public Gpu, public ::testing::WithParamInterface<const char*> {
+ protected:
+  /// Error of the stretch of the lower half, over the exact one; there E is the only modulus that counts.
+  static double error(const nlohmann::json& settings) {
+    const Scene s =
+        load_scene("validation/heavy-strip", {"material.shear=true", std::string("cloth.grid=") + GetParam()});
+    const auto solver = make("xpbd", settings);
+    solver->load(s);
+    return TruthJudge(s).judge(s.time.frames(), after(*solver, s, s.time.frames())).quantity_error;
+  }
+};
+
+TEST_P(Moduli, AreTheScenesAtDefaultAndFast) {
+  EXPECT_LE(error(nlohmann::json::object()), 0.02);
+  EXPECT_LE(error({{"quality", "fast"}}), 0.06);
+}
+
+TEST_P(Moduli, WithoutCouplingAreFarOff) {
+  EXPECT_GE(error({{"tuning", {{"splitting_correction", "never"}}}}), 0.1) << "the coupling does nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(Grids, Moduli, ::testing::Values("[33,5]", "[65,9]"));
 
 }  // namespace
 }  // namespace clothbench::pbd_gpu

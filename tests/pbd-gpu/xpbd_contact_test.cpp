@@ -15,13 +15,6 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-Collider half_space(Vec3 point, Vec3 normal, double friction) {
-  Collider c = touching(Collider::Shape::Plane, friction);
-  c.center_m = point;
-  c.normal = normal;
-  return c;
-}
-
 /// Instant k of a hand round (-1, 0, 0) that goes 10 mm an instant along x, its two joints turning against each other.
 void pose_hand(ColliderPose& pose, std::size_t k) {
   for (std::size_t joint = 0; joint < pose.joints.size(); ++joint) {
@@ -34,34 +27,13 @@ void pose_hand(ColliderPose& pose, std::size_t k) {
 /// A sheet that falls onto something; frames are steps, so that every one of them can be checked.
 Scene falling_in_steps(const Collider& collider, double steps_per_s) {
   Scene s = with_collider(sheet(12, 10), collider);
-  s.cloth.sides = Sides::Double;
-  s.needs.add(Feature::DoubleSided);
+  s = two_sided(s);
   s.cloth.center_m = {0, 0.26, 0};
   s.cloth.initial_velocity_m_per_s = {0.4, -3, 0.3};
   s.time = {steps_per_s, 0.2};
   if (collider.moves()) s = moving(s);
   for (std::size_t k = 0; collider.mesh && k < s.motion.size(); ++k) pose_hand(s.motion[k].colliders.at(0), k);
   return s;
-}
-
-void expect_all_separated(std::unique_ptr<GpuSolver> solver, const Scene& s, const std::string& what) {
-  SCOPED_TRACE(what);
-  solver->load(s);
-  EXPECT_EQ(check_stages(s, solver->info(), solver->plan()), "");
-  std::vector<double> before = initial_positions(s);
-  long pairs = 0;
-  for (int f = 0; f < s.time.frames(); ++f) {
-    const ClothState state = after_frame(*solver, s, f);
-    const PairCheck check = check_pairs(s, before, state.position, f);
-    ASSERT_EQ(check.pairs, check.separated) << "step " << f;
-    pairs += check.pairs;
-    before = state.position;
-  }
-  EXPECT_GT(pairs, 0) << "something must come near for this to say anything";
-  const ContactDiagnostics diagnostics = solver->contact_diagnostics();
-  EXPECT_EQ(diagnostics.infeasible_vertices, 0u);
-  EXPECT_EQ(diagnostics.overflow, 0u);
-  EXPECT_EQ(diagnostics.inside, 0u);
 }
 
 class XpbdContacts : public Gpu {};
@@ -78,8 +50,8 @@ TEST_F(XpbdContacts, PartEveryPairAtEveryStep) {
   for (const double steps_per_s : {500.0, 1200.0})
     for (const auto& [name, collider] : kinds) {
       if (!collider.moves() && steps_per_s > 500) continue;
-      expect_all_separated(make("xpbd", {{"substeps", 1}}), falling_in_steps(collider, steps_per_s),
-                           name + " at " + std::to_string(steps_per_s));
+      SCOPED_TRACE(name + " at " + std::to_string(steps_per_s));
+      expect_all_separated(*make("xpbd", {{"substeps", 1}}), falling_in_steps(collider, steps_per_s));
     }
 }
 
@@ -128,27 +100,13 @@ TEST_F(XpbdContacts, HaveTheSameFrictionOnALargeBox) {
 
 Scene of_every_kind() {
   Scene s = everything(with_pins(sheet(17, 13)));
-  s.cloth.sides = Sides::Double;
-  s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
-  s.needs.add(Feature::DoubleSided);
+  s = two_sided(s);
   s = with_collider(s, half_space({0, -0.2, 0}, {0, 1, 0}, kContactFriction));
   s.motion.clear();
   return moving(s);
 }
 
-TEST_F(XpbdContacts, RepeatBitForBit) {
-  const Scene s = of_every_kind();
-  const auto one = make("xpbd"), two = make("xpbd");
-  one->load(s);
-  two->load(s);
-  EXPECT_EQ(check_stages(s, one->info(), one->plan()), "");
-  const ClothState a = after(*one, s, 12), b = after(*two, s, 12);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  one->reset();
-  const ClothState again = after(*one, s, 12);
-  EXPECT_EQ(a.position, again.position) << "reset restores the colliders and the list of pairs too";
-}
+TEST_F(XpbdContacts, RepeatBitForBit) { expect_repeats(of_every_kind(), 12); }
 
 /// A list that is too short cuts the reach, and what it then has no place for makes the run an error.
 TEST_F(XpbdContacts, DropNoPairInSilence) {
@@ -175,8 +133,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
 TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
   // It lies at the end, with few substeps, and falls at the start.
   Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
-  s.cloth.sides = Sides::Double;
-  s.needs.add(Feature::DoubleSided);
+  s = two_sided(s);
   const auto solver = make("xpbd");
   solver->load(s);
   ClothState ends[2];

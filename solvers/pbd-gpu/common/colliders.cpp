@@ -33,7 +33,7 @@ ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 o
   planes = add_shapes<PlaneShape>(Collider::Shape::Plane, BIND_PLANES, "collider planes", [&](const Collider& c) {
     double offset = 0;
     for (std::size_t k = 0; k < 3; ++k) offset += c.normal[k] * (c.center_m[k] - origin_m_[k]);
-    return PlaneShape{direction(c.normal, offset), number(c.margin_m), number(c.friction), 0, 0};
+    return PlaneShape{direction(c.normal, offset), number(c.margin_m), number(c.friction)};
   });
   if (!as_convex_shapes) add_static_meshes();
   const FeatureSet kinematic_kinds = scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh};
@@ -50,8 +50,7 @@ ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 o
 void ColliderBuffers::add_static_meshes() {
   const auto number = [](double v) { return static_cast<float>(v); };
   spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, BIND_SPHERES, "collider spheres", [&](const Collider& c) {
-    return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction),
-                       0};
+    return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction)};
   });
   boxes = add_shapes<BoxShape>(Collider::Shape::Box, BIND_BOXES, "collider boxes", [&](const Collider& c) {
     return BoxShape{relative(c.center_m, origin_m_, 0),
@@ -59,9 +58,7 @@ void ColliderBuffers::add_static_meshes() {
                     direction(c.axes[1], c.half_extent_m[1]),
                     direction(c.axes[2], c.half_extent_m[2]),
                     number(c.margin_m),
-                    number(c.friction),
-                    0,
-                    0};
+                    number(c.friction)};
   });
   static_meshes = add_meshes("collider mesh", false);
 }
@@ -217,7 +214,7 @@ std::vector<GripVertex> GripBuffer::entries(const FrameMotion& start, const Fram
     for (std::size_t k = 0; k < vertices.size(); ++k)
       all.push_back({relative(start.grip_position_m[k], origin_m_, 0), relative(end.grip_position_m[k], origin_m_, 0),
                      vertices[k] + layer * static_cast<std::uint32_t>(scene_.cloth.vertex_count()), start.grip_held[k],
-                     free_inverse_mass_[k], 0});
+                     free_inverse_mass_[k]});
   return all;
 }
 

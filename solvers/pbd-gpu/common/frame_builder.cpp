@@ -18,21 +18,20 @@ std::vector<float> inverse_masses(const Scene& scene) {
   return w;
 }
 
-std::string breach(const std::vector<BufferNeed>& needs, std::uint64_t largest_B, std::uint64_t memory_B) {
+std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint64_t all_B, std::uint64_t largest_B,
+                        std::uint64_t memory_B) {
   constexpr double kMiB = 1024.0 * 1024;
-  std::uint64_t all = 0;
-  for (const BufferNeed& n : needs) {
-    if (n.bytes > largest_B)
-      return fmt::format("buffer \"{}\" of at least {:.1f} MiB, and its largest has {:.1f} MiB", n.name, n.bytes / kMiB,
-                         largest_B / kMiB);
-    all += n.bytes;
-  }
-  if (all <= memory_B) return "";
-  return fmt::format("buffers of at least {:.1f} MiB, and it has {:.1f} MiB", all / kMiB, memory_B / kMiB);
+  if (bytes > largest_B)
+    return fmt::format("buffer \"{}\" of {:.1f} MiB, and its largest has {:.1f} MiB", name, bytes / kMiB,
+                       largest_B / kMiB);
+  if (all_B <= memory_B) return "";
+  return fmt::format("buffers of at least {:.1f} MiB, and it has {:.1f} MiB", all_B / kMiB, memory_B / kMiB);
 }
 
-void FrameBuilder::require_room(const std::vector<BufferNeed>& needs) const {
-  const std::string why = breach(needs, device_->limits().maxStorageBufferRange, device_->memory_B());
+void FrameBuilder::require_room(const std::string& name, std::uint64_t bytes) const {
+  std::uint64_t all = bytes;
+  for (const BufferPlan& b : plan_.buffers) all += b.device_local ? b.bytes : 0;
+  const std::string why = why_no_room(name, bytes, all, device_->limits().maxStorageBufferRange, device_->memory_B());
   if (why.empty()) return;
   const Cloth& c = scene_->cloth;
   throw Error(fmt::format("{}: {}: {} vertices{} do not fit {}: they need {}", scene_->source,
@@ -42,23 +41,16 @@ void FrameBuilder::require_room(const std::vector<BufferNeed>& needs) const {
 }
 
 FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : given_settings_(settings), settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+    : settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
 
 void FrameBuilder::begin(const Scene& scene) {
   scene_ = &scene;
-  settings_ = given_settings_;
   for (auto* program : {&frame_, &upload_, &download_}) *program = std::make_unique<vulkan::Program>(device_);
-}
-
-void FrameBuilder::override_setting(const char* name, const nlohmann::json& value, const std::string& why) {
-  if (settings_.at(name) == value) return;
-  settings_[name] = value;
-  disable(std::string("setting ") + name, why);
 }
 
 const Buffer& FrameBuilder::add_buffer(int binding, const std::string& name, std::uint64_t bytes, const void* initial,
                                        std::size_t initial_bytes) {
-  require_room({{name, bytes}});
+  require_room(name, bytes);
   buffers_.push_back(std::make_unique<Buffer>(device_, name, bytes, Buffer::Place::Device));
   const Buffer& buffer = *buffers_.back();
   if (binding != kUnbound) bound_[static_cast<std::uint32_t>(binding)] = &buffer;

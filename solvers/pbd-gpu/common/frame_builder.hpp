@@ -38,14 +38,10 @@ struct FrameKernel {
   vulkan::Kernel kernel;
 };
 
-/// A buffer that a scene needs at least.
-struct BufferNeed {
-  std::string name;
-  std::uint64_t bytes;
-};
-/// Why buffers do not fit a device: one is larger than the largest that it binds, or all together are larger than its
-/// memory. Empty if they fit.
-std::string breach(const std::vector<BufferNeed>&, std::uint64_t largest_B, std::uint64_t memory_B);
+/// Why a buffer does not fit a device: it is larger than the largest that the device binds, or all of them together are
+/// larger than its memory. Empty if it fits.
+std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint64_t all_B, std::uint64_t largest_B,
+                        std::uint64_t memory_B);
 
 /// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
 /// with its plan and its traffic.
@@ -58,17 +54,11 @@ class FrameBuilder {
   const Scene& scene() const { return *scene_; }
   const nlohmann::json& settings() const { return settings_; }
   const nlohmann::json& tuning() const { return settings_[kTuning]; }
-  /// Replaces, for this scene only, a setting that the scene cannot be run with.
-  void override_setting(const char* name, const nlohmann::json& value, const std::string& why);
   const std::shared_ptr<vulkan::Device>& device() const { return device_; }
-  bool counts_bytes() const { return count_bytes_; }
-
-  /// Throws Error naming the scene, what is needed and what the device has, unless the buffers fit it.
-  void require_room(const std::vector<BufferNeed>&) const;
 
   static constexpr int kUnbound = -1;
   /// A device buffer that `reset` fills with `initial` and zeros after it. Kernels refer to it by its number (BIND_...,
-  /// gpu_types.h).
+  /// gpu_types.h). Throws Error naming the scene, what is needed and what the device has, if it does not fit.
   const vulkan::Buffer& add_buffer(int binding, const std::string& name, std::uint64_t bytes,
                                    const void* initial = nullptr, std::size_t initial_bytes = 0);
   template <class T>
@@ -109,9 +99,9 @@ class FrameBuilder {
  protected:
   void begin(const Scene&);
   void count(int stage, Traffic);
+  void require_room(const std::string& name, std::uint64_t bytes) const;
 
-  const nlohmann::json given_settings_;
-  nlohmann::json settings_;  ///< the same, with the overrides for this scene
+  const nlohmann::json settings_;
   const bool count_bytes_;
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;

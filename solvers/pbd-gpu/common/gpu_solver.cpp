@@ -220,24 +220,15 @@ FrameCost GpuSolver::last_cost() const {
   return cost;
 }
 
-template <class T>
-std::vector<T> GpuSolver::fetched(const vulkan::Buffer& buffer) const {
-  vulkan::Buffer host(device_, "fetched", buffer.bytes(), vulkan::Buffer::Place::Host);
-  vulkan::Program fetch(device_);
-  fetch.copy(0, buffer, host);
-  fetch.record(false);
-  run(fetch);
-  std::vector<T> all(host.bytes() / sizeof(T));
-  std::memcpy(all.data(), host.mapped(), host.bytes());
-  return all;
-}
-
-std::vector<float> GpuSolver::device_positions() const { return fetched<float>(*position_); }
-
 std::vector<Traffic> GpuSolver::counted() {
   std::vector<Traffic> all;
   for (const vulkan::Buffer* counter : counters_) {
-    const auto bytes = fetched<std::uint32_t>(*counter);
+    vulkan::Buffer host(device_, "counted", counter->bytes(), vulkan::Buffer::Place::Host);
+    vulkan::Program fetch(device_);
+    fetch.copy(0, *counter, host);
+    fetch.record(false);
+    run(fetch);
+    const auto* bytes = static_cast<const std::uint32_t*>(host.mapped());
     all.push_back({static_cast<double>(bytes[0]), static_cast<double>(bytes[1])});
   }
   return all;

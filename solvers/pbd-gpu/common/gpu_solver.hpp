@@ -30,14 +30,10 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   /// Bytes that the instrumented kernels of each stage counted since the last call; needs `count_bytes`.
   std::vector<Traffic> counted();
-  /// Positions on the device, of every copy or layer of the cloth, relative to the method's origin; for tests.
-  std::vector<float> device_positions() const;
   /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
   /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
-  /// What contact by separating planes could not do since loading; all 0 where a method has none.
-  virtual ContactDiagnostics contact_diagnostics() const { return {}; }
   /// The programs of set-up, a frame and reading back, for the test of the barriers.
   const vulkan::Program& upload_program() const { return *upload_; }
   const vulkan::Program& frame_program() const { return *frame_; }
@@ -72,9 +68,6 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   void record(double dt_s, double last_dt_s);
   void prepare(double dt_s);
   StepStatus run(vulkan::Program& program) const;
-  /// Contents of a buffer on the device, after everything submitted so far.
-  template <class T>
-  std::vector<T> fetched(const vulkan::Buffer&) const;
   StepStatus unless_timed_out(StepStatus status) const;
   /// Counts messages of the validation layer for this solver until another solver uses the device.
   void take_messages() const { device_->count_messages_in(messages_); }

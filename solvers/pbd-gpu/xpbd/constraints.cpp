@@ -20,6 +20,8 @@ constexpr double kFlat = 1e-6;  // of the longest side
 std::string why_no_tethers(const Scene& scene, bool wanted) {
   if (!wanted) return "setting tethers=false";
   if (!scene.grips.vertices.empty()) return "hands move what holds the cloth";
+  // Slack is computed from the weight of an even sheet.
+  if (!scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m) return "masses are scaled";
   return scene.pins.vertices.empty() ? "nothing is pinned" : "";
 }
 
@@ -258,8 +260,6 @@ TetherTable tether_table(const Scene& scene, bool wanted) {
   TetherTable t;
   t.reason = why_no_tethers(scene, wanted);
   if (t.reason.empty() && !scene.material.regions.empty()) t.reason = "its stiffness is not the same everywhere";
-  if (t.reason.empty() && !scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m)
-    t.reason = "masses are scaled";
   if (!t.reason.empty()) return t;
   const Adjacency edges = adjacency_of(scene);
   std::vector<std::vector<std::uint32_t>> groups = connected_pins(scene, [&](std::uint32_t v, const auto& visit) {

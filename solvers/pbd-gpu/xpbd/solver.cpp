@@ -23,10 +23,6 @@ class Xpbd final : public GpuSolver {
  public:
   using GpuSolver::GpuSolver;
 
-  ContactDiagnostics contact_diagnostics() const override {
-    return contact_ ? contact_->diagnostics() : ContactDiagnostics{};
-  }
-
   std::vector<SolverCount> counts() const override {
     if (!contact_) return {};
     const ContactDiagnostics f = contact_->diagnostics();
@@ -48,18 +44,12 @@ class Xpbd final : public GpuSolver {
   void build() override {
     if (device_->shuffled_lanes() == 0)
       throw Error("solver xpbd: this device has no subgroup shuffles in compute shaders (optional in Vulkan 1.1)");
-    // The slack of tethers is computed from the weight of an even sheet.
-    if (!scene().cloth.mass_factors.empty() && scene().material.membrane_stiffness_N_per_m)
-      override_setting("tethers", false, "masses are scaled");
     if (needs_chain_solver(scene())) restrict_to_chains();
     const FeatureDecision membrane = membrane_decision(scene(), settings());
-    if (scene().cloth.mesh) require_room(mesh_needs(scene(), membrane.enabled));
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
     const bool chained = needs_chain_solver(scene());
     const bool touches = !is_contact_free(scene());
-    if (touches && settings()["batch"] != 1)
-      throw Error("solver xpbd: setting batch: expected a scene in which the cloth touches nothing");
     if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
       disable(std::to_string(wanted) + " substeps",
               "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
@@ -81,14 +71,6 @@ class Xpbd final : public GpuSolver {
       const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
       position.push_back({at(0), at(1), at(2), w[i]});
       velocity.push_back({speed(0), speed(1), speed(2), 0});
-    }
-    const auto batch = settings()["batch"].get<std::size_t>();
-    const std::size_t one = position.size();
-    position.reserve(batch * one);
-    velocity.reserve(batch * one);
-    for (std::size_t i = one; i < batch * one; ++i) {
-      position.push_back(position[i - one]);
-      velocity.push_back(velocity[i - one]);
     }
     const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
     const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
@@ -125,16 +107,6 @@ class Xpbd final : public GpuSolver {
     recorded_substeps_ = controller_.substeps();
     if (adapts) set_reads_back();
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
-    const FeatureSet of_contact =
-        scene().needs & (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided});
-    if ((scene().needs & kColliderFeatures).empty()) {
-      disable("contact", "the scene has no collider");
-    } else if (!touches) {
-      add_stage("ContactSubstep", of_contact);
-      disable("contact", "no collider is where the cloth can get in the scene's time");
-    }
-    if (!scene().needs.has(Feature::SelfCollision))
-      disable("self-contact", "the cloth of the scene does not touch itself");
   }
 
   /// What BDF2 goes on from: the state before the last substep.
@@ -149,13 +121,12 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
   }
 
-  /// Rejects what chains do not support: batches, and bending of anything but meshes whose edges all are links.
+  /// Rejects what chains do not support: bending of anything but meshes whose edges all are links.
   void restrict_to_chains() const {
     if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(
           "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
           "neither; expected bending_rigidity_N_m 0");
-    if (settings()["batch"] != 1) throw Error("solver xpbd: setting batch: expected an even grid");
   }
 
   /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
@@ -232,7 +203,7 @@ class Xpbd final : public GpuSolver {
       record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
       if (contact_)
         contact_->record_after(s, substeps, dt_s, [&] {
-          if (second_solve_) chains_->record_second_solve(step);
+          if (second_solve_) chains_->record(1, step, true);
         });
       if (contact_ && chains_) chains_->record_welds();
     }
@@ -277,15 +248,13 @@ SolverInfo xpbd_info() {
                    Feature::Plane,    Feature::Capsules,    Feature::StaticMesh,   Feature::MovingMesh,
                    Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
                    Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
-  info.settings = {
-      {"quality", "\"default\"",
-       "fast, default or accurate: selects the number of substeps, by resolution and attachments"},
-      {"substeps", "0", "substeps per frame; 0: by quality"},
-      {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
-      {"batch", "1", "number of copies of the cloth in one dispatch, to measure throughput; metrics are of the first"},
-      {"tethers", "true",
-       "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
-      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+  info.settings = {{"quality", "\"default\"",
+                    "fast, default or accurate: selects the number of substeps, by resolution and attachments"},
+                   {"substeps", "0", "substeps per frame; 0: by quality"},
+                   {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
+                   {"tethers", "true",
+                    "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
+                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
   info.tuning = {
       {"contact_frame", "\"auto\"",
        "with contact, a frame in one dispatch in one dispatch: auto (on GPUs), always, never"},
@@ -320,7 +289,6 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_between("xpbd", settings, "substeps", 0, 4096);
   require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
   require_between("xpbd", settings, "time_order", 1, 2);
-  require_between("xpbd", settings, "batch", 1, 262144);
   const nlohmann::json& tuning = settings[kTuning];
   require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
   require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});

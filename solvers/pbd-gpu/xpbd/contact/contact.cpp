@@ -15,24 +15,24 @@ namespace {
 /// vertices' motion bounds is cut.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
 constexpr std::uint64_t kAllPairs = 1u << 18;
+/// The same of the cloth with itself, its active pairs and those with contacts. Heaps list some 200 pairs per triangle,
+/// of which 10 are active.
+constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
+                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
 /// Lanes that share a vertex: the parts of the sum in contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
-/// Responses before and after the constraints.
+/// Responses after the constraints.
 constexpr std::uint32_t kRoundsAfter = 2;
 
 }  // namespace
 
 XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-                         const std::vector<std::uint32_t>& particle, bool again)
-    : frame_(frame),
-      scene_(scene),
-      second_solve_(again),
-      half_spaces_(colliders != nullptr ? colliders->planes.count : 0) {
+                         const std::vector<std::uint32_t>& particle, bool second_solve)
+    : frame_(frame), scene_(scene), with_itself_(scene.needs.has(Feature::SelfCollision)) {
   const ConvexShapes all = convex_shapes(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
   max_margin_m_ = all.max_margin_m;
-  max_points_ = all.max_points;
   shapes_ = static_cast<std::uint32_t>(all.shapes.size());
   groups_ = static_cast<std::uint32_t>(all.boxes.size() - all.shapes.size());
   kinematic_points_ = static_cast<std::uint32_t>(all.sources.size());
@@ -42,16 +42,18 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
     frame_.add_buffer(BIND_SHAPE_AABBS, "contact convex shape boxes", all.boxes);
   }
   if (kinematic_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
+  constants_.PLANES = colliders != nullptr ? colliders->planes.count : 0;
+  constants_.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
+  constants_.MAX_POINTS = all.max_points;
+  constants_.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;
+  constants_.LANES_PER_VERTEX = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMaxLanesPerVertex));
+  constants_.SECOND_SOLVE = second_solve ? 1 : 0;
   add_primitives(particle);
-  lanes_per_vertex_ = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMaxLanesPerVertex));
-  if (scene.needs.has(Feature::SelfCollision)) {
-    max_margin_m_ = std::max(max_margin_m_, 0.5 * scene.cloth.self_collision.thickness_m);
-    self_ = std::make_unique<SelfContactKernels>(frame, scene, particle);
-  }
+  if (with_itself_) add_self_pairs(particle);
   if (kinematic_points_ == 0) return;
   stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves(), true);
-  update_shapes_ = frame_.add_kernel(stage_pairs_, "contact_update_shapes", sizeof(ContactConstants),
-                                     specialization().by_number(), kGroupSize);
+  update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * groups_,
+                         {48.0 * kinematic_points_, 32.0 * kinematic_points_ + 32.0 * groups_})};
 }
 
 void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
@@ -98,24 +100,40 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
   diagnostics_ = &frame_.add_host_buffer("contact faults", sizeof(ContactDiagnostics), BIND_DIAGNOSTICS);
 }
 
-ContactSpecialization XpbdContact::specialization() const {
-  ContactSpecialization s;
-  s.PLANES = half_spaces_;
-  s.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
-  s.MAX_POINTS = max_points_;
-  s.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;
-  s.LANES_PER_VERTEX = lanes_per_vertex_;
-  s.SECOND_SOLVE = second_solve_ ? 1 : 0;
-  if (self_) self_->specialize(s);
-  return s;
+/// Buffers of the cloth's pairs with itself.
+void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
+  const auto& self = scene_.cloth.self_collision;
+  max_margin_m_ = std::max(max_margin_m_, 0.5 * self.thickness_m);
+  auto all = triangles(scene_.cloth);
+  for (auto& t : all)
+    for (auto& v : t) v = particle.empty() ? v : particle[v];
+  // A short list that tests ask for is one of active pairs too.
+  const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
+  ContactSpecialization& c = constants_;
+  c.SELF = 1;
+  c.SELF_CAPACITY = wanted != 0 ? wanted : std::min(kPairsPerTriangle * triangles_, kMaxSelfPairs);
+  c.ACTIVE_CAPACITY = wanted != 0 ? wanted : std::min(kActivePerTriangle * triangles_, kMaxActive);
+  c.CONTACT_CAPACITY = std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * triangles_, kMinContactPairs));
+  c.THICKNESS_BITS = std::bit_cast<uint>(static_cast<float>(self.thickness_m));
+  c.SELF_FRICTION_BITS = std::bit_cast<uint>(static_cast<float>(self.friction));
+  const std::uint32_t groups = (triangles_ + SHAPES_PER_GROUP - 1) / SHAPES_PER_GROUP;
+  const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
+  frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
+  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (triangles_ + groups) * sizeof(SelfAabb));
+  self_ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", triangles_ * sizeof(uvec4));
+  frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
+  frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact ways", triangles_ * sizeof(vec4));
+  frame_.add_buffer(BIND_SELF_ACTIVE, "self-contact active pairs", active * sizeof(SelfActivePair));
+  frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts", touching * SELF_CONTACTS * sizeof(SelfContact));
+  frame_.add_buffer(BIND_SELF_CORRECTIONS, "self-contact pushes", touching * 3 * sizeof(SelfCorrection));
 }
 
 FusedFrameSpecialization XpbdContact::frame_specialization() const {
   FusedFrameSpecialization s;
-  s.PLANES = half_spaces_;
-  s.MAX_POINTS = max_points_;
-  s.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;
-  s.LANES_PER_VERTEX = lanes_per_vertex_;
+  s.PLANES = constants_.PLANES;
+  s.MAX_POINTS = constants_.MAX_POINTS;
+  s.HAS_KINEMATIC = constants_.HAS_KINEMATIC;
+  s.LANES_PER_VERTEX = constants_.LANES_PER_VERTEX;
   s.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
   s.TRIANGLES = triangles_;
   s.CAPACITY = capacity_;
@@ -130,32 +148,72 @@ FeatureSet XpbdContact::serves() const {
          (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
-const FrameKernel* XpbdContact::add(int stage, const char* name, std::uint32_t threads) {
-  return frame_.add_kernel(stage, name, sizeof(ContactConstants), specialization().by_number(), threads);
+XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, Traffic traffic,
+                                    std::uint32_t threads, const ContactSpecialization* constants,
+                                    const vulkan::Buffers& own) {
+  const std::vector<std::uint32_t> values = (constants != nullptr ? *constants : constants_).by_number();
+  return {frame_.add_kernel(stage, name, sizeof(ContactConstants), values, threads, own),
+          vulkan::groups_for(items, threads), traffic};
+}
+
+void XpbdContact::add_broad_phase() {
+  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves(), true);
+  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const double t = triangles_;
+  broad_phase_ = {pass(stage_pairs_, "contact_motion_bounds", n, {16.0 * n, 16.0 * n})};
+  ContactSpecialization fill = constants_;
+  fill.FILL = 1;
+  if (with_itself_) {
+    const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
+    const std::uint64_t shared = std::uint64_t{lanes} * triangles_;
+    ContactSpecialization self = fill;
+    self.OF_SELF = 1;
+    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", triangles_, {68 * t, 64 * t}));
+    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, {84 * t, 16 * t}, threads));
+    broad_phase_.push_back(
+        pass(stage_pairs_, "prefix_sum", 1, {16 * t, 16 * t}, kScanThreads, &self, {{BIND_RANGES, self_ranges_}}));
+    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, {100 * t, 0}, threads, &self));
+  }
+  if (shapes_ == 0) return;
+  const std::uint32_t primitives = triangles_ + n, threads = std::min(primitives, kPairThreads);
+  const double bytes = 16.0 * primitives;
+  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, {2 * bytes, bytes}));
+  broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, {bytes, bytes}, kScanThreads));
+  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, {2 * bytes, 0}, kGroupSize, &fill));
 }
 
 void XpbdContact::add_kernels() {
-  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves(), true);
-  const std::uint32_t subgroups = std::max(kGroupSize, frame_.device()->shuffled_lanes());
-  bounds_ = add(stage_pairs_, "contact_motion_bounds");
-  if (self_) self_->add_list_kernels(stage_pairs_, specialization());
-  stage_ = frame_.add_stage("ContactSubstep", serves(), true);
+  add_broad_phase();
+  const int stage = frame_.add_stage("ContactSubstep", serves(), true);
+  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
+  const std::uint32_t at_once = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
+  const std::uint64_t shared = std::uint64_t{constants_.LANES_PER_VERTEX} * n;
+  const double t = triangles_;
+  const auto add = [](std::initializer_list<Phase*> phases, const Pass& one) {
+    for (Phase* p : phases) p->push_back(one);
+  };
+  const Traffic vertices{16.0 * n, 16.0 * n}, read{16.0 * n, 0};  // what no contact moves is read and not written
+  if (kinematic_points_ > 0) add({&before_}, pass(stage, "contact_predict", n, vertices));
+  const Pass clamp = pass(stage, "contact_clamp", n, vertices);
+  add({&first_round_}, clamp);
+  if (constants_.SECOND_SOLVE != 0) add({&later_round_}, clamp);
   if (shapes_ > 0) {
-    count_ = add(stage_pairs_, "contact_broad_phase");
-    scan_ = add(stage_pairs_, "prefix_sum", kScanThreads);
-    ContactSpecialization fill = specialization();
-    fill.FILL = 1;
-    fill_ = frame_.add_kernel(stage_pairs_, "contact_broad_phase", sizeof(ContactConstants), fill.by_number());
-    active_pairs_ = add(stage_, "contact_active_pairs");
-    nearest_points_ = add(stage_, "contact_nearest_points");
-    respond_ = add(stage_, "contact_respond");
-    select_plane_ = add(stage_, "contact_select_plane");
+    add({&before_, &first_round_}, pass(stage, "contact_active_pairs", at_once, {}));
+    add({&before_, &first_round_}, pass(stage, "contact_nearest_points", at_once, {}));
+    add({&later_round_}, pass(stage, "contact_respond", at_once, {}));
+    add({&end_}, pass(stage, "contact_select_plane", at_once, {}));
   }
-  if (self_) self_->add_kernels(stage_, specialization().by_number());
-  if (kinematic_points_ > 0) predict_ = add(stage_, "contact_predict");
-  accumulate_ = add(stage_, "contact_accumulate", subgroups);
-  clamp_ = add(stage_, "contact_clamp");
-  project_ = add(stage_, "contact_project", subgroups);
+  if (with_itself_) {
+    add({&first_round_}, pass(stage, "self_max_displacement", triangles_, {76 * t, 16 * t}));
+    add({&first_round_},
+        pass(stage, "self_active_pairs", std::uint64_t{lanes} * triangles_, {32 * t, 16 * t}, threads));
+    add({&first_round_}, pass(stage, "self_nearest_points", at_once, {}));
+    add({&later_round_}, pass(stage, "self_respond", at_once, {}));
+    add({&end_}, pass(stage, "self_select_plane", at_once, {}));
+  }
+  add({&before_, &first_round_, &later_round_}, pass(stage, "contact_accumulate", shared, read, threads));
+  add({&end_}, pass(stage, "contact_project", shared, read, threads));
 }
 
 ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const {
@@ -182,66 +240,27 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   return c;
 }
 
-void XpbdContact::vertices(const FrameKernel* kernel, const ContactConstants& c) {
-  frame_.dispatch(*kernel, c.vertices, c, {16.0 * c.vertices, 16.0 * c.vertices});
+void XpbdContact::run(const Phase& phase, const ContactConstants& c) {
+  for (const Pass& p : phase) frame_.dispatch_groups(*p.kernel, p.groups, c, p.traffic);
 }
 
-void XpbdContact::shared_vertices(const FrameKernel* kernel, const ContactConstants& c) {
-  // What no contact moves is read and not written.
-  frame_.dispatch(*kernel, std::uint64_t{lanes_per_vertex_} * c.vertices, c, {16.0 * c.vertices, 0});
-}
+void XpbdContact::record_shapes(double dt_s, int substeps) { run(update_shapes_, constants(0, substeps, dt_s)); }
 
-void XpbdContact::pairs(const FrameKernel* kernel, const ContactConstants& c) {
-  const std::uint32_t threads = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
-  if (kernel != nullptr) frame_.dispatch(*kernel, threads, c, {});
-}
-
-void XpbdContact::record_shapes(double dt_s, int substeps) {
-  if (update_shapes_ == nullptr) return;
-  frame_.dispatch_groups(*update_shapes_, vulkan::groups_for(groups_, 1), constants(0, substeps, dt_s),
-                         {48.0 * kinematic_points_, 32.0 * kinematic_points_ + 32.0 * groups_});
-}
-
-void XpbdContact::record_list(double dt_s, int substeps) {
-  const ContactConstants c = constants(0, substeps, dt_s);
-  vertices(bounds_, c);
-  if (self_) self_->record_list(c);
-  if (shapes_ == 0) return;
-  const std::uint32_t primitives = c.triangles + c.vertices;
-  frame_.dispatch(*count_, std::min(primitives, kPairThreads), c, {32.0 * primitives, 16.0 * primitives});
-  frame_.dispatch_groups(*scan_, {1, 1}, c, {16.0 * primitives, 16.0 * primitives});
-  frame_.dispatch(*fill_, std::min(primitives, kPairThreads), c, {32.0 * primitives, 0});
-}
+void XpbdContact::record_list(double dt_s, int substeps) { run(broad_phase_, constants(0, substeps, dt_s)); }
 
 void XpbdContact::record_before(int s, int substeps, double dt_s) {
-  if (kinematic_points_ == 0) return;
-  const ContactConstants c = constants(s, substeps, dt_s);
-  vertices(predict_, c);
-  pairs(active_pairs_, c);
-  pairs(nearest_points_, c);
-  shared_vertices(accumulate_, c);
+  if (kinematic_points_ > 0) run(before_, constants(s, substeps, dt_s));
 }
 
 void XpbdContact::record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints) {
   ContactConstants c = constants(s, substeps, dt_s);
   c.response_round = 1;
-  vertices(clamp_, c);
-  pairs(active_pairs_, c);
-  pairs(nearest_points_, c);
-  if (self_) self_->record_query(c);
-  shared_vertices(accumulate_, c);
+  run(first_round_, c);
   for (c.response_round = 2; c.response_round <= kRoundsAfter; ++c.response_round) {
-    if (second_solve_) {
-      constraints();
-      vertices(clamp_, c);
-    }
-    pairs(respond_, c);
-    if (self_) self_->record_response(c);
-    shared_vertices(accumulate_, c);
+    constraints();
+    run(later_round_, c);
   }
-  pairs(select_plane_, c);
-  if (self_) self_->record_planes(c);
-  shared_vertices(project_, c);
+  run(end_, c);
 }
 
 ContactDiagnostics XpbdContact::diagnostics() const {
@@ -258,90 +277,5 @@ double XpbdContact::read_max_displacement_m(bool is_single_dispatch) {
 }
 
 void XpbdContact::clear_diagnostics() { std::memset(diagnostics_->mapped(), 0, sizeof(ContactDiagnostics)); }
-
-namespace {
-
-/// Pairs, active pairs and those with contacts that the lists have place for. Heaps list some 200 pairs per triangle,
-/// of which 10 are active. Where the list does not suffice, the vertices' motion bounds is cut.
-constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
-                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
-constexpr std::uint32_t kActiveThreads = 1u << 14, kSoftwareActiveThreads = 1u << 9, kSelfScanThreads = 256;
-
-}  // namespace
-
-SelfContactKernels::SelfContactKernels(FrameBuilder& frame, const Scene& scene,
-                                       const std::vector<std::uint32_t>& particle)
-    : frame_(frame) {
-  auto all = triangles(scene.cloth);
-  for (auto& t : all)
-    for (auto& v : t) v = particle.empty() ? v : particle[v];
-  triangles_ = static_cast<std::uint32_t>(all.size());
-  // A short list that tests ask for is one of active pairs too.
-  const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
-  capacity_ = wanted != 0 ? wanted : std::min(kPairsPerTriangle * triangles_, kMaxSelfPairs);
-  active_capacity_ = wanted != 0 ? wanted : std::min(kActivePerTriangle * triangles_, kMaxActive);
-  contact_capacity_ = std::min(active_capacity_, std::max(kContactPairsPerTriangle * triangles_, kMinContactPairs));
-  thickness_bits_ = std::bit_cast<std::uint32_t>(static_cast<float>(scene.cloth.self_collision.thickness_m));
-  friction_bits_ = std::bit_cast<std::uint32_t>(static_cast<float>(scene.cloth.self_collision.friction));
-  const std::uint32_t groups = (triangles_ + SHAPES_PER_GROUP - 1) / SHAPES_PER_GROUP;
-  frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene), all).triangles);
-  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (triangles_ + groups) * sizeof(SelfAabb));
-  ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", triangles_ * sizeof(uvec4));
-  frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{capacity_} * sizeof(SelfPair));
-  frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact ways", triangles_ * sizeof(vec4));
-  frame_.add_buffer(BIND_SELF_ACTIVE, "self-contact active pairs",
-                    std::uint64_t{active_capacity_} * sizeof(SelfActivePair));
-  frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts",
-                    std::uint64_t{contact_capacity_} * SELF_CONTACTS * sizeof(SelfContact));
-  frame_.add_buffer(BIND_SELF_CORRECTIONS, "self-contact pushes",
-                    std::uint64_t{contact_capacity_} * 3 * sizeof(SelfCorrection));
-}
-
-const FrameKernel* SelfContactKernels::add(int stage, const char* name, const std::vector<std::uint32_t>& constants,
-                                           std::uint32_t threads) {
-  return frame_.add_kernel(stage, name, static_cast<std::uint32_t>(sizeof(ContactConstants)), constants, threads);
-}
-
-void SelfContactKernels::add_list_kernels(int stage, ContactSpecialization s) {
-  lanes_per_triangle_ = frame_.device()->shuffled_lanes();
-  const std::uint32_t subgroups = std::max(kGroupSize, lanes_per_triangle_);
-  boxes_ = add(stage, "self_aabbs", s.by_number());
-  count_ = add(stage, "self_broad_phase", s.by_number(), subgroups);
-  s.OF_SELF = s.FILL = 1;
-  scan_ = frame_.add_kernel(stage, "prefix_sum", sizeof(ContactConstants), s.by_number(), kSelfScanThreads,
-                            {{BIND_RANGES, ranges_}});
-  fill_ = add(stage, "self_broad_phase", s.by_number(), subgroups);
-}
-
-void SelfContactKernels::add_kernels(int stage, const std::vector<std::uint32_t>& constants) {
-  displacement_kernel_ = add(stage, "self_max_displacement", constants);
-  active_pairs_ = add(stage, "self_active_pairs", constants, std::max(kGroupSize, lanes_per_triangle_));
-  nearest_points_ = add(stage, "self_nearest_points", constants);
-  respond_ = add(stage, "self_respond", constants);
-  select_plane_ = add(stage, "self_select_plane", constants);
-}
-
-void SelfContactKernels::active_pairs(const FrameKernel* kernel, const ContactConstants& c) {
-  frame_.dispatch(*kernel, frame_.device()->is_software() ? kSoftwareActiveThreads : kActiveThreads, c, {});
-}
-
-void SelfContactKernels::record_list(const ContactConstants& c) {
-  const double t = triangles_;
-  frame_.dispatch(*boxes_, triangles_, c, {68 * t, 64 * t});
-  frame_.dispatch(*count_, std::uint64_t{lanes_per_triangle_} * triangles_, c, {84 * t, 16 * t});
-  frame_.dispatch_groups(*scan_, {1, 1}, c, {16 * t, 16 * t});
-  frame_.dispatch(*fill_, std::uint64_t{lanes_per_triangle_} * triangles_, c, {100 * t, 0});
-}
-
-void SelfContactKernels::record_query(const ContactConstants& c) {
-  const double t = triangles_;
-  frame_.dispatch(*displacement_kernel_, triangles_, c, {76 * t, 16 * t});
-  frame_.dispatch(*active_pairs_, std::uint64_t{lanes_per_triangle_} * triangles_, c, {32 * t, 16 * t});
-  active_pairs(nearest_points_, c);
-}
-
-void SelfContactKernels::record_response(const ContactConstants& c) { active_pairs(respond_, c); }
-
-void SelfContactKernels::record_planes(const ContactConstants& c) { active_pairs(select_plane_, c); }
 
 }  // namespace clothbench::pbd_gpu

@@ -1,52 +1,11 @@
 #pragma once
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "common/colliders.hpp"
 #include "xpbd/contact/convex_shapes.hpp"
 
 namespace clothbench::pbd_gpu {
-
-/// The cloth's pairs with itself in contact by separating planes (xpbd/contact/README.md): triangles without a common
-/// vertex. XpbdContact has the phases of vertices, and calls these between them.
-class SelfContactKernels {
- public:
-  /// Adds buffers. `particle`: of each vertex, the vertex that it is welded to; empty: itself.
-  SelfContactKernels(FrameBuilder& frame, const Scene& scene, const std::vector<std::uint32_t>& particle);
-  void add_list_kernels(int stage, ContactSpecialization);
-  void add_kernels(int stage, const std::vector<std::uint32_t>& constants);
-
-  /// Specialization constants of all kernels of contact by separating planes.
-  void specialize(ContactSpecialization& s) const {
-    s.SELF = 1;
-    s.SELF_CAPACITY = capacity_;
-    s.ACTIVE_CAPACITY = active_capacity_;
-    s.CONTACT_CAPACITY = contact_capacity_;
-    s.THICKNESS_BITS = thickness_bits_;
-    s.SELF_FRICTION_BITS = friction_bits_;
-  }
-
-  void record_list(const ContactConstants&);
-  /// Nearest points and a round of responses, before the lines (round 0) and after them (turn 1).
-  void record_query(const ContactConstants&);
-  void record_response(const ContactConstants&);
-  void record_planes(const ContactConstants&);
-
- private:
-  const FrameKernel* add(int stage, const char* name, const std::vector<std::uint32_t>& constants,
-                         std::uint32_t threads = kGroupSize);
-  void active_pairs(const FrameKernel* kernel, const ContactConstants&);
-
-  FrameBuilder& frame_;
-  std::uint32_t triangles_ = 0, capacity_ = 0, active_capacity_ = 0, contact_capacity_ = 0, thickness_bits_ = 0,
-                friction_bits_ = 0;
-  std::uint32_t lanes_per_triangle_ = 1;  ///< threads that share a triangle's list: a subgroup
-  const vulkan::Buffer* ranges_ = nullptr;
-  const FrameKernel *boxes_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *fill_ = nullptr,
-                    *displacement_kernel_ = nullptr, *active_pairs_ = nullptr, *nearest_points_ = nullptr,
-                    *respond_ = nullptr, *select_plane_ = nullptr;
-};
 
 /// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Every pair of a triangle of the cloth and a convex
 /// convex shape of a collider that may meet in a substep has a plane that separates both ends of the straight
@@ -56,12 +15,11 @@ class SelfContactKernels {
 class XpbdContact {
  public:
   /// Adds buffers, and what kinematic convex shapes need. `particle`: of each vertex, the vertex that it is welded to
-  /// (or itself). `colliders`: null if the scene has none. `again`: the constraints are solved once more between the
-  /// responses.
+  /// (or itself). `colliders`: null if the scene has none. `second_solve`: the constraints are solved once more between
+  /// the responses.
   XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-              const std::vector<std::uint32_t>& particle, bool again);
-  /// Adds the stages ContactBroadPhase and XpbdContact with one kernel per pass, for record_list, record_before and
-  /// record_after.
+              const std::vector<std::uint32_t>& particle, bool second_solve);
+  /// Adds one kernel per pass, for record_list, record_before and record_after.
   void add_kernels();
 
   /// Where kinematic convex shapes are in this frame. Call at the start of a frame, after the colliders' record().
@@ -70,12 +28,11 @@ class XpbdContact {
   void record_list(double dt_s, int substeps);
   /// Call in substep s after attached vertices have moved and before the constraints are solved.
   void record_before(int s, int substeps, double dt_s);
-  /// Call at the end of substep s. Calls `constraints` to record them once more between the responses, if they are to
-  /// be solved again.
+  /// Call at the end of substep s. Calls `constraints` between the responses.
   void record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints);
 
   FeatureSet serves() const;
-  bool with_itself() const { return self_ != nullptr; }
+  bool with_itself() const { return with_itself_; }
   /// What the kernel of a frame in one dispatch needs of the scene.
   FusedFrameSpecialization frame_specialization() const;
   ContactConstants constants(int s, int substeps, double dt_s) const;
@@ -89,27 +46,30 @@ class XpbdContact {
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 
  private:
-  const FrameKernel* add(int stage, const char* name, std::uint32_t threads = kGroupSize);
+  /// A kernel, and its dispatch. A phase of a frame is some of them, one after another.
+  struct Pass {
+    const FrameKernel* kernel;
+    vulkan::Groups groups;
+    Traffic traffic;
+  };
+  using Phase = std::vector<Pass>;
+  /// `constants`: null for those of most kernels.
+  Pass pass(int stage, const char* name, std::uint64_t items, Traffic traffic, std::uint32_t threads = kGroupSize,
+            const ContactSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
   void add_primitives(const std::vector<std::uint32_t>& particle);
-  ContactSpecialization specialization() const;
-  void vertices(const FrameKernel* kernel, const ContactConstants& c);
-  void shared_vertices(const FrameKernel* kernel, const ContactConstants& c);
-  void pairs(const FrameKernel* kernel, const ContactConstants& c);
+  void add_self_pairs(const std::vector<std::uint32_t>& particle);
+  void add_broad_phase();
+  void run(const Phase&, const ContactConstants&);
 
   FrameBuilder& frame_;
   const Scene& scene_;
-  const bool second_solve_;
-  const std::uint32_t half_spaces_;
-  std::unique_ptr<SelfContactKernels> self_;  ///< if the cloth touches itself
-  std::uint32_t lanes_per_vertex_ = 1;        ///< lanes that share a vertex
-  std::uint32_t triangles_ = 0, shapes_ = 0, groups_ = 0, kinematic_points_ = 0, capacity_ = 0, max_points_ = 1;
+  const bool with_itself_;
+  ContactSpecialization constants_;  ///< of most kernels
+  std::uint32_t triangles_ = 0, shapes_ = 0, groups_ = 0, kinematic_points_ = 0, capacity_ = 0;
   double max_margin_m_ = 0;
-  int stage_pairs_ = -1, stage_ = -1;
-  const vulkan::Buffer* diagnostics_ = nullptr;
-  const FrameKernel *update_shapes_ = nullptr, *bounds_ = nullptr, *count_ = nullptr, *scan_ = nullptr,
-                    *fill_ = nullptr, *predict_ = nullptr, *active_pairs_ = nullptr, *nearest_points_ = nullptr,
-                    *accumulate_ = nullptr, *clamp_ = nullptr, *respond_ = nullptr, *select_plane_ = nullptr,
-                    *project_ = nullptr;
+  int stage_pairs_ = -1;
+  const vulkan::Buffer *diagnostics_ = nullptr, *self_ranges_ = nullptr;
+  Phase update_shapes_, broad_phase_, before_, first_round_, later_round_, end_;
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -62,7 +62,6 @@ struct ContactFrameState {
                               // at its end; until its list is made, the last one; 0: there was none
   uint counted[PAIR_LEVELS];  // pairs at each fraction of the motion bounds
   float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with
-  uint unused0[3];
 };
 
 #define BROAD_PHASE_DONE 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0
@@ -107,9 +106,7 @@ struct ContactDiagnostics {
   uint infeasible_vertices;  // vertices that were not before all their planes at a substep's end
   uint inside;               // pairs that touch at a substep's start
   uint overflow;             // pairs that the list had no place for
-  uint returned;             // no fault: vertices that went back to a feasible position, for no nearer one was found
   uint max_displacement;     // maximum displacement of a vertex in the last frame [m], the bits of a float
-  uint unused0[3];
 };
 
 /// Push constants of the kernels of contact.
@@ -126,22 +123,5 @@ struct ContactConstants {
   float frame_s;
   float bound_m;   // of a vertex at rest
   float margin_m;  // maximum margin of any collider
-  uint unused0;
 };
 #define SHAPES_PER_GROUP 16u
-
-#ifdef __cplusplus
-static_assert(sizeof(ConvexShape) == 32);
-static_assert(sizeof(ShapePoint) == 32);
-static_assert(sizeof(ShapeAabb) == 32);
-static_assert(sizeof(PointSource) == 16);
-static_assert(sizeof(PairState) == 64);
-static_assert(sizeof(ContactFrameState) == 112);
-static_assert(sizeof(SelfAabb) == 64);
-static_assert(sizeof(SelfPair) == 8);
-static_assert(sizeof(SelfActivePair) == 48);
-static_assert(sizeof(SelfContact) == 48);
-static_assert(sizeof(SelfCorrection) == 32);
-static_assert(sizeof(ContactDiagnostics) == 32);
-static_assert(sizeof(ContactConstants) == 80);
-#endif

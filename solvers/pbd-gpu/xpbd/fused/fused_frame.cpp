@@ -53,7 +53,6 @@ bool FusedFrame::add_kernels() {
     lines.EXACT = 0;
   }
   const std::vector<std::uint32_t> constants = both(lines, contact_.frame_specialization());
-  lines_.add_regularisation();
   if (!runs_at_once<LineConstants>(frame_, "fused_frame", constants, shape.threads, groups_)) return false;
   add_grid_barrier(frame_);
   const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kOfLines) | contact_.serves(), true);

@@ -19,30 +19,27 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tensi
       scene_(scene),
       tethers_(tethers_of(scene, frame.settings()["tethers"].get<bool>())),
       over_constrained_(over_constrained_lines(scene)),
-      batch_(frame.settings()["batch"].get<std::uint32_t>()),
       uses_bdf2_(uses_bdf2),
       tension_(tension),
       corrects_splitting_(corrects_splitting),
       regularised_(
           std::any_of(over_constrained_.begin(), over_constrained_.end(), [](std::uint8_t t) { return t != 0; })) {
   if (tethers_.to.empty()) frame_.disable("tethers", tethers_.reason);
-  if (!scene.needs.has(Feature::Damping)) frame_.disable("damping", "the scene has none");
-  if (!scene.needs.has(Feature::Shear)) frame_.disable("diagonals", "the scene has no shear stiffness");
-  if (!scene.needs.has(Feature::Bend)) frame_.disable("bending", "the scene has no bending");
   const std::size_t n = scene.cloth.vertex_count();
+  if (regularised_) {
+    std::vector<float> smallest;
+    for (const std::uint8_t over_constrained : over_constrained_)
+      smallest.push_back(over_constrained != 0 ? static_cast<float>(kRegularisation) : 0.0f);
+    frame_.add_buffer(BIND_REGULARISATION, "regularisation", smallest);
+  }
   if (!corrects_splitting_) return;
-  frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", batch_ * n * sizeof(vec4));
-  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", batch_ * passes() * n * sizeof(float));
+  frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", n * sizeof(vec4));
+  frame_.add_buffer(BIND_LINK_CREEP, "creep of links", passes() * n * sizeof(float));
 }
 
 void Lines::add_kernels(bool any_masses) {
   const LineShape whole = single_dispatch_shape();
   const bool in_one = whole.threads > 0 && !any_masses && scene_.cloth.mass_factors.empty();
-  if (batch_ > 1 && !(in_one && scene_.grips.vertices.empty() && scene_.colliders.empty()))
-    throw Error(
-        "solver xpbd: setting batch: expected cloths that each fit one workgroup (32 x 32 vertices of even masses) in "
-        "a "
-        "scene without hands and colliders");
   if (in_one)
     add_single_dispatch(whole);
   else if (!scene_.cloth.mass_factors.empty() || !add_persistent())
@@ -69,7 +66,6 @@ LineDevice Lines::device() const {
 std::uint32_t Lines::features() const {
   const FeatureSet needs = scene_.needs;
   std::uint32_t f = 0;
-  if (needs.has(Feature::Damping)) f |= LINES_DAMPING;
   if (needs.has(Feature::Bend)) f |= LINES_BEND;
   if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
@@ -127,15 +123,6 @@ void Lines::add_single_dispatch(const LineShape& shape) {
                                        sizeof(LineConstants), s.by_number(), shape.threads);
 }
 
-void Lines::add_regularisation() {
-  if (!regularised_ || added_regularisation_) return;
-  added_regularisation_ = true;
-  std::vector<float> smallest;
-  for (const std::uint8_t over_constrained : over_constrained_)
-    smallest.push_back(over_constrained != 0 ? static_cast<float>(kRegularisation) : 0.0f);
-  frame_.add_buffer(BIND_REGULARISATION, "regularisation", smallest);
-}
-
 vulkan::Groups Lines::groups_of(const LineShape& shape) const {
   const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
   return vulkan::groups_for(chains, shape.chains_a_group());
@@ -167,7 +154,6 @@ bool Lines::add_persistent() {
   s.PERSISTENT = 1;
   const std::string name = "line_pass";
   if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
-  add_regularisation();
   const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
   const int stage = frame_.add_stage("Lines", scene_.needs & serves);
   add_grid_barrier(frame_);
@@ -179,7 +165,6 @@ void Lines::add_passes() {
   const FeatureSet needs = scene_.needs;
   shape_[0] = pass_shape(scene_.cloth.columns, request(), device());
   shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, request(), device());
-  add_regularisation();
   const char* const names[] = {"Rows", "Columns", "Diagonals"};
   const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
                                {Feature::Stretch, Feature::Bend},
@@ -264,14 +249,13 @@ void Lines::record(int first, int count, int substeps, double dt_s, const TimeSt
   c.passes = c.substeps * passes();
   const auto n = static_cast<double>(scene_.cloth.vertex_count());
   const double a_vertex_B = (uses_bdf2_ ? 96 : 64) + (corrects_splitting_ ? 16 : 0);
-  Traffic t =
-      persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n * batch_, a_vertex_B * n * batch_};
+  Traffic t = persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n, a_vertex_B * n};
   if (single_dispatch_ != nullptr)
     t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
   for (std::uint32_t k = 0; k < passes(); ++k)
-    t = t + (single_dispatch_ != nullptr ? creep_traffic(colour_of(k)) * batch_ : pass_traffic(k)) * count;
+    t = t + (single_dispatch_ != nullptr ? creep_traffic(colour_of(k)) : pass_traffic(k)) * count;
   if (single_dispatch_ != nullptr)
-    frame_.dispatch_groups(*single_dispatch_, vulkan::groups_for(batch_, 1), c, t);
+    frame_.dispatch_groups(*single_dispatch_, {1, 1}, c, t);
   else
     frame_.dispatch_groups(*persistent_, all_groups(), c, t);
 }

@@ -26,8 +26,7 @@ uvec2 vertex(uint i) {
   return uvec2((colour == 2u ? chain + i : chain + COLUMNS - i % COLUMNS) % COLUMNS, i);
 }
 
-uint first_vertex = 0u;  // of this cloth, where a dispatch has several
-uint index_of(uvec2 v) { return first_vertex + v.y * COLUMNS + v.x; }
+uint index_of(uvec2 v) { return v.y * COLUMNS + v.x; }
 
 /// Is there a link from vertex i to vertex i + 1?
 bool goes_on(uint i) {

@@ -28,7 +28,6 @@ class Lines {
   LineSpecialization single_dispatch_specialization(const LineShape&) const;
   vulkan::Groups groups_of(const LineShape&) const;
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
-  void add_regularisation();        ///< of kernels that have lines in memory
   Traffic substep_traffic() const;  ///< of all passes
   std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
 
@@ -61,9 +60,7 @@ class Lines {
   const Scene& scene_;
   const Tethers tethers_;
   const std::vector<std::uint8_t> over_constrained_;
-  const std::uint32_t batch_;
-  const bool uses_bdf2_, tension_, corrects_splitting_;
-  bool added_regularisation_ = false, regularised_ = false;
+  const bool uses_bdf2_, tension_, corrects_splitting_, regularised_;
   const FrameKernel *single_dispatch_ = nullptr, *persistent_ = nullptr;
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
   std::array<LineShape, 3> shape_{};

@@ -1,5 +1,5 @@
 #version 450
-// Cloths of at most 32 x 32 vertices: one workgroup takes each through `substeps` substeps, its state in shared memory.
+// A cloth of at most 32 x 32 vertices: one workgroup takes it through `substeps` substeps, its state in shared memory.
 #define SUBGROUPS
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -146,8 +146,6 @@ void move_held(uint substep) {
 }
 
 void main() {
-  first_vertex = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * COLUMNS * ROWS;
-  if (first_vertex >= x.length()) return;  // the last row of workgroups may be longer than it need be
   set_thread();
   lane = thread % LANES;
   chain = thread / LANES;

@@ -24,7 +24,7 @@ float along_diagonal(uint k) {
   return colour >= 2u ? kShiftFraction * dot(part, shift[k].xy) : 0.0;
 }
 
-uint creep_index(uint k) { return colour * COLUMNS * ROWS + 3u * first_vertex + index_of(vertex(lane * K + k)); }
+uint creep_index(uint k) { return colour * COLUMNS * ROWS + index_of(vertex(lane * K + k)); }
 
 void load_creep() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {

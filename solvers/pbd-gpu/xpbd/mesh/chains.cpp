@@ -37,11 +37,10 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   const TetherTable tethers = tether_table(scene, frame.settings()["tethers"].get<bool>());
   tethers_ = tethers.a_vertex;
   if (tethers_ == 0) frame.disable("tethers", tethers.reason);
-  if (!needs.has(Feature::Damping)) frame.disable("damping", "the scene has none");
   add_colours(cloth);
   add_bending();
   add_membrane();
-  if (bends_ || membrane_)
+  if (solves_together())
     frame.add_buffer(BIND_BENDING_STEPS, "bending steps",
                      (membrane_ ? 4 : 3) * scene.cloth.vertex_count() * sizeof(vec4));
   frame.add_buffer(BIND_CHAIN_ENTRIES, "chain entries", entries_);
@@ -89,7 +88,6 @@ ChainSpecialization Chains::specialization() const {
   ChainSpecialization s;
   s.THREADS = block_;
   s.TETHERS = tethers_;
-  if (scene_.needs.has(Feature::Damping)) s.FEATURES |= LINES_DAMPING;
   if (scene_.needs.has(Feature::Shear) || scene_.needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
   if (limits_speed(scene_, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
   if (bends_) s.FEATURES |= LINES_BEND;
@@ -100,10 +98,7 @@ ChainSpecialization Chains::specialization() const {
 
 void Chains::add_bending() {
   bends_ = scene_.needs.has(Feature::Bend);
-  if (!bends_) {
-    frame_.disable("bending", "the scene has no bending");
-    return;
-  }
+  if (!bends_) return;
   const BendingMatrix K = bending_matrix(scene_);
   max_per_s2_ = K.max_per_s2;
   const SlicedRows<BendingEntry> table = bending_table(K);
@@ -149,77 +144,52 @@ Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iteration
   return {read, last ? 32 * n : 16 * n + found + (iteration == 1 ? 16 * n : 0)};
 }
 
-std::vector<Traffic> Chains::passes(std::uint32_t bending_iterations) const {
+std::vector<Traffic> Chains::passes(const ChainConstants& c) const {
   std::vector<Traffic> all;
-  if (bends_ || membrane_) all.push_back(traffic(0, true));
-  for (std::uint32_t k = 1; k <= bending_iterations; ++k) all.push_back(bending_traffic(k, bending_iterations));
-  for (std::size_t f = 0; !membrane_ && f < colours_.size(); ++f)
-    all.push_back(traffic(f, f == 0 && !bends_ && !membrane_));
+  if (solves_together()) all.push_back(traffic(0, true));
+  for (std::uint32_t k = 1; k <= c.bending_iterations; ++k) all.push_back(bending_traffic(k, c.bending_iterations));
+  for (std::size_t f = 0; f < c.colours; ++f) all.push_back(traffic(f, f == 0 && !solves_together() && c.again == 0));
   return all;
 }
 
-void Chains::record(int count, const TimeStep& step) {
+void Chains::record(int count, const TimeStep& step, bool again) {
   auto c = step_constants<ChainConstants>(frame_, step);
   c.per_force_scale = static_cast<float>(1 / step.force_scale);
   c.colours = membrane_ ? 0 : static_cast<std::uint32_t>(colours_.size());
-  if (bends_ || membrane_) {
+  c.again = again ? 1 : 0;
+  if (solves_together()) {
     const double square = step.implicit_h_s * step.implicit_h_s * step.force_scale, largest = square * max_per_s2_;
-    c.bending_iterations = bending_iterations_now_ = bending_iterations(largest);
+    c.bending_iterations = bending_iterations(largest);
     c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
     c.bending_step = static_cast<float>(square);
     c.bending_gain = static_cast<float>(2 / (2 + largest));
     c.bending_spread = static_cast<float>(largest / (2 + largest) * (largest / (2 + largest)) / 4);
   }
-  const std::vector<Traffic> all = passes(c.bending_iterations);
-  const std::size_t first_colour = all.size() - c.colours;
+  const std::vector<Traffic> all = passes(c);
+  const auto first_colour = static_cast<std::uint32_t>(all.size()) - c.colours, first = again ? first_colour : 0,
+             end = static_cast<std::uint32_t>(all.size());
   if (persistent_) {
     const vulkan::Groups groups = all_groups();
     const double ranges = 16.0 * groups.x * groups.y * block_;
     Traffic sum;
-    for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::uint32_t k = first; k < end; ++k)
       sum = sum + (all[k] + Traffic{k == 0 || k >= first_colour ? ranges : 0, 0}) * count;
-    c.passes = static_cast<std::uint32_t>(all.size()) * static_cast<std::uint32_t>(count);
+    c.first_pass = first;
+    c.passes = (end - first) * static_cast<std::uint32_t>(count);
     frame_.dispatch_groups(*kernel_, groups, c, sum);
     return;
   }
   c.passes = 1;
   for (int s = 0; s < count; ++s) {
-    for (std::size_t k = 0; k < all.size(); ++k) {
+    for (c.first_pass = first; c.first_pass < end; ++c.first_pass) {
+      const std::uint32_t k = c.first_pass;
       const Colour& colour = colours_[k < first_colour ? 0 : k - first_colour];
-      c.first_pass = static_cast<std::uint32_t>(k);
       c.first_entry = colour.first_entry;
       c.rounds = colour.rounds;
       frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.entries, c, all[k]);
     }
     record_welds();
   }
-}
-
-void Chains::record_second_solve(const TimeStep& step) {
-  auto c = step_constants<ChainConstants>(frame_, step);
-  c.per_force_scale = static_cast<float>(1 / step.force_scale);
-  c.colours = static_cast<std::uint32_t>(colours_.size());
-  c.again = 1;
-  c.bending_iterations = bending_iterations_now_;
-  const std::uint32_t before = bends_ || membrane_ ? 1 + bending_iterations_now_ : 0;
-  if (persistent_) {
-    Traffic sum;
-    const vulkan::Groups groups = all_groups();
-    for (std::size_t f = 0; f < colours_.size(); ++f)
-      sum = sum + traffic(f, false) + Traffic{16.0 * groups.x * groups.y * block_, 0};
-    c.first_pass = before;
-    c.passes = c.colours;
-    frame_.dispatch_groups(*kernel_, groups, c, sum);
-    return;
-  }
-  c.passes = 1;
-  for (std::size_t f = 0; f < colours_.size(); ++f) {
-    c.first_pass = before + static_cast<std::uint32_t>(f);
-    c.first_entry = colours_[f].first_entry;
-    c.rounds = colours_[f].rounds;
-    frame_.dispatch(*kernel_, colours_[f].entries, c, traffic(f, false));
-  }
-  record_welds();
 }
 
 void Chains::record_welds() {

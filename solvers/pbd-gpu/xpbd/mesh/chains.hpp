@@ -16,10 +16,8 @@ class Chains {
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
   Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension, bool membrane);
 
-  /// Records `count` substeps, each a TimeStep.
-  void record(int count, const TimeStep&);
-  /// Records the colours once more after a substep's `record`, from where the vertices are.
-  void record_second_solve(const TimeStep&);
+  /// Records `count` substeps, each a TimeStep. `again`: only the colours, once more from where the vertices are.
+  void record(int count, const TimeStep&, bool again = false);
 
   /// Puts welded vertices where those are that they are welded to; `record` ends with it.
   void record_welds();
@@ -38,7 +36,9 @@ class Chains {
   Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
   /// Number and traffic of a substep's passes: one that integrates and the iterations of bending, if there are any,
   /// then colours.
-  std::vector<Traffic> passes(std::uint32_t bending_iterations) const;
+  std::vector<Traffic> passes(const ChainConstants&) const;
+  /// Whether bending or triangles are solved, all at once.
+  bool solves_together() const { return bends_ || membrane_; }
   vulkan::Groups all_groups() const;
 
   FrameBuilder& frame_;
@@ -52,7 +52,6 @@ class Chains {
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
   bool bends_ = false;
-  std::uint32_t bending_iterations_now_ = 0;  ///< of the last recorded substep
   double max_per_s2_ = 0;                     ///< at least the maximum eigenvalue of bending and triangles
   double row_entries_ = 0, row_corners_ = 0;  ///< of all rows of bending and of triangles, with what pads them
 };

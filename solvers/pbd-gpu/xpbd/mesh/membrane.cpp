@@ -121,31 +121,6 @@ FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& sett
   return {true, ""};
 }
 
-std::vector<BufferNeed> mesh_needs(const Scene& scene, bool membrane) {
-  const ClothMesh& mesh = *scene.cloth.mesh;
-  const std::uint64_t n = mesh.vertices.size(), state = n * sizeof(vec4);
-  std::vector<BufferNeed> out;
-  for (const char* name : {"positions", "velocities", "position compensation", "velocity compensation"})
-    out.push_back({name, state});
-  out.push_back({"chain entries", (membrane ? n : std::max<std::uint64_t>(n, mesh.edges.size())) * sizeof(ChainEntry)});
-  const bool bends = scene.needs.has(Feature::Bend);
-  if (bends || membrane) out.push_back({"bending steps", (membrane ? 4 : 3) * state});
-  constexpr std::uint64_t kRow = 18;
-  if (bends) out.push_back({"bending entries", kRow * n * sizeof(BendingEntry)});
-  if (!membrane) return out;
-  std::vector<std::uint64_t> at(n, 0);
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle) ++at[v];
-  std::uint64_t corners = 0;
-  for (std::size_t begin = 0; begin < n; begin += BENDING_ROWS) {
-    const auto first = at.begin() + static_cast<std::ptrdiff_t>(begin);
-    corners +=
-        BENDING_ROWS * *std::max_element(first, first + std::min<std::ptrdiff_t>(BENDING_ROWS, at.end() - first));
-  }
-  out.push_back({"triangle corners", corners * sizeof(MembraneCorner)});
-  return out;
-}
-
 SlicedRows<MembraneCorner> membrane_table(const Scene& scene) {
   const ClothMesh& mesh = *scene.cloth.mesh;
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());

@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/frame_builder.hpp"
 #include "common/gpu_types.h"
 #include "xpbd/lines/line_layout.hpp"
 
@@ -29,9 +28,5 @@ FeatureDecision membrane_decision(const Scene&, const nlohmann::json& settings);
 /// What the kernel reads: the triangles around each vertex, turned so that it comes first. Rows shorter than the
 /// slice's longest are padded with entries whose `a` is CHAIN_NO_VERTEX.
 SlicedRows<MembraneCorner> membrane_table(const Scene&);
-
-/// Buffers that a mesh needs at least, found before any is made: its state; the corners of triangles, or its links; of
-/// bending, in every row the 18 vertices that are within two edges in regular triangles.
-std::vector<BufferNeed> mesh_needs(const Scene&, bool membrane);
 
 }  // namespace clothbench::pbd_gpu

@@ -34,71 +34,20 @@ std::string tuned(const nlohmann::json& settings, const char* member) {
   return settings.value(kTuning, nlohmann::json::object()).value(member, "auto");
 }
 
-double distance_to_box(const Collider& c, const Vec3& from) {
-  Vec3 beyond{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    double along = 0;
-    for (std::size_t i = 0; i < 3; ++i) along += c.axes[k][i] * (from[i] - c.center_m[i]);
-    beyond[k] = std::max(0.0, std::abs(along) - c.half_extent_m[k]);
-  }
-  return norm(beyond);
-}
-
-double distance_to_vertices(const ColliderMesh& mesh, const Vec3& from) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    smallest = std::min(smallest, norm(minus(vertex_at(mesh.positions, v), from)));
-  return smallest;
-}
-
-/// Lower bound of the distance [m] from a point to a static collider.
+/// Distance [m] from a point to a static collider; of a mesh to the nearest vertex.
 double distance_to(const Collider& c, const Vec3& from) {
-  const auto to = [&](const Vec3& p) { return norm(minus(p, from)); };
-  switch (c.shape) {
-    case Collider::Shape::Plane:
-      return (from[0] - c.center_m[0]) * c.normal[0] + (from[1] - c.center_m[1]) * c.normal[1] +
-             (from[2] - c.center_m[2]) * c.normal[2];
-    case Collider::Shape::Sphere:
-      return to(c.center_m) - c.radius_m;
-    case Collider::Shape::Box:
-      return distance_to_box(c, from);
-    case Collider::Shape::Mesh: {
-      // Every point of a triangle is nearer to its first corner than the triangle's longest side.
-      double smallest = std::numeric_limits<double>::infinity();
-      for (const auto& t : c.mesh->triangles) {
-        const auto corner = [&](std::size_t k) { return vertex_at(c.mesh->positions, t[k]); };
-        const Vec3 a = corner(0);
-        double side = 0;
-        for (const std::size_t k : {1u, 2u}) side = std::max(side, norm(minus(corner(k), a)));
-        smallest = std::min(smallest, to(a) - side);
-      }
-      return smallest;
-    }
-    case Collider::Shape::Capsules:
-      break;
+  const Vec3 to = minus(from, c.center_m);
+  if (c.shape == Collider::Shape::Plane) return std::max(0.0, dot(to, c.normal));
+  if (c.shape == Collider::Shape::Sphere) return std::max(0.0, norm(to) - c.radius_m);
+  if (c.shape == Collider::Shape::Box) {
+    Vec3 beyond{};
+    for (std::size_t k = 0; k < 3; ++k) beyond[k] = std::max(0.0, std::abs(dot(c.axes[k], to)) - c.half_extent_m[k]);
+    return norm(beyond);
   }
-  return 0;
-}
-
-/// Distance [m] from the cloth's centre that no vertex leaves while nothing but gravity, its own links and what holds
-/// it act: where the farthest one starts, twice the cloth's diagonal, and the way of a fall at its first speed.
-double bound_m(const Scene& s) {
-  const Cloth& c = s.cloth;
-  const std::vector<double> x = initial_positions(s);
-  double start = 0;
-  for (std::size_t v = 0; v < c.vertex_count(); ++v) start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
-  const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
-  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
-  return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
-}
-
-/// True if inextensible lines may be pulled apart at their two ends: by attachments, or by pins too far apart. Pins
-/// that leave tethers their reach do not.
-bool may_be_pulled_apart(const Scene& scene) {
-  if (scene.material.membrane_stiffness_N_per_m || needs_chain_solver(scene) || !tethers_of(scene).to.empty())
-    return false;
-  const std::vector<std::uint8_t> over_constrained = over_constrained_lines(scene);
-  return std::any_of(over_constrained.begin(), over_constrained.end(), [](std::uint8_t t) { return t != 0; });
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; c.mesh && v < c.mesh->vertex_count(); ++v)
+    smallest = std::min(smallest, norm(minus(vertex_at(c.mesh->positions, v), from)));
+  return smallest;
 }
 
 /// True if its lines share no links: nothing is left by one colour to another.
@@ -163,23 +112,14 @@ constexpr const char* kPulledFar =
 
 bool is_held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
 
-bool is_contact_free(const Scene& scene) {
-  if (scene.needs.has(Feature::SelfCollision)) return false;
-  if (scene.colliders.empty()) return true;
-  if (!scene.jumps.empty()) return false;
-  const double reach = bound_m(scene);
-  return std::all_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) {
-    return !c.moves() && distance_to(c, scene.cloth.center_m) > reach + c.margin_m;
-  });
-}
+bool is_contact_free(const Scene& scene) { return !scene.needs.has(Feature::SelfCollision) && scene.colliders.empty(); }
 
 double impact_speed_m_per_s(const Scene& scene) {
   if (is_held(scene) || scene.colliders.empty() || is_contact_free(scene)) return 0;
   double fall_m = std::numeric_limits<double>::infinity();
   for (const Collider& c : scene.colliders) {
     if (c.moves()) return 0;
-    const Vec3& from = scene.cloth.center_m;
-    fall_m = std::min(fall_m, c.mesh ? distance_to_vertices(*c.mesh, from) : std::max(0.0, distance_to(c, from)));
+    fall_m = std::min(fall_m, distance_to(c, scene.cloth.center_m));
   }
   return norm(scene.cloth.initial_velocity_m_per_s) + std::sqrt(2 * norm(scene.gravity_m_per_s2) * fall_m);
 }
@@ -213,8 +153,6 @@ FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings
   if (!is_held(scene)) return {true, ""};
   const int substeps = xpbd_substeps(scene, settings);
   const bool tension = tension_decision(scene, settings).enabled;
-  if (!tension && may_be_pulled_apart(scene))
-    return {false, "inextensible lines may be pulled apart at both ends, and would be thrown farther"};
   // A strip's links are one system and solved exactly; what a sheet's colours leave to one another is not.
   if (is_strip(scene)) return {true, ""};
   if (is_pulled_far(scene)) return {false, kPulledFar};
@@ -223,8 +161,6 @@ FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings
   // Tethers hold a grid, whose rows are solved last and whole; no colour that is solved last holds all of a mesh.
   if (!tension && scene.needs.has(Feature::ClothMesh))
     return {false, "a triangle mesh without implicit tension: single links would stretch far"};
-  if (!tension && !is_tethered(scene, settings) && substeps < std::lround(links_of_longer_side(scene.cloth) / 3))
-    return {false, "no tethers and fewer substeps than a third of the links: the cloth would be thrown"};
   return {true, ""};
 }
 

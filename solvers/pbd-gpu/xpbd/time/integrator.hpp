@@ -30,9 +30,7 @@ FeatureDecision splitting_correction_decision(const Scene&, const nlohmann::json
 
 /// True if pins or hands hold it.
 bool is_held(const Scene&);
-/// True if the cloth meets neither itself nor a collider in the scene's time: static colliders that are farther
-/// away than a fall from its start takes it, count as none. Such a scene has no contact, and the motion is the same
-/// with and without those colliders.
+/// True if the scene has neither self-collision nor colliders.
 bool is_contact_free(const Scene&);
 /// Speed [m/s] at which a cloth that nothing holds meets static colliders: its first speed, and that of a fall by
 /// the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.

@@ -21,11 +21,11 @@ void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, in
   if (kUsesBdf2) {
     vec3 change = p.history_weight * (velocity - last_velocity);
     gain += change;
-    if ((FEATURES & LINES_DAMPING) != 0u) gain -= p.damping_fraction * (velocity + change);
+    gain -= p.damping_fraction * (velocity + change);
     history = p.history_weight * (position - last_position);
     last_velocity = velocity;
     last_position = position;
-  } else if ((FEATURES & LINES_DAMPING) != 0u) {
+  } else {
     gain -= p.damping_fraction * velocity;
   }
   two_sum(velocity, gain + rest_velocity, sum, rest);

@@ -1,9 +1,8 @@
 #version 450
 // Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
-// motion bounds (share 1), each by half of the thickness, and the group's at share 1.
+// motion bounds (share 1), each by half of the thickness, and the group's at share 1. Groups are 16 triangles in
+// self_order, which keeps neighbours together.
 #include "xpbd/contact/contact_buffers.glsl"
-// Boxes of triangles and of groups of them, for the list of the cloth's pairs with itself. Groups are 16 triangles in self_order, which
-// keeps neighbours together.
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;
@@ -22,9 +21,9 @@ SelfAabb box_of(uvec4 e) {
   return box;
 }
 
-/// Of triangle `q` in self_order, by a thread; control flow is workgroup-uniform.
-void write_boxes(uint q) {
-  uint thread = gl_LocalInvocationIndex, group = thread / SHAPES_PER_GROUP;
+/// Control flow is workgroup-uniform.
+void main() {
+  uint q = item(), thread = gl_LocalInvocationIndex, group = thread / SHAPES_PER_GROUP;
   for (uint n = thread; n < 3u * kGroups; n += gl_WorkGroupSize.x) {
     group_low[n] = kLowNone;
     group_high[n] = kHighNone;
@@ -52,5 +51,3 @@ void write_boxes(uint q) {
   of_group.high_1 = of_group.high_0;
   STORE64(self_aabbs, TRIANGLES + q / SHAPES_PER_GROUP, of_group);
 }
-
-void main() { write_boxes(item()); }

@@ -1,10 +1,9 @@
 #version 450
-// Candidate pairs of triangles of the cloth without a common vertex, once per frame; each is stored with both triangles. One subgroup per
-// triangle: counts its pairs at several fractions of the motion bounds; FILL writes them.
+// Candidate pairs of triangles of the cloth without a common vertex whose boxes overlap, once per frame; each is stored
+// with both triangles. A box at a fraction of the motion bounds lies between those at rest and at the whole motion bounds.
+// One subgroup per triangle: counts its pairs at several fractions; FILL writes them.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
-// Pairs of triangles of the cloth without a common vertex whose boxes overlap, each listed with both of its triangles. A box at a fraction of
-// the motion bounds lies between those at rest and at the whole motion bounds. Counted for several shares, then written, as contact_broad_phase.glsl does.
 const float kRoundingFactor = 0.9999;  // so that rounding makes no bound too great
 bool share_a_vertex(uvec4 a, uvec4 b) {
   for (uint c = 0u; c < 3u; ++c)

@@ -51,12 +51,13 @@ const uint kSelfPlaneUnroll = 4u;
     }                                                                        \
   }
 
+#define FOR_EACH_PLANE_OF_ANY(BODY) FOR_EACH_PLANE(BODY) FOR_EACH_SELF_PLANE(BODY)
+
 /// The least distance before any plane.
 float min_plane_distance(vec3 at) {
   float smallest = 1e30;
   for (uint h = 0u; h < PLANES; ++h) smallest = min(smallest, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
-  FOR_EACH_PLANE(smallest = min(smallest, dot(n, at) - s);)
-  FOR_EACH_SELF_PLANE(smallest = min(smallest, dot(n, at) - s);)
+  FOR_EACH_PLANE_OF_ANY(smallest = min(smallest, dot(n, at) - s);)
   return smallest;
 }
 
@@ -129,18 +130,12 @@ vec3 back_from(vec3 to, float room) {
     if (best < -kFeasibilityTolerance_m) atomicAdd(diagnostics.infeasible_vertices, 1u);
     return free;
   }
-  atomicAdd(diagnostics.returned, 1u);
   float part = 1.0;
   for (uint h = 0u; h < PLANES; ++h) {
     float s = half_space(half_spaces[h]), from = dot(half_spaces[h].normal.xyz, free) - s, end = dot(half_spaces[h].normal.xyz, to) - s;
     if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
   }
-  FOR_EACH_PLANE(
-    float from = dot(n, free) - s;
-    float end = dot(n, to) - s;
-    if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
-  )
-  FOR_EACH_SELF_PLANE(
+  FOR_EACH_PLANE_OF_ANY(
     float from = dot(n, free) - s;
     float end = dot(n, to) - s;
     if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);

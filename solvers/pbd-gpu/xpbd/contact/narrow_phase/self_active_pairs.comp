@@ -3,8 +3,6 @@
 // fixed order, and nothing depends on it; the pairs of one triangle are in the order of its list.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
-// Pairs of a triangle that are active in this substep. Where a triangle's begin is in no fixed order, and nothing depends on it; those of
-// one triangle are in the order of its list.
 #include "xpbd/contact/lanes_per_triangle.glsl"
 
 /// Where a triangle's active pairs begin, and how many there is place for.

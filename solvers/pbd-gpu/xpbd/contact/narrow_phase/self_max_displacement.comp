@@ -2,14 +2,11 @@
 // Per triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this one. One thread per
 // triangle, once per substep.
 #include "xpbd/contact/contact_buffers.glsl"
-// Of a triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this one.
-void write_triangle_max_displacement(uint t) {
-  uvec4 e = LOAD16(primitives, t);
-  vec2 largest = vec2(0.0);
-  for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(LOAD4(vertex_displacement, e[c]), LOAD16(starts, e[c]).w));
-  STORE16(triangle_max_displacement, t, vec4(largest, 0.0, 0.0));
-}
-
 void main() {
-  for (uint t = item(); t < TRIANGLES; t += stride()) write_triangle_max_displacement(t);
+  for (uint t = item(); t < TRIANGLES; t += stride()) {
+    uvec4 e = LOAD16(primitives, t);
+    vec2 largest = vec2(0.0);
+    for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(LOAD4(vertex_displacement, e[c]), LOAD16(starts, e[c]).w));
+    STORE16(triangle_max_displacement, t, vec4(largest, 0.0, 0.0));
+  }
 }
