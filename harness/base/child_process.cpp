@@ -20,15 +20,6 @@ extern char** environ;
 namespace clothbench {
 namespace {
 
-/// To `words`, then what `more` has.
-std::vector<char*> pointers(const std::vector<std::string>& words, char** more) {
-  std::vector<char*> out;
-  for (const std::string& word : words) out.push_back(const_cast<char*>(word.c_str()));
-  for (; more != nullptr && *more != nullptr; ++more) out.push_back(*more);
-  out.push_back(nullptr);
-  return out;
-}
-
 /// 0, or why it could not be started. `input`: descriptor for its standard input, -1 for this process's.
 int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int input, pid_t& pid) {
   posix_spawn_file_actions_t files;
@@ -42,9 +33,10 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   else if (!setup.err.empty())
     open(STDERR_FILENO, setup.err);
-  // If an environment has two variables of one name, the first counts.
-  const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, nullptr, pointers(argv, nullptr).data(),
-                                  pointers(setup.environment, environ).data());
+  std::vector<char*> words;
+  for (const std::string& word : argv) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  const int failed = posix_spawnp(&pid, argv[0].c_str(), &files, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   return failed;
 }
@@ -78,8 +70,11 @@ ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetu
 ChildProcess::~ChildProcess() {
   using namespace std::chrono_literals;
   close_socket();
-  const auto asked = std::chrono::steady_clock::now();
-  wait([&] { return std::chrono::steady_clock::now() - asked > 1s; }, 2ms);
+  const auto closed = std::chrono::steady_clock::now();
+  while (!ended(WNOHANG)) {
+    if (std::chrono::steady_clock::now() - closed > 1s) kill();
+    std::this_thread::sleep_for(2ms);
+  }
 }
 
 bool ChildProcess::write(std::string_view bytes) {
@@ -129,14 +124,6 @@ ChildEnd ChildProcess::kill() {
 
 ChildEnd ChildProcess::wait() {
   ended(0);
-  return *end_;
-}
-
-ChildEnd ChildProcess::wait(const std::function<bool()>& give_up, std::chrono::milliseconds look) {
-  while (!ended(WNOHANG)) {
-    if (give_up()) return kill();
-    std::this_thread::sleep_for(look);
-  }
   return *end_;
 }
 

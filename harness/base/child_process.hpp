@@ -2,7 +2,6 @@
 #include <sys/types.h>
 
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,9 +21,8 @@ struct ChildEnd {
 
 /// How a child process differs from this process.
 struct ChildSetup {
-  bool socket = false;                        ///< standard input is a socket, connected to this process
-  std::string out = {}, err = {};             ///< files for stdout and stderr, truncated; empty: those of this process
-  std::vector<std::string> environment = {};  ///< "NAME=value": added to or replacing this process's variables
+  bool socket = false;             ///< standard input is a socket, connected to this process
+  std::string out = {}, err = {};  ///< files for stdout and stderr, truncated; empty: those of this process
 };
 
 /// A running child process. Only this class starts, watches and ends processes. Not thread-safe.
@@ -46,8 +44,6 @@ class ChildProcess {
 
   ChildEnd kill();  ///< returns TimedOut
   ChildEnd wait();
-  /// Calls `give_up` at intervals of `look`, and kills the program once it returns true.
-  ChildEnd wait(const std::function<bool()>& give_up, std::chrono::milliseconds look = std::chrono::milliseconds(20));
 
  private:
   bool ended(int options);

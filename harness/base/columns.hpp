@@ -9,28 +9,25 @@
 
 namespace clothbench {
 
-/// A value of a table: a string, number, boolean or list of strings. A missing value is null or not finite. absent()
-/// omits the key from JSON. For JSON a value can also be an object.
+/// A value of a table: a string, number or boolean. A missing value is null or not finite.
 using Value = nlohmann::json;
-Value absent();
 
 /// Unit of printed numbers. The heading shows `name`; one SI unit equals `per_si` of this unit.
 struct Unit {
   const char* name = "";
   double per_si = 1;
 };
-inline constexpr Unit kMilliseconds{"ms", 1e3}, kMillimetres{"mm", 1e3}, kKilobytes{"kB", 1e-3};
+inline constexpr Unit kMilliseconds{"ms", 1e3};
 
 /// Formats a number that is already in its column's unit.
 using NumberFormat = std::function<std::string(double)>;
 NumberFormat digits(int significant_digits);
-/// Formats with a {fmt} format string such as "{:.1e}"; "–" if the number is not finite.
-NumberFormat in_form(const char* form);
 
-/// Which files contain a column.
-enum class In { Both, Csv, Json, Neither };
+/// Whether files contain a column.
+enum class In { Neither, Both };
 
-/// A column over records. With a head it is printed, under head and unit; with a key it is stored, under that key.
+/// A column over records. With a head it is printed, under head and unit; with a key it is in CSV files, under that
+/// key.
 template <class Record>
 struct Column {
   using Get = std::function<Value(const Record&)>;
@@ -52,11 +49,9 @@ struct Column {
   Column(std::string k, In where, Get v) : key(std::move(k)), value(std::move(v)), in(where) {}
 };
 
-/// The forms of one value. Printed: "–" if it is missing. CSV: full precision, empty if it is missing, list items
-/// joined by ", ". JSON: null if it is not finite.
+/// The forms of one value. Printed: "–" if it is missing. CSV: full precision, empty if it is missing.
 std::string printed_value(const Value&, const NumberFormat&, const Unit&);
 std::string csv_value(const Value&);
-Value json_value(Value);
 
 /// A typed table. Its columns turn any range of records into each output format.
 template <class Record>
@@ -94,27 +89,10 @@ struct Columns : std::vector<Column<Record>> {
   std::string csv(const Records& records) const {
     std::vector<std::vector<std::string>> rows;
     fill(
-        rows, records, [](const auto& c) { return c.in == In::Both || c.in == In::Csv; },
-        [](const auto& c) { return c.key; }, [](const auto&, const Value& v) { return csv_value(v); });
+        rows, records, [](const auto& c) { return c.in == In::Both; }, [](const auto& c) { return c.key; },
+        [](const auto&, const Value& v) { return csv_value(v); });
     std::string out;
     for (const auto& row : rows) out += csv_row(row);
-    return out;
-  }
-
-  /// One record as a JSON object; `json` gives an array of them.
-  Value object(const Record& record) const {
-    Value out = Value::object();
-    for (const Column<Record>& c : *this) {
-      if (c.in == In::Neither || c.in == In::Csv) continue;
-      if (Value v = c.value(record); !v.is_discarded()) out[c.key] = json_value(std::move(v));
-    }
-    return out;
-  }
-
-  template <class Records>
-  Value json(const Records& records) const {
-    Value out = Value::array();
-    for (const Record& r : records) out.push_back(object(r));
     return out;
   }
 

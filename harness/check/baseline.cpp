@@ -19,13 +19,6 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// The environment says, or the completed scene does; a run without assets has neither.
-std::string assets_of(const RunRecord& c) {
-  for (const json& j : {c.header.environment, json::parse(c.header.scenario_json, nullptr, false)})
-    if (j.is_object() && j.contains("assets") && j["assets"].is_string()) return j["assets"].get<std::string>();
-  return "";
-}
-
 std::string stage_text(const StageRecord& s) {
   return s.serves.empty() ? s.name : s.name + " (" + joined(s.serves) + ")";
 }
@@ -42,7 +35,7 @@ double number_at(const json& value, const std::string& name, const std::string& 
 
 BaselineRun run_from(const json& j, const std::string& where) {
   BaselineRun c;
-  c.key = {j.at("scene"), j.at("solver"), j.at("setting"), j.value("assets", "")};
+  c.key = {j.at("scene"), j.at("solver"), j.at("setting")};
   for (const auto& [what, value] : j.at("conditions").items())
     c.conditions.push_back({kind_of_condition(what), what, value});
   c.status = j.at("status");
@@ -56,7 +49,6 @@ BaselineRun run_from(const json& j, const std::string& where) {
 
 ordered_json json_of(const BaselineRun& c) {
   ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
-  if (!c.key.assets.empty()) j["assets"] = c.key.assets;
   std::map<std::string, std::string> conditions;  // in the order in which they are read
   for (const Condition& condition : c.conditions) conditions[condition.what] = condition.value;
   j["conditions"] = conditions;
@@ -72,7 +64,7 @@ ordered_json json_of(const BaselineRun& c) {
 /// The part of a result without the scalars that `has` leaves out.
 BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
   BaselineRun c;
-  c.key = {r.header.scene, r.header.solver, r.header.setting, assets_of(r)};
+  c.key = {r.header.scene, r.header.solver, r.header.setting};
   c.conditions = conditions_of_results(r);
   c.status = r.outcome.status;
   c.klass = r.outcome.klass;
@@ -86,8 +78,6 @@ BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
 }  // namespace
 
 std::string RunKey::file_name() const { return run_name(scene, solver, setting); }
-
-std::string RunKey::text() const { return file_name() + (assets.empty() ? "" : " [" + assets + "]"); }
 
 BaselineRun gated_part(const RunRecord& r) {
   return part_of(r, [](const std::string& name) { return find_gate(name) != nullptr; });
@@ -109,7 +99,7 @@ Baseline read_baseline(const std::filesystem::path& file) {
     const std::string where = fmt::format("{}: /runs/{}", source, k);
     b.runs.push_back(run_from(j["runs"][k], where));
     if (!seen.insert(b.runs.back().key).second)
-      throw Error(where + ": this run occurs twice; expected it once: " + b.runs.back().key.text());
+      throw Error(where + ": this run occurs twice; expected it once: " + b.runs.back().key.file_name());
   }
   std::sort(b.runs.begin(), b.runs.end(), [](const BaselineRun& x, const BaselineRun& y) { return x.key < y.key; });
   return b;

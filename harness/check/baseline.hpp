@@ -12,17 +12,16 @@
 
 namespace clothbench {
 
-/// Key of a run. `assets` of rooms and hands: "npm" or "procedural"; empty if the result does not tell.
+/// Key of a run.
 struct RunKey {
-  std::string scene, solver, setting, assets;
+  std::string scene, solver, setting;
   // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
   bool operator==(const RunKey&) const = default;
   bool operator<(const RunKey& o) const {
-    return std::tie(scene, solver, setting, assets) < std::tie(o.scene, o.solver, o.setting, o.assets);
+    return std::tie(scene, solver, setting) < std::tie(o.scene, o.solver, o.setting);
   }
 
   std::string file_name() const;  ///< "<scene>__<solver>__<setting>", as the result file is called
-  std::string text() const;       ///< the same with the assets in brackets, if known
 };
 
 /// The part of a run that does not depend on the machine.

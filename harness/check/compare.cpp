@@ -15,153 +15,39 @@
 namespace clothbench {
 namespace {
 
-using Entries = std::vector<const BaselineRun*>;
-
-/// The results of one run, whatever its assets: those that are there, and what is known of one that is not.
-struct Found {
-  std::vector<const RunRecord*> records;
-  const RunRecord* missing = nullptr;
-};
-
-/// By file name, because that is all there is of a planned run without a result.
-std::map<std::string, Found> by_name(const std::vector<RunRecord>& runs) {
-  std::map<std::string, Found> out;
-  std::map<RunKey, int> seen;
-  for (const RunRecord& c : runs) {
-    const RunKey key = gated_part(c).key;
-    Found& found = out[key.file_name()];
-    if (c.outcome.status == "missing") {
-      found.missing = &c;
-      continue;
-    }
-    if (seen[key]++ > 0) throw Error(key.text() + ": this run occurs twice among the results; give each run once");
-    found.records.push_back(&c);
+/// Results by file name, because that is all there is of a planned run without a result, whose status is "missing".
+std::map<std::string, const RunRecord*> by_name(const std::vector<RunRecord>& runs) {
+  std::map<std::string, const RunRecord*> out;
+  for (const RunRecord& r : runs) {
+    const std::string name = gated_part(r).key.file_name();
+    const RunRecord*& at = out[name];
+    if (at != nullptr && r.outcome.status != "missing" && at->outcome.status != "missing")
+      throw Error(name + ": this run occurs twice among the results; give each run once");
+    if (at == nullptr || at->outcome.status == "missing") at = &r;
   }
   return out;
 }
 
-std::map<std::string, Entries> by_name(const Baseline& b) {
-  std::map<std::string, Entries> out;
-  for (const BaselineRun& c : b.runs) out[c.key.file_name()].push_back(&c);
+std::map<std::string, const BaselineRun*> by_name(const Baseline& b) {
+  std::map<std::string, const BaselineRun*> out;
+  for (const BaselineRun& c : b.runs) out[c.key.file_name()] = &c;
   return out;
 }
 
-const BaselineRun* entry_for(const Entries& entries, const RunKey& key) {
-  for (const BaselineRun* e : entries)
-    if (e->key == key) return e;
-  return nullptr;
+bool is_missing(const RunRecord* r) { return r == nullptr || r->outcome.status == "missing"; }
+
+Finding missing(const RunRecord* planned) {
+  return {Verdict::Failed, "run", "present",
+          "missing",       "",    planned != nullptr ? planned->outcome.message : "no such run among the results"};
 }
 
-std::string outcome_of(const RunRecord& c) { return c.outcome.status; }
-
-Finding missing(const Found& found) {
-  return {Verdict::Failed,
-          "run",
-          "present",
-          "missing",
-          "",
-          found.missing != nullptr ? found.missing->outcome.message : "no such run among the results"};
-}
-
-std::string kind(const std::string& assets) { return assets.empty() ? "unnamed" : assets; }
-
-class Check {
- public:
-  explicit Check(const std::vector<std::string>& allowed) { out_.differing = DifferingRuns(allowed); }
-
-  Checked run(const Baseline& baseline, const std::vector<RunRecord>& runs) {
-    const auto results = by_name(runs);
-    const auto entries = by_name(baseline);
-    for (const auto& [name, group] : entries)
-      if (const auto at = results.find(name); at != results.end()) add_differences(group, at->second);
-    out_.differing.refuse("the baseline", "the results");
-    for (const auto& [name, group] : entries) {
-      const auto at = results.find(name);
-      known(group, at == results.end() ? Found{} : at->second);
-    }
-    for (const auto& [name, found] : results)
-      if (entries.count(name) == 0) unknown(found);
-    std::sort(out_.runs.begin(), out_.runs.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
-    return out_;
-  }
-
- private:
-  void add_differences(const Entries& entries, const Found& found) {
-    for (const RunRecord* r : found.records) {
-      const BaselineRun is = gated_part(*r);
-      if (const BaselineRun* e = entry_for(entries, is.key); e != nullptr)
-        for (const ConditionDifference& d : differences(e->conditions, is.conditions))
-          out_.differing.add(is.key.text(), d);
-    }
-  }
-
-  void known(const Entries& entries, const Found& found) {
-    if (found.records.empty()) return add(entries.front()->key, {missing(found)});
-    std::size_t compared = 0;
-    for (const RunRecord* r : found.records)
-      if (const BaselineRun* e = entry_for(entries, gated_part(*r).key); e != nullptr) {
-        add(e->key, compare_run(*e, *r));
-        ++compared;
-      }
-    if (compared == 0) return add(entries.front()->key, {other_assets(*entries.front(), *found.records.front())});
-    out_.other_assets += entries.size() - compared;
-    for (const RunRecord* r : found.records)
-      if (const RunKey key = gated_part(*r).key; entry_for(entries, key) == nullptr) add_new(key, *r);
-  }
-
-  void unknown(const Found& found) {
-    for (const RunRecord* r : found.records) add_new(gated_part(*r).key, *r);
-    if (found.records.empty() && found.missing != nullptr) add(gated_part(*found.missing).key, {missing(found)});
-  }
-
-  /// Procedural rooms and hands are other scenes than real ones: a run without the real ones must not pass for them.
-  static Finding other_assets(const BaselineRun& entry, const RunRecord& r) {
-    return {Verdict::Failed,
-            "assets",
-            kind(entry.key.assets),
-            kind(gated_part(r).key.assets),
-            "",
-            "the baseline has this run only with other assets: fetch them (scripts/fetch-assets.sh), or add this kind "
-            "with --update"};
-  }
-
-  void add_new(const RunKey& key, const RunRecord& r) {
-    std::vector<Finding> findings = motion_findings(r);
-    const std::string motion = kExpect + "motion";
-    if (const auto at = r.summary.find(motion); at != r.summary.end() && !(at->second == 1))
-      findings.push_back({Verdict::Failed, motion, "–", "fail", "", r.outcome.expect});
-    findings.push_back({Verdict::New, "run", "–", outcome_of(r), "", "not in the baseline; --update adds it"});
-    add(key, std::move(findings));
-  }
-  void add(const RunKey& key, std::vector<Finding> findings) { out_.runs.push_back({key, std::move(findings)}); }
-
-  Checked out_;
-};
-
-/// Adds what `from` has and `to` lacks.
-void merge(std::vector<std::string>& to, const std::vector<std::string>& from) {
-  for (const std::string& text : from)
-    if (!contains(to, text)) to.push_back(text);
-  std::sort(to.begin(), to.end());
-}
-
-/// Entries of `old` whose run has results, but only with other assets, stay with their origin; those without any
-/// result are removed.
-void keep_other_assets(const Baseline& old, const std::map<std::string, Found>& results, Updated& out) {
-  for (const BaselineRun& e : old.runs) {
-    const auto at = results.find(e.key.file_name());
-    if (at == results.end()) {
-      out.removed.push_back(e.key);
-      continue;
-    }
-    const auto& records = at->second.records;
-    if (std::any_of(records.begin(), records.end(), [&](const RunRecord* r) { return gated_part(*r).key == e.key; }))
-      continue;
-    out.baseline.runs.push_back(e);
-    merge(out.baseline.origin.runs, old.origin.runs);
-    merge(out.baseline.origin.commits, old.origin.commits);
-    merge(out.baseline.origin.devices, old.origin.devices);
-  }
+std::vector<Finding> new_run(const RunRecord& r) {
+  std::vector<Finding> out = motion_findings(r);
+  const std::string motion = kExpect + "motion";
+  if (const auto at = r.summary.find(motion); at != r.summary.end() && !(at->second == 1))
+    out.push_back({Verdict::Failed, motion, "–", "fail", "", r.outcome.expect});
+  out.push_back({Verdict::New, "run", "–", r.outcome.status, "", "not in the baseline; --update adds it"});
+  return out;
 }
 
 bool same_values(const BaselineRun& a, const BaselineRun& b) {
@@ -282,7 +168,7 @@ Checked compare_processes(const Processes& a, const Processes& b, const std::vec
     for (const std::vector<RunRecord>& process : *side) {
       std::set<std::string> seen;
       for (const RunRecord& r : process) {
-        const RunKey key = {r.header.scene, r.header.solver, r.header.setting, ""};
+        const RunKey key = {r.header.scene, r.header.solver, r.header.setting};
         if (!seen.insert(key.file_name()).second)
           throw Error("compare: " + key.file_name() + " occurs twice in one folder; expected each run once");
         (find_or_add(pairs, [&](const Pair& p) { return p.key == key; }, {key}).*to).push_back(&r);
@@ -302,7 +188,29 @@ Checked compare_processes(const Processes& a, const Processes& b, const std::vec
 
 Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs,
                    const std::vector<std::string>& allowed) {
-  return Check(allowed).run(baseline, runs);
+  Checked out;
+  out.differing = DifferingRuns(allowed);
+  const auto results = by_name(runs);
+  const auto entries = by_name(baseline);
+  const auto result_of = [&](const std::string& name) {
+    const auto at = results.find(name);
+    return at == results.end() ? nullptr : at->second;
+  };
+  for (const auto& [name, entry] : entries)
+    if (const RunRecord* r = result_of(name); !is_missing(r))
+      for (const ConditionDifference& d : differences(entry->conditions, gated_part(*r).conditions))
+        out.differing.add(name, d);
+  out.differing.refuse("the baseline", "the results");
+  for (const auto& [name, entry] : entries) {
+    const RunRecord* r = result_of(name);
+    out.runs.push_back({entry->key, is_missing(r) ? std::vector<Finding>{missing(r)} : compare_run(*entry, *r)});
+  }
+  for (const auto& [name, r] : results) {
+    if (entries.contains(name)) continue;
+    out.runs.push_back({gated_part(*r).key, is_missing(r) ? std::vector<Finding>{missing(r)} : new_run(*r)});
+  }
+  std::sort(out.runs.begin(), out.runs.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  return out;
 }
 
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs, BaselineOrigin origin) {
@@ -311,26 +219,25 @@ Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs,
   if (runs.empty()) throw Error("--update: expected results with at least one run");
   Updated out;
   out.baseline.origin = std::move(origin);
-  for (const auto& [name, found] : results) {
-    if (found.records.empty())
+  for (const auto& [name, r] : results) {
+    if (is_missing(r))
       throw Error(fmt::format("--update: {}: {}; a baseline is made of whole studies (`clothbench study … --resume`)",
-                              name, found.missing->outcome.message));
-    const auto group = entries.find(name);
-    for (const RunRecord* r : found.records) {
-      for (const Finding& f : motion_findings(*r))
-        throw Error(fmt::format("--update: {}: {}; repeat the run", name, f.message));
-      out.baseline.runs.push_back(gated_part(*r));
-      const BaselineRun& now = out.baseline.runs.back();
-      const BaselineRun* e = group == entries.end() ? nullptr : entry_for(group->second, now.key);
-      const std::vector<Finding> findings =
-          e == nullptr ? std::vector<Finding>{{Verdict::New, "run", "–", outcome_of(*r), "", ""}} : compare_run(*e, *r);
-      if (!findings.empty())
-        out.changes.push_back({now.key, findings});
-      else if (!same_values(*e, now))
-        ++out.within_slack;
-    }
+                              name, r->outcome.message));
+    for (const Finding& f : motion_findings(*r))
+      throw Error(fmt::format("--update: {}: {}; repeat the run", name, f.message));
+    out.baseline.runs.push_back(gated_part(*r));
+    const BaselineRun& now = out.baseline.runs.back();
+    const auto entry = entries.find(name);
+    const std::vector<Finding> findings =
+        entry == entries.end() ? std::vector<Finding>{{Verdict::New, "run", "–", r->outcome.status, "", ""}}
+                               : compare_run(*entry->second, *r);
+    if (!findings.empty())
+      out.changes.push_back({now.key, findings});
+    else if (!same_values(*entry->second, now))
+      ++out.within_slack;
   }
-  keep_other_assets(old, results, out);
+  for (const auto& [name, entry] : entries)
+    if (!results.contains(name)) out.removed.push_back(entry->key);
   const auto by_key = [](const auto& a, const auto& b) { return a.key < b.key; };
   std::sort(out.baseline.runs.begin(), out.baseline.runs.end(), by_key);
   std::sort(out.changes.begin(), out.changes.end(), by_key);

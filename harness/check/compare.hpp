@@ -70,8 +70,7 @@ struct CheckedRun {
 };
 
 struct Checked {
-  std::vector<CheckedRun> runs;  ///< every run of baseline and results, sorted by key
-  std::size_t other_assets = 0;  ///< runs of the baseline left out: the results have them with other assets
+  std::vector<CheckedRun> runs;               ///< every run of baseline and results, sorted by key
   DifferingRuns differing = DifferingRuns();  ///< conditions that differ from the baseline's and were allowed
 
   std::size_t count(Verdict) const;
@@ -99,10 +98,9 @@ using Processes = std::vector<std::vector<RunRecord>>;
 /// whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
-/// Compares results with a baseline. A run of the baseline without a result fails, unless the results have the run with
-/// another kind of assets that is also in the baseline. A planned run without a result fails too. A run that is not in
-/// the baseline is new. Throws Error if a run is twice among the results, or if a condition of a kind that is not in
-/// `allowed` differs from the baseline's (results/conditions.hpp).
+/// Compares results with a baseline. A run of the baseline without a result fails, and so does a planned run without a
+/// result. A run that is not in the baseline is new. Throws Error if a run is twice among the results, or if a
+/// condition of a kind that is not in `allowed` differs from the baseline's (results/conditions.hpp).
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {
@@ -112,9 +110,8 @@ struct Updated {
   std::size_t within_slack = 0;     ///< runs with changed values, all of them within slack
 };
 
-/// The baseline made from the results: their runs, and the runs of `old` that the results have only with other assets.
-/// Throws Error if there is no result, a run is listed twice, a planned run has no result, or something is wrong with
-/// the motion in a file.
+/// The baseline made from the results. Throws Error if there is no result, a run is listed twice, a planned run has no
+/// result, or something is wrong with the motion in a file.
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>&, BaselineOrigin);
 
 }  // namespace clothbench

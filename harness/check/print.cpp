@@ -30,9 +30,10 @@ Table findings_table(const Table& start, const std::vector<CheckedRun>& runs, co
     for (const CheckedRun& run : runs)
       for (const Finding& f : run.findings) {
         if (f.verdict != verdict) continue;
-        rows.push_back({run.key.text(), &f});
+        rows.push_back({run.key.file_name(), &f});
         if (!f.message.empty() && verdict != Verdict::New)
-          messages += wrapped(fmt::format("{}: {}: {}", run.key.text(), f.quantity, f.message), 2, console_columns());
+          messages +=
+              wrapped(fmt::format("{}: {}: {}", run.key.file_name(), f.quantity, f.message), 2, console_columns());
       }
   const Columns<Row> columns = {
       {"", "run", &Row::run},
@@ -59,7 +60,7 @@ Table times_table(const Checked& c) {
   std::vector<CheckedRun> timed = c.runs;
   std::erase_if(timed, [](const CheckedRun& r) { return !std::isfinite(r.time.ratio); });
   const Columns<CheckedRun> columns = {
-      {"", "run", [](auto& r) { return r.key.text(); }},
+      {"", "run", [](auto& r) { return r.key.file_name(); }},
       {"", "A", &CheckedRun::time_a_s, digits(4), kMilliseconds},
       {"", "B", &CheckedRun::time_b_s, digits(4), kMilliseconds},
       {"", "change", [](auto& r) { return percent(r.time.ratio); }},
@@ -90,11 +91,7 @@ std::vector<Table> comparison_tables(const Checked& c, std::string& messages) {
   return {times_table(c), findings_table(results, c.runs, {"A", "B"}, messages)};
 }
 
-json key_json(const RunKey& key) {
-  json j = {{"scene", key.scene}, {"solver", key.solver}, {"setting", key.setting}};
-  if (!key.assets.empty()) j["assets"] = key.assets;
-  return j;
-}
+json key_json(const RunKey& key) { return {{"scene", key.scene}, {"solver", key.solver}, {"setting", key.setting}}; }
 
 json time_json(const CheckedRun& run) {
   return {{"verdict", run.time_verdict()},           {"processes", {run.time.processes_a, run.time.processes_b}},
@@ -162,7 +159,6 @@ std::string xml_escaped(const std::string& text) {
 std::string test_case(const CheckedRun& run) {
   std::string name = run.key.solver;
   if (!run.key.setting.empty()) name += " " + run.key.setting;
-  if (!run.key.assets.empty()) name += " [" + run.key.assets + "]";
   std::string out =
       fmt::format("    <testcase classname=\"{}\" name=\"{}\"", xml_escaped(run.key.scene), xml_escaped(name));
   if (run.verdict() == Verdict::Same) return out + "/>\n";
@@ -186,8 +182,6 @@ std::string check_text(const Checked& checked, const std::string& file) {
                      checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
                      runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
                      checked.count(Verdict::New), checked.count(Verdict::Same), file);
-  if (checked.other_assets > 0)
-    out += fmt::format("; {} more in the baseline are for other assets", runs_word(checked.other_assets));
   if (checked.passed() && checked.count(Verdict::Improved) > 0) out += "; --update accepts the improved ones";
   return out + "\n";
 }
@@ -200,7 +194,6 @@ json check_json(const Checked& checked, const std::string& file) {
             {"improved", checked.count(Verdict::Improved)},
             {"new", checked.count(Verdict::New)},
             {"same", checked.count(Verdict::Same)},
-            {"other_assets", checked.other_assets},
             {"runs", json::array()}};
   for (const CheckedRun& run : checked.runs) j["runs"].push_back(run_json(run));
   return j;
@@ -208,7 +201,7 @@ json check_json(const Checked& checked, const std::string& file) {
 
 std::string update_text(const Updated& u, const std::string& file) {
   std::string out = findings_text("Changed in " + file, u.changes, {.worse = "changed"});
-  for (const RunKey& key : u.removed) out += "  removed, no result: " + key.text() + "\n";
+  for (const RunKey& key : u.removed) out += "  removed, no result: " + key.file_name() + "\n";
   return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with other values within slack\n", file,
                            runs_word(u.baseline.runs.size()), u.changes.size(), u.removed.size(), u.within_slack);
 }
@@ -229,19 +222,6 @@ std::string comparison_text(const Checked& c) {
   for (const Table& t : comparison_tables(c, messages))
     out += t.rows.size() > 1 ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
   return out + messages;
-}
-
-std::string comparison_markdown(const Checked& c, const std::string& a, const std::string& b) {
-  const std::string marks = c.differing.marks();
-  std::string out, messages;
-  for (std::size_t at = 0, end; at < marks.size(); at = end + 1) {
-    end = marks.find('\n', at);
-    out += "**" + marks.substr(at, end - at) + "**\n\n";
-  }
-  out += fmt::format("A: `{}`, B: `{}`\n\n", a, b);
-  for (const Table& t : comparison_tables(c, messages))
-    out += t.rows.size() > 1 ? t.markdown() + "\n" : t.title + ": none. " + t.note + "\n\n";
-  return out;
 }
 
 json comparison_json(const Checked& c) {

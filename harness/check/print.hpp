@@ -16,10 +16,9 @@ nlohmann::json update_json(const Updated&, const std::string& baseline_file);
 
 /// Times and results of two builds: tables, and the JSON of both.
 std::string comparison_text(const Checked&);
-std::string comparison_markdown(const Checked&, const std::string& a, const std::string& b);
 nlohmann::json comparison_json(const Checked&);
 
-/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver, setting and assets), with a
+/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a
 /// <failure> if it failed. Improvements and new runs are in <system-out>. Text that XML 1.0 or UTF-8 does not allow is
 /// replaced.
 std::string junit_xml(const Checked&);

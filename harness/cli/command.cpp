@@ -2,9 +2,6 @@
 
 #include <cstdio>
 
-#include "report/report.hpp"
-#include "truth/draw.hpp"
-
 namespace clothbench {
 
 void SolverFlags::add_to(CLI::App& app, const std::string& option, const std::string& help,
@@ -18,25 +15,6 @@ std::vector<ChosenSolver> SolverFlags::chosen(const std::vector<std::string>& by
   std::vector<ChosenSolver> out;
   for (const std::string& name : solvers.empty() ? by_default : solvers) out.push_back(chosen_solver(name, overrides));
   return out;
-}
-
-void RunFlags::tell(Console& console, const std::function<StudyEnd(const StudyCall&)>& execute) const {
-  StudyEnd end;
-  {
-    StatusLine line(!console.json);
-    StudyCall call;
-    call.out = out;
-    call.resume = resume;
-    call.part = part;
-    call.device = device;
-    call.command_line = console.command_line;
-    call.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
-    end = execute(call);
-  }
-  if (end.exit_code != ExitCode::Ok) console.exit_code = end.exit_code;
-  for (const std::string& fault : end.faults) fmt::print(stderr, "FAULT {}\n", fault);
-  if (!console.json && !part) print_console_report({end.out});
-  console.print(end.json, end.text);
 }
 
 std::pair<int, int> pixels_of(const std::string& option, const std::string& text) {
@@ -72,24 +50,6 @@ void add_require_assets(CLI::App& app, bool& required) {
   app.add_flag("--require-assets", required,
                "Fail if a scene would use procedural rooms or hands instead of scans (scripts/fetch-assets.sh "
                "fetches the scans)");
-}
-
-void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
-  app.add_option("--seed", seed,
-                 "Choose the parameters of scenes with an exact solution at random from this seed, and evaluate the "
-                 "solution for them; in the studies contact and physics, the seed of the first scene (default 1)");
-}
-
-Scene at_seed(Scene scene, const std::optional<std::uint64_t>& seed, Console& console) {
-  if (!seed) return scene;
-  truth::DrawnScene drawn = truth::draw(scene, *seed);
-  if (!console.json && console.reported_scenes.insert(scene.name).second) {
-    std::string text;
-    for (const auto& [name, value] : drawn.values) text += fmt::format(" {}={:.6g}", name, value);
-    fmt::print("{} --seed {}:{} frame_rate_hz={:.6g} duration_s={:.6g}\n", scene.name, *seed, text,
-               drawn.scene.time.frame_rate_hz, drawn.scene.time.duration_s);
-  }
-  return std::move(drawn.scene);
 }
 
 }  // namespace clothbench

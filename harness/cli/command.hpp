@@ -7,7 +7,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,42 +19,14 @@
 
 namespace clothbench {
 
-/// Where and how a command executes a study.
-struct StudyCall {
-  std::filesystem::path out;  ///< empty: results/runs/<study>-<UTC>
-  bool resume = false;
-  int jobs = 1;
-  std::string eye = {};  ///< size of the pictures that the plan renders
-  bool drawn = false;    ///< runs of generated contact scenes, which the summary counts by their verdicts
-  bool part = false;     ///< only some of the manifest's runs: no figures of the folder at the end
-  DeviceChoice device;
-  std::string command_line;                 ///< stored with the study
-  decltype(RunOptions::progress) progress;  ///< before each task
-  std::function<void()> before_runs = {};   ///< once the folder is known to be usable
-};
-
-/// An executed study. Its folder has one file a run and study.json.
-struct StudyEnd {
-  std::filesystem::path out;
-  ExitCode exit_code = ExitCode::Ok;
-  std::vector<std::string> faults;  ///< runs that broke a rule of the harness
-  /// The summary, made when it is asked for, since both forms may read the folder again. Text: follows the tables.
-  std::function<nlohmann::json()> json;
-  std::function<std::string()> text;
-};
-
 /// results/runs/<study>-<UTC>, and a number where two began in the same second.
 std::filesystem::path default_folder(const std::string& study);
-
-/// Executes a plan, in a worker process, and makes its folder.
-StudyEnd execute_study(RunPlan, StudyManifest, const StudyCall&);
 
 /// State shared by all commands. A command adds itself to the app and runs in its callback; it throws Error on failure.
 struct Console {
   bool json = false;  ///< print a machine-readable summary instead of tables
   std::string command_line;
   ExitCode exit_code = ExitCode::Ok;
-  std::set<std::string> reported_scenes = {};  ///< scenes whose drawn parameters (--seed) have been printed
 
   /// Storage for a command's arguments: a new object for every command line, since one process may run several (an
   /// app's session does). They live as long as the console.
@@ -89,13 +60,10 @@ inline std::string message_of(const std::string& text) {
 /// Declares the command and its options.
 using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
-    add_compare, add_completion, add_manual, add_render, add_xr, add_conformance;
+    add_compare, add_completion, add_render, add_xr, add_conformance;
 
 /// The lists of `clothbench list`: solvers, features, scenarios, studies, devices, metrics, scalars, assets, terms.
 std::vector<std::string> list_names();
-
-/// The glossary: (term, meaning), in alphabetical order.
-std::vector<std::pair<std::string, std::string>> glossary();
 
 /// The plan of a solver for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
 /// contact_margins; the worker's side of `clothbench plan`.
@@ -118,24 +86,23 @@ struct SolverFlags {
   std::vector<ChosenSolver> chosen(const std::vector<std::string>& by_default) const;
 };
 
-/// Options of commands that execute a study, and how they tell of it.
+/// How a command executes a plan.
 struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
-  bool resume = false, part = false;
-  DeviceFlags device;
-  /// Executes with a status line; prints faults, tables and summary, and sets the exit code.
-  void tell(Console&, const std::function<StudyEnd(const StudyCall&)>& execute) const;
+  bool resume = false;
+  bool part = false;  ///< only some of the manifest's runs: no figures of the folder at the end
+  int jobs = 1;
+  std::string eye = {};  ///< size of the pictures that the plan renders
+  DeviceFlags device = {};
 };
+
+/// Executes a plan, in worker processes, and makes its folder; `before_runs` is called once the folder is known to be
+/// usable. Prints faults, tables and summary, and sets the exit code.
+void execute_study(RunPlan, StudyManifest, const RunFlags&, Console&, const std::function<void()>& before_runs = {});
 
 /// An option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
 CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,
                          const std::string& help);
-
-/// --seed, for commands whose scenes have a truth.
-void add_seed(CLI::App&, std::optional<std::uint64_t>& seed);
-
-/// The scene with parameters drawn by `seed`, printed once for each scene name; without a seed, the scene as it is.
-Scene at_seed(Scene, const std::optional<std::uint64_t>& seed, Console&);
 
 /// --require-assets: using stand-ins for rooms and hands is an Error.
 void add_require_assets(CLI::App&, bool& required);

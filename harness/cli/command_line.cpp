@@ -24,15 +24,15 @@ int report_error(const Console& console, const std::string& message, ExitCode co
 }
 
 /// In the order of the help.
-constexpr AddCommand* kCommands[] = {add_list,       add_validate, add_plan,  add_run,     add_run_child,   add_study,
-                                     add_report,     add_import,   add_check, add_compare, add_conformance,
+constexpr AddCommand* kCommands[] = {add_list,      add_validate, add_plan,  add_run,     add_run_child,   add_study,
+                                     add_report,    add_import,   add_check, add_compare, add_conformance,
 #ifdef CLOTHBENCH_WITH_RENDER
                                      add_render,
 #endif
 #ifdef CLOTHBENCH_WITH_XR
                                      add_xr,
 #endif
-                                     add_completion, add_manual};
+                                     add_completion};
 
 /// Suggests the nearest command if the first word is not a command.
 void suggest_command(const CLI::App& app, const std::vector<std::string>& words) {

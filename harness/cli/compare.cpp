@@ -1,4 +1,3 @@
-#include "base/files.hpp"
 #include "check/print.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
@@ -8,7 +7,7 @@ namespace clothbench {
 namespace {
 
 struct CompareArguments {
-  std::string a, b, markdown;
+  std::string a, b;
   std::vector<std::string> allowed;
 };
 
@@ -36,7 +35,6 @@ Processes read_processes(const std::string& given) {
 
 void compare(const CompareArguments& given, Console& console) {
   const Checked compared = compare_processes(read_processes(given.a), read_processes(given.b), given.allowed);
-  if (!given.markdown.empty()) write_file_atomically(given.markdown, comparison_markdown(compared, given.a, given.b));
   console.print([&] { return comparison_json(compared); }, [&] { return comparison_text(compared); });
 }
 
@@ -59,10 +57,9 @@ void add_compare(CLI::App& app, Console& console) {
   cmd->add_option("--allow", given.allowed, "Compare although these differ, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember(condition_kinds()));
-  cmd->add_option("--markdown", given.markdown, "Also write the tables to this file, for a pull request");
   cmd->footer(
       "Exit codes: 0 compared, 2 bad input, or runs under different conditions.\n"
-      "Example: clothbench compare results/runs/before results/runs/after --markdown comparison.md");
+      "Example: clothbench compare results/runs/before results/runs/after");
   cmd->callback([&console, &given] { compare(given, console); });
 }
 

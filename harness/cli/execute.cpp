@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/plugin_environment.hpp"
 #include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
@@ -14,12 +15,6 @@
 
 namespace clothbench {
 namespace {
-
-nlohmann::json seconds_json(const RunResult& r) {
-  nlohmann::json j = nlohmann::json::object();
-  for (const auto& [name, s] : r.seconds) j[name] = {{"runs", s}};
-  return j;
-}
 
 /// Selects the stored runs that belong to the plan of a command.
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
@@ -46,7 +41,9 @@ nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs
           {"unsupported", r.runs_unsupported},
           {"over_budget", r.runs_over_budget},
           {"failed", r.runs_failed},
-          {"seconds", seconds_json(r)},
+          {"grades", {{"stable", r.grades.stable}, {"degraded", r.grades.degraded}, {"failed", r.grades.failed}}},
+          {"crashed", r.grades.crashed},
+          {"seconds", r.seconds},
           {"faults", r.faults},
           {"with_bound", count_verdicts(runs).runs},
           {"expect_passed", count_verdicts(runs).passed},
@@ -56,6 +53,7 @@ nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs
 
 /// Where the time went, and what was not measured for its sake.
 std::string spent(const RunResult& r) {
+  if (r.seconds.empty()) return "";
   std::string text;
   double all = 0;
   for (const auto& [name, s] : r.seconds) {
@@ -64,10 +62,8 @@ std::string spent(const RunResult& r) {
   }
   text = fmt::format("seconds: {}; together {:.0f}\n", text, all);
   if (r.runs_over_budget > 0)
-    text += fmt::format(
-        "not run: {} settings, because their solvers had used all of their time on the scene "
-        "(over_budget)\n",
-        r.runs_over_budget);
+    text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
+                        r.runs_over_budget);
   return text;
 }
 
@@ -79,42 +75,15 @@ std::string text_of(const RunResult& r, const std::vector<std::string>& names, c
   };
   const std::vector<RunRecord> runs = stored_runs(names, out);
   const VerdictCounts verdicts = count_verdicts(runs);
-  return (names.empty() || names.size() > kFew ? "" : in_short_table(runs).console()) +
-         fmt::format("\n{}, {}, {}{}; results in {}\n", counted(r.runs_ok, "runs ok", Tone::Good),
-                     counted(r.runs_unsupported, "unsupported", Tone::Doubtful),
-                     counted(r.runs_failed, "failed", Tone::Bad),
-                     verdicts.runs > 0 ? "; with a bound: " + verdicts.text() : "", out.string()) +
-         spent(r);
-}
-
-VerdictCounts verdicts_in(const std::filesystem::path& out) {
-  std::vector<RunRecord> runs = collect({out});
-  withhold_times(runs);
-  return count_verdicts(runs);
-}
-
-/// Summaries of a study whose runs are apart: verdicts, and stability grades unless its scenes are drawn.
-void summarise_apart(const RunResult& r, bool drawn, StudyEnd& end) {
-  const Grades n = r.grades;
-  const std::filesystem::path out = end.out;
-  end.json = [=] {
-    const VerdictCounts counts = verdicts_in(out);
-    nlohmann::json j = {{"out", out.string()}, {"passed", counts.passed}, {"runs", counts.runs}};
-    if (!drawn)
-      j.update({{"stable", n.stable},
-                {"degraded", n.degraded},
-                {"failed", n.failed},
-                {"unsupported", n.unsupported},
-                {"crashed", n.crashed}});
-    return j;
-  };
-  end.text = [=] {
-    const std::string grades =
-        drawn ? ""
-              : fmt::format("{} runs stable, {} degraded, {} failed ({} of them crashed or hung), {} unsupported; ",
-                            n.stable, n.degraded, n.failed, n.crashed, n.unsupported);
-    return fmt::format("\n{}{}; results in {}\n", grades, verdicts_in(out).text(), out.string());
-  };
+  std::string text = fmt::format("\n{}, {}, {}", counted(r.runs_ok, "runs ok", Tone::Good),
+                                 counted(r.runs_unsupported, "unsupported", Tone::Doubtful),
+                                 counted(r.runs_failed, "failed", Tone::Bad));
+  if (r.grades.any())
+    text += fmt::format("; {} stable, {} degraded, {} failed ({} of them crashed or hung)", r.grades.stable,
+                        r.grades.degraded, r.grades.failed, r.grades.crashed);
+  if (verdicts.runs > 0) text += "; with a bound: " + verdicts.text();
+  return (names.empty() || names.size() > kFew ? "" : in_short_table(runs).console()) + text +
+         fmt::format("; results in {}\n", out.string()) + spent(r);
 }
 
 }  // namespace
@@ -128,43 +97,44 @@ std::filesystem::path default_folder(const std::string& study) {
   return folder;
 }
 
-StudyEnd execute_study(RunPlan plan, StudyManifest manifest, const StudyCall& call) {
-  settle_device(plan, call.device);
-  StudyEnd end;
-  end.out = call.out.empty() ? default_folder(manifest.study) : call.out;
+void execute_study(RunPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console,
+                   const std::function<void()>& before_runs) {
+  settle_device(plan, flags.device);
+  const std::filesystem::path out =
+      flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
   const std::vector<std::string> names = run_names(plan);
   const std::set<std::string> mine(names.begin(), names.end());
   std::vector<std::size_t> numbers;
-  for (std::size_t k = 0; call.part && k < manifest.runs.size(); ++k)
+  for (std::size_t k = 0; flags.part && k < manifest.runs.size(); ++k)
     if (mine.contains(manifest.runs[k])) numbers.push_back(k);
-  const ResultFolder held(end.out, numbers, call.command_line);
-  require_same_runs(end.out, plan, call.resume);
+  const ResultFolder held(out, numbers, console.command_line);
+  require_same_runs(out, plan, flags.resume);
   manifest.created = utc_now();
-  manifest.command_line = call.command_line;
+  manifest.command_line = console.command_line;
   if (manifest.runs.empty()) manifest.runs = names;
-  write_manifest(end.out, manifest);
+  write_manifest(out, manifest);
 
-  if (call.before_runs) call.before_runs();
-  RunOptions options;
-  options.out = end.out;
-  options.resume = call.resume;
-  options.jobs = call.jobs;
-  options.device = call.device.options;
-  options.progress = call.progress;
-  const RunResult result =
-      runs_in_worker(plan) ? execute_in_worker(plan, options, call.eye) : execute_runs(plan, options);
-  end.faults = result.faults;
-  if (!end.faults.empty()) end.exit_code = ExitCode::CheckFailed;
-  if (plan.apart) {
-    summarise_apart(result, call.drawn, end);
-    return end;
+  if (before_runs) before_runs();
+  RunResult result;
+  {
+    StatusLine line(!console.json);
+    RunOptions options;
+    options.out = out;
+    options.resume = flags.resume;
+    options.jobs = flags.jobs;
+    options.device = flags.device.options;
+    options.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
+    result = solvers_in_process() ? execute_runs(plan, options) : execute_in_worker(plan, options, flags.eye);
   }
-  end.json = [=, out = end.out, part = call.part] {
-    const std::vector<RunRecord> runs = stored_runs(names, out);
-    return summary_of(result, runs, out, part ? nlohmann::json::array() : figures_of(runs));
-  };
-  end.text = [=, out = end.out] { return text_of(result, names, out); };
-  return end;
+  if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
+  for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
+  if (!console.json && !flags.part) print_console_report({out});
+  console.print(
+      [&] {
+        const std::vector<RunRecord> runs = stored_runs(names, out);
+        return summary_of(result, runs, out, flags.part ? nlohmann::json::array() : figures_of(runs));
+      },
+      [&] { return text_of(result, names, out); });
 }
 
 }  // namespace clothbench

@@ -7,6 +7,7 @@
 #include "base/json_text.hpp"
 #include "check/baseline.hpp"
 #include "cli/command.hpp"
+#include "cli/texts.hpp"
 #include "metrics/registry.hpp"
 #include "report/features.hpp"
 #include "runner/study_plan.hpp"
@@ -98,9 +99,21 @@ nlohmann::json list_assets() {
   return {{{"name", source.kind()}, {"summary", source.reason}, {"folder", source.root.string()}}};
 }
 
+std::string without_emphasis(std::string text) {
+  std::erase_if(text, [](char c) { return c == '`' || c == '*'; });
+  return text;
+}
+
+/// The glossary: term and meaning, in alphabetical order.
 nlohmann::json list_terms() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const auto& [term, meaning] : glossary()) rows.push_back({{"name", term}, {"summary", meaning}});
+  std::istringstream lines(texts::kGlossary);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t middle = line.find(" | ");
+    if (!line.starts_with("| ") || middle == std::string::npos || line.starts_with("| term |")) continue;
+    rows.push_back({{"name", without_emphasis(line.substr(2, middle - 2))},
+                    {"summary", without_emphasis(line.substr(middle + 3, line.rfind(" |") - middle - 3))}});
+  }
   return rows;
 }
 

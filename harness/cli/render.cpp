@@ -67,16 +67,22 @@ void render_plugin(RenderArguments a, const SolverEntry& solver, const Console& 
   const fs::path folder = fs::temp_directory_path() / fmt::format("clothbench-render-{}", getpid());
   const Overrides overrides = split_overrides(a.set);
   const auto [entry, settings, setting] = chosen_solver(a.solver, overrides);
-  Worker worker(own_program(), folder / "scratch");
+  RunPlan plan;
+  plan.protocol = "render";
+  plan.rules.trials = 0;
+  RunOptions options;
+  options.device = a.device.options;
+  Worker worker;
   for (std::string& file : a.files) {
     if (fs::is_directory(file) || render::is_run(file)) continue;
     const Scene scene = load_scene(file, overrides.scene);
     const RunSpec spec{&scene, entry, settings, setting};
-    const RunRecord r = worker.run(request_of(
-        spec, {a.device.options, "render", folder / std::to_string(&file - a.files.data()), solver_limit_s()}));
+    plan.rules.accuracy_duration_s = scene.time.duration_s;
+    options.out = folder / std::to_string(&file - a.files.data());
+    const RunRecord r = run_apart(worker, plan, spec, options);
     if (r.outcome.status == "crashed" || r.outcome.status == "timed_out" || r.outcome.status == "error")
       throw Error(solver.info.folder + ": " + r.outcome.message, ExitCode::CheckFailed);
-    file = (folder / std::to_string(&file - a.files.data()) / (run_name(spec) + ".h5")).string();
+    file = finished_file(options.out, run_name(spec)).string();
   }
   render_all(a, console);
   std::error_code ignored;

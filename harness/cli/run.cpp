@@ -8,7 +8,6 @@ struct RunArguments {
   SolverFlags with;
   std::string out;
   int trials = 1;
-  std::optional<std::uint64_t> seed;
   bool require_assets = false, resume = false;
 };
 
@@ -22,7 +21,6 @@ void add_run(CLI::App& app, Console& console) {
   a.with.add_to(*cmd, "--solver", "Solvers (default xpbd)", "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
-  add_seed(*cmd, a.seed);
   add_require_assets(*cmd, a.require_assets);
   cmd->add_flag("--resume", a.resume, "Continue the interrupted run in the folder of --out");
   a.with.device.add_to(*cmd);
@@ -32,8 +30,7 @@ void add_run(CLI::App& app, Console& console) {
     if (a.resume && a.out.empty()) throw Error("--resume needs --out DIR, the folder of the interrupted run");
     const std::vector<std::string> set = split_overrides(a.with.set).scene;
     std::vector<Scene> scenes;
-    for (const std::string& file : a.scenes)
-      scenes.push_back(at_seed(load_scene(file, set, asset_policy(a.require_assets)), a.seed, console));
+    for (const std::string& file : a.scenes) scenes.push_back(load_scene(file, set, asset_policy(a.require_assets)));
     RunPlan plan;
     plan.protocol = "run";
     plan.rules.trials = a.trials;
@@ -48,8 +45,7 @@ void add_run(CLI::App& app, Console& console) {
     }
     StudyManifest manifest;
     manifest.study = "run";
-    RunFlags{a.out, a.resume, false, a.with.device}.tell(
-        console, [&](const StudyCall& call) { return execute_study(plan, manifest, call); });
+    execute_study(plan, manifest, {.out = a.out, .resume = a.resume, .device = a.with.device}, console);
   });
 }
 

@@ -17,7 +17,7 @@ void add_run_child(CLI::App& app, Console& console) {
       return execute_plan(request, progress, known_solver, rendering_of);
     };
     console.exit_code = static_cast<ExitCode>(run_child_main(
-        folder, known_solver,
+        folder,
         {{"plan", plan}, {"plan-of-solver", silent(plan_answer)}, {"conformance", silent(conformance_answer)}}));
   });
 }

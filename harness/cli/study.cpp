@@ -65,11 +65,10 @@ void check_options(const Study& study, const StudyArguments& a) {
     if (a.trials > 0) throw Error("--trials" + of);
   }
   if (is_drawn(study)) return;
-  if (a.count > 0)
+  if (a.count > 0 || a.seed)
     throw Error(
-        "--count: the scenes of this study are given in its file; only studies with protocol contact (contact and "
-        "physics) "
-        "generate scenes");
+        "--seed, --count: the scenes of this study are given in its file; only studies with protocol contact (contact "
+        "and physics) generate scenes");
   if (a.procedural)
     throw Error("--procedural: this study has no random contact scenes; set CLOTHBENCH_ASSETS=procedural instead");
   if (a.jobs > 0 && study.protocol != "stability-map")
@@ -92,10 +91,6 @@ void run_study(StudyArguments& a, Console& console) {
       load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
   check_options(study, a);
   const bool drawn = is_drawn(study);
-  if (!drawn) {
-    for (Study::Item& item : study.scenes) item.scene = at_seed(std::move(item.scene), a.seed, console);
-    if (a.seed) study.definition["seed"] = *a.seed;
-  }
   if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
   RunPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
@@ -113,12 +108,10 @@ void run_study(StudyArguments& a, Console& console) {
     manifest.runs = names;
     a.run.resume = a.run.part = true;
   }
-  a.run.tell(console, [&](StudyCall call) {
-    call.jobs = std::max(1, a.jobs);
-    call.drawn = drawn;
-    if (a.with_rendering) call.eye = a.eye;
-    if (drawn && !console.json) call.before_runs = [&] { print_drawn(study); };
-    return execute_study(std::move(plan), manifest, call);
+  a.run.jobs = std::max(1, a.jobs);
+  if (a.with_rendering) a.run.eye = a.eye;
+  execute_study(std::move(plan), manifest, a.run, console, [&] {
+    if (drawn && !console.json) print_drawn(study);
   });
 }
 
@@ -137,7 +130,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override a scene key in every run: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
-  add_seed(*cmd, a.seed);
+  cmd->add_option("--seed", a.seed, "In the studies contact and physics: seed of the first scene (default 1)");
   cmd->add_option("--count", a.count,
                   "Number of scenes to generate in the studies contact and physics, from seed --seed on; default: the "
                   "study's count")

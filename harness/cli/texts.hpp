@@ -4,5 +4,4 @@
 namespace clothbench::texts {
 extern const char *const kBash, *const kZsh, *const kFish;  ///< scripts of `clothbench completion`
 extern const char* const kGlossary;                         ///< Markdown table: term, meaning
-extern const char* const kManual;                           ///< exit status and environment, for man(1)
 }  // namespace clothbench::texts

@@ -12,6 +12,7 @@ namespace clothbench {
 namespace {
 
 constexpr const char* kNotStated = "–";
+constexpr const char* kAssets = "rooms and hands";
 
 std::string shown_value(const nlohmann::json& value) {
   if (value.is_null() || value == "") return kNotStated;
@@ -33,7 +34,10 @@ const std::vector<std::string>& condition_kinds() {
 }
 
 std::string kind_of_condition(const std::string& what) {
-  return what == "GPU" ? "device" : what == "precision" ? "precision" : what == "scene SHA-256" ? "scene" : "length";
+  return what == "GPU"                                ? "device"
+         : what == "precision"                        ? "precision"
+         : what == "scene SHA-256" || what == kAssets ? "scene"
+                                                      : "length";
 }
 
 std::vector<Condition> conditions_of(const RunRecord& r) {
@@ -50,6 +54,10 @@ std::vector<Condition> conditions_of(const RunRecord& r) {
       {"device", "device profile", environment("device_profile")},
       {"precision", "precision", environment("precision")},
   };
+  // Procedural rooms and hands are other scenes than scanned ones: a run without the scans must not pass for them.
+  const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
+  if (scene.is_object() && scene.contains("assets"))
+    out.insert(out.begin() + 1, {"scene", kAssets, shown_value(scene["assets"])});
   if (r.outcome.status == "ok") {
     const std::vector<double>& time = r.accuracy.time_s;
     out.push_back({"length", "frames", std::to_string(time.empty() ? 0 : time.size() - 1)});

@@ -147,13 +147,20 @@ std::string name_of_case(const ConformanceCase& c) {
   return c.sides + " " + c.grid + (c.mesh ? " mesh" : "") + (c.profile.empty() ? "" : " " + c.profile);
 }
 
+json row_of(const std::string& scene, const std::string& status, const std::vector<std::string>& faults) {
+  return {{"scene", scene},    {"status", status},     {"cases", 0},      {"skipped", 0},
+          {"frames_whole", 0}, {"frames_of_scene", 0}, {"faults", faults}};
+}
+
+void count(json& row, const char* what) { row[what] = row[what].get<int>() + 1; }
+
 /// One case's part of its row.
 void add_case(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const ConformanceCase& c,
-              double limit_s, ConformanceRow& row) {
-  ++row.cases;
+              double limit_s, json& row) {
+  count(row, "cases");
   const Scene scene = conformance_scene(c, entry.info.name);
   std::string why = conformance_skip(entry.info, scene);
-  if (c.whole) row.frames_of_scene = scene.time.frames();
+  if (c.whole) row["frames_of_scene"] = scene.time.frames();
   ConformanceResult result;
   if (why.empty()) {
     try {
@@ -164,14 +171,14 @@ void add_case(const SolverEntry& entry, const json& settings, const DeviceOption
     }
   }
   if (!why.empty()) {
-    ++row.skipped;
-    if (row.skipped == row.cases) row.faults = {why};
+    count(row, "skipped");
+    if (row["skipped"] == row["cases"]) row["faults"] = json::array({why});
     return;
   }
-  if (row.status == "skipped") row.faults.clear();
-  if (row.status != "FAIL") row.status = result.faults.empty() ? "pass" : "FAIL";
-  if (c.whole) row.frames_whole = result.frames;
-  for (const std::string& f : result.faults) row.faults.push_back(name_of_case(c) + ": " + f);
+  if (row["status"] == "skipped") row["faults"] = json::array();
+  if (row["status"] != "FAIL") row["status"] = result.faults.empty() ? "pass" : "FAIL";
+  if (c.whole) row["frames_whole"] = result.frames;
+  for (const std::string& f : result.faults) row["faults"].push_back(name_of_case(c) + ": " + f);
 }
 
 }  // namespace
@@ -241,16 +248,6 @@ ConformanceResult run_conformance(const SolverEntry& entry, const json& settings
   return out;
 }
 
-json conformance_json(const ConformanceRow& r) {
-  return {{"scene", r.scene},
-          {"status", r.status},
-          {"cases", r.cases},
-          {"skipped", r.skipped},
-          {"frames_whole", r.frames_whole},
-          {"frames_of_scene", r.frames_of_scene},
-          {"faults", r.faults}};
-}
-
 std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen) {
   const std::vector<std::string> all = scene_names({"paper", "contact", "validation", "conformance"});
   for (const std::string& name : chosen)
@@ -258,35 +255,37 @@ std::vector<std::string> conformance_scenes(const std::vector<std::string>& chos
   return chosen.empty() ? all : chosen;
 }
 
-std::string conformance_text(const std::string& solver, const ConformanceRow& r) {
-  const Tone tone = r.status == "pass" ? Tone::Good : r.status == "FAIL" ? Tone::Bad : Tone::Doubtful;
-  std::string text = fmt::format("{} cases", r.cases - r.skipped);
-  if (r.skipped > 0) text += fmt::format(", {} skipped", r.skipped);
-  if (r.frames_whole > 0 && r.frames_whole < r.frames_of_scene)
-    text += fmt::format(", first {} of {} frames", r.frames_whole, r.frames_of_scene);
-  else if (r.frames_whole > 0)
-    text += fmt::format(", all {} frames", r.frames_whole);
-  if (r.status == "skipped" && !r.faults.empty()) text = r.faults.front();
-  text = fmt::format("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", r.status)), solver, r.scene, text);
-  if (r.status != "FAIL") return text;
-  for (const std::string& f : r.faults) text += fmt::format("        {}\n", f);
+std::string conformance_text(const std::string& solver, const json& r) {
+  const std::string status = r["status"];
+  const Tone tone = status == "pass" ? Tone::Good : status == "FAIL" ? Tone::Bad : Tone::Doubtful;
+  const int skipped = r["skipped"], frames = r["frames_whole"], all_frames = r["frames_of_scene"];
+  std::string text = fmt::format("{} cases", r["cases"].get<int>() - skipped);
+  if (skipped > 0) text += fmt::format(", {} skipped", skipped);
+  if (frames > 0 && frames < all_frames)
+    text += fmt::format(", first {} of {} frames", frames, all_frames);
+  else if (frames > 0)
+    text += fmt::format(", all {} frames", frames);
+  const auto faults = r["faults"].get<std::vector<std::string>>();
+  if (status == "skipped" && !faults.empty()) text = faults.front();
+  text = fmt::format("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", status)), solver,
+                     r["scene"].get<std::string>(), text);
+  if (status != "FAIL") return text;
+  for (const std::string& f : faults) text += fmt::format("        {}\n", f);
   return text;
 }
 
 json conformance_answer(const json& request) {
   const SolverEntry& entry = find_solver(request.at("solver"));
   const std::string scene = request.at("scene");
-  ConformanceRow row;
-  row.scene = scene;
-  row.status = "skipped";
+  json row = row_of(scene, "skipped", {});
   for (const ConformanceCase& c : conformance_cases(scene, entry.info.on_gpu && !is_external(entry.info)))
     if (request.at("whole").get<bool>() || !c.whole)
       add_case(entry, request.at("settings"), device_from_json(request.at("device")), c, request.at("limit_s"), row);
-  return conformance_json(row);
+  return row;
 }
 
-ConformanceRow ask_conformance(Worker& worker, const SolverEntry& entry, const json& settings,
-                               const DeviceOptions& device, const std::string& scene, bool whole, double limit_s) {
+json ask_conformance(Worker& worker, const SolverEntry& entry, const json& settings, const DeviceOptions& device,
+                     const std::string& scene, bool whole, double limit_s) {
   const json request = {{"solver", entry.info.name},
                         {"settings", settings},
                         {"device", device_to_json(device)},
@@ -294,9 +293,7 @@ ConformanceRow ask_conformance(Worker& worker, const SolverEntry& entry, const j
                         {"whole", whole},
                         {"limit_s", limit_s}};
   const WorkerAnswer answer = guarded(worker, "conformance", request, conformance_answer);
-  if (answer.end) return {scene, "FAIL", 0, 0, 0, 0, {"crashed: " + answer.end->text()}};
-  const json& j = answer.value;
-  return {j["scene"], j["status"], j["cases"], j["skipped"], j["frames_whole"], j["frames_of_scene"], j["faults"]};
+  return answer.end ? row_of(scene, "FAIL", {"crashed: " + answer.end->text()}) : answer.value;
 }
 
 }  // namespace clothbench

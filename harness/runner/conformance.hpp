@@ -61,22 +61,15 @@ std::vector<std::string> relation_overrides(const std::string& relation);
 ConformanceResult run_relation(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const Scene& related, const ConformanceCase&);
 
-/// One line of the command's answer: all cases of a scene.
-struct ConformanceRow {
-  std::string scene, status;  ///< status: "pass", "FAIL", "skipped" (no case is one for the solver)
-  int cases = 0, skipped = 0, frames_whole = 0, frames_of_scene = 0;
-  std::vector<std::string> faults;  ///< with the case before each; of a skipped row the reason
-};
-
-/// All cases of a scene; a crash is a fault.
-ConformanceRow ask_conformance(Worker&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
+/// One row of the command's answer, all cases of a scene: scene, status ("pass", "FAIL", or "skipped" if no case is one
+/// for the solver), cases, skipped, frames_whole, frames_of_scene, and faults with the case before each; of a skipped
+/// row the reason. A crash is a fault.
+nlohmann::json ask_conformance(Worker&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const std::string& scene, bool whole, double limit_s);
 /// The worker's side.
 nlohmann::json conformance_answer(const nlohmann::json& request);
-
-nlohmann::json conformance_json(const ConformanceRow&);
-/// The same for the terminal.
-std::string conformance_text(const std::string& solver, const ConformanceRow&);
+/// A row for the terminal.
+std::string conformance_text(const std::string& solver, const nlohmann::json& row);
 
 /// Scenes that are tested unless others are chosen. Throws Error for a chosen one that is none of them.
 std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen);

@@ -1,10 +1,15 @@
+// Runs in processes of their own: a plan that is sent to a worker, and what is stored of runs that end their process.
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
+#include <atomic>
 #include <deque>
+#include <exception>
 #include <limits>
+#include <mutex>
+#include <thread>
 
-#include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"
 #include "runner/interrupt.hpp"
@@ -15,6 +20,7 @@
 namespace clothbench {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Calls `with(key, member)` for each rule but the rendering. Rules: TrialRules, const or not.
@@ -28,14 +34,14 @@ void each_rule(Rules& r, With with) {
   with("drop_frames", r.drop_frames);
   with("accuracy_duration_s", r.accuracy_duration_s);
   with("run_limit_s", r.run_limit_s);
-  with("ladder_limit_s", r.ladder_limit_s);
   with("agree", r.agree);
   with("pipelined", r.pipelined);
   with("profiled_frames", r.profiled_frames);
 }
 
 json to_json(const RunPlan& plan) {
-  json j = {{"protocol", plan.protocol}, {"references", plan.references}, {"groups", json::array()}};
+  json j = {
+      {"protocol", plan.protocol}, {"references", plan.references}, {"apart", plan.apart}, {"groups", json::array()}};
   each_rule(plan.rules, [&](const char* key, const auto& value) { j["rules"][key] = value; });
   for (const auto& group : plan.groups) {
     json& specs = j["groups"].emplace_back(json::array());
@@ -78,6 +84,7 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   RunPlan& plan = own.plan;
   j.at("protocol").get_to(plan.protocol);
   j.at("references").get_to(plan.references);
+  j.at("apart").get_to(plan.apart);
   each_rule(plan.rules, [&](const char* key, auto& value) {
     const json& v = j.at("rules").at(key);  // null: infinite
     value = v.is_null() ? std::numeric_limits<std::decay_t<decltype(value)>>::infinity()
@@ -101,6 +108,7 @@ json to_json(const RunResult& r) {
           {"unsupported", r.runs_unsupported},
           {"over_budget", r.runs_over_budget},
           {"failed", r.runs_failed},
+          {"grades", {r.grades.stable, r.grades.degraded, r.grades.failed, r.grades.crashed}},
           {"seconds", r.seconds},
           {"faults", r.faults}};
 }
@@ -111,6 +119,8 @@ RunResult result_from_json(const json& j) {
   j.at("unsupported").get_to(r.runs_unsupported);
   j.at("over_budget").get_to(r.runs_over_budget);
   j.at("failed").get_to(r.runs_failed);
+  const json& g = j.at("grades");
+  r.grades = {g.at(0), g.at(1), g.at(2), g.at(3)};
   j.at("seconds").get_to(r.seconds);
   j.at("faults").get_to(r.faults);
   return r;
@@ -125,44 +135,142 @@ const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
   return nullptr;
 }
 
-void write_row(const RunSpec& c, const RunPlan& plan, const std::filesystem::path& out, const Outcome& outcome) {
+std::mutex hdf5;  // the library is not for several threads
+
+/// Writes the file of a run whose process could not write it. A file that the process left incomplete is removed: it is
+/// not the beginning of this one, but output of a crashed solver.
+void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
+  const std::lock_guard lock(hdf5);
   RunRecord r;
   r.header = header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol);
   r.outcome = outcome;
-  write_failed_run(out, r.header, outcome, summarise(c, {}, r));
+  std::error_code ignored;
+  fs::remove(out / (run_name(c) + ".part"), ignored);
+  RunWriter(out, r.header).finish(outcome, summarise(c, {}, r));
 }
 
-}  // namespace
-
-bool runs_in_worker(const RunPlan& plan) { return !plan.apart && !solvers_in_process(); }
-
-RunResult execute_in_worker(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
+/// Gives the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored as
+/// such and a new process continues with the rest. A crash in a process that had executed other plans counts only if it
+/// recurs in a fresh one.
+RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, const std::string& eye, double limit_s,
+              const char* interrupted) {
   json request = {{"plan", to_json(plan)},
                   {"out", options.out.string()},
                   {"device", device_to_json(options.device)},
                   {"eye", eye},
                   {"resume", options.resume},
                   {"reference_cache", options.reference_cache.string()}};
-  Worker worker(options.program);
-  for (std::size_t process = 0; process <= plan.size(); ++process) {  // one row per process at least
+  for (std::size_t process = 0; process <= 2 * plan.size(); ++process) {  // at most two per row
     std::string doing = "before the first run";
     const WorkerAnswer answer =
-        worker.call("plan", request, 0, kTrialsKept, [&](const std::string& what, std::size_t done, std::size_t total) {
+        worker.call("plan", request, 0, interrupted, [&](const std::string& what, std::size_t done, std::size_t total) {
           doing = what;
           if (options.progress) options.progress(what, done, total);
-          return run_of(plan, what) != nullptr ? solver_limit_s() : 0;
+          return run_of(plan, what) != nullptr ? limit_s : 0;
         });
     if (!answer.end) return result_from_json(answer.value);
+    request["resume"] = true;
+    const bool hung = answer.end->how == ChildEnd::How::TimedOut;
+    if (!hung && worker.calls_of_child() > 1) continue;
     const RunSpec* at = run_of(plan, doing);
     if (at == nullptr)
       throw Error(fmt::format("{}: the study's process: {}", doing, answer.end->text()), ExitCode::CheckFailed);
-    const std::string message = fmt::format("its process: {}, at \"{}\"", answer.end->text(), doing);
-    fmt::print(stderr, "{}\n", message);
-    write_row(*at, plan, options.out,
-              {answer.end->how == ChildEnd::How::TimedOut ? "timed_out" : "crashed", "F3", -1, message});
-    request["resume"] = true;
+    const std::string message = fmt::format("its process: {}, at \"{}\"{}", answer.end->text(), doing,
+                                            answer.last_words.empty() ? "" : "; last output: " + answer.last_words);
+    if (!plan.apart) fmt::print(stderr, "{}\n", message);
+    write_row(*at, plan, options.out, {hung ? "timed_out" : "crashed", "F3", -1, message});
+    if (plan.apart) return {};  // its only run
   }
   throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
+}
+
+using Task = std::function<void(Worker&)>;
+
+/// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in their order as threads become free.
+/// After an exception no further task begins, and the first exception is thrown once all threads have ended.
+void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program, const fs::path& scratch) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr first;
+  std::mutex mutex;
+  const auto work = [&](int k) {
+    try {
+      Worker worker(program, scratch / std::to_string(k));
+      for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
+    } catch (...) {
+      next = tasks.size();
+      const std::lock_guard lock(mutex);
+      if (!first) first = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int k = 1; k < std::min<int>(jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
+  work(0);
+  for (std::thread& t : threads) t.join();
+  if (first) std::rethrow_exception(first);
+}
+
+/// Gives each run to a worker of its own, `jobs` at a time.
+RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
+  RunResult result;
+  std::size_t done = 0;
+  const auto ended = [&](const RunSpec& spec, const RunRecord& r) {
+    result.add(spec, r);
+    if (options.progress) options.progress(run_name(spec), ++done, plan.size());
+  };
+  std::vector<const RunSpec*> todo;
+  for (const auto& group : plan.groups)
+    for (const RunSpec& spec : group)
+      if (const auto before = finished_run(spec, options))
+        ended(spec, *before);
+      else
+        todo.push_back(&spec);
+  const auto work = [](const RunSpec* s) {
+    return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
+  };
+  // The longest first: otherwise the other workers would wait for the last run.
+  std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
+  std::mutex mutex;
+  std::vector<Task> tasks;
+  for (const RunSpec* spec : todo)
+    tasks.push_back([&, spec](Worker& worker) {
+      stop_if_interrupted(kRunsKept);
+      const RunRecord r = run_apart(worker, plan, *spec, options);
+      const std::lock_guard lock(mutex);
+      ended(*spec, r);
+    });
+  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
+  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
+  if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
+  std::error_code ignored;
+  fs::remove_all(scratch, ignored);
+  result.faults = result.ends.faults();
+  return result;
+}
+
+}  // namespace
+
+RunRecord run_apart(Worker& worker, const RunPlan& plan, const RunSpec& spec, const RunOptions& given) {
+  RunPlan one;
+  one.groups = {{spec}};
+  one.rules = plan.rules;
+  one.protocol = plan.protocol;
+  one.apart = true;
+  RunOptions options = given;
+  options.resume = true;
+  options.progress = nullptr;
+  const double limit_s = plan.rules.run_limit_s;
+  ask(worker, one, options, "", limit_s > 0 ? 1.2 * limit_s + 5 : solver_limit_s(), kRunsKept);
+  const std::lock_guard lock(hdf5);
+  RunRecord r = read_run_summary(finished_file(options.out, run_name(spec)));
+  const std::string& status = r.outcome.status;
+  if (status == "error" || status == "device_lost" || status == "timed_out") worker.replace_child();
+  return r;
+}
+
+RunResult execute_in_worker(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
+  if (plan.apart) return execute_apart(plan, options);
+  Worker worker(options.program);
+  return ask(worker, plan, options, eye, solver_limit_s(), kTrialsKept);
 }
 
 json execute_plan(const json& request, const WorkerProgress& progress, const SolverLookup& lookup,
@@ -185,7 +293,13 @@ json execute_plan(const json& request, const WorkerProgress& progress, const Sol
   const FrameReports reports([&] {
     if (repeat) repeat();
   });
-  return to_json(execute_runs(own.plan, options));
+  try {
+    return to_json(execute_runs(own.plan, options));
+  } catch (const std::exception& e) {  // what a solver throws is a row of the table
+    if (!own.plan.apart) throw;
+    write_row(own.plan.groups[0][0], own.plan, options.out, {"error", "F3", -1, e.what()});
+    return to_json(RunResult{});
+  }
 }
 
 }  // namespace clothbench

@@ -46,7 +46,6 @@ struct TrialRules {
   int drop_frames = 72;              ///< the scene restarts, outside the clock, after this many frames; 0 = never
   double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
   double run_limit_s = 0;            ///< wall time of the untimed pass after which the run is `timed_out`; 0 = no limit
-  double ladder_limit_s = 0;  ///< wall time of loads and untimed passes of one solver's ladder on a scene; 0 = no limit
   double agree =
       0;  ///< trials end once two or more agree to this: half the range of frame rates over the median; 0 = never
   bool pipelined = false;    ///< also time the frames of a trial without waiting for each, if the solver supports it

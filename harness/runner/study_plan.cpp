@@ -47,20 +47,13 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
   const StudyRules& rules = study.rules;
   RunPlan plan;
   plan.protocol = protocol_name(study.length);
-  plan.rules = {study.trials,
-                rules.frames,
-                rules.max_wall_s,
-                rules.min_frames,
-                rules.warmup_s,
-                study.drop_frames,
-                study.accuracy_duration_s,
-                study.run_limit_s,
-                rules.ladder_limit_s,
-                rules.agree,
-                study.pipelined};
+  plan.rules = {study.trials,   rules.frames,      rules.max_wall_s,          rules.min_frames,
+                rules.warmup_s, study.drop_frames, study.accuracy_duration_s, study.run_limit_s,
+                rules.agree,    study.pipelined};
   if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = study.protocol == "work-precision";
   plan.apart = study.protocol == "contact" || study.protocol == "stability-map";
+  if (plan.apart) plan.rules.trials = 0;
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : lookup(s.solver));
   for (const Study::Item& item : study.scenes) {

@@ -1,16 +1,10 @@
 #include "runner/study_runner.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <set>
-#include <thread>
 
 #include "clothbench/error.hpp"
 #include "metrics/truth_errors.hpp"
@@ -66,22 +60,10 @@ class Stopwatch {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void count(const std::string& solver, const Outcome& outcome, RunResult& result) {
-  result.ends.add(solver, outcome);
-  if (outcome.status == "ok")
-    ++result.runs_ok;
-  else if (outcome.status == "unsupported")
-    ++result.runs_unsupported;
-  else if (outcome.status == "over_budget")
-    ++result.runs_over_budget;
-  else
-    ++result.runs_failed;
-}
-
 class GroupRun {
  public:
   GroupRun(const RunPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
-      : plan_(plan), options_(options), result_(result), done_(done), budget_(plan.rules.ladder_limit_s) {}
+      : plan_(plan), options_(options), result_(result), done_(done) {}
 
   void run(const std::vector<RunSpec>& group) {
     running_.reserve(group.size());
@@ -116,35 +98,36 @@ class GroupRun {
 
   double& seconds_of(const RunSpec& spec) { return result_.seconds[spec.entry->info.name]; }
 
-  /// Load and untimed pass, unless its ladder's budget is used up.
+  /// Why a run of a ladder is left out: a setting of less work has timed out. Empty if it is not.
+  std::string over_budget(const RunSpec& spec) const {
+    const auto at = timed_out_work_.find(spec.entry->info.name);
+    if (at == timed_out_work_.end() || spec.work <= at->second) return "";
+    return fmt::format("not run: {} times the work of a setting that timed out", spec.work / at->second);
+  }
+  void note_end(const RunSpec& spec, const std::string& status) {
+    if (spec.work == 0 || status != "timed_out") return;
+    int& work = timed_out_work_.try_emplace(spec.entry->info.name, spec.work).first->second;
+    work = std::min(work, spec.work);
+  }
+
+  /// Load and untimed pass.
   void begin(const RunSpec& given) {
     const Stopwatch watch(seconds_of(given));
     RunSpec spec = given;
     const std::string name = run_name(spec);
     if (options_.resume) remove_leftovers(options_.out, name);
-    if (run_finished(options_.out, name)) {
-      if (!options_.resume) refuse_finished_run(options_.out, name);
-      require_same_run(options_.out, planned_run(spec));
-      recall(spec, name);
+    if (const auto before = finished_run(spec, options_)) {
+      result_.add(spec, *before);
+      note_end(spec, before->outcome.status);
       ++done_;
       return;
     }
-    spec.over_budget = budget_.refused(spec);
+    spec.over_budget = over_budget(spec);
     open(spec, name);
     Running& r = running_.back();
     if (r.run->alive() && !r.run->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
     r.untimed_s = watch.seconds();
-    if (spec.over_budget.empty()) budget_.spent(spec, r.untimed_s, r.run->outcome().status);
-  }
-
-  /// Counts a run of an earlier session, and what it took of its ladder's budget.
-  void recall(const RunSpec& spec, const std::string& name) {
-    const RunRecord before = read_run_summary(stored_run(options_.out, name));
-    count(spec.entry->info.name, before.outcome, result_);
-    if (!(spec.work > 0)) return;
-    const auto took = before.summary.find("untimed_s");
-    if (before.outcome.status != "over_budget" && took != before.summary.end())
-      budget_.spent(spec, took->second, before.outcome.status);
+    note_end(spec, r.run->outcome().status);
   }
 
   void open(const RunSpec& spec, const std::string& name) {
@@ -166,9 +149,7 @@ class GroupRun {
 
   void accuracy(Running& r) {
     note(r.name() + ": accuracy");
-    TrialRules rules = plan_.rules;
-    rules.run_limit_s = budget_.run_limit_s(r.run->spec(), rules.run_limit_s);
-    r.record.accuracy = r.run->run_accuracy(rules);
+    r.record.accuracy = r.run->run_accuracy(plan_.rules);
     r.writer->write_accuracy(r.record.accuracy);
   }
 
@@ -191,10 +172,7 @@ class GroupRun {
     const Stopwatch watch(seconds_of(r.run->spec()));
     Outcome outcome = r.run->outcome();
     const int messages = r.run->validation_messages();
-    if (messages > 0) {
-      result_.validation_messages += messages;
-      result_.faults.push_back(fmt::format("{}: {} validation messages", r.name(), messages));
-    }
+    if (messages > 0) outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
     if (outcome.status == "error" && outcome.klass != "F3") result_.faults.push_back(r.name() + ": " + outcome.message);
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
@@ -203,9 +181,11 @@ class GroupRun {
     summary["untimed_s"] = r.untimed_s;
     Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
-    count(r.run->spec().entry->info.name, outcome, result_);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
+    r.record.outcome = std::move(outcome);
+    r.record.summary = std::move(summary);
+    result_.add(r.run->spec(), r.record);
     ++done_;
   }
 
@@ -213,90 +193,9 @@ class GroupRun {
   const RunOptions& options_;
   RunResult& result_;
   std::size_t& done_;
-  LadderBudget budget_;
+  std::map<std::string, int> timed_out_work_;  ///< least work that timed out, by solver
   std::vector<Running> running_;
 };
-
-using Task = std::function<void(Worker&)>;
-
-/// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in their order as threads become free.
-/// After an exception no further task begins, and the first exception is thrown once all threads have ended.
-void run_tasks(const std::vector<Task>& tasks, int jobs, const std::filesystem::path& program,
-               const std::filesystem::path& scratch) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr first;
-  std::mutex mutex;
-  const auto work = [&](int k) {
-    try {
-      Worker worker(program, scratch / std::to_string(k));
-      for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
-    } catch (...) {
-      next = tasks.size();
-      const std::lock_guard lock(mutex);
-      if (!first) first = std::current_exception();
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int k = 1; k < std::min<int>(jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
-  work(0);
-  for (std::thread& t : threads) t.join();
-  if (first) std::rethrow_exception(first);
-}
-
-void execute_apart(const RunPlan& plan, const RunOptions& options, RunResult& result) {
-  std::size_t done = 0;
-  const auto ended = [&](const RunSpec& spec, const RunRecord& r) {
-    count(spec.entry->info.name, r.outcome, result);
-    result.grades.add(r);
-    ++done;
-    if (options.progress) options.progress(run_name(spec), done, plan.size());
-  };
-  std::vector<const RunSpec*> todo;
-  for (const auto& group : plan.groups)
-    for (const RunSpec& spec : group) {
-      const std::string name = run_name(spec);
-      if (run_finished(options.out, name)) {
-        if (!options.resume) refuse_finished_run(options.out, name);
-        require_same_run(options.out, planned_run(spec));
-        ended(spec, read_run_summary(stored_run(options.out, name)));
-      } else if (!spec.entry->make) {
-        ended(spec, whole_run(spec, {options.device, plan.protocol, options.out}));
-      } else {
-        todo.push_back(&spec);
-      }
-    }
-  const auto work = [](const RunSpec* s) {
-    return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
-  };
-  // The longest first: otherwise the other workers would wait for the last run.
-  std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
-  std::mutex mutex;
-  std::vector<Task> tasks;
-  for (const RunSpec* spec : todo)
-    tasks.push_back([&, spec](Worker& worker) {
-      stop_if_interrupted(kRunsKept);
-      const RunRecord r =
-          worker.run(request_of(*spec, {options.device, plan.protocol, options.out, plan.rules.run_limit_s}));
-      const std::lock_guard lock(mutex);
-      ended(*spec, r);
-    });
-  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
-  const std::filesystem::path scratch =
-      std::filesystem::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
-  if (!tasks.empty())
-    run_tasks(tasks, options.jobs, options.program.empty() ? own_program() : options.program, scratch);
-  std::error_code ignored;
-  std::filesystem::remove_all(scratch, ignored);
-}
-
-/// Two runs of one name would write one file.
-void refuse_doubles(const RunPlan& plan) {
-  std::set<std::string> names;
-  for (const auto& group : plan.groups)
-    for (const RunSpec& c : group)
-      if (const std::string name = run_name(c); !names.insert(name).second)
-        throw Error("two runs would be stored as " + name + ": expected each scene, solver and setting once");
-}
 
 }  // namespace
 
@@ -325,31 +224,22 @@ std::vector<std::string> SolverEnds::faults() const {
   return out;
 }
 
-void Grades::add(const RunRecord& r) {
+void RunResult::add(const RunSpec& spec, const RunRecord& r) {
+  const std::string& status = r.outcome.status;
+  ends.add(spec.entry->info.name, r.outcome);
+  ++(status == "ok"            ? runs_ok
+     : status == "unsupported" ? runs_unsupported
+     : status == "over_budget" ? runs_over_budget
+                               : runs_failed);
+  if (spec.scene->stability.name.empty() || status == "unsupported") return;
   const auto at = r.summary.find("stability_grade");
   const double grade = at != r.summary.end() && std::isfinite(at->second) ? at->second : 2;
-  if (r.outcome.status == "unsupported")
-    ++unsupported;
-  else
-    ++(grade == 0 ? stable : grade == 1 ? degraded : failed);
-  if (r.outcome.status == "crashed" || r.outcome.message.starts_with("its process")) ++crashed;
-}
-
-void require_same_runs(const std::filesystem::path& folder, const RunPlan& plan, bool resume) {
-  std::vector<PlannedRun> runs;
-  for (const auto& group : plan.groups)
-    for (const RunSpec& c : group) runs.push_back(planned_run(c));
-  require_same_runs(folder, runs, resume);
+  ++(grade == 0 ? grades.stable : grade == 1 ? grades.degraded : grades.failed);
+  if (status == "crashed" || r.outcome.message.starts_with("its process")) ++grades.crashed;
 }
 
 RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
-  refuse_doubles(given);
   RunResult result;
-  if (given.apart) {
-    execute_apart(given, options, result);
-    result.faults = result.ends.faults();
-    return result;
-  }
   std::size_t done = 0;
   RunPlan plan = given;
   if (plan.references) {

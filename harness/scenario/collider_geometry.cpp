@@ -7,6 +7,17 @@
 
 namespace clothbench {
 
+const std::vector<ColliderKind>& collider_kinds() {
+  static const std::vector<ColliderKind> all = {plane_kind(), sphere_kind(), box_kind(), capsules_kind(), mesh_kind()};
+  return all;
+}
+
+const ColliderKind& kind_of(const Collider& c) {
+  for (const ColliderKind& kind : collider_kinds())
+    if (kind.shape == c.shape) return kind;
+  throw Error("collider " + c.name + ": no such shape");
+}
+
 Feature Collider::feature() const { return moves() ? kind_of(*this).moving : kind_of(*this).standing; }
 
 std::vector<double> posed_positions(const ColliderMesh& mesh, const ColliderPose& pose) {

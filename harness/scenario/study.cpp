@@ -23,8 +23,8 @@ constexpr double kFpsAccuracy_s = 0.5;
 constexpr std::uint64_t kGreatestSeed = std::uint64_t{1} << 53;  ///< what every reader of JSON keeps
 
 StudyRules read_rules(const json& j) {
-  return {j["frames"].get<int>(),      j["min_frames"].get<int>(),        j["max_wall_s"].get<double>(),
-          j["warmup_s"].get<double>(), j["ladder_limit_s"].get<double>(), j["agree"].get<double>()};
+  return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
+          j["warmup_s"].get<double>(), j["agree"].get<double>()};
 }
 
 /// Converts {"cloth.sides": "double"} to the form of `--set`.
@@ -232,7 +232,6 @@ class Builder {
       if (names_.size() > kMostRuns)
         throw Error(fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, rungs or solvers",
                                 source_, pointer, kMostRuns));
-      if (!is_first && v.merged) continue;  // another scene of the study has become the same
       item.solvers.push_back(s);
       if (!is_first)
         throw Error(fmt::format("{}: {}: two runs are named {} with {}; labels must differ", source_, pointer,

@@ -22,11 +22,11 @@ struct StudySolver {
   std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 
-/// Length of a trial, and when to end a ladder or the trials early. The names are those in the file.
+/// Length of a trial, and when to end the trials early. The names are those in the file.
 struct StudyRules {
   int frames = 0, min_frames = 0;
   double max_wall_s = 0, warmup_s = 0;
-  double ladder_limit_s = 0, agree = 0;
+  double agree = 0;
 };
 
 /// The quick form has fewer scenes and solvers, and shorter trials.
@@ -85,13 +85,12 @@ inline constexpr std::size_t kMostRuns = 100000;
 struct Variant {
   std::string suffix;                        ///< of the scene's name: "-32-single"
   std::vector<std::string> overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
-  bool merged = false;                       ///< an override fixes the value on an axis, for all that differed in it
 };
 
-/// Cartesian product of a scene's axes; the first varies slowest. Where one of `set` (`key=value`, as in `--set`) fixes
-/// an axis, that axis has this one value: under its own label if the axis lists it, else under the value as a label.
-/// It then has every label of the axis as a tag. Throws Error naming `source` and the JSON
-/// pointer if the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes.
+/// Cartesian product of a scene's axes; the first varies slowest. Throws Error naming `source` and the JSON pointer if
+/// the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes; and Error if one of
+/// `set`
+/// (`key=value`, as in `--set`) is the key of an axis.
 std::vector<Variant> expand(const nlohmann::json& axes, const std::string& pointer, const std::string& source,
                             const std::vector<std::string>& set);
 

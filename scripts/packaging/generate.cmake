@@ -1,4 +1,4 @@
-# cmake -D PROGRAM= -D CHANGELOG= -D OUT= -P generate.cmake: manual page and completions, made by the program.
+# cmake -D PROGRAM= -D CHANGELOG= -D OUT= -P generate.cmake: completions, made by the program, and the changelog.
 function(made_by_program file)
   execute_process(COMMAND ${PROGRAM} ${ARGN} OUTPUT_FILE ${OUT}/${file} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -12,6 +12,4 @@ file(MAKE_DIRECTORY ${OUT})
 foreach(shell bash zsh fish)
   made_by_program(clothbench.${shell} completion ${shell})
 endforeach()
-made_by_program(clothbench.1 manual)
-compressed(${OUT}/clothbench.1 clothbench.1.gz)
 compressed(${CHANGELOG} changelog.gz)

@@ -28,7 +28,6 @@ install(EXPORT clothbench NAMESPACE clothbench:: FILE clothbenchConfig.cmake DES
 write_basic_package_version_file(${generated}/clothbenchConfigVersion.cmake COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${generated}/clothbenchConfigVersion.cmake DESTINATION ${package})
 
-install(FILES ${generated}/clothbench.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${generated}/clothbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME clothbench)
 install(FILES ${generated}/clothbench.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _clothbench)
 install(FILES ${generated}/clothbench.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

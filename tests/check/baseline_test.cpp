@@ -22,7 +22,7 @@ class BaselineFile : public ::testing::Test {
     file_ =
         fs::temp_directory_path() / ("clothbench-baseline-" + std::to_string(getpid()) + "-" + info->name() + ".json");
     const std::vector<RunRecord> runs = {contact_run("sweep"), ended(contact_run("desk", "paper"), "diverged", "F1", 7),
-                                         with_assets(contact_run("desk"), "npm")};
+                                         contact_run("desk")};
     made_ =
         update_baseline({}, runs, {"clothbench check x --update", {"clothbench study y"}, {"abc"}, {"µ GPU"}}).baseline;
   }
@@ -58,7 +58,6 @@ TEST_F(BaselineFile, ReadsBackExactly) {
   by_hand["runs"][0]["scalars"]["slip_m"] = nullptr;
   EXPECT_TRUE(std::isnan(written(by_hand.dump()).runs[0].scalars.at("slip_m")));
   EXPECT_EQ(read.origin.devices, made_.origin.devices);
-  EXPECT_EQ(read.runs[1].key.assets, "npm");
   EXPECT_EQ(read.runs[0].status, "diverged");
   EXPECT_EQ(read.runs[0].failed_frame, 7);
 }

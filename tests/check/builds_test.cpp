@@ -175,7 +175,7 @@ TEST(CompareRuns, TellsTimesResultsAndOutcomesApart) {
   EXPECT_EQ(runs[4].findings.at(0).baseline, "–");
   for (const CheckedRun& run : runs)
     for (const Finding& f : run.findings) EXPECT_EQ(f.verdict, Verdict::Changed);
-  const std::string text = comparison_markdown(all, "a", "b");
+  const std::string text = comparison_text(all);
   for (const char* word : {"noise", "slower", "+100.0 %", "free_fall_error", "diverged F1", "gone__s__default"})
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   EXPECT_EQ(comparison_json(all)["runs"][0]["time"]["verdict"], "noise");
@@ -237,7 +237,7 @@ TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
     const Checked allowed = compare_processes(a, b, {other.kind});
     EXPECT_NE(allowed.differing.marks().find(other.b), std::string::npos);
     EXPECT_EQ(comparison_json(allowed)["overridden"][0]["kind"], other.kind);
-    const std::string table = comparison_markdown(allowed, "a", "b");
+    const std::string table = comparison_text(allowed);
     EXPECT_NE(table.find(std::string("other ") + other.kind), std::string::npos) << table;
   }
 }

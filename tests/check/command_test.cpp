@@ -85,22 +85,6 @@ TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
     EXPECT_EQ(file.path().string().find(".tmp"), std::string::npos) << file.path();
 }
 
-TEST_F(CheckCommand, NotANumberMissingAndNewRuns) {
-  ASSERT_EQ(check("--update"), 0);
-  write_study({contact_run("desk"), with(contact_run("sweep"), "depth_max_m", kMissing)});
-  EXPECT_EQ(check(), 1);
-  EXPECT_NE(text_.find("not measured"), std::string::npos) << text_;
-  write_study({contact_run("desk"), planned(contact_run("sweep"))});
-  EXPECT_EQ(check(), 1);
-  EXPECT_NE(text_.find("planned, not run"), std::string::npos) << text_;
-  EXPECT_EQ(check("--update"), 2) << "no baseline of half a study";
-  write_study({contact_run("desk")});
-  EXPECT_EQ(check(), 1);
-  write_study({contact_run("desk"), contact_run("sweep"), contact_run("push")});
-  EXPECT_EQ(check(), 0);
-  EXPECT_NE(text_.find("1 new"), std::string::npos) << text_;
-}
-
 TEST_F(CheckCommand, ResultFilesOneByOne) {
   ASSERT_EQ(check("--update"), 0);
   std::string files;

@@ -227,27 +227,12 @@ TEST(Check, APlannedRunIsFoundByItsFileName) {
   EXPECT_EQ(checked.runs[0].key.setting, "speed=0.5 m/s");
 }
 
-TEST(Check, AssetKindsAreRunsOfTheirOwn) {
-  const RunRecord real = with_assets(contact_run(), "npm");
-  const RunRecord made_up = with(with_assets(contact_run(), "procedural"), "depth_max_m", 0.5);
-  const Checked one = check_runs(baseline_of({real, made_up}), {made_up});
-  EXPECT_TRUE(one.passed());
-  EXPECT_EQ(one.runs.size(), 1u);
-  EXPECT_EQ(one.other_assets, 1u);
-  EXPECT_TRUE(check_runs(baseline_of({real, made_up}), {made_up, real}).passed());
-
-  const Checked other = check_runs(baseline_of({real}), {made_up});
-  ASSERT_EQ(other.count(Verdict::Failed), 1u) << "made-up rooms must not pass for real ones";
-  EXPECT_EQ(other.runs.at(0).findings.at(0).quantity, "assets");
-  EXPECT_EQ(check_runs(baseline_of({real}), {real, made_up}).count(Verdict::New), 1u);
-  EXPECT_EQ(check_runs(baseline_of({real, made_up}), {}).runs.size(), 1u);
-}
-
-TEST(Check, TheCompletedSceneMaySayTheAssetsToo) {
-  RunRecord c = contact_run();
-  EXPECT_EQ(gated_part(c).key.assets, "");
-  c.header.scenario_json = R"({"assets":"procedural","cloth":{"size_m":[1,1]}})";
-  EXPECT_EQ(gated_part(c).key.assets, "procedural");
+TEST(Check, ProceduralRoomsDoNotPassForScans) {
+  RunRecord scanned = contact_run(), procedural = contact_run();
+  scanned.header.scenario_json = R"({"assets":"npm","cloth":{"size_m":[0.5,0.75]}})";
+  procedural.header.scenario_json = R"({"assets":"procedural","cloth":{"size_m":[0.5,0.75]}})";
+  const std::string refused = error_of([&] { check_runs(baseline_of({scanned}), {procedural}); });
+  EXPECT_NE(refused.find("scene: rooms and hands: npm and procedural"), std::string::npos) << refused;
 }
 
 TEST(Check, ARunIsAsBadAsItsWorstFinding) {
@@ -272,17 +257,6 @@ TEST(Update, TakesTheResultsAndSaysWhatChanged) {
   EXPECT_EQ(u.within_slack, 1u);
   const Checked again = check_runs(u.baseline, results);
   EXPECT_EQ(again.count(Verdict::Same), 3u);
-}
-
-TEST(Update, KeepsRunsOfOtherAssetsWithTheirOrigin) {
-  const RunRecord real = with_assets(contact_run(), "npm"), made_up = with_assets(contact_run(), "procedural");
-  Baseline old = baseline_of({real});
-  old.origin.devices = {"Real GPU"};
-  const Updated u = update_baseline(old, {made_up}, {"x", {}, {}, {"Another"}});
-  EXPECT_EQ(u.baseline.runs.size(), 2u);
-  EXPECT_EQ(u.changes.size(), 1u);
-  EXPECT_TRUE(u.removed.empty());
-  EXPECT_EQ(u.baseline.origin.devices, (std::vector<std::string>{"Another", "Real GPU"}));
 }
 
 TEST(Update, RefusesWhatIsNotWhole) {

@@ -18,14 +18,13 @@ using nlohmann::json;
 Checked sample() {
   const std::string nasty = "a <b> & \"c\", 100 %: d]]>\r\nnext\tline \x01\x1b \xff\xEF\xBF\xBF µ";
   Checked c;
-  c.runs.push_back({{"desk", "good", "default", ""}, {}});
-  c.runs.push_back({{"desk", "bad & <ugly>", "\"k\"=1", "npm"},
+  c.runs.push_back({{"desk", "good", "default"}, {}});
+  c.runs.push_back({{"desk", "bad & <ugly>", "\"k\"=1"},
                     {{Verdict::Failed, "outcome", "ok", "diverged F2 at frame 3", "", nasty},
                      {Verdict::Failed, "depth_max_m", "0.003", "0.02", "≤ 0.0036", ""},
                      {Verdict::Improved, "stretch_max", "0.5", "0.1", "≤ 0.555", ""}}});
-  c.runs.push_back({{"desk", "better", "default", ""}, {{Verdict::Improved, "depth_max_m", "1", "0.5", "≤ 1.1", ""}}});
-  c.runs.push_back(
-      {{"desk", "newcomer", "default", ""}, {{Verdict::New, "run", "–", "ok", "", "not in the baseline"}}});
+  c.runs.push_back({{"desk", "better", "default"}, {{Verdict::Improved, "depth_max_m", "1", "0.5", "≤ 1.1", ""}}});
+  c.runs.push_back({{"desk", "newcomer", "default"}, {{Verdict::New, "run", "–", "ok", "", "not in the baseline"}}});
   return c;
 }
 
@@ -35,7 +34,7 @@ TEST(Junit, IsReadBackByAnXmlParser) {
   std::ofstream(dir / "check.xml") << junit_xml(sample());
   json expected = json::array();
   for (const CheckedRun& c : sample().runs) {
-    std::string name = c.key.solver + " " + c.key.setting + (c.key.assets.empty() ? "" : " [" + c.key.assets + "]");
+    const std::string name = c.key.solver + " " + c.key.setting;
     json item = {{"classname", c.key.scene}, {"name", name}, {"failures", json::array()}, {"notes", json::array()}};
     for (const Finding& f : c.findings) item[f.verdict == Verdict::Failed ? "failures" : "notes"].push_back(f.quantity);
     expected.push_back(item);
@@ -58,17 +57,14 @@ TEST(Console, ShowsWhatDiffersAndAVerdict) {
   EXPECT_NE(text.find("100 %"), std::string::npos) << "the solver's own message";
 
   Checked fine;
-  fine.runs.push_back({{"desk", "good", "default", ""}, {}});
-  fine.other_assets = 2;
-  EXPECT_EQ(check_text(fine, "b.json"),
-            "check passed: 1 run: 0 failed, 0 improved, 0 new, 1 as in b.json; 2 runs more in the baseline are for "
-            "other assets\n");
+  fine.runs.push_back({{"desk", "good", "default"}, {}});
+  EXPECT_EQ(check_text(fine, "b.json"), "check passed: 1 run: 0 failed, 0 improved, 0 new, 1 as in b.json\n");
 }
 
 TEST(Console, AnUpdateChangesAndDoesNotFail) {
   Updated u;
   u.changes = sample().runs;
-  u.removed = {{"sweep", "old", "default", ""}};
+  u.removed = {{"sweep", "old", "default"}};
   const std::string text = update_text(u, "base.json");
   EXPECT_EQ(text.find("FAILED"), std::string::npos) << text;
   EXPECT_NE(text.find("changed"), std::string::npos) << text;
@@ -81,7 +77,6 @@ TEST(Json, HasEveryRun) {
   EXPECT_EQ(j.at("failed"), 1);
   ASSERT_EQ(j.at("runs").size(), 4u);
   EXPECT_EQ(j["runs"][0]["verdict"], "same");
-  EXPECT_EQ(j["runs"][1]["assets"], "npm");
   EXPECT_EQ(j["runs"][1]["findings"][1]["allowed"], "≤ 0.0036");
 }
 

@@ -33,11 +33,6 @@ inline RunRecord ended(RunRecord c, const std::string& status, const std::string
   return c;
 }
 
-inline RunRecord with_assets(RunRecord c, const std::string& assets) {
-  c.header.environment["assets"] = assets;
-  return c;
-}
-
 /// As `collect` gives a planned run without a file: only its file name is known.
 inline RunRecord planned(const RunRecord& of) {
   RunRecord c;

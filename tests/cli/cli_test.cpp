@@ -263,22 +263,5 @@ TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
     }
 }
 
-TEST_F(Cli, SeedDrawsAndIsStored) {
-  const std::string run = "run validation/swing-strip --solver ballistic --trials 0 --out " + dir_.string();
-  const Answer one = command(run + "/one --seed 7"), two = command(run + "/two --seed 7");
-  EXPECT_EQ(one.code, 0) << one.text;
-  EXPECT_NE(one.text.find("swing-strip --seed 7: length_m=0.240201"), std::string::npos) << one.text;
-  std::string scenes[2];
-  for (int k = 0; k < 2; ++k)
-    for (const auto& file : fs::directory_iterator(dir_ / (k == 0 ? "one" : "two")))
-      if (file.path().extension() == ".h5") scenes[k] = read_run(file.path()).header.scenario_json;
-  EXPECT_EQ(scenes[0], scenes[1]);
-  EXPECT_NE(scenes[0].find("\"seed\":7"), std::string::npos);
-  const Answer none =
-      command("run paper/gravity --solver ballistic --trials 0 --seed 7 --out " + (dir_ / "none").string());
-  EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.text.find("--seed draws parameters for scenes whose \"truth\" is"), std::string::npos) << none.text;
-}
-
 }  // namespace
 }  // namespace clothbench

@@ -64,16 +64,5 @@ const std::vector<Pair> kPairs = {
 INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),
                          [](const auto& one) { return one.param.second.at(1); });
 
-TEST(CommandsOfOneProcess, EachTellsWhatItsSeedDraws) {
-  const fs::path out = fs::temp_directory_path() / ("clothbench-commands-" + std::to_string(getpid()));
-  for (const char* folder : {"one", "two"}) {
-    const Answer a = in_this_process({"run", "validation/swing-strip", "--solver", "ballistic", "--trials", "0",
-                                      "--seed", "7", "--out", (out / folder).string()});
-    EXPECT_EQ(a.code, 0) << a.text;
-    EXPECT_NE(a.text.find("swing-strip --seed 7:"), std::string::npos) << folder << ": " << a.text;
-  }
-  fs::remove_all(out);
-}
-
 }  // namespace
 }  // namespace clothbench

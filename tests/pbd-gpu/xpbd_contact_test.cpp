@@ -7,7 +7,6 @@
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 #include "runner/solver_run.hpp"
-#include "runner/worker.hpp"
 #include "xpbd/contact/contact.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/substep_count.hpp"
@@ -116,17 +115,21 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
     nlohmann::json settings = {{"substeps", 2}};
     settings[kTuning]["contact_pairs"] = places;
     RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
-    const RunRecord run = whole_run(spec, {});
-    EXPECT_EQ(run.outcome.status, overflow ? "error" : "ok") << run.outcome.message;
-    const auto series = std::find_if(run.accuracy.metrics.begin(), run.accuracy.metrics.end(),
+    SolverRun run(spec, {}, "test");
+    TrialRules rules;
+    rules.accuracy_duration_s = s.time.duration_s;
+    const AccuracyPass pass = run.run_accuracy(rules);
+    const Outcome& outcome = run.outcome();
+    EXPECT_EQ(outcome.status, overflow ? "error" : "ok") << outcome.message;
+    const auto series = std::find_if(pass.metrics.begin(), pass.metrics.end(),
                                      [](const MetricSeries& m) { return m.name == "contact_overflow"; });
-    ASSERT_NE(series, run.accuracy.metrics.end());
-    ASSERT_EQ(series->values.size(), run.accuracy.time_s.size());
+    ASSERT_NE(series, pass.metrics.end());
+    ASSERT_EQ(series->values.size(), pass.time_s.size());
     EXPECT_EQ(series->values.back() > 0, overflow);
     if (!overflow) continue;
-    EXPECT_NE(run.outcome.message.find("list of pairs"), std::string::npos) << run.outcome.message;
-    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame)], series->values.back());
-    EXPECT_EQ(series->values[static_cast<std::size_t>(run.outcome.failed_frame) - 1], 0);
+    EXPECT_NE(outcome.message.find("list of pairs"), std::string::npos) << outcome.message;
+    EXPECT_EQ(series->values[static_cast<std::size_t>(outcome.failed_frame)], series->values.back());
+    EXPECT_EQ(series->values[static_cast<std::size_t>(outcome.failed_frame) - 1], 0);
   }
 }
 

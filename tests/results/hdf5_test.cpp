@@ -133,6 +133,25 @@ TEST_F(Hdf5, SameRunSameBytesAlsoThroughCbor) {
   }
 }
 
+TEST_F(Hdf5, AnUnfinishedRunIsNotImported) {
+  RunHeader h;
+  h.scene = "s";
+  h.solver = "none";
+  h.setting = "default";
+  h.settings = h.plan = h.environment = nlohmann::json::object();
+  RunWriter writer(dir_, h, Finish::Cbor);
+  EXPECT_TRUE(import_runs(dir_).empty());
+  const std::string part = (dir_ / "s__none__default.part").string();
+  try {
+    import_runs(part);
+    ADD_FAILURE() << "a part file named by itself is passed over in silence";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(import_runs(writer.finish({}, {})), std::vector<fs::path>{dir_ / "s__none__default.h5"});
+  EXPECT_TRUE(fs::exists(dir_ / "s__none__default.h5"));
+}
+
 TEST_F(Hdf5, FaultsNameTheFile) {
   std::ofstream(dir_ / "not.h5") << "text";
   for (const fs::path& p : {dir_ / "not.h5", dir_ / "missing.h5"}) {

@@ -7,7 +7,7 @@
 #include "clothbench/record.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/reference.hpp"
-#include "runner/worker.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -114,7 +114,9 @@ TEST(UnevenFrames, ReachTheSolverInAWholeRun) {
     const Scene s = load_scene("validation/incline-stick", {how, "time.duration_s=0.25"});
     std::vector<FrameInput> seen;
     const SolverEntry entry = spy(seen);
-    whole_run({&s, &entry, nlohmann::json::object()}, {{}, "test"});
+    TrialRules rules;
+    rules.accuracy_duration_s = s.time.duration_s;
+    SolverRun({&s, &entry, nlohmann::json::object()}, {}, "test").run_accuracy(rules);
     EXPECT_EQ(seen.size(), static_cast<std::size_t>(s.time.frames()));
     expect_frames_of(s, seen);
   }

@@ -66,27 +66,20 @@ TEST(Record, HasWhatIsNoParameterOfTheRun) {
   EXPECT_FALSE(left_out[1].contains("no_parameter"));
 }
 
-TEST(ExecuteRuns, RefusesTwoRunsOfOneFile) {
+TEST(RequireSameRuns, RefusesTwoRunsOfOneFile) {
   const ScratchFolder folder;
   const Scene scene = load_scene("conformance/sheet");
   const SolverEntry entry = doomed([](const Scene&, ClothState&) { return StepStatus::Ok; });
   const RunSpec run{&scene, &entry, kNone, "default"};
-  RunOptions options;
-  options.out = folder.path();
   for (const auto& groups : {std::vector<std::vector<RunSpec>>{{run, run}}, {{run}, {run}}}) {
     RunPlan plan;
     plan.groups = groups;
-    plan.rules.trials = 1;
-    plan.rules.frames = 1;
-    plan.rules.warmup_s = 0;
-    plan.protocol = "test";
     try {
-      execute_runs(plan, options);
+      require_same_runs(folder.path(), plan, false);
       ADD_FAILURE() << "nothing was refused";
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("conformance-sheet__doomed__default"), std::string::npos) << e.what();
     }
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing was run before it was refused";
   }
 }
 

@@ -57,26 +57,17 @@ TEST_F(DataFolderTest, VariableThenInstalledThenSource) {
 }
 
 TEST_F(DataFolderTest, OneErrorNamesEveryPlace) {
-  const std::string text = refusal();
+  const fs::path installed = roots_.installed / "installed/here", source = roots_.source / "built/there",
+                 named = home_ / "nowhere";
+  fs::create_directories(source.parent_path());
+  std::ofstream(source) << "a file is no folder";
   for (const std::string& place :
-       {std::string("CLOTHBENCH_DATA_FOLDER_TEST"), (roots_.installed / "installed/here").string(),
-        (roots_.source / "built/there").string(), std::string("test files")})
-    EXPECT_NE(text.find(place), std::string::npos) << place << " in: " << text;
-}
-
-TEST_F(DataFolderTest, AWrongVariableIsToldAndNotPassedOver) {
-  fs::create_directories(roots_.installed / "installed/here");
-  const fs::path named = home_ / "nowhere";
-  setenv(kFolder.variable, named.c_str(), 1);
-  const std::string text = refusal();
-  for (const fs::path& place : {named, roots_.installed / "installed/here", roots_.source / "built/there"})
-    EXPECT_NE(text.find(place.string()), std::string::npos) << place << " in: " << text;
-}
-
-TEST_F(DataFolderTest, AFileIsNoFolder) {
-  fs::create_directories(roots_.source / "built");
-  std::ofstream(roots_.source / "built/there") << "text";
-  EXPECT_NE(refusal(), "found");
+       {std::string("CLOTHBENCH_DATA_FOLDER_TEST"), installed.string(), source.string(), std::string("test files")})
+    EXPECT_NE(refusal().find(place), std::string::npos) << place << " in: " << refusal();
+  fs::create_directories(installed);
+  setenv(kFolder.variable, named.c_str(), 1);  // a wrong variable is not passed over
+  for (const fs::path& place : {named, installed, source})
+    EXPECT_NE(refusal().find(place.string()), std::string::npos) << place << " in: " << refusal();
 }
 
 TEST_F(DataFolderTest, AProgramOfUnknownPlaceStillHasItsSourceTree) {

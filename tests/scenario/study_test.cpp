@@ -125,6 +125,12 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
             std::string::npos);
 }
 
+TEST(Study, AKeyOfAnAxisIsNotOverridden) {
+  EXPECT_NE(
+      message_of(study_text(R"([{"solver":"a"}])"), {{"cloth.grid=[4,4]"}}).find("--set cloth.grid=[4,4]: the study"),
+      std::string::npos);
+}
+
 TEST(Study, AccuracyPassOfPenetrationIsTheWholeScene) {
   EXPECT_TRUE(std::isinf(study_of(study_text(R"([{"solver":"a"}])", "", "penetration")).accuracy_duration_s));
   EXPECT_EQ(study_of(study_text(R"([{"solver":"a"}])")).accuracy_duration_s, 0.5);
@@ -268,23 +274,6 @@ TEST(Solvers, NearestNameIsNamed) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("nearest known: ballistic"), std::string::npos) << e.what();
   }
-}
-
-TEST(PenetrationStudy, HandsThatPullAreBoundWhileTheyPullAndAtTheEnd) {
-  constexpr double kDrawnOut = 12;  // as `paper` draws the edges beside the hands
-  const Study study = load_study("penetration", {{}, StudyLength::Full});
-  int scenes = 0;
-  for (const Study::Item& item : study.scenes) {
-    if (!item.scene.name.starts_with("two-hand-stretch")) continue;
-    ++scenes;
-    bool while_pulled = false, at_end = false;
-    for (const Expectation& e : item.scene.expect) {
-      while_pulled = while_pulled || (e.name == "grip_edge_ratio_max" && e.at_most && *e.at_most < kDrawnOut / 2);
-      at_end = at_end || (e.name == "stretch_max_end" && e.at_most && *e.at_most <= 1);
-    }
-    EXPECT_TRUE(while_pulled && at_end) << item.scene.name;
-  }
-  EXPECT_EQ(scenes, 3);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ const SolverEntry* look_up(const std::string& name) {
 int main(int argc, char** argv) {
   if (argc != 3) return 64;
   using namespace clothbench;
-  return run_child_main(argv[2], look_up, {{"plan", [](const nlohmann::json& request, const WorkerProgress& progress) {
-                                              return execute_plan(request, progress, look_up, nullptr);
-                                            }}});
+  return run_child_main(argv[2], {{"plan", [](const nlohmann::json& request, const WorkerProgress& progress) {
+                                     return execute_plan(request, progress, look_up, nullptr);
+                                   }}});
 }

@@ -59,7 +59,7 @@ class StabilityStudy : public WithFolder {
       return &e;
     });
   }
-  Grades execute(const Study& study, const RunOptions& o) const { return execute_runs(plan_of(study), o).grades; }
+  Grades execute(const Study& study, const RunOptions& o) const { return execute_in_worker(plan_of(study), o).grades; }
   void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
   RunOptions options(bool resume) const {
     RunOptions o;

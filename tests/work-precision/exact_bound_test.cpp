@@ -7,8 +7,7 @@
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "runner/expect.hpp"
-#include "scenario/load.hpp"
-#include "truth/draw.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
 namespace {
@@ -106,7 +105,6 @@ void expect_two_sided(const Scene& s) {
 }
 
 class ExactBound : public ::testing::TestWithParam<std::string> {};
-class DrawnBound : public ::testing::TestWithParam<std::string> {};
 
 auto scenes_with_a_solution(const std::vector<std::string>& folders) {
   std::vector<std::string> out;
@@ -123,17 +121,15 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& i) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ExactBound, scenes_with_a_solution({"validation", "stability"}), test_name);
-INSTANTIATE_TEST_SUITE_P(Every, DrawnBound, scenes_with_a_solution({"validation"}), test_name);
 
 TEST_P(ExactBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) { expect_two_sided(load_scene(GetParam())); }
 
-TEST_P(DrawnBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) {
-  const Scene s = load_scene(GetParam());
-  if (s.reference_case == "cantilever" || s.reference_case == "two-hand-pull") GTEST_SKIP() << "not drawn";
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
-    SCOPED_TRACE(seed);
-    expect_two_sided(truth::draw(s, seed).scene);
-    if (s.cloth.mesh && seed == 2) break;
+TEST(DrawnBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) {
+  StudyOptions options;
+  options.count = 40;
+  for (const Study::Item& drawn : load_study("physics", options).scenes) {
+    SCOPED_TRACE(drawn.scene.name);
+    expect_two_sided(drawn.scene);
   }
 }
 

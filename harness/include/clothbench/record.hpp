@@ -11,7 +11,7 @@ namespace clothbench {
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// How a run ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, error,
-/// over_budget (not run: settings with less work had used up the solver's time).
+/// over_budget (not run: a setting with less work had timed out).
 struct Outcome {
   std::string status = "ok";
   std::string klass = "ok";  ///< failure class F0 to F3, or ok
