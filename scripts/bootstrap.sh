@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(g++ cmake make ninja-build ccache
           glslc spirv-tools spirv-headers libvulkan-dev mesa-vulkan-drivers
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev
-          libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libopenxr-dev libopenxr-loader1 libpng-dev fonts-dejavu-core
+          libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libopenxr-loader1 libpng-dev fonts-dejavu-core
           python3-h5py python3-matplotlib librsvg2-bin git)
 # The report's page is bundled with Node 18 or later. Debian's npm and one from elsewhere conflict: any that is there is used.
 command -v npm >/dev/null || packages+=(nodejs npm)

@@ -3,7 +3,7 @@
 # Header-only packages are the build machine's own, linked one by one into a folder, because its whole include folder
 # would bring in the wrong C library. Compiled ones belong to the target: Vulkan to the NDK or to CMAKE_FIND_ROOT_PATH,
 # Bullet to CLOTHBENCH_BULLET_SOURCE or CMAKE_FIND_ROOT_PATH. HDF5 and Google Benchmark are not used on a device.
-set(CLOTHBENCH_HEADERS /usr/include CACHE PATH "Where the header-only packages lie (CLI, boost, eigen3, fmt, nlohmann, openxr, spirv, valijson, tiny_gltf.h)")
+set(CLOTHBENCH_HEADERS /usr/include CACHE PATH "Where the header-only packages lie (CLI, boost, eigen3, fmt, nlohmann, openxr, spirv, valijson, tiny_gltf.h, tiny_obj_loader.h)")
 set(CLOTHBENCH_BULLET_SOURCE "" CACHE PATH "Bullet's source tree, built with the solver; empty: look for libraries")
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
@@ -46,6 +46,8 @@ clothbench_header_package(Eigen3 Eigen3::Eigen eigen3 eigen3)
 clothbench_header_package(Boost Boost::headers boost .)
 clothbench_header_package(SPIRV-Headers SPIRV-Headers::SPIRV-Headers spirv .)
 clothbench_header_link(tiny_gltf.h)
+clothbench_header_link(tiny_obj_loader.h)
+set(CLOTHBENCH_TINYOBJ_INCLUDE ${staged} CACHE PATH "" FORCE)
 set(CLOTHBENCH_TINYGLTF_INCLUDE ${staged} CACHE PATH "" FORCE)
 # Only a live session needs them; without them it is left out.
 if(EXISTS ${CLOTHBENCH_HEADERS}/openxr/openxr_platform.h)

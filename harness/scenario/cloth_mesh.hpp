@@ -13,7 +13,7 @@ namespace clothbench {
 
 /// Reads `cloth.mesh` of a scene: {"file": a Wavefront OBJ or a glTF file beside the scene or in the scenario root}, or
 /// {"drawn": a sheet of irregular triangles (drawn_mesh.hpp)}, to which the rest does not apply.
-/// Convex faces are cut into triangles, others are refused; normals and materials are ignored. Adds "sha256" of the
+/// Faces with more than three corners are triangulated; normals and materials are ignored. Adds "sha256" of the
 /// file to `j`; a value that `j` already has must match. Prints a notice on stderr, once per file, if vertices were
 /// welded. Throws Error with file and pointer if the file cannot be read or is not a valid cloth (see cloth_mesh).
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source);
