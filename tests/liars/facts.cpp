@@ -82,7 +82,18 @@ Facts facts_of(const Motion& motion) {
   const double Y = s.material.membrane_stiffness_N_per_m.value_or(1e4);
   f.soft_strain = 0.02 + 2 * m.mass_kg * m.weight_unit / (m.length_m * Y) +
                   std::max(bodies.speed(), m.grip_speed) * std::sqrt(s.cloth.areal_density_kg_per_m2 / Y);
+  double tensile = 0;
+  for (std::size_t k = 0; k < m.frames; ++k) {
+    double sum = 0;
+    for (const Edge& e : m.edges) sum += std::pow(std::max(m.strain(k, e), 0.0), 2);
+    tensile = std::max(tensile, sum / static_cast<double>(std::max<std::size_t>(m.edges.size(), 1)));
+  }
+  f.soft_strain += std::sqrt(tensile);
   f.solid = !s.colliders.empty();
+  for (std::size_t c = 0; c < s.colliders.size(); ++c) {
+    const double said = c < motion.contact_offsets_m.size() ? motion.contact_offsets_m[c] : 0;
+    f.offset_m = std::max({f.offset_m, s.colliders[c].margin_m, std::isfinite(said) ? said : 0});
+  }
   f.self = s.cloth.self_collision.thickness_m > 0;
   f.length_m = m.length_m;
   f.frame_s = s.time.dt();
@@ -117,7 +128,13 @@ bool changes_force(const Right& right, const Motion& told) {
   const M6 keep = held.empty() ? M6(M6::Identity()) : free_of_attachments(was, middle_of(was, 0, about));
   // Sliding on a face is judged more closely than what colliders of other shapes push.
   const double lasting = right.facts.slides ? 0.035 : 0.05;
+  // What moves may exert any force on attached cloth.
+  const std::vector<std::size_t>& air = right.facts.air;
+  const auto touched = [&](std::size_t k) {
+    return right.facts.attached && right.facts.mover && !std::binary_search(air.begin(), air.end(), k);
+  };
   std::vector<V6> sums = {V6::Zero()};
+  std::vector<double> hidden = {0};
   for (std::size_t k = 0; k + 1 < was.frames; ++k) {
     const double before = was.dt(k), after = was.dt(k + 1);
     const motion_check::Flight flight(before, after, scene.material.damping_per_s);
@@ -132,12 +149,24 @@ bool changes_force(const Right& right, const Motion& told) {
       }
     };
     V6 change = V6::Zero();
+    double bent = 0;  // what paths that bend inside a frame may explain
     add(is, 1, change), add(was, -1, change);
+    for (std::size_t v = 0; v < is.vertices; ++v) {
+      const V3 ahead = (is.at(k + 1, v) - is.at(k, v)) / after;
+      const V3 behind = k == 0 ? is.start_velocity_of(v) : V3((is.at(k, v) - is.at(k - 1, v)) / before);
+      bent += is.masses_kg[v] * ((ahead + behind) / 2).norm() * ((ahead - behind) / after - is.gravity).norm();
+    }
+    if (touched(k)) {
+      sums = {V6::Zero()}, hidden = {0};
+      continue;
+    }
     sums.push_back(sums.back() + keep * change);
+    hidden.push_back(hidden.back() + bent * after / 3 / (is.mass_kg * is.weight_unit * is.length_m / 2));
     for (const std::size_t span : {1, 3, 12}) {
-      if (span > k + 1 || (span > 1 && span == k + 1)) continue;
+      if (span + 1 > sums.size() || (span > 1 && span == k + 1)) continue;
       const double n = static_cast<double>(span);
-      const double change_mean = (sums.back() - sums[sums.size() - 1 - span]).norm() / n;
+      const std::size_t from = sums.size() - 1 - span;
+      const double change_mean = ((sums.back() - sums[from]).norm() - hidden.back() + hidden[from]) / n;
       if (change_mean > (span == 1 ? 0.55 : lasting) + was.noise(k, was.vertices) / n) return true;
     }
   }
@@ -153,6 +182,22 @@ bool Right::held(std::size_t frame, std::size_t vertex) const {
   if (s.motion.empty()) return true;
   const FrameMotion& now = s.motion[std::min(frame, s.motion.size() - 1)];
   return now.grip_held[static_cast<std::size_t>(grip - s.grips.vertices.begin())] != 0;
+}
+
+std::size_t first_difference(const Right& right, const Motion& told) {
+  const std::size_t numbers = 3 * told.vertices();
+  const auto at = std::mismatch(told.position.begin(), told.position.end(), right.motion.position.begin(),
+                                right.motion.position.end());
+  return static_cast<std::size_t>(at.first - told.position.begin()) / numbers;
+}
+
+double accelerated_m(const Motion& m, std::size_t frame) {
+  double most = 0;
+  for (std::size_t k = std::max<std::size_t>(frame, 3) - 2; k < std::min(frame + 3, m.frames() - 1); ++k)
+    for (std::size_t v = 0; v < m.vertices(); ++v)
+      for (std::size_t i = 0; i < 3; ++i)
+        most = std::max(most, std::abs(m.at(k + 1, v)[i] - 2 * m.at(k, v)[i] + m.at(k - 1, v)[i]));
+  return most;
 }
 
 double difference_m(const Right& right, const Motion& other) {

@@ -32,7 +32,8 @@ struct Facts {
   double frame_s = 0;             ///< duration of a frame
   double length_m = 1;
   double gravity = 0;      ///< [m/s2]
-  double soft_strain = 0;  ///< compression that the scene's weight and speeds explain
+  double soft_strain = 0;  ///< compression that the scene's weight, speeds and recoil explain
+  double offset_m = 0;     ///< the largest contact offset
   V3 up{};                 ///< unit vector against gravity
 };
 
@@ -41,7 +42,7 @@ struct Right {
   Motion motion;
   Facts facts;
   /// Of the scene with something changed; none if the solver fails.
-  std::function<std::optional<Motion>(const char* what, const std::function<void(Scene&)>&)> other;
+  std::function<std::optional<Motion>(const std::function<void(Scene&)>&)> other;
   bool held(std::size_t frame, std::size_t vertex) const;
 };
 
@@ -54,15 +55,20 @@ bool changes_force(const Right&, const Motion& told);
 /// One way of being wrong. A lie leaves attached vertices where they belong unless it is about them.
 struct Lie {
   const char* name;
-  bool right = false;  ///< a control: it must pass
   bool (*applies)(const Facts&);
   /// Whether positions determine that the motion is wrong, decided before the check sees it.
   bool (*determined)(const Right&, const Motion& told);
   std::optional<Motion> (*tell)(const Right&, Dice&);
+  bool right = false;  ///< a control: it must pass
 };
 
-/// All lies. Velocities are in no file, so that none is about them.
-std::span<const Lie> lies();
+/// All lies, after the controls. Velocities are in no file, so that none is about them.
+const std::vector<Lie>& lies();
+
+/// First frame that is not right; the number of frames if there is none.
+std::size_t first_difference(const Right&, const Motion& told);
+/// Largest second difference [m] of a vertex in the frames around one.
+double accelerated_m(const Motion&, std::size_t frame);
 
 /// Largest distance [m] of a vertex from where it is in the right motion.
 double difference_m(const Right&, const Motion&);

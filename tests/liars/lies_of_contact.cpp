@@ -7,7 +7,7 @@ namespace clothbench::liars {
 namespace {
 
 Told without_colliders(const Right& r, bool moving_alone) {
-  return r.other(moving_alone ? "no-mover" : "no-collider", [moving_alone](Scene& s) {
+  return r.other([moving_alone](Scene& s) {
     std::vector<Collider> kept;
     std::vector<std::size_t> which;
     for (std::size_t k = 0; k < s.colliders.size(); ++k)
@@ -24,8 +24,8 @@ Told without_colliders(const Right& r, bool moving_alone) {
   });
 }
 
-Told hovering(const Right& r, const char* what, double by_m) {
-  Told out = r.other(what, [by_m](Scene& s) {
+Told hovering(const Right& r, double by_m) {
+  Told out = r.other([by_m](Scene& s) {
     for (Collider& c : s.colliders) c.margin_m += by_m;
   });
   if (out) out->contact_offsets_m = r.motion.contact_offsets_m;
@@ -56,94 +56,106 @@ Told jumped_through(const Right& r, bool and_back) {
 
 }  // namespace
 
-// --- contact
-
-Told hovers_5cm(const Right& r, Dice&) { return hovering(r, "hover-50", 0.05); }
-Told hovers_2mm(const Right& r, Dice&) { return hovering(r, "hover-2", 0.002); }
-Told sinks_1cm(const Right& r, Dice&) {
-  const Index from = r.facts.first_touch;
-  // What the solver keeps away is no solid yet.
-  double deep_m = 0.01;
-  for (std::size_t c = 0; c < r.motion.scene->colliders.size(); ++c) {
-    const double margin = r.motion.scene->colliders[c].margin_m;
-    const double said = c < r.motion.contact_offsets_m.size() ? r.motion.contact_offsets_m[c] : margin;
-    deep_m = std::max(deep_m, 0.01 + margin + (std::isfinite(said) ? std::max(said, margin) : margin));
-  }
-  return moved(r, [&](Index k, Index, const V3& x) {
-    return V3(x - deep_m * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);
-  });
-}
-Told border_sinks(const Right& r, Dice&) {
-  const Cloth& c = r.motion.scene->cloth;
-  const Index from = r.facts.at_rest;
-  return moved(r, [&](Index k, Index v, const V3& x) {
-    const bool border = static_cast<int>(v) % c.columns == 0;
-    return border && k > from ? V3(x - 0.05 * smooth(static_cast<double>(k - from) / 30) * r.facts.up) : x;
-  });
-}
-Told falls_through(const Right& r, Dice&) { return without_colliders(r, false); }
-Told ignores_mover(const Right& r, Dice&) { return without_colliders(r, true); }
-Told jumps_back(const Right& r, Dice&) {
-  const Told other = without_colliders(r, true);
-  if (!other) return std::nullopt;
-  const Index from = r.facts.deepest_touch;
-  return moved(r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(other->at(k, v)); });
-}
-Told jumps_through(const Right& r, Dice&) { return jumped_through(r, false); }
-Told through_and_back(const Right& r, Dice&) { return jumped_through(r, true); }
-Told slides(const Right& r, Dice& dice) {
-  const V3 by = 0.5 * level(r.facts.up, dice);
-  const Index from = r.facts.at_rest;
-  return moved(r, [&](Index k, Index, const V3& x) {
-    return k > from ? V3(x + (r.motion.time_s[k] - r.motion.time_s[from]) * by) : x;
-  });
-}
-Told drifts(const Right& r, Dice& dice) {
-  const V3 by = 0.5 * level(r.facts.up, dice);
-  return moved(r, [&](Index k, Index, const V3& x) { return V3(x + r.motion.time_s[k] * by); });
-}
-Told layer_off(const Right& r, Dice&) {
-  const Cloth& c = r.motion.scene->cloth;
-  const double by = -3 * c.self_collision.thickness_m;
-  const Index from = r.motion.frames() / 2;
-  return moved(r, [&](Index k, Index v, const V3& x) {
-    const bool upper = static_cast<int>(v) % c.columns < c.columns / 3;
-    return upper ? V3(x + by * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up) : x;
-  });
-}
-Told layers_exchanged(const Right& r, Dice&) {
-  const Cloth& c = r.motion.scene->cloth;
-  const Index from = r.motion.frames() / 2, columns = static_cast<Index>(c.columns);
-  return moved(r, [&](Index k, Index v, const V3& x) {
-    const Index twin = v - v % columns + (columns - 1 - v % columns);
-    const double share = smooth(static_cast<double>(k < from ? 0 : k - from) / 20);
-    return V3((1 - share) * x + share * v3(r.motion.at(k, twin)));
-  });
-}
-
-// --- files
-
-Told half_missing(const Right& r, Dice&) {
-  Motion out = r.motion;
-  out.time_s.clear(), out.position.clear();
-  const Index numbers = 3 * r.motion.vertices();
-  for (Index k = 0; k < r.motion.frames(); k += 2) {
-    out.time_s.push_back(r.motion.time_s[k]);
-    const auto from = r.motion.position.begin() + static_cast<std::ptrdiff_t>(k * numbers);
-    out.position.insert(out.position.end(), from, from + static_cast<std::ptrdiff_t>(numbers));
-  }
-  return out;
-}
-Told one_nan(const Right& r, Dice& dice) {
-  Motion out = r.motion;
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  out.put(amid(r, dice), between(0, out.vertices() - 1, dice), {none, none, none});
-  return out;
-}
-Told all_nan(const Right& r, Dice&) {
-  Motion out = r.motion;
-  std::fill(out.position.begin(), out.position.end(), std::numeric_limits<float>::quiet_NaN());
-  return out;
+std::vector<Lie> lies_of_contact() {
+  return {
+      // --- contact
+      {"hovers by 5 cm", drops, surely, [](const Right& r, Dice&) -> Told { return hovering(r, 0.05); }},
+      {"hovers by 2 mm", drops, hovers_at_rest, [](const Right& r, Dice&) -> Told { return hovering(r, 0.002); }},
+      {"sinks into the solid by 1 cm", drops, surely,
+       [](const Right& r, Dice&) -> Told {
+         const Index from = r.facts.first_touch;
+         // What the solver keeps away is no solid yet.
+         double deep_m = 0.01;
+         for (std::size_t c = 0; c < r.motion.scene->colliders.size(); ++c) {
+           const double margin = r.motion.scene->colliders[c].margin_m;
+           const double said = c < r.motion.contact_offsets_m.size() ? r.motion.contact_offsets_m[c] : margin;
+           deep_m = std::max(deep_m, 0.01 + margin + (std::isfinite(said) ? std::max(said, margin) : margin));
+         }
+         return moved(r, [&](Index k, Index, const V3& x) {
+           return V3(x - deep_m * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up);
+         });
+       }},
+      {"a border sinks by 5 cm", lies_still, surely,
+       [](const Right& r, Dice&) -> Told {
+         const Cloth& c = r.motion.scene->cloth;
+         const Index from = r.facts.at_rest;
+         return moved(r, [&](Index k, Index v, const V3& x) {
+           const bool border = static_cast<int>(v) % c.columns == 0;
+           return border && k > from ? V3(x - 0.05 * smooth(static_cast<double>(k - from) / 30) * r.facts.up) : x;
+         });
+       }},
+      {"falls through", drops, surely, [](const Right& r, Dice&) -> Told { return without_colliders(r, false); }},
+      {"ignores the mover", has_mover, surely,
+       [](const Right& r, Dice&) -> Told { return without_colliders(r, true); }},
+      {"jumps back through the mover", has_mover, surely,
+       [](const Right& r, Dice&) -> Told {
+         const Told other = without_colliders(r, true);
+         if (!other) return std::nullopt;
+         const Index from = r.facts.deepest_touch;
+         return moved(r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(other->at(k, v)); });
+       }},
+      {"jumps through", drops, surely, [](const Right& r, Dice&) -> Told { return jumped_through(r, false); }},
+      {"through and back", drops, surely, [](const Right& r, Dice&) -> Told { return jumped_through(r, true); }},
+      {"slides at 0.5 m/s", lies_still, surely,
+       [](const Right& r, Dice& dice) -> Told {
+         const V3 by = 0.5 * level(r.facts.up, dice);
+         const Index from = r.facts.at_rest;
+         return moved(r, [&](Index k, Index, const V3& x) {
+           return k > from ? V3(x + (r.motion.time_s[k] - r.motion.time_s[from]) * by) : x;
+         });
+       }},
+      {"drifts in the air", [](const Facts& f) { return !f.attached; }, surely,
+       [](const Right& r, Dice& dice) -> Told {
+         const V3 by = 0.5 * level(r.facts.up, dice);
+         return moved(r, [&](Index k, Index, const V3& x) { return V3(x + r.motion.time_s[k] * by); });
+       }},
+      {"a layer of folded cloth through another", folded, surely,
+       [](const Right& r, Dice&) -> Told {
+         const Cloth& c = r.motion.scene->cloth;
+         const double by = -3 * c.self_collision.thickness_m;
+         const Index from = r.motion.frames() / 2;
+         return moved(r, [&](Index k, Index v, const V3& x) {
+           const bool upper = static_cast<int>(v) % c.columns < c.columns / 3;
+           return upper ? V3(x + by * smooth(static_cast<double>(k < from ? 0 : k - from) / 20) * r.facts.up) : x;
+         });
+       }},
+      {"layers exchanged", folded, surely,
+       [](const Right& r, Dice&) -> Told {
+         const Cloth& c = r.motion.scene->cloth;
+         const Index from = r.motion.frames() / 2, columns = static_cast<Index>(c.columns);
+         return moved(r, [&](Index k, Index v, const V3& x) {
+           const Index twin = v - v % columns + (columns - 1 - v % columns);
+           const double share = smooth(static_cast<double>(k < from ? 0 : k - from) / 20);
+           return V3((1 - share) * x + share * v3(r.motion.at(k, twin)));
+         });
+       }},
+      // --- files
+      {"every second frame missing", always, surely,
+       [](const Right& r, Dice&) -> Told {
+         Motion out = r.motion;
+         out.time_s.clear(), out.position.clear();
+         const Index numbers = 3 * r.motion.vertices();
+         for (Index k = 0; k < r.motion.frames(); k += 2) {
+           out.time_s.push_back(r.motion.time_s[k]);
+           const auto from = r.motion.position.begin() + static_cast<std::ptrdiff_t>(k * numbers);
+           out.position.insert(out.position.end(), from, from + static_cast<std::ptrdiff_t>(numbers));
+         }
+         return out;
+       }},
+      {"one position NaN", always, surely,
+       [](const Right& r, Dice& dice) -> Told {
+         Motion out = r.motion;
+         const double none = std::numeric_limits<double>::quiet_NaN();
+         out.put(amid(r, dice), between(0, out.vertices() - 1, dice), {none, none, none});
+         return out;
+       }},
+      {"all positions NaN", always, surely,
+       [](const Right& r, Dice&) -> Told {
+         Motion out = r.motion;
+         std::fill(out.position.begin(), out.position.end(), std::numeric_limits<float>::quiet_NaN());
+         return out;
+       }},
+  };
 }
 
 }  // namespace clothbench::liars

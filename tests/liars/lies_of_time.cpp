@@ -27,129 +27,143 @@ Motion one_frame(const Right& r, Index frame, const V3& by) {
   return moved(r, [&](Index k, Index, const V3& x) { return k == frame ? V3(x + by) : x; });
 }
 
-Told heavier(const Right& r, const char* what, double factor) {
-  return r.other(what, [factor](Scene& s) {
+Told heavier(const Right& r, double factor) {
+  return r.other([factor](Scene& s) {
     for (double& g : s.gravity_m_per_s2) g *= factor;
   });
 }
 
 }  // namespace
 
-// --- attachments
-
-Told pins_dropped(const Right& r, Dice&) {
-  return r.other("no-pins", [](Scene& s) {
-    s.pins.vertices.clear();
-    s.grips.vertices.clear();
-    for (FrameMotion& now : s.motion) now.grip_position_m.clear(), now.grip_held.clear();
-    if (s.colliders.empty()) s.motion.clear();
-  });
-}
-
-Told pins_drift(const Right& r, Dice& dice) {
-  Motion out = r.motion;
-  const V3 way = 1.2 * level(r.facts.up, dice);
-  for (Index k = 0; k < out.frames(); ++k)
-    for (Index v = 0; v < out.vertices(); ++v)
-      out.put(k, v, vec(V3(v3(out.at(k, v)) + static_cast<double>(k) / static_cast<double>(out.frames()) * way)));
-  return out;
-}
-
-Told pins_slide(const Right& r, Dice& dice) {
-  Motion out = r.motion;
-  const V3 way = 0.02 * level(r.facts.up, dice);
-  for (Index k = 0; k < out.frames(); ++k)
-    for (Index v = 0; v < out.vertices(); ++v)
-      if (r.held(k, v)) out.put(k, v, vec(V3(v3(out.at(k, v)) + smooth(static_cast<double>(k) / 20) * way)));
-  return out;
-}
-
-// --- teleports
-
-Told up_10m(const Right& r, Dice& dice) { return one_frame(r, amid(r, dice), 10 * r.facts.up); }
-Told sideways_20m(const Right& r, Dice& dice) { return one_frame(r, amid(r, dice), 20 * level(r.facts.up, dice)); }
-Told sideways_3m(const Right& r, Dice& dice) { return one_frame(r, amid(r, dice), 3 * level(r.facts.up, dice)); }
-Told sideways_3cm(const Right& r, Dice& dice) { return one_frame(r, in_air(r, dice), 0.03 * level(r.facts.up, dice)); }
-
-Told frozen_then_rest(const Right& r, Dice& dice) {
-  const Index from = amid(r, dice), to = std::min(from + 15, r.motion.frames() - 2), last = r.motion.frames() - 1;
-  return moved(r,
-               [&](Index k, Index v, const V3& x) { return k < from ? x : v3(r.motion.at(k < to ? from : last, v)); });
-}
-Told rests_from_20(const Right& r, Dice&) {
-  return moved(r, [&](Index k, Index v, const V3& x) { return k < 20 ? x : v3(r.motion.at(20, v)); });
-}
-Told rests_early(const Right& r, Dice& dice) {
-  const Index from = amid(r, dice), last = r.motion.frames() - 1;
-  return moved(r, [&](Index k, Index v, const V3& x) {
-    const double share = smooth(static_cast<double>(k < from ? 0 : k - from) / 10);
-    return V3((1 - share) * x + share * v3(r.motion.at(last, v)));
-  });
-}
-Told back_to_start(const Right& r, Dice& dice) {
-  const Index from = amid(r, dice);
-  return moved(r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(r.motion.at(0, v)); });
-}
-Told frame_repeated(const Right& r, Dice&) {
-  const Index at = std::clamp<Index>(r.facts.fastest, 2, r.motion.frames() - 3);
-  return moved(r, [&](Index k, Index v, const V3& x) { return k == at ? v3(r.motion.at(k - 1, v)) : x; });
-}
-Told frame_skipped(const Right& r, Dice&) {
-  const double at = static_cast<double>(std::clamp<Index>(r.facts.fastest, 3, r.motion.frames() - 3));
-  return retimed(r, [&](double k) { return k < at ? k : k + 1; });
-}
-
-Told quarter_gravity(const Right& r, Dice&) { return heavier(r, "gravity-quarter", 0.25); }
-Told strong_gravity(const Right& r, Dice&) { return heavier(r, "gravity-110", 1.1); }
-
-// --- physics of another scene
-
-Told mirrored(const Right& r, Dice&) {
-  V3 middle = V3::Zero();
-  for (Index v = 0; v < r.motion.vertices(); ++v)
-    middle += v3(r.motion.at(0, v)) / static_cast<double>(r.motion.vertices());
-  return moved(r, [&](Index, Index, const V3& x) { return V3(x - 2 * (x - middle).dot(r.facts.up) * r.facts.up); });
-}
-Told backwards(const Right& r, Dice&) {
-  const double last = static_cast<double>(r.motion.frames() - 1);
-  return retimed(r, [last](double k) { return last - k; });
-}
-Told rises_again(const Right& r, Dice& dice) {
-  const double from = static_cast<double>(amid(r, dice));
-  return retimed(r, [from](double k) { return k <= from ? k : 2 * from - k; });
-}
-Told other_throw(const Right& r, Dice& dice) {
-  const V3 by = direction(dice);
-  return r.other("throw", [by](Scene& s) {
-    for (std::size_t i = 0; i < 3; ++i) s.cloth.initial_velocity_m_per_s[i] += by[static_cast<int>(i)];
-  });
-}
-Told leaning_gravity(const Right& r, Dice& dice) {
-  const V3 by = std::tan(10 * std::numbers::pi / 180) * across_held_line(r, dice);
-  return r.other("leaning", [by](Scene& s) {
-    const double g = v3(s.gravity_m_per_s2).norm();
-    for (std::size_t i = 0; i < 3; ++i) s.gravity_m_per_s2[i] += g * by[static_cast<int>(i)];
-  });
-}
-Told damped(const Right& r, Dice&) {
-  return r.other("damped", [](Scene& s) { s.material.damping_per_s += 2; });
-}
-Told slippery(const Right& r, Dice&) {
-  return r.other("slippery", [](Scene& s) {
-    for (Collider& c : s.colliders) c.friction = 0;
-  });
-}
-Told five_late(const Right& r, Dice&) {
-  return retimed(r, [](double k) { return k - 5; });
-}
-Told five_early(const Right& r, Dice&) {
-  return retimed(r, [](double k) { return k == 0 ? 0 : k + 5; });
-}
-Told half_speed(const Right& r, Dice&) {
-  return retimed(r, [](double k) { return k / 2; });
-}
-Told double_speed(const Right& r, Dice&) {
-  return retimed(r, [](double k) { return 2 * k; });
+std::vector<Lie> lies_of_time() {
+  return {
+      // --- attachments
+      {"pins dropped", attached, surely,
+       [](const Right& r, Dice&) -> Told {
+         return r.other([](Scene& s) {
+           s.pins.vertices.clear();
+           s.grips.vertices.clear();
+           for (FrameMotion& now : s.motion) now.grip_position_m.clear(), now.grip_held.clear();
+           if (s.colliders.empty()) s.motion.clear();
+         });
+       }},
+      {"pins drift 1.2 m", attached, surely,
+       [](const Right& r, Dice& dice) -> Told {
+         Motion out = r.motion;
+         const V3 way = 1.2 * level(r.facts.up, dice);
+         for (Index k = 0; k < out.frames(); ++k)
+           for (Index v = 0; v < out.vertices(); ++v)
+             out.put(k, v,
+                     vec(V3(v3(out.at(k, v)) + static_cast<double>(k) / static_cast<double>(out.frames()) * way)));
+         return out;
+       }},
+      {"pins slide 2 cm", attached, surely,
+       [](const Right& r, Dice& dice) -> Told {
+         Motion out = r.motion;
+         const V3 way = 0.02 * level(r.facts.up, dice);
+         for (Index k = 0; k < out.frames(); ++k)
+           for (Index v = 0; v < out.vertices(); ++v)
+             if (r.held(k, v)) out.put(k, v, vec(V3(v3(out.at(k, v)) + smooth(static_cast<double>(k) / 20) * way)));
+         return out;
+       }},
+      // --- teleports
+      {"10 m up for a frame", always, surely,
+       [](const Right& r, Dice& dice) -> Told { return one_frame(r, amid(r, dice), 10 * r.facts.up); }},
+      {"20 m sideways for a frame", always, surely,
+       [](const Right& r, Dice& dice) -> Told { return one_frame(r, amid(r, dice), 20 * level(r.facts.up, dice)); }},
+      {"3 m sideways for a frame", always, surely,
+       [](const Right& r, Dice& dice) -> Told { return one_frame(r, amid(r, dice), 3 * level(r.facts.up, dice)); }},
+      {"3 cm sideways for a frame in the air", flies, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         return one_frame(r, in_air(r, dice), 0.03 * level(r.facts.up, dice));
+       }},
+      {"frozen, then at rest at once", always, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const Index from = amid(r, dice), to = std::min(from + 15, r.motion.frames() - 2),
+                     last = r.motion.frames() - 1;
+         return moved(
+             r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(r.motion.at(k < to ? from : last, v)); });
+       }},
+      {"at rest from frame 20", always, judged,
+       [](const Right& r, Dice&) -> Told {
+         return moved(r, [&](Index k, Index v, const V3& x) { return k < 20 ? x : v3(r.motion.at(20, v)); });
+       }},
+      {"at rest too early", always, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const Index from = amid(r, dice), last = r.motion.frames() - 1;
+         return moved(r, [&](Index k, Index v, const V3& x) {
+           const double share = smooth(static_cast<double>(k < from ? 0 : k - from) / 10);
+           return V3((1 - share) * x + share * v3(r.motion.at(last, v)));
+         });
+       }},
+      {"back at the start", always, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const Index from = amid(r, dice);
+         return moved(r, [&](Index k, Index v, const V3& x) { return k < from ? x : v3(r.motion.at(0, v)); });
+       }},
+      {"a frame repeated", always, judged,
+       [](const Right& r, Dice&) -> Told {
+         const Index at = std::clamp<Index>(r.facts.fastest, 2, r.motion.frames() - 3);
+         return moved(r, [&](Index k, Index v, const V3& x) { return k == at ? v3(r.motion.at(k - 1, v)) : x; });
+       }},
+      {"a frame skipped", always, judged,
+       [](const Right& r, Dice&) -> Told {
+         const double at = static_cast<double>(std::clamp<Index>(r.facts.fastest, 3, r.motion.frames() - 3));
+         return retimed(r, [&](double k) { return k < at ? k : k + 1; });
+       }},
+      {"gravity of a quarter", falls, judged, [](const Right& r, Dice&) -> Told { return heavier(r, 0.25); }},
+      {"gravity 10 % too strong", falls, judged, [](const Right& r, Dice&) -> Told { return heavier(r, 1.1); }},
+      // --- physics of another scene
+      {"mirrored", always, judged,
+       [](const Right& r, Dice&) -> Told {
+         V3 middle = V3::Zero();
+         for (Index v = 0; v < r.motion.vertices(); ++v)
+           middle += v3(r.motion.at(0, v)) / static_cast<double>(r.motion.vertices());
+         return moved(r,
+                      [&](Index, Index, const V3& x) { return V3(x - 2 * (x - middle).dot(r.facts.up) * r.facts.up); });
+       }},
+      {"frames backwards", always, judged,
+       [](const Right& r, Dice&) -> Told {
+         const double last = static_cast<double>(r.motion.frames() - 1);
+         return retimed(r, [last](double k) { return last - k; });
+       }},
+      {"turns back in time", always, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const double from = static_cast<double>(amid(r, dice));
+         return retimed(r, [from](double k) { return k <= from ? k : 2 * from - k; });
+       }},
+      {"thrown otherwise", [](const Facts& f) { return !f.attached; }, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const V3 by = direction(dice);
+         return r.other([by](Scene& s) {
+           for (std::size_t i = 0; i < 3; ++i) s.cloth.initial_velocity_m_per_s[i] += by[static_cast<int>(i)];
+         });
+       }},
+      {"gravity leans by 10 degrees", falls, judged,
+       [](const Right& r, Dice& dice) -> Told {
+         const V3 by = std::tan(10 * std::numbers::pi / 180) * across_held_line(r, dice);
+         return r.other([by](Scene& s) {
+           const double g = v3(s.gravity_m_per_s2).norm();
+           for (std::size_t i = 0; i < 3; ++i) s.gravity_m_per_s2[i] += g * by[static_cast<int>(i)];
+         });
+       }},
+      {"damped by 2/s more", always, judged,
+       [](const Right& r, Dice&) -> Told { return r.other([](Scene& s) { s.material.damping_per_s += 2; }); }},
+      {"slides without friction", drops, drags,
+       [](const Right& r, Dice&) -> Told {
+         return r.other([](Scene& s) {
+           for (Collider& c : s.colliders) c.friction = 0;
+         });
+       }},
+      {"5 frames late", always, judged,
+       [](const Right& r, Dice&) -> Told { return retimed(r, [](double k) { return k - 5; }); }},
+      {"5 frames early", always, judged,
+       [](const Right& r, Dice&) -> Told { return retimed(r, [](double k) { return k == 0 ? 0 : k + 5; }); }},
+      {"half speed", always, judged,
+       [](const Right& r, Dice&) -> Told { return retimed(r, [](double k) { return k / 2; }); }},
+      {"double speed", always, judged,
+       [](const Right& r, Dice&) -> Told { return retimed(r, [](double k) { return 2 * k; }); }},
+  };
 }
 
 }  // namespace clothbench::liars

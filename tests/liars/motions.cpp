@@ -26,8 +26,8 @@ struct Kind {
   std::function<Scene(std::uint64_t seed)> draw;
 };
 
-std::string grid_of(Dice& dice) {
-  const int side = dice.whole(12, 20);
+std::string grid_of(Dice& dice, bool odd = false) {
+  const int side = odd ? 2 * dice.whole(6, 9) + 1 : dice.whole(12, 20);
   return fmt::format("cloth.grid=[{},{}]", side, side);
 }
 
@@ -59,12 +59,10 @@ void add_contact(std::vector<Kind>& out) {
 void add_truth(std::vector<Kind>& out) {
   for (const char* name : {"free-fall", "incline-slip", "incline-stick", "incline-stop", "swing-strip", "heavy-strip",
                            "pendulum", "capstan-slip"})
-    out.push_back({name, [name](std::uint64_t seed) {
-                     const std::string own = name;
+    out.push_back({name, [own = std::string(name)](std::uint64_t seed) {
                      std::vector<std::string> set;
                      if (own == "free-fall" || own.starts_with("incline")) set = {"cloth.grid=[16,16]"};
-                     const Scene scene = load_scene("validation/" + own, set);
-                     return own == "two-hand-pull" || own == "cantilever-10" ? scene : truth::draw(scene, seed).scene;
+                     return truth::draw(load_scene("validation/" + own, set), seed).scene;
                    }});
 }
 
@@ -75,9 +73,10 @@ void add_files(std::vector<Kind>& out) {
                            "contact/desk-slide", "contact/self-fold", "validation/hang"})
     out.push_back({name, [name](std::uint64_t seed) {
                      Dice dice(seed, name);
-                     std::vector<std::string> set = {grid_of(dice)};
+                     const bool stretched = std::strstr(name, "stretch") != nullptr;  // hands hold the middle of a side
+                     std::vector<std::string> set = {grid_of(dice, stretched)};
                      const std::string rate = rate_of(dice);
-                     if (std::strstr(name, "stretch") == nullptr) set.push_back(rate);
+                     if (!stretched) set.push_back(rate);
                      set.push_back(fmt::format("cloth.areal_density_kg_per_m2={}", dice.between(0.1, 0.5)));
                      if (std::strstr(name, "hang") == nullptr)
                        set.push_back(
@@ -129,10 +128,6 @@ template <class T>
 void put_all(std::ofstream& out, std::span<const T> values) {
   out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
 }
-template <class T>
-void get_all(std::ifstream& in, std::vector<T>& values) {
-  in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
-}
 
 }  // namespace
 
@@ -166,18 +161,21 @@ std::string RightSolver::label() const {
   return settings.contains("quality") ? name + " " + settings["quality"].get<std::string>() : name;
 }
 
-std::vector<RightSolver> right_solvers(const Scene& scene) {
+std::vector<RightSolver> right_solvers(const Scene& scene, const std::string& only) {
   std::vector<RightSolver> out;
-  const bool touched = !scene.colliders.empty(), moved = !scene.motion.empty();
-  const auto add = [&](const char* name, const char* settings) {
+  const auto add = [&](bool right, RightSolver with) {
+    if (only.empty() ? !right : with.label() != only) return;
     for (const SolverEntry& entry : solvers())
-      if (entry.info.name == name && unsupported(entry.info, scene.needs).empty()) out.push_back({name, settings});
+      if (entry.info.name == with.name && unsupported(entry.info, scene.needs).empty() &&
+          !(entry.info.on_gpu && entry.devices().empty()))
+        out.push_back(with);
   };
-  add("xpbd", R"({"quality": "accurate"})");
-  add("reference", "{}");
-  // Bullet is right without what moves; its soft bodies also rebound.
-  if (!moved && !touched) add("bullet-soft", "{}");
-  if (!moved) add("bullet-deformable", "{}");
+  // Bullet keeps neither friction nor thin bodies, and its soft bodies rebound.
+  const bool alone = scene.colliders.empty() && scene.motion.empty();
+  add(true, {"xpbd", R"({"quality": "accurate"})"});
+  add(true, {"reference", "{}"});
+  add(alone, {"bullet-soft", "{}"});
+  add(alone, {"bullet-deformable", "{}"});
   return out;
 }
 
@@ -222,22 +220,6 @@ void write_motion(const Motion& m, const std::filesystem::path& path) {
   put_all(out, std::span<const double>(m.time_s));
   put_all(out, std::span<const float>(m.position));
   if (!out) throw Error(path.string() + ": cannot be written");
-}
-
-bool read_motion(Motion& m, const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::array<char, 4> magic{};
-  std::array<std::uint32_t, 3> counts{};
-  in.read(magic.data(), 4);
-  in.read(reinterpret_cast<char*>(counts.data()), sizeof counts);
-  if (!in || std::string_view(magic.data(), 4) != "LIAR" || counts[1] != m.vertices()) return false;
-  m.contact_offsets_m.resize(counts[2]);
-  m.time_s.resize(counts[0]);
-  m.position.resize(std::size_t{3} * counts[0] * counts[1]);
-  get_all(in, m.contact_offsets_m);
-  get_all(in, m.time_s);
-  get_all(in, m.position);
-  return static_cast<bool>(in);
 }
 
 }  // namespace clothbench::liars

@@ -27,8 +27,8 @@ struct Motion {
 };
 
 /// Kinds of scene that a seed draws one of: the kinds of the study of contact, drawn validation scenes, scenes of the
-/// paper, and thin bodies that a cloth falls on. Grids of 12 to 20 vertices a side where the kind allows any, 60 to
-/// 144 frames per second where its motion does.
+/// paper, and thin bodies that a cloth falls on. Grids of 12 to 20 vertices a side where the kind allows any, 60 to 144
+/// frames per second where its motion does.
 const std::vector<std::string>& scene_kinds();
 /// The same kind and seed give the same scene.
 Scene draw_scene(const std::string& kind, std::uint64_t seed);
@@ -38,8 +38,8 @@ struct RightSolver {
   std::string name, settings_json;
   std::string label() const;
 };
-/// Those that run the scene; more than one if several do.
-std::vector<RightSolver> right_solvers(const Scene&);
+/// Those that run the scene; more than one if several do. `only`: the label of one, which may not be right.
+std::vector<RightSolver> right_solvers(const Scene&, const std::string& only);
 
 /// The motion by a solver; none if a step fails. `changed`: what the solver is given instead of the scene.
 std::optional<Motion> run(const std::shared_ptr<const Scene>&, const RightSolver&,
@@ -48,7 +48,5 @@ std::optional<Motion> run(const std::shared_ptr<const Scene>&, const RightSolver
 /// A motion as a file of its own: "LIAR", then counts of frames, vertices and colliders (uint32), contact offsets and
 /// times (float64), positions (float32), all little-endian. liar_plugin.c reads it too.
 void write_motion(const Motion&, const std::filesystem::path&);
-/// False if there is no such file or it is of another scene.
-bool read_motion(Motion&, const std::filesystem::path&);
 
 }  // namespace clothbench::liars

@@ -73,58 +73,52 @@ inline std::vector<Index> loose(const Right& r) {
   return out;
 }
 
-/// Tellers of lies: see the table in lies.cpp.
-Told quarter_gravity(const Right&, Dice&);
-Told strong_gravity(const Right&, Dice&);
-Told pins_dropped(const Right&, Dice&);
-Told pins_drift(const Right&, Dice&);
-Told pins_slide(const Right&, Dice&);
-Told up_10m(const Right&, Dice&);
-Told sideways_20m(const Right&, Dice&);
-Told sideways_3m(const Right&, Dice&);
-Told sideways_3cm(const Right&, Dice&);
-Told frozen_then_rest(const Right&, Dice&);
-Told rests_from_20(const Right&, Dice&);
-Told rests_early(const Right&, Dice&);
-Told back_to_start(const Right&, Dice&);
-Told frame_repeated(const Right&, Dice&);
-Told frame_skipped(const Right&, Dice&);
-Told mirrored(const Right&, Dice&);
-Told backwards(const Right&, Dice&);
-Told rises_again(const Right&, Dice&);
-Told other_throw(const Right&, Dice&);
-Told leaning_gravity(const Right&, Dice&);
-Told damped(const Right&, Dice&);
-Told slippery(const Right&, Dice&);
-Told five_late(const Right&, Dice&);
-Told five_early(const Right&, Dice&);
-Told half_speed(const Right&, Dice&);
-Told double_speed(const Right&, Dice&);
-Told permuted(const Right&, Dice&);
-Told two_swapped(const Right&, Dice&);
-Told vertex_1cm(const Right&, Dice&);
-Told vertex_3cm(const Right&, Dice&);
-Told vertex_10cm(const Right&, Dice&);
-Told smoothed(const Right&, Dice&);
-Told shrunk(const Right&, Dice&);
-Told patch_frozen(const Right&, Dice&);
-Told buzz(const Right&, Dice&);
-Told band_buzz(const Right&, Dice&);
-Told hovers_5cm(const Right&, Dice&);
-Told hovers_2mm(const Right&, Dice&);
-Told sinks_1cm(const Right&, Dice&);
-Told border_sinks(const Right&, Dice&);
-Told falls_through(const Right&, Dice&);
-Told ignores_mover(const Right&, Dice&);
-Told jumps_back(const Right&, Dice&);
-Told jumps_through(const Right&, Dice&);
-Told through_and_back(const Right&, Dice&);
-Told slides(const Right&, Dice&);
-Told drifts(const Right&, Dice&);
-Told layer_off(const Right&, Dice&);
-Told layers_exchanged(const Right&, Dice&);
-Told half_missing(const Right&, Dice&);
-Told one_nan(const Right&, Dice&);
-Told all_nan(const Right&, Dice&);
+// To which scenes a lie applies, and whether positions determine it.
+
+inline bool always(const Facts&) { return true; }
+inline bool surely(const Right&, const Motion&) { return true; }
+inline bool never(const Right&, const Motion&) { return false; }
+/// Positions tell a lie about forces if attachments leave an equation and it changes them beyond a tolerance.
+inline bool judged(const Right& r, const Motion& told) { return r.facts.equations > 0 && changes_force(r, told); }
+inline bool stiff(const Right& r, const Motion&) { return r.facts.soft_strain < 0.05; }
+/// Where normals differ, a force without friction may be one with friction on other vertices.
+inline bool drags(const Right& r, const Motion& told) { return r.facts.slides && judged(r, told); }
+inline bool attached(const Facts& f) { return f.attached; }
+inline bool flies(const Facts& f) { return !f.air.empty(); }
+inline bool drops(const Facts& f) { return f.falls && !f.attached && f.solid; }
+inline bool lies_still(const Facts& f) { return drops(f) && f.at_rest + 24 < f.frames; }
+inline bool has_mover(const Facts& f) { return f.mover && f.deepest_touch < f.frames; }
+/// A vertex off in one frame looks like an impact unless it moves by more than vertices are accelerated around it.
+template <int Millimetres>
+inline bool beyond_impact(const Right& r, const Motion& told) {
+  const Facts& f = r.facts;
+  const double floor_m = 1.5 * (20e-4 * f.length_m + 0.75 * f.gravity * f.frame_s * f.frame_s),
+               by_m = 1e-3 * Millimetres;
+  return by_m > 1.5 * floor_m && by_m > 3 * accelerated_m(r.motion, first_difference(r, told));
+}
+/// A patch stands still in the air while it and the cloth move.
+inline bool hangs_still(const Right& r, const Motion& told) {
+  const Facts& f = r.facts;
+  const Index k = first_difference(r, told);
+  if (std::find(f.air.begin(), f.air.end(), k) == f.air.end()) return false;
+  const double moving_m = f.gravity * f.frame_s * f.frame_s + 4e-4 * f.length_m;
+  Index stopped = 0, move = 0;
+  for (Index v = 0; v < told.vertices(); ++v) {
+    const bool moved = (v3(r.motion.at(k, v)) - v3(r.motion.at(k - 1, v))).norm() > moving_m;
+    move += moved;
+    stopped += moved && told.at(k, v) == told.at(k - 1, v);
+  }
+  return stopped > 3 && 2 * move > told.vertices() + 2 * stopped;
+}
+/// Cloth that comes to rest farther away than a contact may be: a tenth of the offset and four times the resolution.
+inline bool hovers_at_rest(const Right& r, const Motion&) {
+  return lies_still(r.facts) && 0.002 > 1.2 * (0.1 * r.facts.offset_m + 4e-4 * r.facts.length_m);
+}
+inline bool folded(const Facts& f) { return f.self; }
+inline bool falls(const Facts& f) { return f.falls; }
+
+std::vector<Lie> lies_of_time();
+std::vector<Lie> lies_of_shape();
+std::vector<Lie> lies_of_contact();
 
 }  // namespace clothbench::liars

@@ -15,11 +15,10 @@ namespace clothbench::liars {
 struct Matrix {
   std::uint64_t seed = 1000;
   int motions = 40;
-  std::vector<std::string> kinds;      ///< empty: all
-  std::string solver;                  ///< label; empty: all that are right for the scene
-  std::string only_lie;                ///< empty: all
-  std::filesystem::path motion_cache;  ///< folder of motions that have been computed; empty: none
-  std::filesystem::path store;         ///< folder for liar_plugin.c: motions by number, and their scenes; empty: none
+  std::vector<std::string> kinds;  ///< empty: all
+  std::string solver;              ///< label; empty: all that are right for the scene
+  std::string only_lie;            ///< empty: all
+  std::filesystem::path store;     ///< folder for liar_plugin.c: motions by number, and their scenes; empty: none
 };
 
 /// What the check of motions says of one.
@@ -28,24 +27,19 @@ struct Trial {
   std::uint64_t seed = 0;
   bool right = false, determined = false;
   double difference_m = 0;
+  double solution = 0;  ///< error against the scene's exact solution over its bound; NaN if there is none
   std::vector<motion_check::Finding> findings;
   int number = -1;  ///< of the file in Matrix::store; -1: none, since a solver cannot leave out frames
 
-  bool failed() const;
   const motion_check::Finding& worst() const { return *motion_check::worst(findings); }
+  /// As a run fails, without any bound that a scene states.
+  bool failed() const { return !(worst().ratio <= 1) || solution > 1; }
 };
 
-/// Motions of the matrix that pass, with their lies, and those that are right and fail. `progress`: called after each.
-std::vector<Trial> tell_all(const Matrix&, void (*progress)(const std::string&) = nullptr);
+/// Motions of the matrix that pass, with their lies, and those that are right and fail.
+std::vector<Trial> tell_all(const Matrix&);
 
-/// Caught and told of the lies that positions determine, and passed of the right motions.
-struct Totals {
-  std::size_t told = 0, caught = 0, undetermined = 0, undetermined_caught = 0, right = 0, passed = 0, noisy = 0,
-              noisy_passed = 0;
-};
-Totals totals(const std::vector<Trial>&);
-
-std::string as_text(const std::vector<Trial>&);
-nlohmann::json as_json(const std::vector<Trial>&);
+/// A line of a result file: a trial without its motion.
+nlohmann::json as_json(const Trial&);
 
 }  // namespace clothbench::liars

@@ -1,9 +1,12 @@
-// Cloth hinges on each straight line of its vertices: what the line exerts on the part beyond it has no moment about
-// the line, but for the sheet's bending rigidity. So a part that nothing touches must turn as gravity turns it.
+// Cloth hinges on each straight line across it: links meet the line where they cross it, so what they exert on the part
+// beyond it has no moment about the line, but for the sheet's bending rigidity. So a part that nothing touches must
+// turn as gravity turns it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
@@ -14,15 +17,44 @@ namespace {
 /// Intervals over which a moment is averaged.
 constexpr std::size_t kSpans[] = {1, 3, 12};
 constexpr std::size_t kKept = 12;
-/// Distance from a line at which a diagonal may pass it, over the distance of two lines.
-constexpr double kFlat = 0.05;
+/// Depth of a part beyond a line, in cells.
+constexpr double kDeep = 2.8;
+/// Of lines that links cross: distance of a crossing from the line, in cells; vertices beyond the line.
+constexpr double kFlat = 0.1;
+constexpr std::size_t kMany = 20;
+/// Forces of a line that is not straight act this many times their sum beside it.
+constexpr double kBulge = 6;
 
-/// Lines across the cloth in one direction, from a border or a corner to the one across.
-struct Lines {
-  std::vector<std::vector<std::uint32_t>> vertices;
-  std::vector<std::vector<std::array<std::uint32_t, 2>>> jumps;  ///< of each line: ends of the diagonals that jump it
-  double spacing_m;                                              ///< of neighbouring lines at rest
+/// A point of the grid: column and row.
+using Place = std::array<int, 2>;
+/// All places with p i + q j = c; the part beyond has more.
+struct Line {
+  int p, q, c;
+  int level(const Place& at) const { return p * at[0] + q * at[1]; }
+  auto operator<=>(const Line&) const = default;
 };
+
+/// Corners of the convex hull, anticlockwise (Andrew 1979).
+std::vector<Place> hull_of(std::vector<Place> all) {
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  if (all.size() < 3) return all;
+  std::vector<Place> out;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = out.size();
+    for (const Place& c : all) {
+      while (out.size() >= first + 2) {
+        const Place &a = out[out.size() - 2], &b = out.back();
+        if ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0) break;
+        out.pop_back();
+      }
+      out.push_back(c);
+    }
+    out.pop_back();
+    std::reverse(all.begin(), all.end());
+  }
+  return out;
+}
 
 class Hinges {
  public:
@@ -32,121 +64,134 @@ class Hinges {
  private:
   struct Moment {
     double value = 0, scale = 0, hidden = 0;  ///< [N m]
+    std::size_t beyond = 0;                   ///< vertices of the part
   };
-  Moment moment(const Lines& lines, std::size_t cut, std::size_t k) const;
-  void judge(std::size_t d, std::size_t k, std::size_t span);
-
+  std::vector<Line> lines_of(const std::vector<Place>& blocked) const;
+  std::vector<V3> crossings(const Line& line, std::size_t k, std::size_t& vertices) const;
+  Moment moment(const Line& line, std::size_t k) const;
+  void judge(const Line& line, std::size_t k, std::size_t span);
+  /// Distance of two lines of one direction, a level apart.
+  double spacing_m(const Line& line) const {
+    return 1 / std::hypot(line.p / m_.scene.cloth.du(), line.q / m_.scene.cloth.dv());
+  }
   const Motion& m_;
-  const Bodies& bodies_;
   Findings& found_;
-  std::vector<Lines> lines_;
-  std::vector<std::vector<std::size_t>> level_;  ///< per direction and vertex
-  std::vector<std::vector<std::size_t>>
-      free_from_;  ///< per direction and frame: behind all lines that are touched or held
+  std::vector<Place> place_;                             ///< of each vertex
+  std::vector<std::vector<Place>> blocked_;              ///< per frame: hull of what is touched or held
   std::array<std::vector<V3>, kKept> force_, relative_;  ///< of the last frames: residual acceleration; velocity
-  std::array<std::vector<double>, kKept> change_;        ///< size of the acceleration beyond gravity
-  /// Per direction, the moments of the last frames, since spans share them.
-  struct Known {
-    std::size_t frame = 0, cut = 0;
-    Moment moment;
-  };
-  std::vector<std::array<Known, kKept>> known_;
+  std::array<std::map<Line, Moment>, kKept> known_;      ///< of the last frames, since spans share moments
 };
 
-Hinges::Hinges(const Motion& m, const Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f) {
-  const Cloth& c = m.scene.cloth;
-  const double du = c.du(), dv = c.dv(), slant = du * dv / std::hypot(du, dv);
-  const int across = c.columns - 1, down = c.rows - 1;
-  const auto add = [&](double spacing_m, auto level) {
-    Lines lines{{}, {}, spacing_m};
-    std::vector<std::size_t>& of = level_.emplace_back(m.vertices);
-    for (std::uint32_t v = 0; v < m.vertices; ++v) {
-      of[v] = static_cast<std::size_t>(level(static_cast<int>(v) % c.columns, static_cast<int>(v) / c.columns));
-      if (lines.vertices.size() <= of[v]) lines.vertices.resize(of[v] + 1);
-      lines.vertices[of[v]].push_back(v);
-    }
-    lines.jumps.resize(lines.vertices.size());
-    for (std::uint32_t v = 0; v + static_cast<std::uint32_t>(c.columns) < m.vertices; ++v)
-      for (const int step : {-1, 1}) {
-        if (static_cast<int>(v) % c.columns + step < 0 || static_cast<int>(v) % c.columns + step > across) continue;
-        const std::uint32_t w = v + static_cast<std::uint32_t>(c.columns + step);
-        if (std::max(of[v], of[w]) == std::min(of[v], of[w]) + 2) lines.jumps[(of[v] + of[w]) / 2].push_back({v, w});
-      }
-    lines_.push_back(std::move(lines));
-  };
-  add(du, [&](int i, int) { return i; });
-  add(du, [&](int i, int) { return across - i; });
-  add(dv, [&](int, int j) { return j; });
-  add(dv, [&](int, int j) { return down - j; });
-  add(slant, [&](int i, int j) { return i + j; });
-  add(slant, [&](int i, int j) { return across + down - i - j; });
-  add(slant, [&](int i, int j) { return i + down - j; });
-  add(slant, [&](int i, int j) { return across - i + j; });
-  known_.resize(lines_.size());
-  free_from_.assign(lines_.size(), std::vector<std::size_t>(m.frames, 0));
+Hinges::Hinges(const Motion& m, const Bodies& b, Findings& f) : m_(m), found_(f), blocked_(m.frames) {
+  for (int v = 0; v < static_cast<int>(m.vertices); ++v)
+    place_.push_back({v % m.scene.cloth.columns, v / m.scene.cloth.columns});
   for (std::size_t k = 0; k < m.frames; ++k) {
-    std::vector<std::uint32_t> blocked = m.held(k);
-    for (std::uint32_t v = 0; v < m.vertices; ++v)
-      if (bodies_.touched(k, v)) blocked.push_back(v);
-    for (std::size_t d = 0; d < lines_.size(); ++d)
-      for (const std::uint32_t v : blocked) free_from_[d][k] = std::max(free_from_[d][k], level_[d][v] + 1);
+    for (const std::uint32_t v : m.held(k)) blocked_[k].push_back(place_[v]);
+    for (std::size_t v = 0; v < m.vertices; ++v)
+      if (b.touched(k, v)) blocked_[k].push_back(place_[v]);
+    blocked_[k] = hull_of(std::move(blocked_[k]));
   }
 }
 
-/// Of the part beyond a line about the line, in the intervals around a frame.
-Hinges::Moment Hinges::moment(const Lines& lines, std::size_t cut, std::size_t k) const {
-  const std::vector<std::uint32_t>& line = lines.vertices[cut];
-  const std::vector<V3>&force = force_[k % kKept], &velocity = relative_[k % kKept];
-  const V3 on = m_.at(k, line.front());
-  V3 axis = m_.at(k, line.back()) - on, speed = V3::Zero(), net = V3::Zero();
-  const double length_m = axis.norm();
-  Moment out;
-  if (!(length_m > 0)) return out;
-  axis /= length_m;
-  double bulge_m = 0;
-  for (const std::uint32_t v : line) {
-    bulge_m = std::max(bulge_m, (m_.at(k, v) - on).cross(axis).norm());
-    speed += velocity[v] / static_cast<double>(line.size());
+/// Lines along rows, columns, diagonals and the edges of the hull of what is blocked; through the middle if nothing is.
+std::vector<Line> Hinges::lines_of(const std::vector<Place>& blocked) const {
+  const Place last = place_.back();
+  std::vector<Line> out;
+  const auto add = [&](int p, int q) {
+    Line line{p, q, (p * last[0] + q * last[1]) / 2};
+    if (!blocked.empty()) line.c = line.level(blocked.front());
+    for (const Place& at : blocked) line.c = std::max(line.c, line.level(at));
+    const int deepest = std::max(p, 0) * last[0] + std::max(q, 0) * last[1] - line.c;
+    if (deepest * spacing_m(line) > kDeep * m_.cell_m) out.push_back(line);
+  };
+  for (int p = -1; p <= 1; ++p)
+    for (int q = -1; q <= 1; ++q)
+      if (p != 0 || q != 0) add(p, q);
+  for (std::size_t i = 0; blocked.size() > 1 && i < blocked.size(); ++i) {
+    const Place &a = blocked[i], &b = blocked[(i + 1) % blocked.size()];
+    const int du = b[0] - a[0], dv = b[1] - a[1], common = std::gcd(du, dv);
+    if (std::max(std::abs(du), std::abs(dv)) > common) add(dv / common, -du / common);
   }
-  double jump_m = lines.jumps[cut].empty() ? 0 : bulge_m;
-  for (const auto& [a, b] : lines.jumps[cut])
-    jump_m = std::max(jump_m, ((m_.at(k, a) + m_.at(k, b)) / 2 - on).cross(axis).norm());
-  // Diagonals that jump a bent line push and pull beside it.
-  if (jump_m > kFlat * lines.spacing_m) return out;
-  for (std::size_t level = cut + 1; level < lines.vertices.size(); ++level)
-    for (const std::uint32_t v : lines.vertices[level]) {
-      const double mass = m_.masses_kg[v];
-      out.value += mass * axis.dot((m_.at(k, v) - on).cross(force[v]));
-      out.hidden += mass * (velocity[v] - speed).norm() * change_[k % kKept][v];
-      out.scale += mass * m_.weight_unit * lines.spacing_m * static_cast<double>(level - cut);
-      net += mass * force[v];
-    }
-  out.hidden *= m_.dt(k) / 3;
-  // A line that is not straight exerts moments by what it bulges.
-  out.hidden += bulge_m * 3 * net.norm() + 2 * m_.scene.material.bending_rigidity_N_m * length_m / lines.spacing_m;
   return out;
 }
 
-void Hinges::judge(std::size_t d, std::size_t k, std::size_t span) {
-  if (k < span) return;
-  std::size_t cut = 0;
-  for (std::size_t f = k - span; f <= k + 1; ++f) cut = std::max(cut, free_from_[d][f]);
-  const Lines& lines = lines_[d];
-  if (cut == 0) cut = lines.vertices.size() / 2;
-  if (cut + 3 >= lines.vertices.size() || lines.vertices[cut].size() < 2) return;
-  if (cut + 4 >= lines.vertices.size() && !lines.jumps[cut].empty()) return;
-  double value = 0, hidden = 0, scale = 0;
-  for (std::size_t f = k + 1 - span; f <= k; ++f) {
-    Known& known = known_[d][f % kKept];
-    if (known.frame != f || known.cut != cut) known = {f, cut, moment(lines, cut, f)};
-    const Moment& now = known.moment;
-    if (!(now.scale > 0)) return;
-    value += now.value, hidden += now.hidden, scale += now.scale;
+/// Where the sheet crosses a line: its vertices on it, in their order, and then its links.
+std::vector<V3> Hinges::crossings(const Line& line, std::size_t k, std::size_t& vertices) const {
+  std::vector<std::pair<int, V3>> on;
+  std::vector<V3> links;
+  const Place last = place_.back();
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    const Place& at = place_[v];
+    const int beyond = line.level(at) - line.c;
+    if (beyond == 0) on.emplace_back(line.p * at[1] - line.q * at[0], m_.at(k, v));
+    if (std::abs(beyond) >= std::abs(line.p) + std::abs(line.q)) continue;
+    for (const Place& step : {Place{1, 0}, Place{0, 1}, Place{1, 1}, Place{-1, 1}}) {
+      const int other = beyond + line.p * step[0] + line.q * step[1];
+      if (beyond * other >= 0 || at[0] + step[0] < 0 || at[0] + step[0] > last[0] || at[1] + step[1] > last[1])
+        continue;
+      const double share = static_cast<double>(beyond) / (beyond - other);
+      const std::size_t w = v + static_cast<std::size_t>(step[1] * m_.scene.cloth.columns + step[0]);
+      links.push_back((1 - share) * m_.at(k, v) + share * m_.at(k, w));
+    }
   }
-  std::size_t beyond = 0;
-  for (std::size_t level = cut + 1; level < lines.vertices.size(); ++level) beyond += lines.vertices[level].size();
-  const double off = std::max(0.0, std::abs(value) - hidden) / scale, n = static_cast<double>(span);
-  const double allowed = (span == 1 ? 0.5 : 0.05) + 1.5 * m_.noise(k, beyond) / n;
+  std::sort(on.begin(), on.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  vertices = on.size();
+  std::vector<V3> out;
+  for (const auto& [along, x] : on) out.push_back(x);
+  out.insert(out.end(), links.begin(), links.end());
+  return out;
+}
+
+/// Of the part beyond a line about the line, in the intervals around a frame.
+Hinges::Moment Hinges::moment(const Line& line, std::size_t k) const {
+  const std::vector<V3>&force = force_[k % kKept], &velocity = relative_[k % kKept];
+  std::size_t vertices = 0;
+  const std::vector<V3> on = crossings(line, k, vertices);
+  Moment out;
+  if (vertices < 2) return out;
+  V3 axis = on[vertices - 1] - on[0], speed = V3::Zero();
+  const double length_m = axis.norm();
+  if (!(length_m > 0)) return out;
+  axis /= length_m;
+  double bulge_m = 0, net = 0;
+  for (const V3& x : on) bulge_m = std::max(bulge_m, (x - on[0]).cross(axis).norm());
+  for (std::size_t v = 0; v < m_.vertices; ++v)
+    if (line.level(place_[v]) == line.c) speed += velocity[v] / static_cast<double>(vertices);
+  for (std::size_t v = 0; v < m_.vertices; ++v) {
+    const int beyond = line.level(place_[v]) - line.c;
+    if (beyond <= 0) continue;
+    const double mass = m_.masses_kg[v], size = force[v].norm();
+    out.value += mass * axis.dot((m_.at(k, v) - on[0]).cross(force[v]));
+    out.hidden += mass * (velocity[v] - speed).norm() * size;
+    out.scale += mass * m_.weight_unit * spacing_m(line) * beyond;
+    net += mass * size;
+    ++out.beyond;
+  }
+  // A curved sheet is stiff, and a corner whips.
+  if (on.size() > vertices && (bulge_m > kFlat * m_.cell_m || out.beyond < kMany)) return {};
+  out.hidden *= m_.dt(k) / 3;
+  // A line that is not straight exerts moments by what it bulges.
+  out.hidden += kBulge * bulge_m * net + 3 * m_.scene.material.bending_rigidity_N_m * length_m / m_.cell_m;
+  return out;
+}
+
+void Hinges::judge(const Line& line, std::size_t k, std::size_t span) {
+  Moment sum;
+  std::vector<double> each;
+  for (std::size_t f = k + 1 - span; f <= k; ++f) {
+    const auto [known, fresh] = known_[f % kKept].try_emplace(line);
+    if (fresh) known->second = moment(line, f);
+    const Moment& now = known->second;
+    if (!(now.scale > 0)) return;
+    each.push_back(std::max(0.0, std::abs(now.value) - now.hidden) / now.scale);
+    sum.value += now.value, sum.hidden += now.hidden, sum.scale += now.scale, sum.beyond = now.beyond;
+  }
+  double off = std::max(0.0, std::abs(sum.value) - sum.hidden) / sum.scale;
+  if (span == 3) {  // an impact may take one of three intervals
+    std::sort(each.begin(), each.end());
+    off = std::min(off, each[1]);
+  }
+  const double allowed = (span == 1 ? 0.5 : 0.05) + 1.5 * m_.noise(k, sum.beyond) / static_cast<double>(span);
   found_.add("hinge", off / allowed, k);
 }
 
@@ -155,17 +200,20 @@ void Hinges::run() {
     const double before = m_.dt(k), after = m_.dt(k + 1);
     const Flight flight(before, after, m_.scene.material.damping_per_s);
     std::vector<V3>&force = force_[k % kKept], &velocity = relative_[k % kKept];
-    std::vector<double>& change = change_[k % kKept];
-    force.resize(m_.vertices), velocity.resize(m_.vertices), change.resize(m_.vertices);
+    force.resize(m_.vertices), velocity.resize(m_.vertices);
+    known_[k % kKept].clear();
     for (std::size_t v = 0; v < m_.vertices; ++v) {
       const V3 behind = m_.at(k, v) - m_.at(k - 1, v), ahead = m_.at(k + 1, v) - m_.at(k, v);
       force[v] = flight.unexplained(behind, ahead, m_.gravity);
       velocity[v] = (ahead + behind) / (before + after);
-      change[v] = force[v].norm();
     }
-    for (std::size_t d = 0; d < lines_.size(); ++d)
-      for (const std::size_t span : kSpans)
-        if (span < 12 || k % 6 == 0) judge(d, k, span);
+    for (const std::size_t span : kSpans) {
+      if (k < span || (span == kKept && k % 6 != 0)) continue;
+      std::vector<Place> blocked;
+      for (std::size_t f = k - span; f <= k + 1; ++f)
+        blocked.insert(blocked.end(), blocked_[f].begin(), blocked_[f].end());
+      for (const Line& line : lines_of(hull_of(std::move(blocked)))) judge(line, k, span);
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
@@ -15,7 +17,11 @@ constexpr double kStiffest = 1000, kInextensible = 1e4;
 class Limits {
  public:
   Limits(const Motion& m, const Bodies& b, Findings& f)
-      : m_(m), found_(f), scripted_(std::max(b.speed(), m.grip_speed)), moves_(b.any_moves() || m.grip_speed > 0) {
+      : m_(m),
+        bodies_(b),
+        found_(f),
+        scripted_(std::max(b.speed(), m.grip_speed)),
+        moves_(b.any_moves() || m.grip_speed > 0) {
     driven_ = std::max(scripted_, m.start_speed);
     area_m2_ = m.mass_kg / m.scene.cloth.areal_density_kg_per_m2;
     whip_ = std::max(3.0, std::sqrt(1 + m.length_m / m.cell_m));
@@ -23,6 +29,7 @@ class Limits {
     is_held_.assign(m.vertices, false);
     for (const std::uint32_t v : m.scene.pins.vertices) is_held_[v] = true;
     for (const std::uint32_t v : m.scene.grips.vertices) is_held_[v] = true;
+    if (m.scene.material.bending_rigidity_N_m > 0) bends_ = edges(m.scene.cloth, EdgeKind::SkipOne);
   }
 
   void run() {
@@ -33,6 +40,8 @@ class Limits {
   void frame(std::size_t k);
   void velocities(std::size_t k);
   void energy(std::size_t k);
+  void rise(std::size_t k, double energy, double kinetic, double mean_square);
+  bool driven(std::size_t k) const;
   void strain(std::size_t k);
   double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
   /// Of a membrane wave [m/s].
@@ -42,6 +51,7 @@ class Limits {
   double elastic(double mean_square) const { return area_m2_ * mean_square; }
 
   const Motion& m_;
+  const Bodies& bodies_;
   Findings& found_;
   double scripted_, driven_ = 0, area_m2_ = 0;
   bool moves_;
@@ -51,6 +61,10 @@ class Limits {
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
   double imposed_ = 0;  ///< largest strain next to an attachment so far
+  std::vector<Edge> bends_;
+  /// Of the last frames in which nothing gave energy: the most that the cloth may have had, and its kinetic energy [J].
+  std::vector<double> had_, kinetic_;
+  double stored_before_ = 0, least_ = std::numeric_limits<double>::infinity();
 };
 
 void Limits::frame(std::size_t k) {
@@ -67,7 +81,7 @@ void Limits::frame(std::size_t k) {
   for (const Edge& e : m_.edges) tensile += std::pow(std::max(m_.strain(k, e), 0.0), 2);
   tensile_ = std::max(tensile_, tensile / static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1)));
   if (k > 0) velocities(k);
-  if (!moves_) energy(k);
+  energy(k);
   strain(k);
 }
 
@@ -98,19 +112,58 @@ void Limits::energy(std::size_t k) {
     elastic_start_ = stiffness_.value_or(kInextensible) * elastic(mean_square);
     return;
   }
-  // Links without a limit of stiffness store any energy at a start that strains them.
-  if (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest()) return;
   const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg;
   double kinetic = 0, height_gained = 0;
   for (std::size_t v = 0; v < m_.vertices; ++v) {
     kinetic += m_.masses_kg[v] * ((m_.at(k, v) - m_.at(k - 1, v)) / t).squaredNorm() / 2;
     height_gained += m_.masses_kg[v] * ((height(k, v) + height(k - 1, v)) / 2 - height(0, v));
   }
+  const double potential = g * height_gained * (m_.gravity.norm() > 0);
+  rise(k, kinetic + potential, kinetic, mean_square);
+  // Links without a limit of stiffness store any energy at a start that strains them.
+  if (moves_ || (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest())) return;
   kinetic_most_ = std::max(kinetic_most_, kinetic);
   const double step = 3 * g * t * std::sqrt(2 * kinetic_most_ * M), noise = 6 * M * std::pow(m_.resolution_m / t, 2);
   const double allowed = 0.02 * M * g * m_.length_m + 0.05 * start_energy_ + step + noise;
-  found_.add("energy",
-             (kinetic + g * height_gained * (m_.gravity.norm() > 0) - start_energy_ - elastic_start_) / allowed, k);
+  found_.add("energy", (kinetic + potential - start_energy_ - elastic_start_) / allowed, k);
+}
+
+/// Whether a collider or an attachment may give energy to the cloth in the interval before a frame.
+bool Limits::driven(std::size_t k) const {
+  if (!moves_) return false;
+  for (std::size_t v = 0; v < m_.vertices; ++v)
+    if (bodies_.touched(k - 1, v) || bodies_.touched(k, v)) return true;
+  const FrameMotion *was = m_.scripted(k - 1), *now = m_.scripted(k);
+  for (std::size_t g = 0; was != nullptr && g < now->grip_held.size(); ++g)
+    if ((now->grip_held[g] || was->grip_held[g]) && now->grip_position_m[g] != was->grip_position_m[g]) return true;
+  return false;
+}
+
+/// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. What links and hinges may
+/// store counts in the earlier frame alone, and so does what a rebound hides within a few frames.
+void Limits::rise(std::size_t k, double energy, double kinetic, double mean_square) {
+  constexpr std::size_t kHides = 4;
+  double bent = 0;
+  for (const Edge& e : bends_) bent += std::max(-m_.strain(k, e), 0.0);
+  const double stored =
+      stiffness_.value_or(kInextensible) * elastic(mean_square) + 8 * m_.scene.material.bending_rigidity_N_m * bent;
+  const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg, before = std::exchange(stored_before_, stored);
+  const auto step = [&](double of) { return 1.5 * g * t * std::sqrt(2 * M * of); };
+  if (driven(k)) {
+    had_.clear(), kinetic_.clear();
+    least_ = std::numeric_limits<double>::infinity();
+    return;
+  }
+  if (std::isfinite(least_)) {
+    const double noise = 6 * M * std::pow(m_.resolution_m / t, 2);
+    const double allowed =
+        0.02 * M * g * m_.length_m + step(*std::max_element(kinetic_.begin(), kinetic_.end())) + noise;
+    found_.add("rise", (energy - least_) / allowed, k);
+  }
+  had_.push_back(energy + std::max(before, stored) + step(kinetic)), kinetic_.push_back(kinetic);
+  if (had_.size() < kHides) return;
+  if (had_.size() > kHides) had_.erase(had_.begin()), kinetic_.erase(kinetic_.begin());
+  least_ = std::min(least_, *std::max_element(had_.begin(), had_.end()));
 }
 
 void Limits::strain(std::size_t k) {

@@ -106,9 +106,9 @@ std::span<const Part> parts();
 void check_momentum(const Motion&, Bodies&, Findings&);
 /// hinge.
 void check_hinges(const Motion&, Bodies&, Findings&);
-/// energy, speed, speed_change, strain, tear, compression.
+/// energy, rise, speed, speed_change, strain, tear, compression.
 void check_limits(const Motion&, Bodies&, Findings&);
-/// spike, roughness, freeze, stuck.
+/// spike, freeze, stuck.
 void check_smoothness(const Motion&, Bodies&, Findings&);
 
 }  // namespace clothbench::motion_check

@@ -2,7 +2,6 @@
 // still in the air.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
@@ -29,9 +28,7 @@ class Smoothness {
 
  private:
   Field high_pass(std::size_t k) const;
-  void roughness(std::size_t k, const Field& f);
   void spike(std::size_t k, const std::vector<Field>& around);
-  double usual_m(const Field& f) const;
   std::vector<bool> held(std::size_t k) const;
   void freeze();
   void stuck();
@@ -59,21 +56,6 @@ Field Smoothness::high_pass(std::size_t k) const {
   for (std::size_t v = 0; v < m_.vertices; ++v)
     f[v] = fixed[v] ? V3(V3::Zero()) : V3(f[v] - sum[v] / std::max(degree_[v], 1));
   return f;
-}
-
-/// What is usual in a frame: a spike and its neighbours are a few vertices, an impact moves more.
-double Smoothness::usual_m(const Field& f) const {
-  std::vector<double> size;
-  for (const V3& x : f) size.push_back(x.norm());
-  std::nth_element(size.begin(), size.begin() + 8, size.end(), std::greater());
-  return size[8];
-}
-
-void Smoothness::roughness(std::size_t k, const Field& f) {
-  const double t = m_.dt(k), allowed = 5 * (12 * m_.resolution_m + m_.weight_unit * t * t / 4 + 3 * usual_m(f));
-  double most = 0;
-  for (const V3& x : f) most = std::max(most, x.norm());
-  found_.add("roughness", most / allowed, k);
 }
 
 /// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. What of the vertex has
@@ -145,7 +127,6 @@ void Smoothness::run() {
   std::vector<Field> around;
   for (std::size_t k = 2; k + 2 < m_.frames; ++k) {
     around.push_back(high_pass(k));
-    roughness(k, around.back());
     if (around.size() > 5) around.erase(around.begin());
     if (around.size() == 5) spike(k - 2, around);
   }
