@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <limits>
+#include <map>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,7 +23,10 @@ struct Point : std::array<double, 3> {};
 
 inline Point point(const double* x, std::size_t k) { return {x[3 * k], x[3 * k + 1], x[3 * k + 2]}; }
 inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline double length(const Point& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
 inline Point cross(const Point& a, const Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -33,6 +39,18 @@ inline std::vector<Point> rest_points(const ClothbenchScene& s) {
   for (std::uint32_t v = 0; v < s.vertex_count; ++v) out.push_back(point(s.rest_position_m, v));
   return out;
 }
+
+/// [1/kg]; 0 where pinned.
+inline std::vector<double> inverse_masses(const ClothbenchScene& s) {
+  std::vector<double> out;
+  for (std::uint32_t v = 0; v < s.vertex_count; ++v) out.push_back(1 / s.mass_kg[v]);
+  for (std::uint32_t k = 0; k < s.pin_count; ++k) out[s.pins[k]] = 0;
+  return out;
+}
+
+/// Two vertices in either order, as a key.
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+inline Pair pair(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 enum class Kind { Structural, Shear, Bend };
 
@@ -103,10 +121,19 @@ constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOT
 /// The distance at which a collider holds the cloth: the setting, or the scene's margin where the setting is 0.
 inline double margin(double setting_m, const ClothbenchCollider& c) { return setting_m > 0 ? setting_m : c.margin_m; }
 
-/// Every feature that is served and needed, in one stage: an engine's step cannot be divided from outside.
-inline ClothbenchStage whole_step(const char* name, const ClothbenchScene& s) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  return {name, s.needs & kSupports, 0, unknown, unknown};
+/// Base of an adapter's solver.
+struct Adapter {
+  Adapter(const char* step, const ClothbenchScene& s)
+      : scene(s), origin(centre(s)), stage{step, s.needs & kSupports, 0, std::nan(""), std::nan("")} {}
+
+  const ClothbenchScene& scene;
+  Point origin;           ///< of the engine's coordinates [m]
+  ClothbenchStage stage;  ///< the only one: an engine's step cannot be divided from outside
+};
+
+/// Where the scene starts.
+inline ClothbenchRestart start_of(const ClothbenchScene& s) {
+  return {-1, 0, s.position_m, s.velocity_m_per_s, s.poses, nullptr, nullptr};
 }
 
 /// Free fall [m] by an integrator that changes the velocity [m/s] first: `steps` times v = next(v), x += h v.
@@ -133,9 +160,9 @@ struct About {
   double (*free_fall_m)(const double*, double, double, double, double, std::int32_t);
 };
 
-/// The C functions over an adapter: `Settings` from an array of values, in the order of `settings`; `Solver` from
-/// settings and a scene; and `obstacle(settings, scene)`, the reason why the engine cannot run the scene, empty if it
-/// can.
+/// The C functions over an adapter: `Settings` from an array of values, in the order of `settings`; `Solver`, an
+/// Adapter, from settings and a scene; and `obstacle(settings, scene)`, the reason why the engine cannot run the scene,
+/// empty if it can.
 template <typename Solver, typename Settings, std::uint32_t kCount>
 ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[kCount]) {
   ClothbenchPlugin p{};
@@ -166,7 +193,10 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
     *count = 1;
     return &static_cast<Solver*>(self)->stage;
   };
-  p.reset = [](void* self) { static_cast<Solver*>(self)->reset(); };
+  p.reset = [](void* self) {
+    auto* solver = static_cast<Solver*>(self);
+    solver->restart(start_of(solver->scene));
+  };
   p.restart_at = [](void* self, const ClothbenchRestart* at) -> std::int32_t {
     static_cast<Solver*>(self)->restart(*at);
     return 1;
@@ -182,3 +212,11 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
 }
 
 }  // namespace clothbench::peer
+
+/// Defines the library's function for the adapter in `space`, which has Solver, Settings, kSettings and free_fall_m.
+#define CLOTHBENCH_PEER(space, name, engine, summary)                                                \
+  extern "C" const ClothbenchPlugin* clothbench_plugin(void) {                                       \
+    static const ClothbenchPlugin plugin = clothbench::peer::plugin<space::Solver, space::Settings>( \
+        {name, engine, summary, "1", space::free_fall_m}, space::kSettings);                         \
+    return &plugin;                                                                                  \
+  }

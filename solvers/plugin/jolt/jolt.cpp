@@ -22,10 +22,6 @@
 #include <Jolt/Physics/SoftBody/SoftBodySharedSettings.h>
 #include <Jolt/RegisterTypes.h>
 
-#include <map>
-#include <memory>
-#include <stdexcept>
-
 #include "peer.hpp"
 
 namespace clothbench::jolt {
@@ -33,7 +29,6 @@ namespace {
 
 using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::Point;
 using Shared = JPH::SoftBodySharedSettings;
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 constexpr JPH::ObjectLayer kCloth = 0, kObstacle = 1;
 /// Of the bend constraints [m/N]. With the 1e-5 of the engine's samples an inextensible sheet of 64 x 64 tears apart.
@@ -43,8 +38,6 @@ Vec3 vec3(const double* x) { return {static_cast<float>(x[0]), static_cast<float
 
 /// A point of the world [m] in the engine's float32, around `origin`.
 Vec3 to_engine(const Point& x, const Point& origin) { return vec3((x - origin).data()); }
-
-Pair pair(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 JPH::Ref<JPH::Shape> made(const JPH::ShapeSettings& settings) {
   const JPH::ShapeSettings::ShapeResult result = settings.Create();
@@ -65,17 +58,17 @@ Shared created(const Shared& from, const Shared::VertexAttributes& attributes, S
 /// scene gets the compliance of the spring, and a diagonal without a spring is removed.
 void add_edges(const ClothbenchScene& s, Shared& to) {
   constexpr float kDiagonal = 2;  // marks the engine's diagonals
-  std::map<Pair, Shared::Edge> springs;
+  std::map<peer::Pair, Shared::Edge> springs;
   for (const peer::Spring& p : peer::springs(s)) {
     if (p.kind == peer::Kind::Bend || !(p.stiffness_N_per_m > 0)) continue;
     const double k = p.stiffness_N_per_m;
     Shared::Edge e(p.a, p.b, std::isinf(k) ? 0.0F : static_cast<float>(1 / k));
     e.mRestLength = static_cast<float>(p.rest_m);
-    springs[pair(p.a, p.b)] = e;
+    springs[peer::pair(p.a, p.b)] = e;
   }
   for (const Shared::Edge& e :
        created(to, {0.0F, kDiagonal, kBendCompliance}, Shared::EBendType::Distance).mEdgeConstraints) {
-    const auto at = springs.find(pair(e.mVertex[0], e.mVertex[1]));
+    const auto at = springs.find(peer::pair(e.mVertex[0], e.mVertex[1]));
     if (at != springs.end()) {
       to.mEdgeConstraints.push_back(at->second);
       springs.erase(at);
@@ -89,13 +82,12 @@ void add_edges(const ClothbenchScene& s, Shared& to) {
 /// The sheet at rest. Long-range attachments go only to pins, because grips can be released.
 JPH::Ref<Shared> shared_settings(const ClothbenchScene& s) {
   JPH::Ref<Shared> out = new Shared;
-  const std::vector<Point> rest = peer::rest_points(s);
+  const std::vector<double> inverse_mass = peer::inverse_masses(s);
   for (std::uint32_t v = 0; v < s.vertex_count; ++v) {
     JPH::Float3 at;
-    to_engine(rest[v], {}).StoreFloat3(&at);
-    out->mVertices.emplace_back(at, JPH::Float3(0, 0, 0), static_cast<float>(1 / s.mass_kg[v]));
+    vec3(s.rest_position_m + 3 * v).StoreFloat3(&at);
+    out->mVertices.emplace_back(at, JPH::Float3(0, 0, 0), static_cast<float>(inverse_mass[v]));
   }
-  for (std::uint32_t k = 0; k < s.pin_count; ++k) out->mVertices[s.pins[k]].mInvMass = 0;
   for (std::uint32_t t = 0; t < s.triangle_count; ++t)
     out->AddFace({s.triangles[3 * t], s.triangles[3 * t + 1], s.triangles[3 * t + 2]});
   add_edges(s, *out);
@@ -169,10 +161,9 @@ std::string obstacle(const Settings& s, const ClothbenchScene&) {
   return s.iterations < 1 || s.collision_steps < 1 ? "Jolt takes at least one iteration and one step" : "";
 }
 
-class Solver {
+class Solver : public peer::Adapter {
  public:
-  Solver(const Settings& settings, const ClothbenchScene& s)
-      : stage(peer::whole_step("update", s)), scene_(s), settings_(settings), origin_(peer::centre(s)) {
+  Solver(const Settings& settings, const ClothbenchScene& s) : Adapter("update", s), settings_(settings) {
     static const bool once = [] {
       JPH::RegisterDefaultAllocator();
       JPH::Factory::sInstance = new JPH::Factory;
@@ -181,11 +172,8 @@ class Solver {
     }();
     (void)once;
     shared_ = shared_settings(s);
-    reset();
+    restart(peer::start_of(s));
   }
-
-  void reset() { make_world(scene_.position_m, scene_.velocity_m_per_s, scene_.poses); }
-  void restart(const ClothbenchRestart& at) { make_world(at.position_m, at.velocity_m_per_s, at.poses); }
 
   std::int32_t step(const ClothbenchFrame& frame) {
     move_grips(frame);
@@ -200,9 +188,9 @@ class Solver {
 
   void read(double* position_m, double* velocity_m_per_s) const {
     const JPH::Array<JPH::SoftBodyVertex>& vertices = world_->vertices();
-    for (std::uint32_t v = 0; v < scene_.vertex_count; ++v)
+    for (std::uint32_t v = 0; v < scene.vertex_count; ++v)
       for (unsigned k = 0; k < 3; ++k) {
-        position_m[3 * v + k] = origin_[k] + static_cast<double>(vertices[v].mPosition[k]);
+        position_m[3 * v + k] = origin[k] + static_cast<double>(vertices[v].mPosition[k]);
         velocity_m_per_s[3 * v + k] = static_cast<double>(vertices[v].mVelocity[k]);
       }
   }
@@ -210,28 +198,25 @@ class Solver {
   /// The engine has one radius for all vertices: the largest margin of the scene.
   double margin_m(std::uint32_t = 0) const {
     double largest = 0;
-    for (std::uint32_t k = 0; k < scene_.collider_count; ++k)
-      largest = std::max(largest, peer::margin(settings_.collision_margin_m, scene_.colliders[k]));
+    for (std::uint32_t k = 0; k < scene.collider_count; ++k)
+      largest = std::max(largest, peer::margin(settings_.collision_margin_m, scene.colliders[k]));
     return largest;
   }
 
-  ClothbenchStage stage;
-
- private:
   /// The constraints of the shared settings have the rest lengths already, so their vertices can move to the start.
-  void make_world(const double* position_m, const double* velocity_m_per_s, const ClothbenchPose* poses) {
+  void restart(const ClothbenchRestart& start) {
     world_ = std::make_unique<World>();
-    world_->system.SetGravity(vec3(scene_.gravity_m_per_s2));
-    world_->bodies.resize(scene_.collider_count);
-    for (std::uint32_t k = 0; k < scene_.collider_count; ++k) add_collider(k, poses[k]);
-    for (std::uint32_t v = 0; v < scene_.vertex_count; ++v) {
+    world_->system.SetGravity(vec3(scene.gravity_m_per_s2));
+    world_->bodies.resize(scene.collider_count);
+    for (std::uint32_t k = 0; k < scene.collider_count; ++k) add_collider(k, start.poses[k]);
+    for (std::uint32_t v = 0; v < scene.vertex_count; ++v) {
       Shared::Vertex& vertex = shared_->mVertices[v];
-      to_engine(peer::point(position_m, v), origin_).StoreFloat3(&vertex.mPosition);
-      if (vertex.mInvMass > 0) vec3(velocity_m_per_s + 3 * v).StoreFloat3(&vertex.mVelocity);
+      to_engine(peer::point(start.position_m, v), origin).StoreFloat3(&vertex.mPosition);
+      if (vertex.mInvMass > 0) vec3(start.velocity_m_per_s + 3 * v).StoreFloat3(&vertex.mVelocity);
     }
     JPH::SoftBodyCreationSettings body(shared_, JPH::RVec3::sZero(), Quat::sIdentity(), kCloth);
     body.mNumIterations = static_cast<JPH::uint32>(settings_.iterations);
-    body.mLinearDamping = static_cast<float>(scene_.damping_per_s);
+    body.mLinearDamping = static_cast<float>(scene.damping_per_s);
     body.mVertexRadius = static_cast<float>(margin_m());
     body.mUpdatePosition = false;
     body.mAllowSleeping = false;
@@ -241,9 +226,10 @@ class Solver {
     bodies.AddBody(world_->cloth->GetID(), JPH::EActivation::Activate);
   }
 
+ private:
   void add_body(std::uint32_t collider, const JPH::Shape* shape, Vec3 at, Quat turn, EMotionType motion) {
     JPH::BodyCreationSettings settings(shape, at, turn, motion, kObstacle);
-    settings.mFriction = static_cast<float>(scene_.colliders[collider].friction);
+    settings.mFriction = static_cast<float>(scene.colliders[collider].friction);
     const JPH::BodyID id = world_->system.GetBodyInterfaceNoLock().CreateAndAddBody(
         settings, motion == EMotionType::Static ? JPH::EActivation::DontActivate : JPH::EActivation::Activate);
     if (id.IsInvalid()) throw std::runtime_error("Jolt: no room for another body");
@@ -252,8 +238,8 @@ class Solver {
 
   /// Spheres, boxes, planes and meshes are static bodies, and each capsule a kinematic one.
   void add_collider(std::uint32_t k, const ClothbenchPose& pose) {
-    const ClothbenchCollider& c = scene_.colliders[k];
-    const Vec3 middle = to_engine(peer::point(c.center_m, 0), origin_);
+    const ClothbenchCollider& c = scene.colliders[k];
+    const Vec3 middle = to_engine(peer::point(c.center_m, 0), origin);
     const auto fixed = [&](const JPH::ShapeSettings& settings, Vec3 at, Quat turn) {
       add_body(k, made(settings), at, turn, EMotionType::Static);
     };
@@ -269,7 +255,7 @@ class Solver {
     if (c.shape == CLOTHBENCH_SHAPE_MESH)
       add_body(k, mesh(c, pose.vertices_m), Vec3::sZero(), Quat::sIdentity(), EMotionType::Static);
     for (std::uint32_t n = 0; c.shape == CLOTHBENCH_SHAPE_CAPSULES && n < c.capsule_count; ++n) {
-      const CapsulePose at = pose_of(pose.capsules + 7 * n, origin_);
+      const CapsulePose at = pose_of(pose.capsules + 7 * n, origin);
       const auto radius = static_cast<float>(pose.capsules[7 * n + 6]);
       add_body(k,
                at.half_length > 0 ? made(JPH::CapsuleShapeSettings(at.half_length, radius))
@@ -282,7 +268,7 @@ class Solver {
     JPH::VertexList vertices(c.vertex_count);
     JPH::IndexedTriangleList triangles;
     for (std::uint32_t v = 0; v < c.vertex_count; ++v)
-      to_engine(peer::point(vertices_m, v), origin_).StoreFloat3(&vertices[v]);
+      to_engine(peer::point(vertices_m, v), origin).StoreFloat3(&vertices[v]);
     for (std::uint32_t t = 0; t < c.triangle_count; ++t)
       triangles.emplace_back(c.triangles[3 * t], c.triangles[3 * t + 1], c.triangles[3 * t + 2], 0);
     JPH::MeshShapeSettings settings(std::move(vertices), std::move(triangles));
@@ -294,14 +280,14 @@ class Solver {
   /// shapes cannot deform.
   void move_colliders(const ClothbenchFrame& frame) {
     JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
-    for (std::uint32_t k = 0; k < scene_.collider_count; ++k) {
-      const ClothbenchCollider& c = scene_.colliders[k];
+    for (std::uint32_t k = 0; k < scene.collider_count; ++k) {
+      const ClothbenchCollider& c = scene.colliders[k];
       const std::vector<JPH::BodyID>& ids = world_->bodies[k];
       if (c.moves == 0) continue;
       if (c.shape == CLOTHBENCH_SHAPE_MESH)
         bodies.SetShape(ids.front(), mesh(c, frame.poses[k].vertices_m), false, JPH::EActivation::DontActivate);
       for (std::uint32_t n = 0; n < c.capsule_count; ++n) {
-        const CapsulePose at = pose_of(frame.poses[k].capsules + 7 * n, origin_);
+        const CapsulePose at = pose_of(frame.poses[k].capsules + 7 * n, origin);
         if (frame.collider_teleports != nullptr && frame.collider_teleports[k] != 0)
           bodies.SetPositionRotationAndVelocity(ids[n], at.middle, at.turn, Vec3::sZero(), Vec3::sZero());
         else
@@ -312,22 +298,20 @@ class Solver {
 
   /// Attached vertices are kinematic: without inverse mass, at the velocity that takes them to the frame's end.
   void move_grips(const ClothbenchFrame& frame) {
-    for (std::uint32_t k = 0; k < scene_.grip_count; ++k) {
-      const std::uint32_t v = scene_.grips[k];
+    for (std::uint32_t k = 0; k < scene.grip_count; ++k) {
+      const std::uint32_t v = scene.grips[k];
       JPH::SoftBodyVertex& vertex = world_->vertices()[v];
       const bool attached = frame.grip_held == nullptr || frame.grip_held[k] != 0;
-      vertex.mInvMass = attached ? 0.0F : static_cast<float>(1 / scene_.mass_kg[v]);
+      vertex.mInvMass = attached ? 0.0F : static_cast<float>(1 / scene.mass_kg[v]);
       if (!attached) continue;
-      const double* end = frame.grip_position_m == nullptr ? scene_.position_m + 3 * v : frame.grip_position_m + 3 * k;
-      const Vec3 target = to_engine(peer::point(end, 0), origin_);
+      const double* end = frame.grip_position_m == nullptr ? scene.position_m + 3 * v : frame.grip_position_m + 3 * k;
+      const Vec3 target = to_engine(peer::point(end, 0), origin);
       if (frame.grip_teleports != nullptr && frame.grip_teleports[k] != 0) vertex.mPosition = target;
       vertex.mVelocity = (target - vertex.mPosition) / static_cast<float>(frame.dt_s);
     }
   }
 
-  const ClothbenchScene& scene_;
   Settings settings_;
-  Point origin_;
   JPH::Ref<Shared> shared_;
   std::unique_ptr<World> world_;
 };
@@ -350,11 +334,4 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::jolt
 
-namespace adapter = clothbench::jolt;
-
-extern "C" const ClothbenchPlugin* clothbench_plugin(void) {
-  static const ClothbenchPlugin plugin = clothbench::peer::plugin<adapter::Solver, adapter::Settings>(
-      {"jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core", "1", adapter::free_fall_m},
-      adapter::kSettings);
-  return &plugin;
-}
+CLOTHBENCH_PEER(clothbench::jolt, "jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core")
