@@ -119,9 +119,12 @@ Hand open_hand(const AssetSource& source, Side side) {
   if (!source.npm) return procedural_hand(side);
   Hand hand;
   hand.side = side;
-  hand.mesh = read_hand_glb(hand_file(source.root, side));
+  constexpr std::uintmax_t kMostBytes = 64u << 20;
+  const fs::path mesh = hand_file(source.root, side);
+  hand.mesh = parse_hand_glb(read_text(mesh, kMostBytes), mesh.string());
   for (auto name : kPoseNames) {
-    const HandPose left = read_pose_js(pose_file(source.root, name));
+    const fs::path pose = pose_file(source.root, name);
+    const HandPose left = parse_pose_js(read_text(pose), pose.string());
     hand.poses.emplace(name, in_palm_frame(side == Side::Left ? left : mirrored(left)));
   }
   return hand;

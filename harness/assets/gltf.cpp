@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include "assets/gltf_file.hpp"
@@ -13,8 +12,6 @@ namespace clothbench::assets {
 namespace {
 
 using gltf::fail, gltf::pick, gltf::world_transforms;
-
-constexpr std::uintmax_t kMostBytes = 64u << 20;
 
 std::vector<double> numbers(const tinygltf::Model& model, int index, int type, std::initializer_list<int> kinds,
                             const std::string& source) {
@@ -61,8 +58,8 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
 
 }  // namespace
 
-SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::string& source) {
-  const tinygltf::Model model = gltf::parse_binary(bytes.data(), bytes.size(), source);
+SkinnedMesh parse_hand_glb(const std::string& bytes, const std::string& source) {
+  const tinygltf::Model model = gltf::parse_binary(bytes, source);
   if (model.meshes.size() != 1 || model.meshes[0].primitives.size() != 1)
     fail(source, "/meshes: expected one mesh of one primitive");
   const auto& primitive = model.meshes[0].primitives[0];
@@ -75,7 +72,7 @@ SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::st
   const auto joints = numbers(model, attribute(primitive, "JOINTS_0", source), TINYGLTF_TYPE_VEC4, {u8, u16}, source);
   const auto weights = numbers(model, attribute(primitive, "WEIGHTS_0", source), TINYGLTF_TYPE_VEC4, {f32}, source);
   const auto indices = numbers(model, primitive.indices, TINYGLTF_TYPE_SCALAR, {u8, u16, u32}, source);
-  const std::size_t count = hand.stored_vertices = positions.size() / 3;
+  const std::size_t count = positions.size() / 3;
   if (joints.size() != 4 * count || weights.size() != 4 * count || indices.size() % 3 != 0)
     fail(source, "/meshes/0/primitives/0: expected joints and weights for each position, and indices in threes");
 
@@ -106,18 +103,6 @@ SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::st
     hand.rest.triangles.push_back({at(0), at(1), at(2)});
   }
   return hand;
-}
-
-SkinnedMesh read_hand_glb(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(path.string() + ": cannot be opened");
-  std::error_code ec;
-  const auto size = std::filesystem::file_size(path, ec);
-  if (ec || size > kMostBytes) throw Error(path.string() + ": expected a regular file of at most 64 MiB");
-  std::vector<std::uint8_t> bytes(size);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!in) throw Error(path.string() + ": cannot be read");
-  return parse_hand_glb(bytes, path.string());
 }
 
 }  // namespace clothbench::assets

@@ -150,7 +150,9 @@ std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model& model, cons
   return world;
 }
 
-tinygltf::Model parse_binary(const std::uint8_t* bytes, std::size_t size, const std::string& source) {
+tinygltf::Model parse_binary(const std::string& content, const std::string& source) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
+  const std::size_t size = content.size();
   constexpr std::uint32_t kVersion = 2;
   if (size >= 12 && item_at<std::uint32_t>(bytes + 4) != kVersion)
     fail(source, fmt::format("not a binary glTF file of version {}: its version is {}", kVersion,

@@ -36,7 +36,7 @@ std::vector<double> numbers(const tinygltf::Model&, int index, int type, std::in
 std::vector<Eigen::Affine3d> world_transforms(const tinygltf::Model&, const std::string& source);
 
 /// A binary file. Images in it are not decoded.
-tinygltf::Model parse_binary(const std::uint8_t* bytes, std::size_t size, const std::string& source);
+tinygltf::Model parse_binary(const std::string& bytes, const std::string& source);
 /// A text file; its buffers must be inside it, as data URIs.
 tinygltf::Model parse_text(const std::string& text, const std::string& source);
 

@@ -144,9 +144,7 @@ class MeshReader {
 
 MeshFile parse_gltf(const std::string& bytes, const std::string& source) {
   const bool binary = bytes.starts_with("glTF");
-  const tinygltf::Model model =
-      binary ? gltf::parse_binary(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), source)
-             : gltf::parse_text(bytes, source);
+  const tinygltf::Model model = binary ? gltf::parse_binary(bytes, source) : gltf::parse_text(bytes, source);
   return MeshReader(model, source).read();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -20,7 +19,6 @@ struct SkinnedMesh {
   std::vector<std::array<double, 4>> weights;       ///< per vertex, sum 1
   JointFrames bind;                                 ///< joint frames at rest
   std::array<Eigen::Affine3d, kJointCount> inverse_bind;
-  std::size_t stored_vertices = 0;  ///< count in the file, before coincident vertices were merged
 };
 
 /// Positions [m], xyz interleaved, of the mesh's vertices for these joint frames.
@@ -28,8 +26,7 @@ std::vector<double> skinned(const SkinnedMesh&, const JointFrames&);
 
 /// Reads the WebXR generic hand (binary glTF, one mesh, one primitive, one skin with the 25 WebXR joints). Merges
 /// coincident vertices, which the file repeats along texture seams. Throws Error naming the file and what is wrong.
-SkinnedMesh read_hand_glb(const std::filesystem::path&);
-SkinnedMesh parse_hand_glb(const std::vector<std::uint8_t>& bytes, const std::string& source);
+SkinnedMesh parse_hand_glb(const std::string& bytes, const std::string& source);
 
 /// A hand: its mesh, and kPoseNames in the palm frame (`palm_frame`) for this side.
 struct Hand {

@@ -61,8 +61,6 @@ HandPose parse_pose_js(const std::string& text, const std::string& source) {
   return pose;
 }
 
-HandPose read_pose_js(const std::filesystem::path& path) { return parse_pose_js(read_text(path), path.string()); }
-
 HandPose mirrored(const HandPose& pose) {
   HandPose out = pose;
   const Eigen::DiagonalMatrix<double, 3> flip(-1, 1, 1);

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -58,7 +57,6 @@ inline constexpr std::array<std::string_view, 3> kPoseNames = {"relaxed", "pinch
 
 /// Reads a pose module of `iwer` (lib/device/configs/hand/*.js): left hand, relative to the pointing ray's space. It
 /// parses the object literal and executes no code. Throws Error with file and JSON pointer.
-HandPose read_pose_js(const std::filesystem::path&);
 HandPose parse_pose_js(const std::string& text, const std::string& source);
 
 /// The pose of the other hand: reflected in the plane x = 0.

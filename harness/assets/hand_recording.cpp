@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -33,9 +32,7 @@ std::string block(const Item* items, std::size_t count) {
 template <class Item>
 std::vector<Item> block_at(const JsonAt& at) {
   static_assert(std::is_trivially_copyable_v<Item>);
-  std::vector<std::uint8_t> bytes;
-  std::string problem;
-  if (!decode_base64(at.text(), bytes, problem)) at.fail(problem);
+  const std::vector<std::uint8_t> bytes = at.bytes();
   if (bytes.size() % sizeof(Item) != 0)
     at.fail(fmt::format("{} bytes; expected a multiple of {}", bytes.size(), sizeof(Item)));
   std::vector<Item> items(bytes.size() / sizeof(Item));
@@ -62,29 +59,6 @@ template <class Items>
 void check_all(const Items& items, const JsonAt& at, const char* expected) {
   for (std::size_t k = 0; k < items.size(); ++k)
     if (!good(items[k])) at.fail(fmt::format("number {}: expected {}", k, expected));
-}
-
-constexpr const char* kGoodJoint = "a finite place, a unit quaternion and a radius of at least 0";
-
-std::vector<RecordedJoint> joints_at(const JsonAt& at) {
-  auto joints = block_at<RecordedJoint>(at);
-  check_all(joints, at, kGoodJoint);
-  return joints;
-}
-
-RecordedMesh mesh_at(const JsonAt& at, const std::string& source) {
-  at.only({"positions_m", "triangles", "joints", "weights", "bind"});
-  RecordedMesh mesh;
-  mesh.positions_m = block_at<float>(at.key("positions_m"));
-  mesh.triangles = block_at<std::array<std::uint32_t, 3>>(at.key("triangles"));
-  mesh.joints = block_at<std::array<std::uint8_t, 4>>(at.key("joints"));
-  mesh.weights = block_at<std::array<float, 4>>(at.key("weights"));
-  const JsonAt bind_at = at.key("bind");
-  const auto bind = joints_at(bind_at);
-  if (bind.size() != mesh.bind.size())
-    bind_at.fail(fmt::format("{} joints; expected {}", bind.size(), mesh.bind.size()));
-  std::copy(bind.begin(), bind.end(), mesh.bind.begin());
-  return welded(std::move(mesh), source + ": " + at.pointer());
 }
 
 float mixed(float a, float b, double t) {
@@ -149,13 +123,14 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
   r.side = root.key("hand").word({"left", "right"}) == "left" ? Side::Left : Side::Right;
   if (const auto why = root.maybe("why")) why->text();
   const JsonAt at = root.key("recording");
-  at.only({"frame_rate_hz", "frames", "joints", "capsules", "mesh"});
+  at.only({"frame_rate_hz", "frames", "joints", "capsules"});
   const JsonAt rate = at.key("frame_rate_hz"), count_at = at.key("frames");
   r.frame_rate_hz = rate.number();
   if (!(r.frame_rate_hz > 0 && r.frame_rate_hz <= kMostRate_hz))
     rate.fail(fmt::format("expected above 0 and at most {} Hz", kMostRate_hz));
   const JsonAt joints_where = at.key("joints");
-  const auto joints = joints_at(joints_where);
+  const auto joints = block_at<RecordedJoint>(joints_where);
+  check_all(joints, joints_where, "a finite position, a unit quaternion and a radius of at least 0");
   const double count = count_at.number();
   if (!(count >= 1 && count == std::floor(count) && count * kRecordedJointCount == static_cast<double>(joints.size())))
     joints_where.fail(fmt::format("{} joints; expected {} for each of {} frames, at least one", joints.size(),
@@ -171,7 +146,6 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
       capsules_where->fail(fmt::format("{} capsules; expected {} per frame", all.size(), kCapsuleCount));
     for (std::size_t k = 0; k < all.size(); ++k) r.frames[k / kCapsuleCount].capsules[k % kCapsuleCount] = all[k];
   }
-  if (const auto mesh = at.maybe("mesh")) r.mesh = mesh_at(*mesh, source);
   return r;
 }
 
@@ -189,66 +163,7 @@ std::string to_json(const HandRecording& r, const std::string& why) {
   nlohmann::json recording = {
       {"frame_rate_hz", r.frame_rate_hz}, {"frames", r.frames.size()}, {"joints", block(joints.data(), joints.size())}};
   if (r.has_capsules) recording["capsules"] = block(capsules.data(), capsules.size());
-  if (r.mesh)
-    recording["mesh"] = {{"positions_m", block(r.mesh->positions_m.data(), r.mesh->positions_m.size())},
-                         {"triangles", block(r.mesh->triangles.data(), r.mesh->triangles.size())},
-                         {"joints", block(r.mesh->joints.data(), r.mesh->joints.size())},
-                         {"weights", block(r.mesh->weights.data(), r.mesh->weights.size())},
-                         {"bind", block(r.mesh->bind.data(), r.mesh->bind.size())}};
   return nlohmann::json({{"hand", name_of(r.side)}, {"why", why}, {"recording", recording}}).dump(1) + "\n";
-}
-
-RecordedMesh welded(RecordedMesh given, const std::string& source) {
-  const std::size_t count = given.positions_m.size() / 3;
-  if (count == 0 || given.positions_m.size() % 3 != 0 || given.joints.size() != count || given.weights.size() != count)
-    throw Error(
-        fmt::format("{}: hand mesh: {} coordinates, joints of {} vertices, weights of {}: expected the same number of "
-                    "vertices in each",
-                    source, given.positions_m.size(), given.joints.size(), given.weights.size()));
-  RecordedMesh out;
-  out.bind = given.bind;
-  for (std::size_t k = 0; k < out.bind.size(); ++k)
-    if (!good(out.bind[k]))
-      throw Error(fmt::format("{}: hand mesh: joint {} at rest: expected {}", source, k, kGoodJoint));
-  std::map<std::array<float, 3>, std::uint32_t> places;
-  std::vector<std::uint32_t> number(count);
-  for (std::size_t v = 0; v < count; ++v) {
-    const std::array<float, 3> p = {given.positions_m[3 * v], given.positions_m[3 * v + 1],
-                                    given.positions_m[3 * v + 2]};
-    std::array<float, 4> w = given.weights[v];
-    const float sum = w[0] + w[1] + w[2] + w[3];
-    for (std::size_t k = 0; k < 4; ++k)
-      if (!(w[k] >= 0) || given.joints[v][k] >= kRecordedJointCount)
-        throw Error(fmt::format("{}: hand mesh: vertex {}: expected joints below {} and weights of at least 0", source,
-                                v, kRecordedJointCount));
-    for (const float x : p)
-      if (!(std::abs(x) <= kMostCoordinate_m))
-        throw Error(fmt::format("{}: hand mesh: vertex {} is not finite", source, v));
-    if (!(std::abs(static_cast<double>(sum) - 1) <= kUnit))
-      throw Error(fmt::format("{}: hand mesh: vertex {} has weights of sum {}; expected 1", source, v, sum));
-    const auto [place, is_new] = places.try_emplace(p, static_cast<std::uint32_t>(places.size()));
-    number[v] = place->second;
-    if (!is_new) continue;
-    // Once scaled they stay as they are, so that a recording read again is the same.
-    if (std::abs(static_cast<double>(sum) - 1) > 1e-6)
-      for (float& x : w) x /= sum;
-    out.positions_m.insert(out.positions_m.end(), p.begin(), p.end());
-    out.joints.push_back(given.joints[v]);
-    out.weights.push_back(w);
-  }
-  for (std::size_t t = 0; t < given.triangles.size(); ++t) {
-    std::array<std::uint32_t, 3> corners = given.triangles[t];
-    for (std::uint32_t& c : corners) {
-      if (c >= count)
-        throw Error(fmt::format("{}: hand mesh: triangle {} names vertex {}, but there are {}", source, t, c, count));
-      c = number[c];
-    }
-    // Triangles that had no area before are left out: they would tear the surface where their corners were merged.
-    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
-      out.triangles.push_back(corners);
-  }
-  if (out.triangles.empty()) throw Error(source + ": hand mesh: expected at least one triangle");
-  return out;
 }
 
 Frame frame_of(const RecordedJoint& j) {

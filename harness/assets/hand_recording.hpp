@@ -35,22 +35,12 @@ struct RecordedHand {
 /// Whether a recording may contain it: finite positions at most 10 km away, unit quaternions, radii of at least 0 m.
 bool usable(const RecordedHand&);
 
-/// The runtime's mesh of a hand (XR_FB_hand_tracking_mesh), with coincident vertices merged.
-struct RecordedMesh {
-  std::vector<float> positions_m;                       ///< xyz, at rest
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside
-  std::vector<std::array<std::uint8_t, 4>> joints;      ///< per vertex, indices into RecordedHand::joints
-  std::vector<std::array<float, 4>> weights;            ///< per vertex, sum 1
-  std::array<RecordedJoint, kRecordedJointCount> bind;  ///< joints at rest
-};
-
 /// Motion of a hand as a headset tracked it, one sample per frame. Numbers are bit-identical to the runtime's.
 struct HandRecording {
   Side side = Side::Right;
   double frame_rate_hz = 0;
   bool has_capsules = false;
   std::vector<RecordedHand> frames;  ///< at 0, 1, 2, ... frames
-  std::optional<RecordedMesh> mesh;
 
   /// The hand at `time_s`. Between two frames positions and radii are interpolated linearly, orientations by slerp. It
   /// is constant before the first frame and after the last.
@@ -58,20 +48,15 @@ struct HandRecording {
 };
 
 /// Whether the JSON is a recording: an object with "recording" where a hand track has "keys":
-/// {"hand": "right", "why": "...", "recording": {"frame_rate_hz": 72, "frames": 2, "joints": "<base64>", "capsules":
-/// "<base64>",
-///   "mesh": {"positions_m": ..., "triangles": ..., "joints": ..., "weights": ..., "bind": ...}}}
-/// Blocks are little-endian: 8 float32 per joint (position, orientation, radius), 7 per capsule (a, b, radius), uint32
-/// triangle corners, uint8 joints, float32 weights. "capsules" and "mesh" may be left out.
+/// {"hand": "right", "why": "...",
+///  "recording": {"frame_rate_hz": 72, "frames": 2, "joints": "<base64>", "capsules": "<base64>"}}
+/// Blocks are little-endian float32: 8 per joint (position, orientation, radius), 7 per capsule (a, b, radius).
+/// "capsules" may be left out.
 bool is_hand_recording(const nlohmann::json& track);
 /// Both throw Error with the file and JSON pointer.
 HandRecording read_hand_recording(const std::filesystem::path&);
 HandRecording parse_hand_recording(const std::string& text, const std::string& source);
 std::string to_json(const HandRecording&, const std::string& why);
-
-/// Checks the mesh and merges coincident vertices. Weights whose sum differs from 1 by less than 1e-3 are normalised.
-/// Throws Error naming `source` unless triangles, joints and weights fit the vertices and joint frames are rigid.
-RecordedMesh welded(RecordedMesh, const std::string& source);
 
 /// The pose of the 25 WebXR joints.
 HandPose pose_of(const RecordedHand&);

@@ -37,20 +37,8 @@ void read_pose(const JsonAt& at, HandKey& key, bool first) {
   if (!(key.amount >= 0 && key.amount <= 1)) amount.fail("expected 0 to 1, not " + amount.json().dump());
 }
 
-void read_orientation(const JsonAt& at, HandKey& key) {
-  const auto degrees = at.maybe("rotation_deg"), given = at.maybe("orientation");
-  if (degrees && given) given->fail("given together with \"rotation_deg\"; expected only one of them");
-  if (degrees) key.orientation = from_degrees(degrees->numbers(3));
-  if (!given) return;
-  const Eigen::Vector4d q = given->numbers(4);
-  // Four decimals typed by hand are enough.
-  if (!(std::abs(q.norm() - 1) <= 1e-3))
-    given->fail(fmt::format("expected a unit quaternion x, y, z, w, not of norm {}", q.norm()));
-  key.orientation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized();
-}
-
 HandKey read_key(const JsonAt& at, const HandKey* before) {
-  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "orientation", "grip", "sweep"});
+  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "grip", "sweep"});
   HandKey key = before ? *before : HandKey{};
   const JsonAt time = at.key("time_s");
   key.time_s = time.number();
@@ -62,7 +50,7 @@ HandKey read_key(const JsonAt& at, const HandKey* before) {
   key.position_m = position.numbers(3);
   if (!(key.position_m.cwiseAbs().maxCoeff() <= kMostMetres))
     position.fail(fmt::format("expected at most {} m", kMostMetres));
-  read_orientation(at, key);
+  if (const auto degrees = at.maybe("rotation_deg")) key.orientation = from_degrees(degrees->numbers(3));
   const auto grip = at.maybe("grip");
   key.grip = grip && grip->boolean();
   const auto sweep = at.maybe("sweep");

@@ -33,8 +33,8 @@ struct HandTrack {
 /// {"hand": "right", "anchor": "palm", "why": "...",
 ///  "keys": [{"time_s": 0, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [0, 1, 0.1],
 ///            "rotation_deg": [0, 0, 0], "grip": false, "sweep": false}, ...]}
-/// rotation_deg rotates about the world's x, then y, then z axis; "orientation": [x, y, z, w] may replace it. Without
-/// rotation the fingers point to +y and the palm faces -z. A key without pose or rotation takes it from the key before;
+/// rotation_deg rotates about the world's x, then y, then z axis. Without rotation the fingers point to +y and the palm
+/// faces -z. A key without pose or rotation takes it from the key before;
 /// the first key must have a pose. Throws Error with the file and JSON pointer.
 HandTrack read_hand_track(const std::filesystem::path&);
 HandTrack parse_hand_track(const std::string& text, const std::string& source);

@@ -13,6 +13,8 @@
 namespace clothbench::assets {
 namespace {
 
+constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 std::string escaped(const std::string& name) {
   std::string out;
   for (char c : name) {
@@ -108,19 +110,7 @@ std::string JsonAt::word(const std::vector<std::string>& known) const {
   fail(fmt::format("{} is not one of {}{}", in_quotes(given), joined(known), nearest_known(given, known)));
 }
 
-namespace {
-
-int value_of(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
-}  // namespace
-
 std::string encode_base64(const std::uint8_t* bytes, std::size_t count) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((count + 2) / 3 * 4);
   for (std::size_t i = 0; i < count; i += 3) {
@@ -132,35 +122,29 @@ std::string encode_base64(const std::uint8_t* bytes, std::size_t count) {
   return text;
 }
 
-bool decode_base64(std::string_view text, std::vector<std::uint8_t>& bytes, std::string& problem) {
-  bytes.clear();
-  if (text.size() % 4 != 0) {
-    problem = fmt::format("{} characters of base64; expected a multiple of 4 (cut off?)", text.size());
-    return false;
-  }
+std::vector<std::uint8_t> JsonAt::bytes() const {
+  if (!value_->is_string()) fail("expected a string, not " + what_is(*value_));
+  const auto& text = value_->get_ref<const std::string&>();
+  if (text.size() % 4 != 0)
+    fail(fmt::format("{} characters of base64; expected a multiple of 4 (cut off?)", text.size()));
   std::size_t digits = text.size();
   while (digits > 0 && text.size() - digits < 2 && text[digits - 1] == '=') --digits;
-  bytes.reserve(text.size() / 4 * 3);
+  std::vector<std::uint8_t> out;
+  out.reserve(text.size() / 4 * 3);
   std::uint32_t bits = 0;
   int held = 0;
   for (std::size_t i = 0; i < digits; ++i) {
-    const int v = value_of(text[i]);
-    if (v < 0) {
-      problem = fmt::format("character {} is not of the base64 alphabet", i);
-      return false;
-    }
+    const std::size_t v = kDigits.find(text[i]);
+    if (v == kDigits.npos) fail(fmt::format("character {} is not of the base64 alphabet", i));
     bits = (bits << 6 | static_cast<std::uint32_t>(v)) & 0xffffffu;
     held += 6;
     if (held >= 8) {
       held -= 8;
-      bytes.push_back(static_cast<std::uint8_t>(bits >> held));
+      out.push_back(static_cast<std::uint8_t>(bits >> held));
     }
   }
-  if ((bits & ((1u << held) - 1u)) != 0) {
-    problem = "the last base64 character has bits set that belong to no byte";
-    return false;
-  }
-  return true;
+  if ((bits & ((1u << held) - 1u)) != 0) fail("the last base64 character has bits set that belong to no byte");
+  return out;
 }
 
 }  // namespace clothbench::assets

@@ -29,6 +29,7 @@ class JsonAt {
   double number() const;  ///< finite
   double number_or(const std::string& name, double otherwise) const;
   std::string text() const;
+  std::vector<std::uint8_t> bytes() const;  ///< of base64 (RFC 4648 section 4), padded, no line breaks
   bool boolean() const;
   Eigen::VectorXd numbers(std::size_t n) const;  ///< an array of exactly n finite numbers
   /// Fails if the object has any other key, naming the nearest known one.
@@ -45,9 +46,5 @@ class JsonAt {
 
 /// RFC 4648 section 4, padded.
 std::string encode_base64(const std::uint8_t* bytes, std::size_t count);
-
-/// RFC 4648 section 4, strict: padded, no line breaks, unused bits zero. On failure returns false and puts the reason
-/// in `problem` ("character 17 is not of the base64 alphabet").
-bool decode_base64(std::string_view text, std::vector<std::uint8_t>& bytes, std::string& problem);
 
 }  // namespace clothbench::assets

@@ -153,10 +153,8 @@ Room procedural_room() {
     table.frame.translation() = plan.centre;
     const Eigen::Vector2d half(plan.length_x / 2, plan.length_z / 2);
     table.box = Box(Vector(-half.x(), -half.y(), -plan.centre.y()), Vector(half.x(), half.y(), 0));
-    table.top = Rectangle{table.uuid + "-top", table.frame, -half, 2 * half};
     room.tables.push_back(table);
   }
-  room.entities = 2 * room.tables.size() + 1;
   room.mesh = CellRoom(walls, solids).surface();
   for (std::size_t v = 0; v < room.mesh.vertex_count(); ++v) {
     const Vector p = room.mesh.vertex(v);
@@ -166,7 +164,6 @@ Room procedural_room() {
           std::abs(p.z() - plan.centre.z()) <= plan.length_z / 2 + kSlab / 4)
         room.mesh.positions[3 * v + 1] += roughness(p.x(), p.z());
   }
-  room.zero_area_triangles = count_zero_area(room.mesh);
   return room;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
@@ -52,21 +53,10 @@ Table table_at(const JsonAt& entity, const JsonAt& bounded) {
   return table;
 }
 
-Rectangle rectangle_at(const JsonAt& entity, const JsonAt& bounded) {
-  const JsonAt extent = bounded.key("extent");
-  return {entity.key("uuid").text(),
-          pose_of(entity),
-          vector_at(bounded.maybe("offset")).head<2>(),
-          {extent_at(extent, "width"), extent_at(extent, "height")}};
-}
-
 /// 4-byte items in threes.
 template <class Item>
 std::vector<Item> triples_at(const JsonAt& at) {
-  std::vector<std::uint8_t> bytes;
-  std::string problem;
-  if (!decode_base64(at.json().is_string() ? at.json().get_ref<const std::string&>() : at.text(), bytes, problem))
-    at.fail(problem);
+  const std::vector<std::uint8_t> bytes = at.bytes();
   if (bytes.empty() || bytes.size() % 12 != 0)
     at.fail(fmt::format("{} bytes; expected a positive multiple of 12 (three 4-byte numbers each)", bytes.size()));
   std::vector<Item> items(bytes.size() / sizeof(Item));
@@ -97,23 +87,6 @@ TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
   return mesh;
 }
 
-/// Gives every box the rectangle whose centre is nearest to the centre of its upper face, if within half its shorter
-/// side.
-void pair_tops(std::vector<Table>& tables, const std::vector<Rectangle>& tops) {
-  for (Table& table : tables) {
-    const auto corners = table.top_corners();
-    const Vector middle = (corners[0] + corners[2]) / 2;
-    double best = table.box.sizes().head<2>().minCoeff() / 2;
-    for (const Rectangle& top : tops) {
-      const Eigen::Vector2d centre = top.offset_m + top.extent_m / 2;
-      const double distance = (top.frame * Vector(centre.x(), centre.y(), 0) - middle).norm();
-      if (!(distance < best)) continue;
-      best = distance;
-      table.top = top;
-    }
-  }
-}
-
 }  // namespace
 
 std::array<Vector, 4> Table::top_corners() const {
@@ -127,14 +100,6 @@ double Table::top_height() const {
   return (corners[0].y() + corners[1].y() + corners[2].y() + corners[3].y()) / 4;
 }
 
-std::size_t count_zero_area(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) return 0;
-  const double least = 1e-12 * bounding_box(mesh).diagonal().squaredNorm();
-  std::size_t count = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) count += !(area(mesh, t) >= least);
-  return count;
-}
-
 Room parse_room(const std::string& text, const std::string& source, const std::string& name) {
   const nlohmann::json document = parse_json(text, source);
   const JsonAt root(document, source);
@@ -144,22 +109,16 @@ Room parse_room(const std::string& text, const std::string& source, const std::s
   Room room;
   room.name = name;
   const JsonAt entities = root.key("spatialEntities");
-  room.entities = entities.size();
-  std::vector<Rectangle> tops;
-  for (std::size_t i = 0; i < room.entities; ++i) {
+  for (std::size_t i = 0; i < entities.size(); ++i) {
     const JsonAt entity = entities.item(i);
     if (const auto stored = entity.maybe("triangleMesh_META")) {
       if (!room.mesh.triangles.empty()) stored->fail("a second mesh; expected one entity with triangleMesh_META");
       room.mesh = mesh_at(entity, *stored);
     }
-    const auto label = entity.maybe("semanticLabel_META");
-    if (!label || label->text() != "TABLE") continue;
-    if (const auto box = entity.maybe("bounded3D_META")) room.tables.push_back(table_at(entity, *box));
-    if (const auto flat = entity.maybe("bounded2D_META")) tops.push_back(rectangle_at(entity, *flat));
+    const auto label = entity.maybe("semanticLabel_META"), box = entity.maybe("bounded3D_META");
+    if (label && label->text() == "TABLE" && box) room.tables.push_back(table_at(entity, *box));
   }
   if (room.mesh.triangles.empty()) entities.fail("expected an entity with triangleMesh_META, the scanned mesh");
-  pair_tops(room.tables, tops);
-  room.zero_area_triangles = count_zero_area(room.mesh);
   return room;
 }
 
@@ -180,6 +139,40 @@ const Table& find_table(const Room& room, const std::string& prefix) {
   if (matches == 1) return *found;
   throw Error(fmt::format("room {}: {} tables have a uuid that starts with {}; there are: {}", room.name, matches,
                           in_quotes(prefix), room.tables.empty() ? "none" : joined(room.tables, ", ", &Table::uuid)));
+}
+
+TriangleMesh cut(const TriangleMesh& mesh, const Box& box) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<bool> inside(mesh.vertex_count());
+  for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = box.contains(mesh.vertex(v));
+  TriangleMesh out;
+  std::vector<std::uint32_t> renumbered(mesh.vertex_count(), kUnused);
+  for (const auto& t : mesh.triangles) {
+    if (!(inside[t[0]] || inside[t[1]] || inside[t[2]])) continue;
+    out.triangles.push_back(t);
+    for (const std::uint32_t v : t) renumbered[v] = 0;
+  }
+  for (std::size_t v = 0; v < renumbered.size(); ++v) {
+    if (renumbered[v] == kUnused) continue;
+    renumbered[v] = static_cast<std::uint32_t>(out.vertex_count());
+    out.add_vertex(mesh.vertex(v));
+  }
+  for (auto& t : out.triangles)
+    for (std::uint32_t& v : t) v = renumbered[v];
+  return out;
+}
+
+Box box_around(const Table& table, double below_m, double above_m) {
+  const auto corners = table.top_corners();
+  Box box;
+  for (const Vector& corner : corners) box.extend(corner);
+  Vector middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+  const double top = table.top_height();
+  for (const double height : {top - below_m, top + above_m}) {
+    middle.y() = height;
+    box.extend(middle);
+  }
+  return box;
 }
 
 }  // namespace clothbench::assets

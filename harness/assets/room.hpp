@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,21 +9,13 @@
 
 namespace clothbench::assets {
 
-/// A rectangle in the x-y plane of its frame, from `offset_m` to `offset_m + extent_m`.
-struct Rectangle {
-  std::string uuid;
-  Frame frame;
-  Eigen::Vector2d offset_m, extent_m;
-};
-
-/// A table as the headset's user marked it. Captures hold each table twice, as a box and as the rectangle of its top,
-/// with different uuids and up to 3 mm apart. This struct pairs them.
+/// A table as the headset's user marked it. Captures also contain each table's top as a rectangle, up to 3 mm off the
+/// box; it is not read.
 struct Table {
   std::string uuid;        ///< of the box
   std::string stands_for;  ///< procedural rooms: uuid prefix of the scanned table that it replaces; otherwise empty
   Frame frame;             ///< of the box; +z is up in the world
   Box box;                 ///< in that frame
-  std::optional<Rectangle> top;
 
   /// Corners of the box's upper face in the world [m], counter-clockwise from above.
   std::array<Vector, 4> top_corners() const;
@@ -38,8 +29,6 @@ struct Room {
   std::string name;
   TriangleMesh mesh;
   std::vector<Table> tables;
-  std::size_t entities = 0;             ///< number of entities of every kind in the capture
-  std::size_t zero_area_triangles = 0;  ///< kept in the mesh: area below 1e-12 of the bounding box's diagonal squared
 };
 
 /// Reads a Quest room capture as @iwer/sem stores them (protobuf JSON: zero fields are left out). It takes the mesh of
@@ -53,6 +42,12 @@ Room parse_room(const std::string& text, const std::string& source, const std::s
 /// than one does.
 const Table& find_table(const Room&, const std::string& prefix);
 
-std::size_t count_zero_area(const TriangleMesh&);
+/// The triangles of a mesh that have a vertex in a box, faces included, in the order of the source: Algorithm 2 of Kim,
+/// Ma & Hong (2025), section 3.2.4. It leaves out large triangles that cross the box without a vertex in it.
+TriangleMesh cut(const TriangleMesh&, const Box&);
+
+/// The box that the algorithm cuts out around a table: the bounding box of six points, which are the corners of its top
+/// and the top's centre `below_m` lower and `above_m` higher.
+Box box_around(const Table&, double below_m = 0.10, double above_m = 0.05);
 
 }  // namespace clothbench::assets

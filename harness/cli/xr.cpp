@@ -8,7 +8,6 @@ namespace {
 struct XrArguments {
   std::string scene, solver, out, runtime;
   std::vector<std::string> set;
-  std::vector<double> place;
   int frames = 0;
   double rate = 72, timeout = 120;
   bool opaque = false;
@@ -32,10 +31,6 @@ void add_xr(CLI::App& app, Console& console) {
   cmd->add_option("--rate", a.rate, "Requested refresh rate of the display [Hz]")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  cmd->add_option("--place", a.place,
-                  "Position of the scene's origin, x y z [m] from the head at the start (default: the middle of the "
-                  "cloth is at 0 -0.1 -0.6)")
-      ->expected(3);
   cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the camera picture");
   cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands [s]")
       ->check(CLI::PositiveNumber)
@@ -58,7 +53,6 @@ void add_xr(CLI::App& app, Console& console) {
     o.runtime = a.runtime;
     o.rate_hz = a.rate;
     o.frames = a.frames;
-    if (!a.place.empty()) o.place_m = Vec3{a.place[0], a.place[1], a.place[2]};
     o.passthrough = !a.opaque;
     o.timeout_s = a.timeout;
     o.out = a.out.empty() ? default_folder("xr") : std::filesystem::path(a.out);

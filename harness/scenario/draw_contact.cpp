@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "assets/submesh.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
@@ -161,9 +160,8 @@ struct ContactDrawer::Tables {
     for (const std::string_view name : assets::kRoomNames) {
       const assets::Room room = assets::open_room(source, std::string(name));
       for (const assets::Table& t : room.tables) {
-        const auto part = assets::cut(room.mesh, assets::box_of(assets::six_points(t, below_m, above_m)),
-                                      assets::CutMode::AnyVertexInside);
-        if (!part.mesh.triangles.empty()) places.push_back({std::string(name), t, collider_mesh(part.mesh)});
+        const assets::TriangleMesh part = assets::cut(room.mesh, assets::box_around(t, below_m, above_m));
+        if (!part.triangles.empty()) places.push_back({std::string(name), t, collider_mesh(part)});
       }
       if (!source.npm) break;
     }

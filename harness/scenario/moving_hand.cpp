@@ -13,20 +13,15 @@ namespace {
 ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   if (m.recording) {
     const assets::RecordedHand now = m.recording->at(time_s);
-    return as_mesh ? mesh_pose(*m.recording, now, m.hand ? &*m.hand : nullptr, m.offset_m)
+    return as_mesh ? mesh_pose(*m.hand, assets::pose_of(now).joints, m.offset_m)
                    : capsules_pose(*m.recording, now, m.offset_m);
   }
   const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
+  if (as_mesh) return mesh_pose(*m.hand, now.pose.joints, m.offset_m);
   ColliderPose pose;
-  if (!as_mesh) {
-    for (const assets::Capsule& c : assets::capsules(now.pose))
-      pose.capsules.push_back(
-          {to_vec3(assets::Vector(c.a + m.offset_m)), to_vec3(assets::Vector(c.b + m.offset_m)), c.radius_m});
-    return pose;
-  }
-  for (std::size_t k = 0; k < assets::kJointCount; ++k)
-    pose.joints.push_back(
-        affine(Eigen::Translation3d(m.offset_m) * (now.pose.joints[k] * m.hand->mesh.inverse_bind[k])));
+  for (const assets::Capsule& c : assets::capsules(now.pose))
+    pose.capsules.push_back(
+        {to_vec3(assets::Vector(c.a + m.offset_m)), to_vec3(assets::Vector(c.b + m.offset_m)), c.radius_m});
   return pose;
 }
 
@@ -57,7 +52,7 @@ MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as
     reader.refuse("/speed_m_per_s", "expected no speed for a recording, which is replayed at its own speed");
   MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
   if (!as_mesh) require_radii(*m.recording, file->string());
-  if (as_mesh && !m.recording->mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
+  if (as_mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
   return m;
 }
 
@@ -85,8 +80,7 @@ void read_hand(const nlohmann::json& j, ColliderReader& reader, Collider& c, boo
   c.name = j["track"].is_object() ? std::string(assets::name_of(m.track.side)) + "-hand"
                                   : std::filesystem::path(j["track"].get<std::string>()).stem().string();
   c.shape = as_mesh ? Collider::Shape::Mesh : Collider::Shape::Capsules;
-  if (as_mesh)
-    c.mesh = m.recording && m.recording->mesh ? collider_mesh(*m.recording->mesh) : collider_mesh(m.hand->mesh);
+  if (as_mesh) c.mesh = collider_mesh(m.hand->mesh);
   c.recorded = m.recording.has_value();
   reader.pose = [m = std::move(m), as_mesh](double time_s) { return pose_at(m, as_mesh, time_s); };
   if (!as_mesh) c.capsules = reader.pose(0).capsules;

@@ -1,6 +1,5 @@
 #include "scenario/recorded_hand.hpp"
 
-#include "clothbench/error.hpp"
 #include "scenario/load.hpp"
 #include "scenario/vec3.hpp"
 
@@ -19,7 +18,7 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh& from) {
   mesh->positions = from.positions;
   mesh->triangles = from.triangles;
   // The mesh of a room can be closed too, but its solid is outside: penetration depth has no meaning in it.
-  mesh->closed = assets::topology(from).closed_manifold() && assets::signed_volume(from) > 0;
+  mesh->closed = assets::is_closed_manifold(from) && assets::signed_volume(from) > 0;
   return mesh;
 }
 
@@ -33,17 +32,9 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh& from) {
   return mesh;
 }
 
-std::shared_ptr<ColliderMesh> collider_mesh(const assets::RecordedMesh& from) {
-  assets::TriangleMesh rest;
-  rest.positions.assign(from.positions_m.begin(), from.positions_m.end());
-  rest.triangles = from.triangles;
-  auto mesh = collider_mesh(rest);
-  mesh->joints = from.joints;
-  mesh->weights = from.weights;
-  mesh->joint_count = assets::kRecordedJointCount;
-  return mesh;
-}
+namespace {
 
+/// The transform of a joint in the form of ColliderPose.
 Affine affine(const Eigen::Affine3d& m) {
   Affine a;
   for (int row = 0; row < 3; ++row)
@@ -51,6 +42,8 @@ Affine affine(const Eigen::Affine3d& m) {
       a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = m.matrix()(row, column);
   return a;
 }
+
+}  // namespace
 
 ColliderPose capsules_pose(const assets::HandRecording& recording, const assets::RecordedHand& hand,
                            const assets::Vector& offset_m) {
@@ -60,20 +53,10 @@ ColliderPose capsules_pose(const assets::HandRecording& recording, const assets:
   return pose;
 }
 
-ColliderPose mesh_pose(const assets::HandRecording& recording, const assets::RecordedHand& hand,
-                       const assets::Hand* stand_in, const assets::Vector& offset_m) {
+ColliderPose mesh_pose(const assets::Hand& hand, const assets::JointFrames& joints, const assets::Vector& offset_m) {
   ColliderPose pose;
-  const Eigen::Translation3d offset(offset_m);
-  if (recording.mesh) {
-    for (std::size_t k = 0; k < assets::kRecordedJointCount; ++k)
-      pose.joints.push_back(affine(offset * Eigen::Affine3d(assets::frame_of(hand.joints[k]) *
-                                                            assets::frame_of(recording.mesh->bind[k]).inverse())));
-    return pose;
-  }
-  if (stand_in == nullptr) throw Error("hand recording: expected a mesh in it, or a hand model to use in its place");
-  const assets::HandPose joints = assets::pose_of(hand);
   for (std::size_t k = 0; k < assets::kJointCount; ++k)
-    pose.joints.push_back(affine(offset * (joints.joints[k] * stand_in->mesh.inverse_bind[k])));
+    pose.joints.push_back(affine(Eigen::Translation3d(offset_m) * (joints[k] * hand.mesh.inverse_bind[k])));
   return pose;
 }
 

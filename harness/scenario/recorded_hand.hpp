@@ -16,16 +16,10 @@ std::optional<std::filesystem::path> file_of_scene(const std::string& name, cons
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
 /// The same for a hand's mesh, which follows its joints.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
-std::shared_ptr<ColliderMesh> collider_mesh(const assets::RecordedMesh&);
 
-/// The 19 capsules of a recorded hand, or the matrices of its joints. A replay and the live session that records it
-/// both use these functions, so they agree bit for bit. If the recording has no mesh, `mesh_pose` is for the mesh of
-/// `stand_in`.
+/// The 19 capsules of a recorded hand; and the matrices by which the mesh of a hand follows its joints. A replay and
+/// the live session that records it both use these functions, so they agree bit for bit.
 ColliderPose capsules_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Vector& offset_m);
-ColliderPose mesh_pose(const assets::HandRecording&, const assets::RecordedHand&, const assets::Hand* stand_in,
-                       const assets::Vector& offset_m);
-
-/// Converts the transform of a joint to the form in ColliderPose.
-Affine affine(const Eigen::Affine3d&);
+ColliderPose mesh_pose(const assets::Hand&, const assets::JointFrames&, const assets::Vector& offset_m);
 
 }  // namespace clothbench

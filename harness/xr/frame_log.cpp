@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "runner/environment.hpp"
 
@@ -63,19 +62,11 @@ std::map<std::string, double> FrameLog::summary() const {
   for (std::size_t k = 1; k < rows_.size(); ++k)
     interval.push_back(rows_[k].predicted_display_s - rows_[k - 1].predicted_display_s);
   if (interval.empty()) return s;
-  const double sum = std::accumulate(interval.begin(), interval.end(), 0.0);
-  s["xr_fps_mean"] = static_cast<double>(interval.size()) / sum;
   s["xr_fps_median"] = 1 / quantile(interval, 0.5);
   s["xr_fps_worst"] = 1 / quantile(interval, 1);
-  s["xr_interval_p99_s"] = quantile(interval, 0.99);
   const std::vector<double> n = periods();
-  const auto share = [&](auto counts) {
-    return static_cast<double>(std::count_if(n.begin() + 1, n.end(), counts)) / static_cast<double>(interval.size());
-  };
-  s["xr_share_1_period"] = share([](double p) { return p == 1; });
-  s["xr_share_2_periods"] = share([](double p) { return p == 2; });
-  s["xr_share_3_periods"] = share([](double p) { return p == 3; });
-  s["xr_share_more_periods"] = share([](double p) { return p > 3; });
+  const auto late = std::count_if(n.begin(), n.end(), [](double p) { return p > 1; });
+  s["xr_late_frames"] = static_cast<double>(late) / static_cast<double>(interval.size());
   std::vector<double> painted;
   for (const FrameRow& r : rows_) painted.push_back(r.paint_device_s);
   s["xr_paint_device_median_s"] = quantile(painted, 0.5);

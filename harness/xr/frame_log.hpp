@@ -31,7 +31,7 @@ class FrameLog {
   /// For each frame, the number of refresh periods since the previous frame; NaN for the first. 1 is the display's
   /// rate, 2 half of it, 3 a third.
   std::vector<double> periods() const;
-  /// "xr_..." scalars: median, mean and worst frame rate; shares of frames after 1, 2, 3 and more periods.
+  /// "xr_..." scalars: median and lowest frame rate; fraction of frames shown later than one period after the last.
   std::map<std::string, double> summary() const;
   /// Group "xr" of a result file, one row per frame.
   StoredGroup group() const;

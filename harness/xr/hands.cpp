@@ -23,38 +23,6 @@ assets::RecordedJoint joint(const XrPosef& p, float radius) {
   return {three(p.position), {p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}, radius};
 }
 
-/// The runtime's arrays, sized by a first call.
-struct MeshArrays {
-  std::vector<XrPosef> bind;
-  std::vector<float> radii;
-  std::vector<XrHandJointEXT> parents;
-  std::vector<XrVector3f> positions, normals;
-  std::vector<XrVector2f> uvs;
-  std::vector<XrVector4sFB> joints;
-  std::vector<XrVector4f> weights;
-  std::vector<std::int16_t> indices;
-
-  void attach(XrHandTrackingMeshFB& m) {
-    const auto joint_count = m.jointCountOutput, vertices = m.vertexCountOutput, corners = m.indexCountOutput;
-    bind.resize(joint_count), radii.resize(joint_count), parents.resize(joint_count);
-    positions.resize(vertices), normals.resize(vertices), uvs.resize(vertices), joints.resize(vertices),
-        weights.resize(vertices);
-    indices.resize(corners);
-    m.jointCapacityInput = joint_count;
-    m.jointBindPoses = bind.data();
-    m.jointRadii = radii.data();
-    m.jointParents = parents.data();
-    m.vertexCapacityInput = vertices;
-    m.vertexPositions = positions.data();
-    m.vertexNormals = normals.data();
-    m.vertexUVs = uvs.data();
-    m.vertexBlendIndices = joints.data();
-    m.vertexBlendWeights = weights.data();
-    m.indexCapacityInput = corners;
-    m.indices = indices.data();
-  }
-};
-
 }  // namespace
 
 Hands::Hands(const Session& session) : session_(session) {
@@ -100,43 +68,6 @@ std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
                           shapes.capsules[k].radius};
   if (!assets::usable(hand)) return std::nullopt;
   return hand;
-}
-
-std::optional<assets::RecordedMesh> Hands::mesh(Side side) const {
-  const Instance& xr = session_.instance();
-  if (!xr.has(XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME)) return std::nullopt;
-  const auto get = xr.function<PFN_xrGetHandMeshFB>("xrGetHandMeshFB");
-  const XrHandTrackerEXT tracker = trackers_[static_cast<std::size_t>(side)];
-  auto m = blank<XrHandTrackingMeshFB>(XR_TYPE_HAND_TRACKING_MESH_FB);
-  xr.check(get(tracker, &m), "xrGetHandMeshFB");
-  MeshArrays arrays;
-  arrays.attach(m);
-  xr.check(get(tracker, &m), "xrGetHandMeshFB");
-  if (arrays.bind.size() != assets::kRecordedJointCount || arrays.indices.size() % 3 != 0)
-    throw Error("xrGetHandMeshFB: " + std::to_string(arrays.bind.size()) + " joints and " +
-                std::to_string(arrays.indices.size()) + " corners; expected 26 and a multiple of 3");
-  assets::RecordedMesh mesh;
-  for (std::size_t k = 0; k < mesh.bind.size(); ++k) mesh.bind[k] = joint(arrays.bind[k], arrays.radii[k]);
-  for (std::size_t v = 0; v < arrays.positions.size(); ++v) {
-    const auto p = three(arrays.positions[v]);
-    mesh.positions_m.insert(mesh.positions_m.end(), p.begin(), p.end());
-    const XrVector4sFB& j = arrays.joints[v];
-    const XrVector4f& w = arrays.weights[v];
-    // A joint that is none is one too many, which `welded` refuses.
-    const auto index = [](std::int16_t i) { return static_cast<std::uint8_t>(i >= 0 && i < 255 ? i : 255); };
-    mesh.joints.push_back({index(j.x), index(j.y), index(j.z), index(j.w)});
-    mesh.weights.push_back({w.x, w.y, w.z, w.w});
-    // Unused slots may name anything.
-    for (std::size_t k = 0; k < 4; ++k)
-      if (mesh.weights.back()[k] == 0) mesh.joints.back()[k] = 0;
-  }
-  for (std::size_t i = 0; i < arrays.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) {
-      return static_cast<std::uint32_t>(static_cast<std::uint16_t>(arrays.indices[i + k]));
-    };
-    mesh.triangles.push_back({corner(0), corner(1), corner(2)});
-  }
-  return assets::welded(std::move(mesh), "xrGetHandMeshFB");
 }
 
 }  // namespace clothbench::xr

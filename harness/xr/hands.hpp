@@ -7,7 +7,7 @@
 
 namespace clothbench::xr {
 
-/// Hands tracked by the runtime (XR_EXT_hand_tracking), with its capsules and meshes if it provides them.
+/// Hands tracked by the runtime (XR_EXT_hand_tracking), with its capsules if it provides them.
 class Hands {
  public:
   explicit Hands(const Session&);
@@ -18,8 +18,6 @@ class Hands {
   /// The hand in the scene's space; empty unless every joint is known.
   std::optional<assets::RecordedHand> at(assets::Side, XrTime) const;
   bool has_capsules() const { return capsules_; }
-  /// XR_FB_hand_tracking_mesh; empty if the runtime does not have it. Throws Error if the mesh is invalid.
-  std::optional<assets::RecordedMesh> mesh(assets::Side) const;
 
  private:
   const Session& session_;

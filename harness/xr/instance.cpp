@@ -19,12 +19,9 @@ AndroidContext& context() {
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
 /// Beside XR_KHR_vulkan_enable2, which there must be.
-constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
-                                 XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME,
-                                 XR_FB_PASSTHROUGH_EXTENSION_NAME,
-                                 XR_EXT_HAND_TRACKING_EXTENSION_NAME,
-                                 XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME,
-                                 XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME};
+constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME,
+                                 XR_FB_PASSTHROUGH_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+                                 XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME};
 
 /// Never closed: Vulkan objects that a runtime helped to make outlive its instance.
 void* open_library(const std::string& path) { return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL); }

@@ -111,9 +111,8 @@ const Scene& LiveScene::begin(const Begin& b) {
   for (LiveHand& h : hands_) {
     const auto side = static_cast<std::size_t>(h.side);
     if (!b.hands[side]) throw Error(fmt::format("the {} hand is not tracked", assets::name_of(h.side)));
-    h.recording = {h.side, b.frame_rate_hz, b.has_capsules, {*b.hands[side]}, {}};
-    if (h.as_mesh) h.recording.mesh = b.meshes[side];
-    if (h.as_mesh && !h.recording.mesh) h.stand_in = assets::open_hand(assets::locate_assets(false), h.side);
+    h.recording = {h.side, b.frame_rate_hz, b.has_capsules, {*b.hands[side]}};
+    if (h.as_mesh && !h.mesh) h.mesh = assets::open_hand(assets::locate_assets(false), h.side);
     write_hand(h);
     document_["colliders"][h.collider]["track"] = h.file;
   }
@@ -126,8 +125,7 @@ const Scene& LiveScene::begin(const Begin& b) {
 
 ColliderPose LiveScene::pose(const LiveHand& h, const assets::RecordedHand& now) const {
   const assets::Vector none = assets::Vector::Zero();
-  return h.as_mesh ? mesh_pose(h.recording, now, h.stand_in ? &*h.stand_in : nullptr, none)
-                   : capsules_pose(h.recording, now, none);
+  return h.as_mesh ? mesh_pose(*h.mesh, assets::pose_of(now).joints, none) : capsules_pose(h.recording, now, none);
 }
 
 const FrameMotion* LiveScene::next(int index, const HandsNow& now) {

@@ -39,7 +39,6 @@ class LiveScene {
     int frames = 0;  ///< of the session; 1 to kMostFrames
     HandsNow hands;
     bool has_capsules = false;
-    std::array<std::optional<assets::RecordedMesh>, 2> meshes;
   };
   /// Builds the scene from the headset's current state; may be repeated. Throws Error if a required hand is missing.
   const Scene& begin(const Begin&);
@@ -60,7 +59,7 @@ class LiveScene {
     bool as_mesh = false;
     std::string file;
     assets::HandRecording recording;
-    std::optional<assets::Hand> stand_in;  ///< used if the runtime has no mesh
+    std::optional<assets::Hand> mesh;  ///< only if `as_mesh`
   };
   void find_live(const std::string& source);
   void keep_mesh(const std::string& source);

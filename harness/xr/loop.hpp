@@ -1,7 +1,6 @@
 #pragma once
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +23,6 @@ struct LoopOptions {
   std::string runtime;   ///< argument of Instance
   double rate_hz = 72;   ///< requested refresh rate of the display
   int frames = 0;        ///< 0: as many as the scenario lasts
-  /// The scene's origin in the user's space. Default: the middle of the cloth at its start is 60 cm in front of the
-  /// eyes and 10 cm below.
-  std::optional<Vec3> place_m;
   bool passthrough = true;
   double timeout_s = 120;  ///< for hands to be tracked
   std::filesystem::path out;

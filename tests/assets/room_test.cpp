@@ -1,7 +1,5 @@
 #include "assets/room.hpp"
 
-#include <set>
-
 #include "support.hpp"
 
 namespace clothbench::assets {
@@ -9,57 +7,33 @@ namespace {
 
 struct Expected {
   const char* name;
-  std::size_t entities, vertices, triangles, zero_area, components;
-  double median_edge_m;
+  std::size_t vertices, triangles;
 };
 // Facts of @iwer/sem 2.4.0, measured with another program (numpy).
 class Captures : public testing::TestWithParam<Expected> {};
-
-double median_edge(const TriangleMesh& mesh) {
-  std::vector<double> lengths;
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (t[k] < t[(k + 1) % 3]) lengths.push_back((mesh.vertex(t[k]) - mesh.vertex(t[(k + 1) % 3])).norm());
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
-  return lengths[lengths.size() / 2];
-}
 
 TEST_P(Captures, LoadsWhole) {
   NEED_NPM_ASSETS(source);
   const Expected e = GetParam();
   const Room room = open_room(source, e.name);
-  EXPECT_EQ(room.entities, e.entities);
   EXPECT_EQ(room.mesh.vertex_count(), e.vertices);
   EXPECT_EQ(room.mesh.triangles.size(), e.triangles);
-  EXPECT_EQ(room.zero_area_triangles, e.zero_area);
-  const Topology t = topology(room.mesh);
-  EXPECT_TRUE(t.closed_manifold()) << t.border_edges << " border, " << t.bad_edges << " bad, " << t.split_vertices
-                                   << " split";
-  EXPECT_EQ(t.components, e.components);
-  EXPECT_NEAR(median_edge(room.mesh), e.median_edge_m, 0.001);
+  EXPECT_TRUE(is_closed_manifold(room.mesh));
   EXPECT_LT(signed_volume(room.mesh), 0) << "normals point into free space";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Captures,
-                         testing::Values(Expected{"living_room", 26, 30933, 62102, 11, 12, 0.071},
-                                         Expected{"meeting_room", 21, 8328, 16704, 0, 3, 0.085},
-                                         Expected{"music_room", 20, 43107, 86786, 11, 8, 0.071},
-                                         Expected{"office_large", 38, 11022, 22188, 0, 1, 0.074},
-                                         Expected{"office_small", 14, 1895, 3822, 0, 2, 0.092}),
+                         testing::Values(Expected{"living_room", 30933, 62102}, Expected{"meeting_room", 8328, 16704},
+                                         Expected{"music_room", 43107, 86786}, Expected{"office_large", 11022, 22188},
+                                         Expected{"office_small", 1895, 3822}),
                          [](const auto& p) { return p.param.name; });
 
 TEST(Room, TablesOfTheLivingRoom) {
   NEED_NPM_ASSETS(source);
   const Room room = open_room(source, "living_room");
   ASSERT_EQ(room.tables.size(), 4u);
-  std::set<std::string> tops;
-  for (const Table& table : room.tables) {
-    ASSERT_TRUE(table.top) << table.uuid;
-    tops.insert(table.top->uuid);
-    EXPECT_NEAR(table.top->frame.translation().y(), table.top_height(), 0.005);
+  for (const Table& table : room.tables)
     EXPECT_NEAR((table.frame.linear() * Vector::UnitZ()).y(), 1, 1e-3) << "the box's z is up";
-  }
-  EXPECT_EQ(tops.size(), 4u);
   const Table& low = find_table(room, "444c8313");
   EXPECT_NEAR(low.top_height(), 0.452, 0.001);
   EXPECT_NEAR(low.box.sizes().x(), 1.12, 0.005);
@@ -94,6 +68,30 @@ TEST(Room, FindTableSaysWhatThereIs) {
   EXPECT_NE(message.find("living_room"), std::string::npos);
   EXPECT_NE(message.find("444c8313-715c-429d-ba72-2b93211fe49f"), std::string::npos) << message;
   EXPECT_NE(error_of([&] { find_table(room, ""); }), "");
+}
+
+TEST(Room, TheCutTakesTrianglesWithAVertexInTheBox) {
+  const TriangleMesh mesh{{-10, 0.5, -10, 0, 0.5, 20, 10, 0.5, -10, 0.5, 0.5, 0.5}, {{0, 1, 2}, {0, 1, 3}}};
+  const TriangleMesh part = cut(mesh, Box(Vector(0, 0, 0), Vector(1, 1, 1)));
+  EXPECT_EQ(part.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}})) << "not the one that only crosses";
+  EXPECT_EQ(part.vertex(2), Vector(0.5, 0.5, 0.5));
+}
+
+// Counts from another program (numpy) on @iwer/sem 2.4.0.
+TEST(Room, DesksOfTheLivingRoom) {
+  NEED_NPM_ASSETS(source);
+  const Room room = open_room(source, "living_room");
+  struct Desk {
+    const char* uuid;
+    std::size_t triangles, vertices;
+  };
+  for (const Desk& desk : {Desk{"444c8313", 517, 291}, {"1088a241", 489, 293}}) {
+    const Box box = box_around(find_table(room, desk.uuid));
+    EXPECT_NEAR(box.sizes().y(), 0.15, 1e-9);
+    const TriangleMesh part = cut(room.mesh, box);
+    EXPECT_EQ(part.triangles.size(), desk.triangles);
+    EXPECT_EQ(part.vertex_count(), desk.vertices);
+  }
 }
 
 TEST(Room, UnknownNameSuggestsTheNearest) {

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "assets/assets.hpp"
+#include "assets/json_at.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::assets {
@@ -33,16 +33,7 @@ inline std::string error_of(const std::function<void()>& f) {
 
 template <class Item>
 std::string base64_of(const std::vector<Item>& items) {
-  static const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<std::uint8_t> bytes(items.size() * sizeof(Item));
-  if (!bytes.empty()) std::memcpy(bytes.data(), items.data(), bytes.size());
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63u] : '=';
-  }
-  return out;
+  return encode_base64(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof(Item));
 }
 
 inline TriangleMesh tetrahedron() {

@@ -3,35 +3,33 @@
 #include "assets/hand.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <string>
 
 #include "fuzz.hpp"
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::string;
 
 void put(Bytes& to, std::uint32_t v) {
-  for (int k = 0; k < 4; ++k) to.push_back(static_cast<std::uint8_t>(v >> 8 * k));
+  for (int k = 0; k < 4; ++k) to.push_back(static_cast<char>(v >> 8 * k));
 }
 
-void put_chunk(Bytes& to, std::uint32_t kind, const std::uint8_t* data, std::size_t size, std::uint8_t filler) {
+void put_chunk(Bytes& to, std::uint32_t kind, const std::uint8_t* data, std::size_t size, char filler) {
   const std::size_t padded = (size + 3) / 4 * 4;
   put(to, static_cast<std::uint32_t>(padded));
   put(to, kind);
-  to.insert(to.end(), data, data + size);
-  to.insert(to.end(), padded - size, filler);
+  to.append(data, data + size).append(padded - size, filler);
 }
 
 Bytes container(const std::uint8_t* data, std::size_t size) {
   const std::uint8_t* end = std::find(data, data + size, std::uint8_t{0});
-  Bytes chunks, out{'g', 'l', 'T', 'F'};
+  Bytes chunks, out = "glTF";
   put_chunk(chunks, 0x4e4f534a, data, static_cast<std::size_t>(end - data), ' ');
   if (end != data + size) put_chunk(chunks, 0x004e4942, end + 1, static_cast<std::size_t>(data + size - end - 1), 0);
   put(out, 2);
   put(out, static_cast<std::uint32_t>(12 + chunks.size()));
-  out.insert(out.end(), chunks.begin(), chunks.end());
-  return out;
+  return out + chunks;
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ const json kGltf = {{"asset", {{"version", "2.0"}}},
                     {"extensionsRequired", {"KHR_materials_unlit"}}};
 
 assets::HandRecording recording(float radius_m, bool capsules) {
-  assets::HandRecording r{assets::Side::Left, 60, capsules, {{}, {}}, {}};
+  assets::HandRecording r{assets::Side::Left, 60, capsules, {{}, {}}};
   for (assets::RecordedHand& hand : r.frames) {
     for (assets::RecordedJoint& j : hand.joints) j.radius_m = 0.01f;
     for (assets::RecordedCapsule& c : hand.capsules) c.radius_m = 0.01f;

@@ -33,7 +33,6 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   const LoopResult r = run(o, "clock=virtual,blind=1");
   const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
   EXPECT_TRUE(hand.has_capsules);
-  EXPECT_FALSE(hand.mesh) << "capsules need none";
   ASSERT_EQ(hand.frames.size(), 51u);
   const double first = time_of(hand.frames[0], true);
   const auto joints = null_xr::joints(true);
@@ -77,32 +76,10 @@ TEST_F(Sessions, WithoutThemCapsulesAreMadeOfJointsAndRadii) {
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
-TEST_F(Sessions, TheRuntimesMeshIsSkinned) {
-  LoopOptions o = options("paper/hand-push", 50);
+TEST_F(Sessions, AHandMeshFollowsTheJoints) {
+  LoopOptions o = options("paper/hand-push", 20);
   o.device.validation = true;
   const LoopResult r = run(o, "clock=virtual");
-  const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
-  ASSERT_TRUE(hand.mesh);
-  const Scene scene = load_scene(r.scenario.string());
-  const ColliderMesh& mesh = *scene.colliders.at(0).mesh;
-  EXPECT_TRUE(mesh.closed) << "once the cuts of its texture are welded";
-  EXPECT_EQ(mesh.joint_count, 26u);
-  const double first = time_of(hand.frames[0], true);
-  for (const std::size_t k : {0u, 25u, 50u}) {
-    const std::vector<double> x = posed_positions(mesh, scene.motion[k].colliders.at(0));
-    const null_xr::V palm = null_xr::palm_at(true, first + static_cast<double>(k) / 72);
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-      const double at[3] = {palm.x, palm.y, palm.z};
-      for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(x[3 * v + c] + kPlace_m[c], at[c] + mesh.positions[3 * v + c], 2 * kFloat_m);
-    }
-  }
-  EXPECT_EQ(replayed(r, o), r.final_position_m);
-}
-
-TEST_F(Sessions, WithoutAMeshOfTheRuntimeOursFollowsTheJoints) {
-  const LoopOptions o = options("paper/hand-push", 20);
-  const LoopResult r = run(o, "clock=virtual,blind=1,mesh=0");
   const Scene scene = load_scene(r.scenario.string());
   EXPECT_EQ(scene.colliders.at(0).mesh->joint_count, assets::kJointCount);
   EXPECT_EQ(scene.assets, "procedural");

@@ -2,36 +2,10 @@
 
 #include <cmath>
 
-#include "xr/frame_log.hpp"
 #include "xr/painter.hpp"
 
 namespace clothbench::xr {
 namespace {
-
-FrameLog log_of(const std::vector<double>& intervals_ms) {
-  FrameLog log;
-  double t = 0;
-  FrameRow row;
-  row.predicted_period_s = 0.010;
-  for (std::size_t k = 0; k <= intervals_ms.size(); ++k) {
-    row.predicted_display_s = t;
-    log.add(row);
-    if (k < intervals_ms.size()) t += 1e-3 * intervals_ms[k];
-  }
-  return log;
-}
-
-TEST(FrameLog, RatesAreTheirOwnKindEach) {
-  const auto s = log_of({10, 10, 10, 20, 30, 10, 10, 10, 10, 50}).summary();
-  EXPECT_EQ(s.at("xr_frames"), 11);
-  EXPECT_NEAR(s.at("xr_fps_mean"), 10 / 0.17, 1e-9);
-  EXPECT_NEAR(s.at("xr_fps_median"), 100, 1e-9);
-  EXPECT_NEAR(s.at("xr_fps_worst"), 20, 1e-9);
-  EXPECT_NEAR(s.at("xr_share_1_period"), 0.7, 1e-12);
-  EXPECT_NEAR(s.at("xr_share_2_periods"), 0.1, 1e-12);
-  EXPECT_NEAR(s.at("xr_share_3_periods"), 0.1, 1e-12);
-  EXPECT_NEAR(s.at("xr_share_more_periods"), 0.1, 1e-12);
-}
 
 /// A point seen by an eye lies where the field of view's tangents say.
 TEST(Views, AnEyesClipSpace) {

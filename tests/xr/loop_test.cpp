@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 
 #include "sessions.hpp"
@@ -36,21 +35,9 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
     EXPECT_EQ(row.right_seen, 1);
     EXPECT_TRUE(std::isnan(row.left_seen)) << "the scene has no left hand";
   }
-  EXPECT_NEAR(r.summary.at("xr_fps_mean"), 72, 1e-4);
-  EXPECT_EQ(r.summary.at("xr_share_1_period"), 1);
+  EXPECT_NEAR(r.summary.at("xr_fps_median"), 72, 1e-4);
+  EXPECT_EQ(r.summary.at("xr_late_frames"), 0);
   for (const StoredArray& a : r.log.group().arrays) EXPECT_EQ(a.values.size(), 30u) << a.name;
-}
-
-TEST_F(Sessions, TheDisplayPacesInRealTime) {
-  const auto start = std::chrono::steady_clock::now();
-  const LoopResult r = run(options("paper/capsule-sweep", 24), "clock=real,blind=1");
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_GE(wall, 23 / 72.0);
-  for (std::size_t k = 1; k < r.log.rows().size(); ++k) {
-    const double interval = r.log.rows()[k].predicted_display_s - r.log.rows()[k - 1].predicted_display_s;
-    EXPECT_NEAR(interval * 72, r.log.periods()[k], 1e-6) << "whole periods alone, however late a frame is";
-    EXPECT_GE(r.log.periods()[k], 1);
-  }
 }
 
 /// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
@@ -65,16 +52,15 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
   }
   EXPECT_EQ(twice, 3);
   EXPECT_EQ(thrice, 1);
-  EXPECT_NEAR(r.summary.at("xr_share_2_periods"), 3 / 39.0, 1e-12);
+  EXPECT_NEAR(r.summary.at("xr_late_frames"), 4 / 39.0, 1e-12);
   EXPECT_NEAR(r.summary.at("xr_fps_median"), 72, 1e-4);
   EXPECT_NEAR(r.summary.at("xr_fps_worst"), 24, 1e-4);
-  EXPECT_NEAR(r.summary.at("xr_fps_mean"), 72 * 39 / 44.0, 1e-4) << "the mean hides what the rest tells";
 }
 
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   LoopOptions o = options("paper/capsule-sweep", 12);
   o.passthrough = false;
-  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,mesh=0,passthrough=0,rate=0,levels=0,look=10");
+  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,passthrough=0,rate=0,levels=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_EQ(reported_["passthrough_frames"], 0);
@@ -102,14 +88,6 @@ TEST_F(Sessions, ClothMayBeAMesh) {
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.02);
   EXPECT_TRUE(std::filesystem::exists(r.scenario.parent_path() / "sleeve-small.obj"));
   EXPECT_TRUE(load_scene(r.scenario.string()).cloth.mesh);
-  EXPECT_EQ(replayed(r, o), r.final_position_m);
-}
-
-TEST_F(Sessions, AMeshMayBeDrawnByNumber) {
-  LoopOptions o = options("validation/hang-mesh", 8);
-  o.overrides = {R"(cloth.mesh={"drawn":{"seed":3,"size_m":[1,1],"cells":8}})"};
-  const LoopResult r = run(o, "clock=virtual,look=6");
-  EXPECT_GT(reported_["drawn"][0].get<double>(), 0.02);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 

@@ -1,7 +1,6 @@
 // Static triangles (given in the scene, of a prism or of a room) and the skin of a hand.
 #include <fmt/format.h>
 
-#include "assets/submesh.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/collider_reader.hpp"
 #include "scenario/moving_hand.hpp"
@@ -53,10 +52,8 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
   if (j.contains("table")) {
     table = assets::find_table(room, j["table"].get<std::string>());
     c.name += "/" + j["table"].get<std::string>();
-    const assets::Box box =
-        assets::box_of(assets::six_points(*table, j["below_m"].get<double>(), j["above_m"].get<double>()));
-    const auto mode = cut == "crossing" ? assets::CutMode::Crossing : assets::CutMode::AnyVertexInside;
-    round_table = assets::cut(room.mesh, box, mode).mesh;
+    const assets::Box box = assets::box_around(*table, j["below_m"].get<double>(), j["above_m"].get<double>());
+    round_table = assets::cut(room.mesh, box);
     if (round_table.triangles.empty()) reader.refuse("", "expected at least one triangle of the room in the box");
   } else if (cut != "none") {
     reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));

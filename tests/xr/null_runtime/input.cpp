@@ -68,38 +68,6 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
   return XR_SUCCESS;
 }
 
-/// A closed box of 8 x 18 x 2.4 cm: its lower half follows the wrist, its upper half the middle finger. Every face has
-/// vertices of its own, as where a texture is cut.
-XrResult XRAPI_CALL hand_mesh(XrHandTrackerEXT tracker, XrHandTrackingMeshFB* m) {
-  Mesh box;
-  const V l{-0.04, -0.08, -0.012}, h{0.04, 0.1, 0.012}, s = h - l;
-  add_face(box, {l.x, l.y, h.z}, {s.x, 0, 0}, {0, s.y, 0}, 3, 6);
-  add_face(box, {h.x, l.y, l.z}, {-s.x, 0, 0}, {0, s.y, 0}, 3, 6);
-  add_face(box, {h.x, l.y, h.z}, {0, 0, -s.z}, {0, s.y, 0}, 1, 6);
-  add_face(box, {l.x, l.y, l.z}, {0, 0, s.z}, {0, s.y, 0}, 1, 6);
-  add_face(box, {l.x, h.y, h.z}, {s.x, 0, 0}, {0, 0, -s.z}, 3, 1);
-  add_face(box, {l.x, l.y, l.z}, {s.x, 0, 0}, {0, 0, s.z}, 3, 1);
-  m->jointCountOutput = XR_HAND_JOINT_COUNT_EXT;
-  m->vertexCountOutput = static_cast<std::uint32_t>(box.vertices.size());
-  m->indexCountOutput = static_cast<std::uint32_t>(box.indices.size());
-  if (m->jointCapacityInput == 0) return XR_SUCCESS;
-  const auto joint = joints(number_of(tracker) == 21);
-  for (std::size_t k = 0; k < joint.size(); ++k) {
-    m->jointBindPoses[k] = as_xr({joint_turn(), joint[k]});
-    m->jointRadii[k] = static_cast<float>(kJointRadius_m);
-  }
-  for (std::size_t v = 0; v < box.vertices.size(); ++v) {
-    const V& p = box.vertices[v];
-    // Rounded so that vertices meant to be one are one, bit for bit.
-    const auto f = [](double x) { return static_cast<float>(std::round(x * 1e6) / 1e6); };
-    m->vertexPositions[v] = {f(p.x), f(p.y), f(p.z)};
-    m->vertexBlendIndices[v] = {static_cast<std::int16_t>(p.y < 0.01 ? 1 : 12), -1, -1, -1};
-    m->vertexBlendWeights[v] = {1, 0, 0, 0};
-  }
-  for (std::size_t k = 0; k < box.indices.size(); ++k) m->indices[k] = static_cast<std::int16_t>(box.indices[k]);
-  return XR_SUCCESS;
-}
-
 }  // namespace
 
 PFN_xrVoidFunction input_function(const std::string& name) {
@@ -110,7 +78,6 @@ PFN_xrVoidFunction input_function(const std::string& name) {
   NULL_XR("xrCreateHandTrackerEXT", create_tracker)
   NULL_XR("xrDestroyHandTrackerEXT", destroy_tracker)
   NULL_XR("xrLocateHandJointsEXT", locate_joints)
-  NULL_XR("xrGetHandMeshFB", hand_mesh)
   return nullptr;
 }
 

@@ -23,7 +23,7 @@ constexpr Offer kOffers[] = {
     {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},       {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
     {XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME, "levels"}, {XR_FB_PASSTHROUGH_EXTENSION_NAME, "passthrough"},
     {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},         {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
-    {XR_FB_HAND_TRACKING_MESH_EXTENSION_NAME, "mesh"},      {"XR_KHR_android_create_instance", "android"}};
+    {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
                                          XrExtensionProperties* out) {

@@ -15,7 +15,7 @@
 /// what it is asked. $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
 ///   clock=virtual  time counts only frames; otherwise the clock of the machine
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
-///   hands|capsules|mesh|passthrough|rate=0   leaves an extension out
+///   hands|capsules|passthrough|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
 ///   blind=1        asks for no pictures, which take lavapipe most of the time
 ///   quit=30        the user takes the headset off at that frame

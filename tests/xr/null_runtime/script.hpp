@@ -73,19 +73,4 @@ inline std::array<std::array<int, 2>, 19> capsule_joints() {
   return c;
 }
 
-struct Mesh {
-  std::vector<V> vertices;
-  std::vector<unsigned> indices;
-};
-inline void add_face(Mesh& m, V corner, V along, V up, int n, int rows) {
-  const auto first = static_cast<unsigned>(m.vertices.size());
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= n; ++i) m.vertices.push_back(corner + (i / double(n)) * along + (j / double(rows)) * up);
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < n; ++i) {
-      const unsigned a = first + static_cast<unsigned>(j * (n + 1) + i), b = a + 1,
-                     c = a + static_cast<unsigned>(n) + 1;
-      for (const unsigned v : {a, b, c + 1, a, c + 1, c}) m.indices.push_back(v);
-    }
-}
 }  // namespace null_xr
