@@ -4,7 +4,7 @@
 usage: pack_assets.py OUT [--assets FOLDER]
 
 FOLDER is where scripts/fetch-assets.sh puts them (build/assets/node_modules); without it the device uses the procedural
-stand-ins. OUT then holds scenarios/, assets/ and index.txt, one line a file: bytes, SHA-256, path. SPIR-V and the published
+stand-ins. OUT then holds scenarios/, assets/ and index.txt, one line per file: SHA-256 and path. SPIR-V and the published
 values are inside the program already. The same input gives the same bytes; OUT is replaced whole."""
 import argparse
 import hashlib
@@ -47,7 +47,7 @@ def pack(out, assets):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
             size += len(content)
-            lines.append(f"{len(content)} {hashlib.sha256(content).hexdigest()} {target.relative_to(out).as_posix()}")
+            lines.append(f"{hashlib.sha256(content).hexdigest()} {target.relative_to(out).as_posix()}")
         print(f"packed {name}: {size} B of {folder}")
     if "assets" not in sources:
         print(f"packed no assets: no {assets}; the device will use procedural ones")

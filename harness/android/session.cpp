@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <iomanip>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -21,32 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// One session runs at a time, in the order they were made: the log and the interrupt are the process's.
-class Turns {
- public:
-  unsigned take() {
-    const std::lock_guard lock(mutex_);
-    return taken_++;
-  }
-  void wait_for(unsigned turn) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return turn == current_; });
-  }
-  void end() {
-    const std::lock_guard lock(mutex_);
-    ++current_;
-    changed_.notify_all();
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  unsigned taken_ = 0, current_ = 0;
-};
-
-Turns& turns() {
-  static Turns* const all = new Turns;  // outlives every thread
-  return *all;
+/// Locked by the session that runs: the log and the interrupt are the process's.
+std::mutex& running_session() {
+  static auto* const mutex = new std::mutex;  // outlives every thread
+  return *mutex;
 }
 
 std::string option_value(const std::vector<std::string>& words, const std::string& option) {
@@ -77,34 +56,9 @@ fs::path fresh_folder(const fs::path& files, const std::vector<std::string>& wor
 }  // namespace
 
 std::vector<std::string> split_words(const std::string& line) {
+  std::istringstream in(line);
   std::vector<std::string> words;
-  std::string word;
-  bool in_word = false;
-  char quote = 0;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    const char c = line[k];
-    if (quote != '\'' && c == '\\' && k + 1 < line.size()) {
-      word += line[++k];
-      in_word = true;
-    } else if (quote != 0) {
-      if (c == quote)
-        quote = 0;
-      else
-        word += c;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-      in_word = true;
-    } else if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      if (in_word) words.push_back(std::move(word));
-      word.clear();
-      in_word = false;
-    } else {
-      word += c;
-      in_word = true;
-    }
-  }
-  if (quote != 0) throw Error(fmt::format("arguments: {}: a quote {} is not closed", line, quote));
-  if (in_word) words.push_back(std::move(word));
+  for (std::string word; in >> std::quoted(word);) words.push_back(word);
   return words;
 }
 
@@ -114,7 +68,6 @@ struct Session::Shared {
   Command command;
   std::mutex mutex;
   std::condition_variable changed;
-  unsigned turn = turns().take();
   bool running = false;  ///< it is this session's turn
   bool paused = false, destroyed = false, ended = false;
 
@@ -127,11 +80,6 @@ struct Session::Shared {
         return l.substr(first, l.find_last_not_of(" \t\r") - first + 1);
     }
     return "study table3";
-  }
-
-  bool is_destroyed() {
-    const std::lock_guard lock(mutex);
-    return destroyed;
   }
 
   /// Runs the command; true if it passed. `where` receives the folder of its results.
@@ -168,9 +116,11 @@ struct Session::Shared {
   }
 
   void work() {
-    turns().wait_for(turn);
+    const std::lock_guard alone(running_session());
+    bool starts = false;
     {
       const std::lock_guard lock(mutex);
+      starts = !destroyed;
       clear_interrupt();
       if (destroyed) request_interrupt();
       hold_runs(paused && !destroyed);
@@ -179,7 +129,7 @@ struct Session::Shared {
     bool pass = false;
     fs::path where = launch.files;
     try {
-      pass = !is_destroyed() && run(where);
+      pass = starts && run(where);
     } catch (const std::exception& e) {
       system->log(std::string("error: ") + e.what());
     }
@@ -191,7 +141,6 @@ struct Session::Shared {
     ended = true;
     if (!destroyed) system->finish();
     changed.notify_all();
-    turns().end();
   }
 };
 

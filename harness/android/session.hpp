@@ -28,7 +28,7 @@ struct Launch {
 /// Runs one command, such as {"study", "table3"}; the exit code of `clothbench`.
 using Command = std::function<int(const std::vector<std::string>& words)>;
 
-/// Splits a command line at blanks; "…", '…' and \ quote as in a shell. Throws Error on a quote that is not closed.
+/// Splits a command line at blanks, except within words in double quotes.
 std::vector<std::string> split_words(const std::string& line);
 
 /// Life cycle of an activity, independent of the operating system. The command of the intent extra, else of

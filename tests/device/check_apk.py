@@ -53,7 +53,7 @@ with zipfile.ZipFile(apk) as z:
     assert [n for n in names if n.startswith("lib/")] == ["lib/arm64-v8a/libclothbench_quest.so"], names
     assert not any(n.endswith(".dex") for n in names), names
     index = z.read("assets/index.txt").decode().splitlines()
-    packed = {"assets/" + line.split(" ", 2)[2] for line in index} | {"assets/index.txt"}
+    packed = {"assets/" + line.split(" ", 1)[1] for line in index} | {"assets/index.txt"}
     assert packed == {n for n in names if n.startswith("assets/")}, packed
     assert "assets/scenarios/studies/table3.json" in packed
     with Folder() as folder:
