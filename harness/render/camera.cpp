@@ -15,14 +15,9 @@ constexpr double kFieldOfView = 28;  // degrees of the picture's height: little 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 void look(Camera& c, View view) {
-  if (view == View::Top) {
-    c.back = {0, 1, 0};
-    c.right = {1, 0, 0};
-  } else {
-    const double azimuth = radians(view == View::Front ? 0 : 30), elevation = radians(view == View::Front ? 0 : 24);
-    c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
-    c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
-  }
+  const double azimuth = radians(view == View::Front ? 0 : 30), elevation = radians(view == View::Front ? 0 : 24);
+  c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
+  c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   c.up = cross(c.back, c.right);
 }
 
@@ -52,14 +47,6 @@ Mat4 operator*(const Mat4& a, const Mat4& b) {
       for (std::size_t k = 0; k < 4; ++k) out[4 * c + r] += a[4 * k + r] * b[4 * c + k];
   return out;
 }
-
-View view_from(const std::string& name) {
-  for (const View v : {View::Front, View::Top, View::Corner})
-    if (name == name_of(v)) return v;
-  throw Error("--view " + name + ": expected front, top or corner");
-}
-
-const char* name_of(View view) { return view == View::Front ? "front" : view == View::Top ? "top" : "corner"; }
 
 Mat4 Camera::view(const Vec3& origin_m) const {
   const Vec3 eye = minus(eye_m, origin_m);

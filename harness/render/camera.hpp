@@ -2,7 +2,6 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "clothbench/collider.hpp"
 
@@ -12,10 +11,7 @@ namespace clothbench::render {
 using Mat4 = std::array<double, 16>;
 Mat4 operator*(const Mat4& a, const Mat4& b);
 
-enum class View { Front, Top, Corner };
-/// "front", "top", "corner". Throws Error naming them.
-View view_from(const std::string& name);
-const char* name_of(View);
+enum class View { Front, Corner };
 
 /// A pinhole camera. World: right-handed, +y up.
 struct Camera {
@@ -33,8 +29,8 @@ struct Camera {
 std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m);
 
 /// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
-/// width and height free on every side. Front looks along -z. Top looks down, with -z upwards in the picture. Corner
-/// looks from the front, 30 degrees to the right and 24 up. `aspect`: width over height. Throws Error without points.
+/// width and height free on every side. Front looks along -z. Corner looks from the front, 30 degrees to the right and
+/// 24 up. `aspect`: width over height. Throws Error without points.
 Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04);
 
 /// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is

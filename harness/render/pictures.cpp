@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <sstream>
 
 #include "base/child_process.hpp"
 #include "base/files.hpp"
@@ -23,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Motion motion_of(const Scene& scene, const RunHeader& header, const Outcome& outcome) {
-  return {scene, run_name(header), outcome.status == "ok" ? "" : outcome.status, {}, {}};
+/// Whether a path is a result file or the part file of an unfinished run.
+bool is_run(const fs::path& p) {
+  return p.extension() == ".h5" || p.extension() == ".cbor" || p.extension() == ".part";
 }
 
 /// Result files of a folder whose names have `wanted` in them. Throws Error if that is ambiguous.
@@ -54,14 +52,6 @@ bool is_free(const Scene& s) { return s.colliders.empty() && s.grips.vertices.em
 /// An MP4 of pictures of one size by the program ffmpeg, which reads them from a pipe.
 class Movie {
  public:
-  static bool possible() {
-    const char* path = std::getenv("PATH");
-    std::istringstream folders(path != nullptr ? path : "");
-    for (std::string folder; std::getline(folders, folder, ':');)
-      if (access((fs::path(folder.empty() ? "." : folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
-    return false;
-  }
-
   // H.264 with colours of a quarter of the resolution, which every player shows, needs even sizes.
   Movie(fs::path file, int width, int height, double frames_per_s)
       : file_(std::move(file)),
@@ -111,46 +101,25 @@ std::vector<double> Motion::at(std::size_t frame) const {
   return {from, from + static_cast<std::ptrdiff_t>(count)};
 }
 
-bool is_run(const fs::path& p) {
-  return p.extension() == ".h5" || p.extension() == ".cbor" || p.extension() == ".part";
-}
-
 Motion stored_motion(const fs::path& path) {
   const RunRecord record = read_run_summary(path);
   StoredMotion stored = read_motion(path);
-  Motion m = motion_of(stored.scene, record.header, record.outcome);
-  m.time_s = std::move(stored.time_s);
-  m.position = std::move(stored.position);
-  return m;
+  return {std::move(stored.scene), run_name(record.header), record.outcome.status == "ok" ? "" : record.outcome.status,
+          std::move(stored.time_s), std::move(stored.position)};
 }
 
-Motion run_motion(const RunSpec& spec, const DeviceOptions& device) {
-  SolverRun run(spec, device, "render");
-  if (!run.alive())
-    throw Error(spec.scene->source + ": " + spec.entry->info.name + ": " + run.outcome().status + ": " +
-                run.outcome().message);
-  TrialRules rules;
-  rules.accuracy_duration_s = spec.scene->time.duration_s;
-  AccuracyPass pass = run.run_accuracy(rules);
-  Motion m = motion_of(*spec.scene, run.header(), run.outcome());
-  m.time_s = std::move(pass.time_s);
-  m.position = std::move(pass.position);
-  return m;
-}
-
-std::vector<Motion> motions_of(const std::string& file, const std::function<Motion(const std::string&)>& run,
-                               const std::string& wanted) {
+std::vector<Motion> motions_of(const fs::path& path, const std::string& wanted) {
+  if (!fs::is_directory(path) && !is_run(path))
+    throw Error(path.string() +
+                ": expected a result file (.h5, .cbor, .part) or a folder of them; `clothbench run` "
+                "makes them");
   std::vector<Motion> out;
-  const fs::path path = file;
-  if (fs::is_directory(path)) {
-    for (const fs::path& p : runs_in(path, wanted)) out.push_back(stored_motion(p));
-  } else {
-    out.push_back(is_run(path) ? stored_motion(path) : run(file));
-  }
+  for (const fs::path& p : fs::is_directory(path) ? runs_in(path, wanted) : std::vector{path})
+    out.push_back(stored_motion(p));
   for (const Motion& m : out)
     if (m.frames() == 0)
-      throw Error(file + ": " + m.name + " has no trajectory" + (m.outcome.empty() ? "" : " (" + m.outcome + ")") +
-                  "; a scenario can be run directly: clothbench render SCENE");
+      throw Error(path.string() + ": " + m.name + " has no trajectory" +
+                  (m.outcome.empty() ? "" : " (" + m.outcome + ")"));
   return out;
 }
 
@@ -209,7 +178,6 @@ Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
   Taken taken;
   if (shots.frames.empty()) return taken;
   const bool moves = shots.movie && shots.frames.size() > 1;
-  if (moves && !Movie::possible()) taken.no_movie = "no movie: ffmpeg is not on the PATH (Debian: ffmpeg)";
   fs::create_directories(shots.out);
   const Framing framing = framing_of(m);
   const auto device = vulkan::Device::get(options);
@@ -218,30 +186,28 @@ Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
   renderer.set_cloth(m.scene.cloth, framing.origin_m);
   const std::uint32_t middle = middle_vertex(m.scene.cloth);
   if (framing.follows) renderer.follow(middle, vertex_at(m.at(0), middle));
-  for (const View view : shots.views) {
-    const Camera camera = frame(view, framing.points, static_cast<double>(shots.width) / shots.height);
-    const std::string stem = fmt::format("{}__{}", m.name, name_of(view));
-    std::unique_ptr<Movie> movie;
-    if (moves && taken.no_movie.empty()) {
+  const Camera camera = frame(View::Corner, framing.points, static_cast<double>(shots.width) / shots.height);
+  std::unique_ptr<Movie> movie;
+  if (moves) try {
       const auto step = static_cast<double>(shots.frames[1] - shots.frames[0]);
-      taken.movies.push_back(shots.out / (stem + ".mp4"));
-      movie =
-          std::make_unique<Movie>(taken.movies.back(), shots.width, shots.height, m.scene.time.frame_rate_hz / step);
+      const fs::path file = shots.out / (m.name + ".mp4");
+      movie = std::make_unique<Movie>(file, shots.width, shots.height, m.scene.time.frame_rate_hz / step);
+      taken.movie = file;
+    } catch (const Error& e) {
+      taken.no_movie = std::string("no movie: ") + e.what() + " (Debian: ffmpeg)";
     }
-    for (std::size_t k = 0; k < shots.frames.size(); ++k) {
-      const std::size_t f = shots.frames[k];
-      if (progress) progress(stem, k, shots.frames.size());
-      renderer.write_positions(m.at(f));
-      if (k == 0 || !m.scene.motion.empty())
-        renderer.set_surfaces(surfaces(m.scene, static_cast<int>(f), framing.near));
-      images.draw(renderer, std::span(&camera, 1));
-      const Picture picture = images.read(0);
-      taken.pictures.push_back(shots.out / fmt::format("{}__{:06d}.png", stem, f));
-      write_png(taken.pictures.back(), picture);
-      if (movie) movie->add(picture);
-    }
-    if (movie) movie->finish();
+  for (std::size_t k = 0; k < shots.frames.size(); ++k) {
+    const std::size_t f = shots.frames[k];
+    if (progress) progress(m.name, k, shots.frames.size());
+    renderer.write_positions(m.at(f));
+    if (k == 0 || !m.scene.motion.empty()) renderer.set_surfaces(surfaces(m.scene, static_cast<int>(f), framing.near));
+    images.draw(renderer, std::span(&camera, 1));
+    const Picture picture = images.read(0);
+    taken.pictures.push_back(shots.out / fmt::format("{}__{:06d}.png", m.name, f));
+    write_png(taken.pictures.back(), picture);
+    if (movie) movie->add(picture);
   }
+  if (movie) movie->finish();
   return taken;
 }
 
@@ -287,7 +253,7 @@ std::string taken_text(const Taken& t) {
   else if (!t.pictures.empty())
     text = fmt::format("{} pictures: {} … {}\n", t.pictures.size(), t.pictures.front().string(),
                        t.pictures.back().filename().string());
-  for (const fs::path& m : t.movies) text += m.string() + "\n";
+  if (!t.movie.empty()) text += t.movie.string() + "\n";
   return text + (t.no_movie.empty() ? "" : t.no_movie + "\n");
 }
 

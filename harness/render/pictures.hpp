@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "render/offscreen.hpp"
-#include "runner/solver_run.hpp"
 
 namespace clothbench::render {
 
@@ -22,20 +21,12 @@ struct Motion {
   std::vector<double> at(std::size_t frame) const;
 };
 
-/// Whether a path is a result file or the part file of an unfinished run.
-bool is_run(const std::filesystem::path&);
-
 /// Reads a result file. No frames if it has no trajectory. Throws Error naming the file and what is wrong with it.
 Motion stored_motion(const std::filesystem::path&);
 
-/// Runs a scene only for its positions. Throws Error if the solver cannot run it.
-Motion run_motion(const RunSpec&, const DeviceOptions&);
-
 /// The motions that a result file or a folder of them holds; from a folder, only motions with `wanted` in their names.
-/// Any other path is a scenario, whose motion `run` makes. Throws Error if a folder leaves it open which are meant, and
-/// for a motion without frames.
-std::vector<Motion> motions_of(const std::string& file, const std::function<Motion(const std::string& scenario)>& run,
-                               const std::string& wanted);
+/// Throws Error if a folder leaves it open which are meant, and for a motion without frames.
+std::vector<Motion> motions_of(const std::filesystem::path&, const std::string& wanted);
 
 /// Content of all pictures of a motion, from one camera: the cloth of all frames, without vertices that are not finite
 /// or are further from the initial bounds than the cloth's size, and colliders within an eighth of that size.
@@ -49,7 +40,6 @@ Framing framing_of(const Motion&);
 
 /// Options of the pictures of a motion.
 struct Shots {
-  std::vector<View> views = {View::Corner};
   int width = 1200, height = 900;   ///< of a picture [pixels]
   bool movie = true;                ///< also write an MP4 if there is more than one frame and ffmpeg is installed
   std::vector<std::size_t> frames;  ///< ascending
@@ -57,11 +47,12 @@ struct Shots {
 };
 
 struct Taken {
-  std::vector<std::filesystem::path> pictures, movies;
-  std::string no_movie;  ///< why there is no movie although one was requested
+  std::vector<std::filesystem::path> pictures;
+  std::filesystem::path movie;  ///< empty: none
+  std::string no_movie;         ///< why there is none although one was requested
 };
 
-/// Draws the motion at the requested frames, <name>__<view>__<frame>.png. `progress` (may be empty) gets the number of
+/// Draws the motion at the requested frames, <name>__<frame>.png. `progress` (may be empty) gets the number of
 /// pictures drawn. Throws Error on a frame that the motion does not have, a file that cannot be written, or a missing
 /// device.
 Taken take(const Motion&, const Shots&, const DeviceOptions&,

@@ -64,16 +64,6 @@ class Authors(PluginTest):
         runs = self.rows("study", "table3", "--quick", "--solver", "ballistic", "--set", "cloth.grid=[24,24]", "--list-jobs")
         self.assertTrue(runs and all("-24-24-" in r for r in runs), runs)
 
-    def test_a_report_of_a_folder_that_lost_its_study(self):
-        words = ["study", self.study(), "--out", self.out]
-        self.assertEqual(self.command(*words), 0, self.text)
-        os.remove(os.path.join(self.out, "study.json"))
-        self.assertEqual(self.command("report", self.out, "-o", os.path.join(self.home, "r")), 0, self.text)
-        self.assertIn("gravity", pathlib.Path(self.home, "r", "report.md").read_text(encoding="utf-8"))
-        os.mkdir(os.path.join(self.home, "empty"))
-        self.assertEqual(self.command("report", "empty", "-o", "none"), 2, self.text)
-        self.assertIn("neither study.json nor a result file", self.text)
-
     def test_lists_have_plugins_with_their_settings(self):
         for words, environment in ((["--solver", "plugin:" + EXAMPLE], {}), ([], {"CLOTHBENCH_PLUGINS": EXAMPLE})):
             (mine,) = [r for r in self.rows("list", "solvers", *words, **environment) if r["name"] == "example-xpbd"]
@@ -83,13 +73,6 @@ class Authors(PluginTest):
             self.assertIn("solver.substeps=20  steps per frame", self.text)
             self.assertEqual(self.command("list", "features", *words, **environment), 0)
             self.assertIn("example-xpbd", self.text)
-
-    def test_run_gives_its_figures_to_programs(self):
-        words = ["run", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--out", self.out]
-        (run,) = self.rows(*words)["runs"]
-        self.assertEqual((run["scene"], run["solver"], run["outcome"]["status"]), ("gravity", "ballistic", "ok"))
-        self.assertLess(run["summary"]["free_fall_error"], 1e-12)
-        self.assertNotIn("environment", run)
 
     def test_in_process_there_is_no_child(self):
         words = ["run", "paper/gravity", "--solver", self.library("faulty_NONE"), "--set", "cloth.grid=[5,5]", "--out", self.out]

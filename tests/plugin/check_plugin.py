@@ -177,13 +177,6 @@ class Plugin(PluginTest):
             self.assertEqual((bad["status"], good["status"]), ("FAIL", "pass"))
             self.assertIn(message, bad["faults"][0])
 
-    def test_a_crash_while_a_scene_is_run_for_pictures_is_told(self):
-        self.command("--help")
-        if "  render " not in self.text:
-            self.skipTest("this build draws no pictures")
-        self.assertEqual(self.command("render", "paper/gravity", "--solver", self.faulty(), FAULT="crash:5"), 1)
-        self.assertIn("signal 11", self.text)
-
     def test_interrupted_and_resumed(self):
         process = self.start("run", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic", *SMALL, "--out", self.out, FAULT="hang:20")
         for _ in range(400):

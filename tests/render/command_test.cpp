@@ -40,19 +40,17 @@ std::unique_ptr<Folder> RenderCommand::folder_;
 
 TEST_F(RenderCommand, WritesPicturesOfAFile) {
   const Answer a = command("--json render " + runs() +
-                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 --view front "
-                           "--view top -o " +
-                           out());
+                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 -o " + out());
   ASSERT_EQ(a.code, 0) << a.text;
   const auto reported = nlohmann::json::parse(a.text);
-  ASSERT_EQ(reported["pictures"].size(), 8u) << "frames 0, 2, 4, 6 of two views";
+  ASSERT_EQ(reported["pictures"].size(), 4u) << "frames 0, 2, 4, 6";
   for (const auto& p : reported["pictures"]) EXPECT_EQ(read_png(p.get<std::string>()).width, 200);
   EXPECT_TRUE(reported["movies"].empty());
 }
 
 TEST_F(RenderCommand, PicksRunsOfAFolder) {
   EXPECT_EQ(command("render " + runs() + " --run sphere-drop__xpbd --frames 1 --size 160x120 -o " + out()).code, 0);
-  EXPECT_TRUE(fs::exists(out() + "/sphere-drop__xpbd__default__corner__000001.png"));
+  EXPECT_TRUE(fs::exists(out() + "/sphere-drop__xpbd__default__000001.png"));
   const Answer which = command("render " + runs());
   EXPECT_EQ(which.code, 2);
   EXPECT_NE(which.text.find("--run"), std::string::npos);
@@ -60,16 +58,6 @@ TEST_F(RenderCommand, PicksRunsOfAFolder) {
   const Answer none = command("render " + runs() + " --run nothing");
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.text.find("\"nothing\""), std::string::npos);
-}
-
-TEST_F(RenderCommand, RunsAScenarioAndSaysSo) {
-  const Answer a = command(
-      "render contact/plane --solver ballistic --set cloth.grid=[5,5] --set time.duration_s=0.05 --frames -1 --size "
-      "160x120 -o " +
-      out());
-  ASSERT_EQ(a.code, 0) << a.text;
-  EXPECT_NE(a.text.find("not a result file, so ballistic runs it now"), std::string::npos);
-  EXPECT_NE(a.text.find("plane-drop__ballistic__default__corner__000004.png"), std::string::npos) << a.text;
 }
 
 TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
@@ -90,11 +78,10 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
   fs::create_directories(empty);
   const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "expected frames from 0 to"},
                                                                   {file + " --frames x", "expected a number"},
-                                                                  {file + " --view side", "front, top or corner"},
                                                                   {file + " --size 10", "WIDTHxHEIGHT"},
                                                                   {text.string(), "text.h5"},
                                                                   {runs() + "/none.h5", "none.h5"},
-                                                                  {"no/such-scene", "no/such-scene"},
+                                                                  {"paper/gravity", "expected a result file"},
                                                                   {empty.string(), "no result files"},
                                                                   {file + " --device 99", "device"}};
   for (const auto& [arguments, reported] : wrong) {
