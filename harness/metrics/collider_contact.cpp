@@ -1,8 +1,5 @@
 #include "metrics/collider_contact.hpp"
 
-#include <algorithm>
-#include <optional>
-
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/collider_touch.hpp"
@@ -10,30 +7,26 @@
 #include "metrics/contact/contour.hpp"
 
 namespace clothbench {
-namespace {
 
-using contact::ContactProbe;
 using contact::ContactSample;
 using contact::TriangleMeshView;
-
-contact::Solid solid_of(const Collider& c) {
-  if (!has_inside(c)) return contact::Solid::No;
-  return !c.mesh || c.mesh->closed ? contact::Solid::Auto : contact::Solid::Nearly;
-}
-
-/// One collider and its probe; a half-space needs none.
-struct Watched {
-  const Collider* collider;
-  std::optional<ContactProbe> probe;
-};
-
-}  // namespace
+using contact::TriangleTree;
 
 struct ColliderContact::Probes {
-  explicit Probes(const Scene& s) : scene(s), rest(initial_positions(s)), triangles(clothbench::triangles(s.cloth)) {
+  explicit Probes(const Scene& s)
+      : scene(s),
+        triangles(clothbench::triangles(s.cloth)),
+        links(contact::edges_of(triangles)),
+        meshes(s.colliders.size()) {
     for (std::size_t k = 0; k < s.colliders.size(); ++k) {
-      any_inside |= has_inside(s.colliders[k]);
-      watch(k);
+      const Collider& c = s.colliders[k];
+      any_inside |= has_inside(c);
+      if (kind_of(c).capsules != nullptr || kind_of(c).half_space) continue;
+      try {
+        set_mesh(k, 0);
+      } catch (const Error& e) {
+        throw Error("collider " + c.name + ": " + e.what());
+      }
     }
   }
 
@@ -43,43 +36,28 @@ struct ColliderContact::Probes {
     return motion ? motion->colliders[collider] : still;
   }
 
-  void watch(std::size_t k) {
+  void set_mesh(std::size_t k, int frame) {
     const Collider& c = scene.colliders[k];
-    const TriangleMeshView cloth{rest, triangles};
-    Watched w{&c, {}};
-    try {
-      const ColliderKind& kind = kind_of(c);
-      if (kind.capsules != nullptr) {
-        w.probe.emplace(cloth, contact_capsules(kind.capsules(c, pose(k, 0))));
-      } else if (!kind.half_space) {
-        const ColliderSurface surface = kind.surface(c, pose(k, 0), {});
-        w.probe.emplace(cloth, TriangleMeshView{surface.positions, surface.triangles}, solid_of(c));
-      }
-    } catch (const Error& e) {
-      throw Error("collider " + c.name + ": " + e.what());
-    }
-    watched.push_back(std::move(w));
+    const ColliderSurface surface = kind_of(c).surface(c, pose(k, frame), {});
+    meshes[k] = std::make_unique<TriangleTree>(TriangleMeshView{surface.positions, surface.triangles});
   }
 
   ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) {
-    const Collider& c = *watched[k].collider;
+    const Collider& c = scene.colliders[k];
     const ColliderKind& kind = kind_of(c);
+    const TriangleMeshView cloth{positions, triangles};
     if (kind.half_space)
-      return contact::half_space_contact({positions, triangles}, contact::point(c.center_m), contact::point(c.normal));
-    ContactProbe& probe = *watched[k].probe;
-    if (frame > 0 && c.moves()) {
-      if (kind.capsules != nullptr)
-        probe.move_shapes(contact_capsules(kind.capsules(c, pose(k, frame))));
-      else
-        probe.move_object(kind.surface(c, pose(k, frame), {}).positions);
-    }
-    return probe.probe(positions);
+      return contact::half_space_contact(cloth, contact::point(c.center_m), contact::point(c.normal));
+    if (kind.capsules != nullptr)
+      return contact::capsule_contact(cloth, contact_capsules(kind.capsules(c, pose(k, frame))));
+    if (frame > 0 && c.moves()) set_mesh(k, frame);
+    return contact::mesh_contact(cloth, links, *meshes[k], has_inside(c));
   }
 
   const Scene& scene;
-  std::vector<double> rest;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Watched> watched;
+  std::vector<contact::Link> links;
+  std::vector<std::unique_ptr<TriangleTree>> meshes;  ///< of each collider at the frame probed last; null without one
   bool any_inside = false;
 };
 
@@ -89,10 +67,10 @@ ColliderContact::~ColliderContact() = default;
 SceneContact ColliderContact::probe(int frame, const std::vector<double>& positions) {
   Probes& p = *probes_;
   SceneContact all{0, p.any_inside ? 0 : kMissing};
-  for (std::size_t k = 0; k < p.watched.size(); ++k) {
+  for (std::size_t k = 0; k < p.meshes.size(); ++k) {
     const ContactSample s = p.sample(k, frame, positions);
     all.length_m += s.contour_length_m;
-    if (has_inside(*p.watched[k].collider)) all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
+    if (has_inside(p.scene.colliders[k])) all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
   }
   return all;
 }

@@ -16,8 +16,8 @@ inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the c
 inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
 
-/// The contact of one cloth with all colliders of its scene, frame after frame: one contact::ContactProbe per collider,
-/// moved as Scene::motion prescribes. The geometry of the collider kind decides the method
+/// The contact of one cloth with all colliders of its scene, frame after frame: each collider
+/// placed as Scene::motion prescribes. The geometry of the collider kind decides the method
 /// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
 /// overlap, both count), the depth is the largest.
 class ColliderContact {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "metrics/contact/triangle_mesh.hpp"
+#include "metrics/contact/contact_probe.hpp"
 
 namespace clothbench::contact {
 
@@ -97,6 +97,11 @@ inline Mesh unshared(const Mesh& mesh) {
     result.triangles.push_back({result.add(v[0]), result.add(v[1]), result.add(v[2])});
   }
   return result;
+}
+
+/// Contact of a cloth with a mesh.
+inline ContactSample against(const Mesh& cloth, const Mesh& object, bool has_inside = true) {
+  return mesh_contact(cloth.view(), edges_of(cloth.triangles), TriangleTree(object.view()), has_inside);
 }
 
 }  // namespace clothbench::contact

@@ -1,17 +1,12 @@
-// One collider of each shape against figures worked out here, and the time a frame takes.
+// One collider of each shape against figures worked out here.
 #include "metrics/collider_contact.hpp"
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "metrics/contact/capsules.hpp"
 #include "scenario/load.hpp"
-
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
-#define CLOTHBENCH_TIMES_COUNT 1
-#endif
 
 namespace clothbench {
 namespace {
@@ -95,30 +90,6 @@ TEST(ColliderContact, NotFiniteIsNaN) {
     EXPECT_TRUE(std::isnan(s.length_m) && std::isnan(s.depth_m)) << name;
     EXPECT_EQ(contact.probe(1, initial_positions(scene)).length_m, 0) << name;
   }
-}
-
-double seconds(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// 32 x 32 vertices slanting down through the table of a whole room, which is worse than lying on it.
-TEST(ColliderContact, AFrameAgainstTheWholeRoomIsQuick) {
-  const Scene scene = load_scene("paper/desk-flat-low", {"colliders.0.cut=none"});
-  ColliderContact contact(scene);
-  std::vector<double> x = initial_positions(scene);
-  contact.probe(0, x);
-  const double last = static_cast<double>(x.size()) - 2;
-  for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= 0.6 * static_cast<double>(k - 1) / last;
-  SceneContact s{};
-  const double time = seconds([&] { s = contact.probe(1, x); });
-  EXPECT_GT(s.length_m, 0.1);
-  std::printf("  a frame against a room of %zu triangles: %.4f s (contour %.2f m; 0.5 s allowed)\n",
-              scene.colliders[0].mesh->triangles.size(), time, s.length_m);
-#if CLOTHBENCH_TIMES_COUNT
-  EXPECT_LT(time, 2.0) << "four times what is promised of an idle machine";
-#endif
 }
 
 }  // namespace

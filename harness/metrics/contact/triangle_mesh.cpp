@@ -55,23 +55,6 @@ std::vector<std::uint32_t> welded_vertices(const TriangleMeshView& mesh) {
   return welded;
 }
 
-bool is_closed(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded) {
-  std::vector<std::pair<std::uint64_t, int>> passes;
-  passes.reserve(3 * mesh.triangles.size());
-  for (const auto& corner : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
-      if (a != b) passes.emplace_back(std::min(a, b) << 32 | std::max(a, b), a < b ? 1 : -1);
-    }
-  std::sort(passes.begin(), passes.end());
-  for (std::size_t i = 0, end = 0; i < passes.size(); i = end) {
-    int sum = 0;
-    for (end = i; end < passes.size() && passes[end].first == passes[i].first; ++end) sum += passes[end].second;
-    if (sum != 0) return false;
-  }
-  return !passes.empty();
-}
-
 std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangles) {
   std::vector<Link> edges;
   for (const auto& corner : triangles)

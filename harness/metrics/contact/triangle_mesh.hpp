@@ -32,10 +32,6 @@ bool all_finite(std::span<const double>);
 /// For every vertex, the lowest index of a vertex at exactly the same position.
 std::vector<std::uint32_t> welded_vertices(const TriangleMeshView&);
 
-/// Whether the mesh has no border: every edge, with repeated vertices merged, is traversed equally often in both
-/// directions. Then the generalised winding number is an integer off the surface. `welded` comes from welded_vertices.
-bool is_closed(const TriangleMeshView&, std::span<const std::uint32_t> welded);
-
 /// Two neighbouring points of a cloth, by number.
 using Link = std::array<std::uint32_t, 2>;
 

@@ -35,6 +35,22 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
   return sum;
 }
 
+/// The ray follows the axis that leaves the mesh's box soonest, so the ray's box is the ray itself.
+bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
+  const Box& box = mesh.tree().box();
+  if (mesh.triangles().empty() || !box.contains(p)) return false;
+  int axis = 0;
+  bool up = true;
+  double least = box.max()[0] - p[0];
+  for (int k = 0; k < 3; ++k) {
+    if (box.max()[k] - p[k] < least) axis = k, up = true, least = box.max()[k] - p[k];
+    if (p[k] - box.min()[k] < least) axis = k, up = false, least = p[k] - box.min()[k];
+  }
+  Point<3> outside = p;
+  outside[axis] = up ? box.max()[axis] + box.diagonal().norm() : box.min()[axis] - box.diagonal().norm();
+  return signed_crossings(p, outside, mesh) > 0;
+}
+
 SweptMesh::SweptMesh(const TriangleMeshView& from, const TriangleMeshView& to, std::span<const std::uint32_t> welded) {
   std::vector<Box> boxes;
   for (const auto& triangle : from.triangles) {
@@ -79,60 +95,72 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
   return sum;
 }
 
-Border::Border(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded) {
+namespace {
+
+/// The edges at which a mesh is open.
+std::vector<Link> border_of(const TriangleMeshView& mesh) {
+  const std::vector<std::uint32_t> welded = welded_vertices(mesh);
   std::map<Link, int> passes;
   for (const auto& corner : mesh.triangles)
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
       if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
     }
+  std::vector<Link> out;
   for (const auto& [edge, sum] : passes)
-    if (sum != 0) edges_.push_back(edge);
+    if (sum != 0) out.push_back(edge);
+  return out;
 }
 
-bool Border::out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const double> from,
-                          std::span<const double> to) const {
-  double moved = 0;
-  for (std::size_t i = 0; i < from.size() / 3; ++i)
-    moved = std::max(moved, (vertex_of(to, i) - vertex_of(from, i)).norm());
-  const auto distance = [&](const Point<3>& point, std::span<const double> x) {
+bool crosses(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh) {
+  bool any = false;
+  mesh.tree().for_each_overlapping(
+      Box(p).extend(q), [&](int t) { any = any || (p != q && crossing<3>(p, q, mesh.triangles()[t]) != 0); });
+  return any;
+}
+
+}  // namespace
+
+std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to,
+                                  const TriangleMeshView& mesh, const TriangleTree& tree, std::span<const Link> links) {
+  std::vector<int> step(from.size() / 3);
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(vertex_of(from, i), vertex_of(to, i), tree);
+  const auto differ = [&](const Link& l) { return step[l[0]] != step[l[1]]; };
+  const auto crosses_at = [&](std::span<const double> x) {
+    return std::any_of(links.begin(), links.end(),
+                       [&](const Link& l) { return crosses(vertex_of(x, l[0]), vertex_of(x, l[1]), tree); });
+  };
+  if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
+
+  // A vertex cannot have moved around the border if the sum of its distances to it before and after exceeds twice its
+  // displacement.
+  const std::vector<Link> border = border_of(mesh);
+  const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& [a, b] : edges_)
-      least = std::min(least, squared_distance(point, point, vertex_of(x, a), vertex_of(x, b)));
+    for (const auto& [a, b] : border)
+      least = std::min(least, squared_distance(point, point, mesh.vertex(a), mesh.vertex(b)));
     return std::sqrt(least);
   };
-  return distance(p, from) + distance(q, to) > 2 * ((q - p).norm() + moved);
-}
-
-void TunnelHistory::advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh,
-                            const StepEvidence& evidence) {
-  std::vector<int> step(counts_.size());
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(vertex_of(from, i), vertex_of(to, i), mesh);
-  drop_unproven(step, from, to, evidence);
-  for (std::size_t i = 0; i < step.size(); ++i) counts_[i] += step[i];
-}
-
-void TunnelHistory::drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
-                                  const StepEvidence& evidence) const {
-  const auto differ = [&](const Link& l) { return step[l[0]] != step[l[1]]; };
-  if (std::none_of(links_.begin(), links_.end(), differ) || evidence.contour()) return;
   std::vector<bool> proven(step.size(), false);
-  for (std::size_t i = 0; i < step.size(); ++i)
-    proven[i] = step[i] != 0 && evidence.out_of_reach(vertex_of(from, i), vertex_of(to, i));
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    const Point<3> p = vertex_of(from, i), q = vertex_of(to, i);
+    proven[i] = step[i] != 0 && distance(p) + distance(q) > 2 * (q - p).norm();
+  }
   for (bool changed = true; changed;) {
     changed = false;
-    for (const auto& [a, b] : links_)
+    for (const auto& [a, b] : links)
       if (step[a] == step[b] && step[a] != 0 && proven[a] != proven[b]) proven[a] = proven[b] = changed = true;
   }
   // From the border of a piece inwards.
   for (bool changed = true; changed;) {
     changed = false;
-    for (const auto& [a, b] : links_) {
+    for (const auto& [a, b] : links) {
       if (step[a] == step[b]) continue;
       for (const std::uint32_t i : {a, b})
         if (!proven[i] && step[i] != 0) step[i] = 0, changed = true;
     }
   }
+  return step;
 }
 
 }  // namespace clothbench::contact

@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <vector>
 
 #include "metrics/contact/triangle_mesh.hpp"
@@ -10,6 +9,10 @@ namespace clothbench::contact {
 /// against. Exact (predicates.hpp): a path through a common edge or vertex, or one that ends on the surface, is counted
 /// once.
 int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh);
+
+/// Whether a point is inside a closed mesh with outward normals: its winding number, which is the number of signed
+/// crossings on a ray to infinity, is positive. Exact.
+bool is_inside(const Point<3>& p, const TriangleTree& mesh);
 
 /// A mesh whose vertices move from `from` to `to` during one step.
 ///
@@ -36,53 +39,14 @@ class SweptMesh {
   BoxTree tree_;
 };
 
-/// The edges at which a mesh is open.
-class Border {
- public:
-  /// `welded` from welded_vertices(mesh). Copies what it needs.
-  Border(const TriangleMeshView& mesh, std::span<const std::uint32_t> welded);
-
-  /// Whether a point cannot have moved around the border in a step from p to q: the sum of its distances to the border
-  /// before and after exceeds twice its displacement. `from`, `to`: the mesh's positions; the maximum displacement of
-  /// the mesh is added to the point's.
-  bool out_of_reach(const Point<3>& p, const Point<3>& q, std::span<const double> from,
-                    std::span<const double> to) const;
-
- private:
-  std::vector<Link> edges_;
-};
-
-/// Evidence that the crossings of a step took place. Evaluated only if the result depends on it.
-struct StepEvidence {
-  std::function<bool()> contour;  ///< whether cloth and mesh intersect at the step's start or end
-  /// Whether a point cannot have moved around the border.
-  std::function<bool(const Point<3>&, const Point<3>&)> out_of_reach;
-};
-
-/// Signed crossing count of every vertex since the start. It is 0 for a vertex on its initial side: one that never
-/// crossed, crossed back, or moved around the border. Any other count means that the vertex has tunnelled.
+/// Signed crossings of each vertex of a cloth that moves past a static mesh in one step. `links` between the vertices;
+/// without them every crossing counts.
 ///
-/// The straight path between two frames may cut a border that the vertex moved around. Without a contour, no link of
-/// the cloth crosses the mesh, and a link between a vertex that crossed and one that did not leads around a border. So
-/// without a contour the crossings of linked vertices that crossed alike count only if they have no link to others, or
-/// if the border is out of reach for one of them.
-class TunnelHistory {
- public:
-  /// `links` between the vertices. Without them every crossing counts.
-  explicit TunnelHistory(std::size_t vertices, std::vector<Link> links = {})
-      : counts_(vertices, 0), links_(std::move(links)) {}
-
-  /// One step; both position arrays xyz interleaved and finite.
-  void advance(std::span<const double> from, std::span<const double> to, const TriangleTree& mesh, const StepEvidence&);
-
-  std::span<const int> counts() const { return counts_; }
-
- private:
-  void drop_unproven(std::vector<int>& step, std::span<const double> from, std::span<const double> to,
-                     const StepEvidence&) const;
-
-  std::vector<int> counts_;
-  std::vector<Link> links_;
-};
+/// The straight path between two frames may cut a border that the vertex moved around. If no link crosses the mesh
+/// before or after the step, a link between a vertex that crossed and one that did not leads around a border. Then the
+/// crossings of linked vertices that crossed alike count only if they have no link to others, or if the border is out
+/// of reach for one of them.
+std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to, const TriangleMeshView&,
+                                  const TriangleTree&, std::span<const Link> links);
 
 }  // namespace clothbench::contact

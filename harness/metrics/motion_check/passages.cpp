@@ -122,24 +122,7 @@ int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTre
     through += opposed;
   }
   if (!any) return 0;
-  std::optional<contact::Border> border;
-  const contact::TriangleMeshView view{positions, triangles};
-  const contact::StepEvidence evidence{[&] {
-                                         for (const contact::Link& l : links)
-                                           for (const std::vector<double>* x : {&was, &now}) {
-                                             bool meets = false;
-                                             crossed(of(*x, l[0]), of(*x, l[1]), [&](const V3&) { meets = true; });
-                                             if (meets) return true;
-                                           }
-                                         return false;
-                                       },
-                                       [&](const contact::Point<3>& p, const contact::Point<3>& q) {
-                                         if (!border) border.emplace(view, contact::welded_vertices(view));
-                                         return border->out_of_reach(p, q, positions, positions);
-                                       }};
-  contact::TunnelHistory step(m.vertices, links);
-  step.advance(was, now, tree, evidence);
-  for (const int n : step.counts()) through += n != 0;
+  for (const int n : contact::proven_crossings(was, now, {positions, triangles}, tree, links)) through += n != 0;
   return through;
 }
 
