@@ -32,12 +32,6 @@ SettingSpec collision_margin_spec() {
   return {"collision_margin_m", "0.02", "contact offset [m]: PyBullet's default. 0: the scene's margin_m"};
 }
 
-SettingSpec mesh_spec() {
-  return {"mesh", "\"triangles\"",
-          "a mesh becomes thin triangles, or \"bvh\": Bullet's own static mesh, which soft bodies meet as slabs 0.1 m "
-          "thick either way"};
-}
-
 SettingSpec voxel_spec() {
   return {"sdf_voxel_m", "0.01", "voxel of the colliders' distance fields [m]; Bullet's own default is 0.25"};
 }
@@ -66,11 +60,7 @@ double number_setting(const SolverInfo& info, const nlohmann::json& settings, co
 BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
     : info_(std::move(info)),
       collision_margin_m_(settings["collision_margin_m"].get<double>()),
-      mesh_(settings["mesh"] == "bvh" ? MeshAs::Bvh : MeshAs::Triangles),
       voxel_m_(number_setting(info_, settings, "sdf_voxel_m", 0, 1)) {
-  if (settings["mesh"] != "bvh" && settings["mesh"] != "triangles")
-    throw Error("solver " + info_.name + ": setting mesh: expected \"triangles\" or \"bvh\"; found " +
-                settings["mesh"].dump());
   if (!(collision_margin_m_ >= 0 && collision_margin_m_ <= 1))
     throw Error("solver " + info_.name + ": setting collision_margin_m: expected 0 to 1; found " +
                 settings["collision_margin_m"].dump());
@@ -95,7 +85,7 @@ void BulletSolver::drop() {
 void BulletSolver::reset() {
   if (body_) drop();
   build();
-  if (touches()) colliders_ = std::make_unique<ColliderBodies>(*scene_, *world(), mesh_);
+  if (touches()) colliders_ = std::make_unique<ColliderBodies>(*scene_, *world());
   now_ = scene_->motion.empty() ? FrameMotion{} : scene_->motion.front();
 }
 

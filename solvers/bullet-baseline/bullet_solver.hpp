@@ -15,7 +15,6 @@ namespace clothbench::bullet_baseline {
 SolverInfo common_info();
 
 SettingSpec collision_margin_spec();
-SettingSpec mesh_spec();
 SettingSpec voxel_spec();
 
 /// Share of its velocity that a node keeps in a step of h [s]: e^(-c h), or 1 without damping.
@@ -78,7 +77,6 @@ class BulletSolver : public ClothSolver {
 
   const SolverInfo info_;
   const double collision_margin_m_;
-  const MeshAs mesh_;
   const double voxel_m_;
   int substeps_ = 0;
   const Scene* scene_ = nullptr;

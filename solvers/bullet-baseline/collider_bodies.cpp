@@ -14,8 +14,6 @@ namespace {
 constexpr double kGroundHalf_m = 10;
 /// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;
-/// Bullet extrudes a mesh's triangles by 0.06 m either way for soft bodies, and gives that a margin of 0.04 m.
-constexpr btScalar kSlabHalf_m = 0.1F;
 /// A capsule's length may differ from that at the start by this much: its shape is made once.
 constexpr double kLengthTolerance_m = 1e-3;
 
@@ -85,7 +83,7 @@ btVector3 to_bullet(const Vec3& v) {
   return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
 }
 
-ColliderBodies::ColliderBodies(const Scene& scene, btDiscreteDynamicsWorld& world, MeshAs mesh)
+ColliderBodies::ColliderBodies(const Scene& scene, btDiscreteDynamicsWorld& world)
     : colliders_(scene.colliders), world_(world) {
   check_lengths(scene);
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
@@ -93,7 +91,7 @@ ColliderBodies::ColliderBodies(const Scene& scene, btDiscreteDynamicsWorld& worl
     if (c.shape == Collider::Shape::Capsules)
       add_capsules(scene, k);
     else if (c.shape == Collider::Shape::Mesh)
-      mesh == MeshAs::Triangles || c.moves() ? add_mesh(scene, k) : add_whole_mesh(c);
+      add_mesh(scene, k);
     else
       add_static(c);
   }
@@ -148,19 +146,6 @@ void ColliderBodies::add_mesh(const Scene& scene, std::size_t collider) {
     if (c.moves()) triangles_.push_back({collider, t, bodies_.size()});
     add(std::move(shape), at, c, c.moves());
   }
-}
-
-void ColliderBodies::add_whole_mesh(const Collider& c) {
-  auto triangles = std::make_unique<btTriangleMesh>();
-  for (std::size_t t = 0; t < c.mesh->triangles.size(); ++t) {
-    const Corners corners = corners_of(*c.mesh, t, c.mesh->positions);
-    triangles->addTriangle(corners[0], corners[1], corners[2]);
-  }
-  auto shape = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true);
-  // The mesh's box must hold the slabs, or the cloth first meets them when it is deep inside and is thrown out.
-  shape->setMargin(kSlabHalf_m);
-  add(std::move(shape), btTransform::getIdentity(), c, false);
-  bodies_.back().triangles = std::move(triangles);
 }
 
 void ColliderBodies::add_capsules(const Scene& scene, std::size_t collider) {

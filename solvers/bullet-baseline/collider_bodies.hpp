@@ -11,22 +11,15 @@ namespace clothbench::bullet_baseline {
 
 btVector3 to_bullet(const Vec3&);
 
-/// How Bullet represents a mesh.
-enum class MeshAs {
-  Triangles,  ///< a thin rigid body for each triangle
-  Bvh  ///< one btBvhTriangleMeshShape for static colliders; for soft bodies its triangles are slabs that reach 0.1 m to
-       ///< either side
-};
-
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
 ///
 /// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, like the ground in
-/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. Triangles of a moving mesh move as
-/// rigid bodies, with the shape they have at the start.
+/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. A mesh is a thin body for each
+/// triangle; triangles of a moving mesh keep the shape they have at the start.
 class ColliderBodies {
  public:
   /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
-  ColliderBodies(const Scene&, btDiscreteDynamicsWorld& world, MeshAs);
+  ColliderBodies(const Scene&, btDiscreteDynamicsWorld& world);
   ~ColliderBodies();
   ColliderBodies(const ColliderBodies&) = delete;
   ColliderBodies& operator=(const ColliderBodies&) = delete;
@@ -37,7 +30,6 @@ class ColliderBodies {
 
  private:
   struct Body {
-    std::unique_ptr<btTriangleMesh> triangles;  ///< for MeshAs::Bvh, whose shape only refers to them
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btDefaultMotionState> motion;
     std::unique_ptr<btRigidBody> body;
@@ -53,7 +45,6 @@ class ColliderBodies {
   void add(std::unique_ptr<btCollisionShape>, const btTransform&, const Collider&, bool moves);
   void add_static(const Collider&);
   void add_mesh(const Scene&, std::size_t collider);
-  void add_whole_mesh(const Collider&);
   void add_capsules(const Scene&, std::size_t collider);
 
   void move_triangles(const FrameMotion& from, const FrameMotion& to, double share);

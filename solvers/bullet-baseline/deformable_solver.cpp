@@ -92,7 +92,6 @@ SolverInfo deformable_info() {
        "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
       {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
       collision_margin_spec(),
-      mesh_spec(),
       voxel_spec()};
   return info;
 }

@@ -16,7 +16,6 @@ SolverInfo soft_info() {
       {"substeps", "4", "substeps per frame"},
       {"relaxation", "1.0", "kLST: fraction of a link's error removed per iteration, 0 to 1; not a stiffness"},
       collision_margin_spec(),
-      mesh_spec(),
       voxel_spec()};
   return info;
 }

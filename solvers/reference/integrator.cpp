@@ -78,10 +78,10 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
   return StepStatus::Diverged;
 }
 
-/// BDF2, or every step as its first: backward Euler.
-class Bdf final : public Integrator {
+/// Its first step is backward Euler.
+class Bdf2 final : public Integrator {
  public:
-  Bdf(Model& model, Tolerance tolerance, int order) : Integrator(model, tolerance), order_(order) {}
+  using Integrator::Integrator;
 
   void restart() override {
     Integrator::restart();
@@ -89,8 +89,8 @@ class Bdf final : public Integrator {
   }
 
   StepStatus step(State& s, const Vector& held_x, double h) override {
-    const bool fresh = before_.x.size() == 0 || h != h_, first = fresh || order_ == 1;
-    if (fresh) system_.forget();
+    const bool first = before_.x.size() == 0 || h != h_;
+    if (first) system_.forget();
     const double c = model_.damping_per_s();
     // x' = (k0 x + px)/h and v' = (k0 v + pv)/h with the history in px, pv.
     const double k0 = first ? 1.0 : 1.5;
@@ -111,7 +111,6 @@ class Bdf final : public Integrator {
   }
 
  private:
-  const int order_;
   State before_;
   double h_ = 0;
 };
@@ -252,8 +251,7 @@ void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   }
 }
 
-std::unique_ptr<Integrator> make_bdf2(Model& m, Tolerance t) { return std::make_unique<Bdf>(m, t, 2); }
-std::unique_ptr<Integrator> make_euler(Model& m, Tolerance t) { return std::make_unique<Bdf>(m, t, 1); }
+std::unique_ptr<Integrator> make_bdf2(Model& m, Tolerance t) { return std::make_unique<Bdf2>(m, t); }
 std::unique_ptr<Integrator> make_midpoint(Model& m, Tolerance t) { return std::make_unique<Midpoint>(m, t); }
 std::unique_ptr<Integrator> make_rattle(Model& m, Tolerance t) { return std::make_unique<Rattle>(m, t); }
 

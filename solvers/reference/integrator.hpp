@@ -49,8 +49,6 @@ class Integrator {
 /// BDF2 (first step: backward Euler), positions, velocities and tensions all at the step's end: stiffly accurate,
 /// order 2, damps unresolved frequencies. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
 std::unique_ptr<Integrator> make_bdf2(Model&, Tolerance);
-/// Backward Euler, solved to convergence: order 1. The baseline for the energy loss of small-step methods.
-std::unique_ptr<Integrator> make_euler(Model&, Tolerance);
 /// Implicit midpoint with tensions at the midpoint: order 2, conserves momentum, no damping of its own. Compliance > 0.
 std::unique_ptr<Integrator> make_midpoint(Model&, Tolerance);
 /// RATTLE (Andersen 1983): order 2, symplectic, for compliance 0; bending and gravity explicit.

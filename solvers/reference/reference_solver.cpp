@@ -22,11 +22,10 @@ SolverInfo describe() {
   info.time_order = 2;
   info.supports = {Feature::Stretch,    Feature::Shear,      Feature::Bend,    Feature::Damping, Feature::Pins,
                    Feature::MovingPins, Feature::UnevenGrid, Feature::Regions, Feature::Spin,    Feature::ClothMesh};
-  info.settings = {{"substeps", "16", "steps per frame"},
-                   {"integrator", "\"bdf2\"",
-                    "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible | euler: "
-                    "backward Euler, order 1"},
-                   {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
+  info.settings = {
+      {"substeps", "16", "steps per frame"},
+      {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible"},
+      {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
   return info;
 }
 
@@ -53,10 +52,9 @@ class Reference final : public ClothSolver {
     double acceleration = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     if (acceleration == 0) acceleration = L / (s.time.duration_s * s.time.duration_s);
     const Tolerance t{tolerance_ * acceleration, 1e-12 * L};
-    integrator_ = integrator_name_ == "euler"  ? make_euler(*model_, t)
-                  : integrator_name_ == "bdf2" ? make_bdf2(*model_, t)
-                  : model_->inextensible()     ? make_rattle(*model_, t)
-                                               : make_midpoint(*model_, t);
+    integrator_ = integrator_name_ == "bdf2" ? make_bdf2(*model_, t)
+                  : model_->inextensible()   ? make_rattle(*model_, t)
+                                             : make_midpoint(*model_, t);
     const auto n = static_cast<Eigen::Index>(3 * model_->vertices());
     const std::vector<double> start = initial_positions(s);
     state_.x = Vector::Map(start.data(), n);
@@ -155,7 +153,7 @@ double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
       v_next = (v * (1 - c * h / 2) + h * g) / (1 + c * h / 2);
       x_next = x + h / 2 * (v + v_next);
     } else {
-      const bool one = i == 0 || settings["integrator"] == "euler";
+      const bool one = i == 0;
       const double k0 = one ? 1 : 1.5, pv = one ? -v : -2 * v + 0.5 * v_before, px = one ? -x : -2 * x + 0.5 * x_before;
       v_next = (h * g - pv) / (k0 + c * h);
       x_next = (h * v_next - px) / k0;
@@ -171,8 +169,8 @@ double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
 std::unique_ptr<ClothSolver> make(const nlohmann::json& s, const DeviceOptions&) {
   if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 1e6))
     throw Error("solver reference: setting substeps: expected 1 to 1000000; found " + s["substeps"].dump());
-  if (s["integrator"] != "bdf2" && s["integrator"] != "conservative" && s["integrator"] != "euler")
-    throw Error("solver reference: setting integrator: expected \"bdf2\", \"conservative\" or \"euler\"; found " +
+  if (s["integrator"] != "bdf2" && s["integrator"] != "conservative")
+    throw Error("solver reference: setting integrator: expected \"bdf2\" or \"conservative\"; found " +
                 s["integrator"].dump());
   if (!(s["tolerance"].get<double>() > 0 && s["tolerance"].get<double>() <= 1))
     throw Error("solver reference: setting tolerance: expected above 0, at most 1; found " + s["tolerance"].dump());

@@ -122,13 +122,6 @@ TEST_P(Bullet, StaysOnAnOpenMesh) {
   EXPECT_LT(lowest(state, [](const Vec3& p) { return p[1]; }), -0.02) << "the overhang hangs";
 }
 
-TEST(BulletSoft, LiesFarAboveBulletsOwnMesh) {
-  // What setting mesh=bvh is for: to show it. The slabs are 0.06 m and 0.04 m of margin thick on either side.
-  const Scene s = with_collider(falling(0.2), square(0.5, false));
-  const ClothState state = after(*make_solver("bullet-soft", {{"mesh", "bvh"}}), s, 144);
-  EXPECT_NEAR(lowest(state, [](const Vec3& p) { return p[1]; }), 0.1 + kMargin_m, 0.005);
-}
-
 /// What comes at a hanging cloth from behind and stops 0.15 m past it, a square or three capsules: a cloth that hangs
 /// gives way. (One stretched between two edges does not, and bullet-soft lets the square through.)
 TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {

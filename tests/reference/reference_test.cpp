@@ -51,14 +51,6 @@ std::pair<double, double> tip(const Scene& s, const ClothState& state) {
 class Integrators : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Both, Integrators, ::testing::Values("bdf2", "conservative"));
 
-TEST(Euler, ConvergesWithOrderOne) {
-  const Scene s = strip(8, 0.3);
-  const double x1 = tip(s, run(s, "euler", 100)).first, x2 = tip(s, run(s, "euler", 200)).first,
-               x3 = tip(s, run(s, "euler", 400)).first;
-  EXPECT_NEAR(std::log2((x1 - x2) / (x2 - x3)), 1, 0.15);
-  EXPECT_NEAR(x3 + (x3 - x2), 0.794901, 2e-4);
-}
-
 /// A chain of 8 links with half an end mass, released level: at 0.3 s its tip is at (0.794901, -0.441450) [m]
 /// (minimal-coordinate chain, Dormand-Prince 8(5,3), two tolerances agree to 1e-9).
 TEST_P(Integrators, SwingConvergesWithOrderTwoToTheChain) {
