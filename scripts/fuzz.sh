@@ -24,19 +24,6 @@ fuzz() {
   echo "fuzz: $reader: $(grep -o 'stat::number_of_executed_units: *[0-9]*' "$log" | grep -o '[0-9]*$') inputs in $seconds s, $(grep -oE 'cov: [0-9]+' "$log" | tail -1 | cut -d' ' -f2) edges, none crashed"
 }
 
-# A finding ends the script once those that run beside it are over.
-status=0 running=0
-for reader in "${readers[@]}"; do
-  if [ "$running" -ge "$JOBS" ]; then
-    wait -n || status=1
-    running=$((running - 1))
-    [ "$status" -eq 0 ] || break
-  fi
-  fuzz "$reader" &
-  running=$((running + 1))
-done
-while [ "$running" -gt 0 ]; do
-  wait -n || status=1
-  running=$((running - 1))
-done
-exit $status
+export -f fuzz
+export seconds
+printf '%s\n' "${readers[@]}" | xargs -P "$JOBS" -I{} bash -euo pipefail -c 'fuzz {}'

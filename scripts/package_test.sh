@@ -1,24 +1,17 @@
 #!/usr/bin/env bash
 # Is the Debian package whole? Installs it into a bare system and does there what a new user would.
-#   scripts/package_test.sh [--with-recommended] CLOTHBENCH.deb CHROOT
+#   scripts/package_test.sh CLOTHBENCH.deb CHROOT
 # CHROOT: a bare Debian of the release that the package was made for (debootstrap --variant=minbase), with no build packages in it; it is
-# changed. Needs root, and the chroot's own apt sources. --with-recommended: also that figures are drawn once what is recommended is there.
+# changed. Needs root, and the chroot's own apt sources.
 set -euo pipefail
 
-recommended=0
-if [ "${1:-}" = --with-recommended ]; then
-  recommended=1
-  shift
-fi
 [ $# -eq 2 ] || { sed -n '3,5s/^# *//p' "$0" >&2; exit 2; }
 deb=$(realpath "$1") root=$(realpath "$2")
 [ -f "$deb" ] || { echo "package: $deb: expected a .deb" >&2; exit 2; }
 [ -x "$root/usr/bin/apt-get" ] || { echo "package: $root: expected a folder made by debootstrap" >&2; exit 2; }
 if [ -z "${PACKAGE_TEST_OWN_MOUNTS:-}" ]; then
   # Mounts of a name space of its own end with it, however this ends.
-  flags=()
-  [ $recommended = 0 ] || flags=(--with-recommended)
-  PACKAGE_TEST_OWN_MOUNTS=1 exec unshare --mount "$0" "${flags[@]}" "$deb" "$root"
+  PACKAGE_TEST_OWN_MOUNTS=1 exec unshare --mount "$0" "$deb" "$root"
 fi
 mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
@@ -99,15 +92,6 @@ is_tidy() {
   return 0
 }
 
-figures() {
-  get nodejs librsvg2-bin
-  quietly as_user clothbench report study -o report
-  for name in fig4.svg fig5.pdf; do
-    [ -s "$root$home/report/figures/$name" ] || fail "no $name although what is recommended is there"
-  done
-  ok "figures are drawn"
-}
-
 goes_without_trace() {
   quietly as_root apt-get purge -y clothbench
   local left
@@ -121,5 +105,4 @@ refuses_without_data
 study_and_report
 example_plugin
 is_tidy
-[ $recommended = 0 ] || figures
 goes_without_trace

@@ -11,7 +11,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
 # Columns: table (where the study runs), name (names that are equal up to a "+" are reported together), command of clothbench without --out.
-# PEERS: --solver for each engine of build/peers. NAMES: their names. JOBS: the number of --jobs.
+# PEERS: --solver for each engine of build/peers. JOBS: the number of --jobs.
 studies() {
   cat <<'END'
 gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic
@@ -114,7 +114,6 @@ while read -r in name line; do
   for word in "${words[@]}"; do
     case $word in
       PEERS) for peer in "${names[@]}"; do command+=(--solver "$peer"); done ;;
-      NAMES) command+=("${names[@]}") ;;
       *) command+=("$word") ;;
     esac
   done
