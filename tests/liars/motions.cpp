@@ -35,37 +35,28 @@ std::string rate_of(Dice& dice) {
   return fmt::format("time.frame_rate_hz={}", kRates[static_cast<std::size_t>(dice.whole(0, 4))]);
 }
 
-/// The kinds of the study of contact at small grids. Frames are as the study has them where a hand is fast.
-void add_contact(std::vector<Kind>& out) {
-  const std::filesystem::path file = find_scenario("contact");
-  const json study = json::parse(read_text(file));
-  for (const json& entry : study["scenes"]) {
-    const ContactKind kind =
-        contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), "contact", json{{"grid", {12, 20}}});
-    out.push_back({kind.name, [kind](std::uint64_t seed) {
-                     static ContactDrawer drawer(Assets::MayBeProcedural);
-                     const json scene = drawer.draw(kind, "contact", seed);
-                     Dice dice(seed, "rate");
-                     std::vector<std::string> set;
-                     if (kind.how != "sweep" && kind.how != "push" && kind.how != "stretch")
-                       set.push_back(rate_of(dice));
-                     return scene_from_json(scene, kind.name, set);
-                   }});
+/// The kinds of the studies of contact and physics, at small grids. Frames are as the study has them where a hand is
+/// fast, and where the study draws them.
+void add_drawn(std::vector<Kind>& out) {
+  for (const std::string study : {"contact", "physics"}) {
+    const std::filesystem::path file = find_scenario(study);
+    for (const json& entry : json::parse(read_text(file))["scenes"]) {
+      const ContactKind kind =
+          contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), study, json{{"grid", {12, 20}}});
+      out.push_back({kind.name, [kind, study](std::uint64_t seed) {
+                       static ContactDrawer drawer(Assets::MayBeProcedural);
+                       const json scene = drawer.draw(kind, study, seed);
+                       Dice dice(seed, "rate");
+                       std::vector<std::string> set;
+                       if (kind.name == "free-fall" || kind.name.starts_with("incline"))
+                         set.emplace_back("cloth.grid=[16,16]");
+                       else if (study == "contact" && kind.how != "sweep" && kind.how != "push" &&
+                                kind.how != "stretch")
+                         set.push_back(rate_of(dice));
+                       return scene_from_json(scene, kind.name, set);
+                     }});
+    }
   }
-}
-
-/// Scenes with an exact solution, of any density. Their number of vertices is their own.
-void add_truth(std::vector<Kind>& out) {
-  for (const char* name : {"free-fall", "incline-slip", "incline-stick", "incline-stop", "swing-strip", "heavy-strip",
-                           "pendulum", "capstan-slip"})
-    out.push_back({name, [name](std::uint64_t seed) {
-                     const std::string own = name;
-                     Dice dice(seed, own);
-                     std::vector<std::string> set = {
-                         fmt::format("cloth.areal_density_kg_per_m2={}", dice.between(0.05, 1))};
-                     if (own == "free-fall" || own.starts_with("incline")) set.emplace_back("cloth.grid=[16,16]");
-                     return load_scene("validation/" + own, set);
-                   }});
 }
 
 /// Scenes of the paper and of contact as they stand, but for grid, frame rate, stiffness and density.
@@ -117,8 +108,7 @@ void add_thin(std::vector<Kind>& out) {
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = [] {
     std::vector<Kind> out;
-    add_contact(out);
-    add_truth(out);
+    add_drawn(out);
     add_files(out);
     add_thin(out);
     return out;
