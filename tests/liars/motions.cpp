@@ -40,7 +40,9 @@ std::string rate_of(Dice& dice) {
 void add_drawn(std::vector<Kind>& out) {
   for (const std::string study : {"contact", "physics"}) {
     const std::filesystem::path file = find_scenario(study);
-    for (const json& entry : json::parse(read_text(file))["scenes"]) {
+    json scenes = json::parse(read_text(file))["scenes"];
+    for (json& entry : scenes) {
+      entry["draw"].emplace("set", json::object());
       const ContactKind kind =
           contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), study, json{{"grid", {12, 20}}});
       out.push_back({kind.name, [kind, study](std::uint64_t seed) {

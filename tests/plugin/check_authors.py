@@ -55,15 +55,6 @@ class Authors(PluginTest):
         self.assertEqual(self.command("study", file, "--out", self.out, CLOTHBENCH_PLUGINS=EXAMPLE), 2, self.text)
         self.assertIn("nearest known: example-xpbd", self.text)
 
-    def test_an_override_of_an_axis_names_its_runs(self):
-        for value, names in (("single", ["single"]), ("double-duplicated", ["double-duplicated"])):
-            runs = self.rows("study", self.study(), "--set", "cloth.sides=" + value, "--list-jobs")
-            self.assertEqual(runs, [f"gravity-{n}__ballistic__default" for n in names])
-        runs = self.rows("study", "table3", "--solver", "ballistic", "--set", "cloth.sides=single", "--list-jobs")
-        self.assertTrue(all("-single__" in r for r in runs) and len(runs) == 5, runs)
-        runs = self.rows("study", "table3", "--quick", "--solver", "ballistic", "--set", "cloth.grid=[24,24]", "--list-jobs")
-        self.assertTrue(runs and all("-24-24-" in r for r in runs), runs)
-
     def test_lists_have_plugins_with_their_settings(self):
         for words, environment in ((["--solver", "plugin:" + EXAMPLE], {}), ([], {"CLOTHBENCH_PLUGINS": EXAMPLE})):
             (mine,) = [r for r in self.rows("list", "solvers", *words, **environment) if r["name"] == "example-xpbd"]

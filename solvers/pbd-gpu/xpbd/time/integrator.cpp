@@ -50,6 +50,18 @@ double distance_to(const Collider& c, const Vec3& from) {
   return smallest;
 }
 
+/// Distance [m] from the cloth's centre beyond which no vertex gets while only gravity, links, pins and attachments
+/// act: the largest at the start, twice the cloth's diagonal, and the path of a fall from the initial velocity.
+double reach_m(const Scene& s) {
+  const Cloth& c = s.cloth;
+  const std::vector<double> x = initial_positions(s);
+  double start = 0;
+  for (std::size_t v = 0; v < c.vertex_count(); ++v) start = std::max(start, norm(minus(vertex_at(x, v), c.center_m)));
+  const double across = std::hypot(c.width_m, c.height_m), t = s.time.duration_s;
+  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * across + grip_speed_m_per_s(s);
+  return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
+}
+
 /// True if its lines share no links: nothing is left by one colour to another.
 bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
@@ -112,7 +124,15 @@ constexpr const char* kPulledFar =
 
 bool is_held(const Scene& scene) { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
 
-bool is_contact_free(const Scene& scene) { return !scene.needs.has(Feature::SelfCollision) && scene.colliders.empty(); }
+bool is_contact_free(const Scene& scene) {
+  if (scene.needs.has(Feature::SelfCollision)) return false;
+  if (scene.colliders.empty()) return true;
+  if (!scene.jumps.empty()) return false;
+  const double reach = reach_m(scene);
+  return std::all_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) {
+    return !c.moves() && !c.mesh && distance_to(c, scene.cloth.center_m) > reach + c.margin_m;
+  });
+}
 
 double impact_speed_m_per_s(const Scene& scene) {
   if (is_held(scene) || scene.colliders.empty() || is_contact_free(scene)) return 0;
