@@ -107,6 +107,10 @@ class Xpbd final : public GpuSolver {
     recorded_substeps_ = controller_.substeps();
     if (adapts) set_reads_back();
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
+    if (const FeatureSet near = scene().needs & kColliderFeatures; !touches && !near.empty()) {
+      add_stage("ContactSubstep", near | (scene().needs & FeatureSet{Feature::Friction, Feature::DoubleSided}));
+      disable("contact", "no collider is in reach of the cloth");
+    }
   }
 
   /// What BDF2 goes on from: the state before the last substep.
