@@ -131,4 +131,16 @@ inline std::vector<std::vector<std::string>> parse_csv(const std::string& text) 
   return rows;
 }
 
+/// The study table3 at two resolutions.
+inline std::vector<RunRecord> study() {
+  std::vector<RunRecord> runs;
+  for (const int n : {128, 8}) {
+    runs.push_back(fake_run("xpbd", n, "double", n == 8 ? 2e-4 : 0.0217));
+    runs.push_back(fake_run("xpbd", n, "single", n == 8 ? 1e-4 : 0.02));
+    runs.push_back(fake_run("bullet-soft", n, "single", 1e-3, false));
+    runs.push_back(fake_run("ballistic", n, "single", n == 8 ? 1e-7 : 4e-5, false));
+  }
+  return runs;
+}
+
 }  // namespace clothbench
