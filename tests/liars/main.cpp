@@ -13,19 +13,19 @@
 namespace clothbench::liars {
 namespace {
 
-/// Shortest of five times [ms] per frame, of this process alone.
+/// CPU time of this process per frame [ms], shortest of five.
 template <class Work>
 double time_ms(std::size_t frames, Work work) {
-  double least = INFINITY;
+  double shortest = INFINITY;
   for (int i = 0; i < 5; ++i) {
     const std::clock_t start = std::clock();
     work();
-    least = std::min(least, 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    shortest = std::min(shortest, 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
-  return least / static_cast<double>(frames);
+  return shortest / static_cast<double>(frames);
 }
 
-/// What the check costs in ms per frame, part by part, and all other metrics of the same run.
+/// Cost of the check, part by part, and of all other metrics of the same run [ms per frame].
 nlohmann::json cost_of(const std::string& name, const std::string& solver) {
   const auto scene = std::make_shared<const Scene>(load_scene(name));
   const std::optional<Motion> m = run(scene, {solver, "{}"});
@@ -46,13 +46,11 @@ nlohmann::json cost_of(const std::string& name, const std::string& solver) {
   out["check_ms"] = time_ms(m->frames(), [&] { (void)motion_check::verify(*scene, frames, m->contact_offsets_m); });
   const motion_check::Motion motion(*scene, frames);
   motion_check::Bodies bodies(motion, m->contact_offsets_m);
-  motion_check::Findings found;
-  for (const motion_check::Part& part : motion_check::parts()) {
-    const std::clock_t start = std::clock();
-    part.run(motion, bodies, found);
-    out["parts_ms"][part.name] =
-        1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / static_cast<double>(m->frames());
-  }
+  for (const motion_check::Part& part : motion_check::parts())
+    out["parts_ms"][part.name] = time_ms(m->frames(), [&] {
+      motion_check::Findings found;
+      part.run(motion, bodies, found);
+    });
   return out;
 }
 
@@ -69,8 +67,8 @@ int main(int argc, char** argv) {
   app.add_option("--seed", matrix.seed, "of the first motion; each motion has the next");
   app.add_option("--motions", matrix.motions, "number of right motions")->check(CLI::NonNegativeNumber);
   app.add_option("--kind", matrix.kinds, "kinds of scenes; default: all");
-  app.add_option("--solver", matrix.solver, "this solver alone, such as \"xpbd accurate\"");
-  app.add_option("--lie", matrix.only_lie, "this lie alone; \"none\": right motions alone");
+  app.add_option("--solver", matrix.solver, "only this solver, such as \"xpbd accurate\"");
+  app.add_option("--lie", matrix.only_lie, "only this lie; \"none\": only right motions");
   app.add_option("--store", matrix.store, "folder for the plugin that replays the motions");
   app.add_option("--cost", cost, "time the check on this scene instead, with --solver or bullet-soft");
   CLI11_PARSE(app, argc, argv);

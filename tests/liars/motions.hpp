@@ -26,9 +26,9 @@ struct Motion {
   void put(std::size_t frame, std::size_t vertex, const Vec3& x);
 };
 
-/// Kinds of scene that a seed draws one of: the kinds of the study of contact, drawn validation scenes, scenes of the
-/// paper, and thin bodies that a cloth falls on. Grids of 12 to 20 vertices a side where the kind allows any, 60 to 144
-/// frames per second where its motion does.
+/// Kinds of scenes: the kinds of the studies `contact` and `physics`, scenes of the paper, and thin bodies on which a
+/// cloth falls. Grids have 12 to 20 vertices per side where the kind allows any. Frame rates are 60 to 144 Hz, or as
+/// the study draws them.
 const std::vector<std::string>& scene_kinds();
 /// The same kind and seed give the same scene.
 Scene draw_scene(const std::string& kind, std::uint64_t seed);
