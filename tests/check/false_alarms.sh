@@ -10,7 +10,7 @@ compare_once() {
   for side in $(shuf -e a a a a a b b b b b); do
     "$bench" run paper/gravity --solver bullet-soft --set cloth.grid=[16,16] --set time.duration_s=0.2 --trials 3 --out "$folder/$side/$((process += 1))" >/dev/null
   done
-  "$bench" compare "$folder/a" "$folder/b" --json | python3 -c "import json, sys; print(json.load(sys.stdin)['runs'][0]['time']['p'])"
+  "$bench" compare "$folder/a" "$folder/b" --json | python3 -c "import json, sys; p = json.load(sys.stdin)['runs'][0]['time']['p']; assert 0 <= p <= 1; print(p)"
   rm -rf "$folder"
 }
 export -f compare_once
