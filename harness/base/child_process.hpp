@@ -22,7 +22,7 @@ struct ChildEnd {
 /// How a child process differs from this process.
 struct ChildSetup {
   bool socket = false;             ///< standard input is a socket, connected to this process
-  std::string out = {}, err = {};  ///< files for stdout and stderr, truncated; empty: those of this process
+  std::string out = {}, err = {};  ///< files for stdout and stderr, truncated; empty: inherited
 };
 
 /// A running child process. Only this class starts, watches and ends processes. Not thread-safe.

@@ -74,7 +74,7 @@ Table times_table(const Checked& c) {
        fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
                    "omitted. Change: ratio "
                    "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
-                   "% interval contains 0. Of {} runs without any difference, about {:.0f} would be called "
+                   "% interval contains 0. If none of the {} runs differed, about {:.0f} would be called "
                    "faster or slower by chance.",
                    timed.size(), 0.05 * static_cast<double>(timed.size())),
        {}},

@@ -116,7 +116,7 @@ std::vector<bool> frames_with_contact(const RunRecord& c) {
   return out;
 }
 
-/// The finite times of all trials; only those of frames with contact if `contact` is not empty.
+/// The finite times of all trials. If `contact` is not empty, frames without contact are left out.
 FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::vector<bool>& contact = {}) {
   std::vector<Series> trials;
   for (const TimedTrial& t : c.trials) {

@@ -1,4 +1,4 @@
-// What a report says of its runs as a whole: title, facts, warnings, notes.
+// Statements of a report about all of its runs: title, facts, warnings, notes.
 #include <fmt/format.h>
 
 #include <cmath>

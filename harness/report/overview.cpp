@@ -46,7 +46,7 @@ bool within_budget(const Row& r) {
   return r.part == Part::Truth && r.counts() && r.wall_ms_per_s() / r.frame_rate_hz() <= kBudget_ms;
 }
 
-/// The text of the run with the largest mesh among those of a solver.
+/// The text of a solver's run with the largest mesh.
 ViewColumn at_largest(std::string head, std::function<std::string(const Row&)> text) {
   return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) {
             for (const Row* r : g)
@@ -61,7 +61,7 @@ std::string rate_interval(const Row& r) {
                               : std::string();
 }
 
-/// What wraps the engine of a published row.
+/// Names of the solvers that wrap the engine of a published row.
 std::string peers(const Group& runs) {
   const nlohmann::json published = published_table3();
   std::set<std::string> out;
@@ -110,7 +110,7 @@ View speed_and_error() {
   return v;
 }
 
-/// A value that a solver has in a tile; the one with the greatest merit is shown.
+/// A solver's value in a tile; the value with the highest merit is shown.
 struct Entry {
   std::string solver;
   double merit;

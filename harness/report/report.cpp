@@ -70,7 +70,7 @@ std::string facts_of(const Heading& h) {
   return joined(h.facts, " · ", [](const auto& f) { return f.first + " " + f.second; });
 }
 
-/// What stands above the tables in report.md.
+/// The part of report.md above the tables.
 std::string head_markdown(const Page& page) {
   std::string out = "# " + page.heading.title + "\n\n";
   for (const std::string& w : page.warnings) out += "**" + w + "**\n\n";

@@ -47,7 +47,7 @@ constexpr char kSchema[] = R"({
 
 double number(const json& v) { return v.is_number() ? v.get<double>() : kMissing; }
 
-/// What the schema cannot say of a group.
+/// Conditions on a group that the schema cannot state.
 void check_group(const std::string& file, const std::string& at, const json& g) {
   const json& times = g["time_unix_s"];
   for (std::size_t k = 1; k < times.size(); ++k)

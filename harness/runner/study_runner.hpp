@@ -95,16 +95,16 @@ RunResult execute_runs(const RunPlan&, const RunOptions&);
 /// plan renders, or empty.
 RunResult execute_in_worker(const RunPlan&, const RunOptions&, const std::string& eye = {});
 
-/// One run of a plan by this worker, stored in the folder and read back without positions. What a solver throws is the
-/// outcome `error`.
+/// One run of a plan by this worker, stored in the folder and read back without positions. An exception of a solver
+/// is the outcome `error`.
 RunRecord run_apart(Worker&, const RunPlan&, const RunSpec&, const RunOptions&);
 
 /// The worker's side; `rendering_of` makes the plan's rendering from `eye`.
 nlohmann::json execute_plan(const nlohmann::json& request, const WorkerProgress&, const SolverLookup&,
                             Rendering (*rendering_of)(const std::string& eye));
 
-/// What is stored of a finished run, without positions; nothing if it is not finished. Throws Error if it is finished
-/// without `resume`, or is another run.
+/// The stored record of a finished run, without positions; nothing if it is not finished. Throws Error if it is
+/// finished without `resume`, or is another run.
 std::optional<RunRecord> finished_run(const RunSpec&, const RunOptions&);
 
 }  // namespace clothbench

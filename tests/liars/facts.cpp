@@ -128,7 +128,7 @@ bool changes_force(const Right& right, const Motion& told) {
   const M6 keep = held.empty() ? M6(M6::Identity()) : free_of_attachments(was, middle_of(was, 0, about));
   // Sliding on a face is judged more closely than what colliders of other shapes push.
   const double lasting = right.facts.slides ? 0.035 : 0.05;
-  // What moves may exert any force on attached cloth.
+  // A moving collider may exert any force on attached cloth.
   const std::vector<std::size_t>& air = right.facts.air;
   const auto touched = [&](std::size_t k) {
     return right.facts.attached && right.facts.mover && !std::binary_search(air.begin(), air.end(), k);

@@ -41,7 +41,7 @@ struct Facts {
 struct Right {
   Motion motion;
   Facts facts;
-  /// Of the scene with something changed; none if the solver fails.
+  /// Motion of the scene with something changed; none if the solver fails.
   std::function<std::optional<Motion>(const std::function<void(Scene&)>&)> other;
   bool held(std::size_t frame, std::size_t vertex) const;
 };

@@ -64,7 +64,7 @@ std::vector<Lie> lies_of_contact() {
       {"sinks into the solid by 1 cm", drops, surely,
        [](const Right& r, Dice&) -> Told {
          const Index from = r.facts.first_touch;
-         // What the solver keeps away is no solid yet.
+         // The contact offset is not solid.
          double deep_m = 0.01;
          for (std::size_t c = 0; c < r.motion.scene->colliders.size(); ++c) {
            const double margin = r.motion.scene->colliders[c].margin_m;

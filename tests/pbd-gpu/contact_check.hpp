@@ -21,8 +21,8 @@ PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, con
 /// The same of the cloth's triangles with each other, those without a common vertex.
 PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after);
 
-/// What is wrong with the run of a scene whose frames are steps; empty if nothing is. Adds up its pairs with convex
-/// shapes, and those of the cloth with itself.
+/// First fault in the run of a scene whose frames are steps; empty if there is none. Adds up its pairs with convex
+/// shapes, and the pairs of the cloth with itself.
 std::string fault_of(GpuSolver& solver, const Scene& s, long& pairs, long& own_pairs);
 
 /// Expects that nothing is, and more than `least` pairs: of the cloth with itself where the scene has self-contact.

@@ -63,7 +63,7 @@ Eigen::VectorXd masses(const Scene& s) {
   return Eigen::VectorXd::Map(m.data(), static_cast<Eigen::Index>(m.size()));
 }
 
-/// Mean deflection of the free end under its own weight, divided by that of a beam: q L^4 / (8 B).
+/// Mean deflection of the free end under its own weight, divided by the deflection of a beam, q L^4 / (8 B).
 double tip_over_beam(int cells, double share, unsigned seed) {
   const double B = 2e-3;
   const Scene s = bending(random_strip(cells, share, seed), B);

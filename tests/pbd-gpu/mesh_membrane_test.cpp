@@ -16,8 +16,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// A sheet of width x height m along x and y, pinned along x = 0. Its inner vertices are those of a square lattice,
-/// turned by an angle, each moved by up to a share of a cell.
+/// A sheet of width x height m along x and y, pinned along x = 0. Its inner vertices are a square lattice, turned
+/// by an angle, each moved by up to a share of a cell.
 Scene random_sheet(double width, double height, int cells, double angle, double share, unsigned seed) {
   ClothMesh mesh = drawn_mesh({width, height, cells, angle, share, seed});
   std::vector<std::uint32_t> pins = mesh.groups.at("u0");
@@ -30,10 +30,10 @@ struct IsotropicModuli {
 };
 
 /// Moduli of a flat triangle mesh that hangs along axis_u by its least u and has come to rest at `position` [m], xyz
-/// interleaved. They are those whose exact displacement, along u (p/E) (L u - u^2/2 - nu v^2/2) and across it
-/// -nu (p/E) (L - u) v, with p = density times gravity and v from the middle, is nearest to that of the vertices
-/// between 0.4 L and 0.9 L, by least squares and but for motions of the whole. NaN without enough of them, or if the
-/// sheet is not longer than it was.
+/// interleaved. These are the moduli whose exact displacement, along u (p/E) (L u - u^2/2 - nu v^2/2) and across it
+/// -nu (p/E) (L - u) v, with p = density times gravity and v from the middle, is nearest to the displacement of the
+/// vertices between 0.4 L and 0.9 L, by least squares and but for motions of the whole. NaN without enough of them, or
+/// if the sheet is not longer than it was.
 IsotropicModuli hanging_moduli(const Scene& s, const std::vector<double>& position) {
   constexpr double kFirst = 0.4, kLast = 0.9;  // of the length: the held edge and the free one change the motion
   const std::vector<Vec3>& rest = s.cloth.mesh->vertices;

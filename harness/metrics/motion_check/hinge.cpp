@@ -19,7 +19,7 @@ constexpr std::size_t kSpans[] = {1, 3, 12};
 constexpr std::size_t kKept = 12;
 /// Depth of a part beyond a line, in cells.
 constexpr double kDeep = 2.8;
-/// Of lines that links cross: distance of a crossing from the line, in cells; vertices beyond the line.
+/// Limits for a line that links cross between vertices: distance of a crossing from it, in cells; vertices beyond it.
 constexpr double kFlat = 0.1;
 constexpr std::size_t kMany = 20;
 /// Forces of a line that is not straight act this many times their sum beside it.
@@ -142,7 +142,7 @@ std::vector<V3> Hinges::crossings(const Line& line, std::size_t k, std::size_t& 
   return out;
 }
 
-/// Of the part beyond a line about the line, in the intervals around a frame.
+/// Moment about a line, of the part beyond it, in the intervals around a frame.
 Hinges::Moment Hinges::moment(const Line& line, std::size_t k) const {
   const std::vector<V3>&force = force_[k % kKept], &velocity = relative_[k % kKept];
   std::size_t vertices = 0;

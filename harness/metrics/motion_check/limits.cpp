@@ -62,7 +62,7 @@ class Limits {
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
   double imposed_ = 0;  ///< largest strain next to an attachment so far
   std::vector<Edge> bends_;
-  /// Of the last frames in which nothing gave energy: the most that the cloth may have had, and its kinetic energy [J].
+  /// Last frames in which nothing gave energy: upper bound of the energy of the cloth, and its kinetic energy [J].
   std::vector<double> had_, kinetic_;
   double stored_before_ = 0, least_ = std::numeric_limits<double>::infinity();
 };
@@ -139,8 +139,8 @@ bool Limits::driven(std::size_t k) const {
   return false;
 }
 
-/// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. What links and hinges may
-/// store counts in the earlier frame alone, and so does what a rebound hides within a few frames.
+/// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. Energy that links
+/// and hinges may store, and energy that a rebound hides for a few frames, count in the earlier frame only.
 void Limits::rise(std::size_t k, double energy, double kinetic, double mean_square) {
   constexpr std::size_t kHides = 4;
   double bent = 0;

@@ -135,7 +135,7 @@ class Packer {
     return out_.blobs.size() - 1;
   }
 
-  /// Index of the scene's colliders and grips among those of the page.
+  /// Index of the scene's colliders and grips in the page's list.
   std::size_t colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
     const auto [at, is_new] = scenes_.try_emplace(c.header.scenario_sha256, colliders_.size());
     if (!is_new) return at->second;

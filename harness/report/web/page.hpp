@@ -54,7 +54,7 @@ inline constexpr std::size_t kMotionBudget_B = 13'000'000;
 /// [0, 65535]. `bytes`: zlib of q (frame, axis, vertex; 16 bits) less its prediction, modulo 2^16. The prediction is
 /// 2 q(f-1) - q(f-2); in frame 1, q(0); in frame 0, the value before it, and 0 for the first.
 struct PackedMotion {
-  std::vector<std::size_t> frames;  ///< those of the run that are kept
+  std::vector<std::size_t> frames;  ///< kept frames of the run
   double step_m = 0;
   std::array<double, 3> low_m = {};
   std::string bytes;

@@ -45,7 +45,7 @@ struct Profile {
 };
 
 /// "adreno-like": what is known of the Adreno 740 of a Quest 3, 32 KiB of shared memory (Mesa, freedreno_devices.py,
-/// cs_shared_mem_size). The limits of 256 threads a group and 64 dispatches a submission are our precaution. Throws
+/// cs_shared_mem_size). The limits of 256 threads per group and 64 dispatches per submission are our precaution. Throws
 /// Error naming it for any other name.
 const Profile& find_profile(const std::string& name);
 

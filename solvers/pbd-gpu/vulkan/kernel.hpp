@@ -16,7 +16,7 @@ struct SpirV {
 
 enum class Access { Read, Write, ReadWrite };
 
-/// What a kernel's code does with storage buffers, by binding: its loads, stores and atomics through every pointer.
+/// Accesses of a kernel's code to storage buffers, by binding: its loads, stores and atomics through every pointer.
 std::map<std::uint32_t, Access> accesses_of(SpirV code);
 
 /// Buffers by binding number, in set 0.

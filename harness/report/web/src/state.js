@@ -63,7 +63,7 @@ const kPaper = {
   'on-pass': '#000000', 'on-part': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
 };
 
-/// Black on white; sizes are in points, since a picture's width is that of a column of text. `paper`: values of the variables.
+/// Black on white; sizes are in points, since a picture is as wide as a column of text. `paper`: values of the variables.
 export const paper_look = all => ({
   ...page_look(all),
   size: 7.5,

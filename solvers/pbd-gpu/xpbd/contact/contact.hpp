@@ -53,7 +53,7 @@ class XpbdContact {
     Traffic traffic;
   };
   using Phase = std::vector<Pass>;
-  /// `constants`: null for those of most kernels.
+  /// `constants`: null: constants_.
   Pass pass(int stage, const char* name, std::uint64_t items, Traffic traffic, std::uint32_t threads = kGroupSize,
             const ContactSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
   void add_primitives(const std::vector<std::uint32_t>& particle);
