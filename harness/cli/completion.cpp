@@ -47,7 +47,7 @@ Words candidates(const CLI::App& app, const Words& before, const std::string& pr
   if (name == "conformance") return solver_names();
   if (name == "list") return list_names();
   if (name == "run" || name == "plan" || name == "validate" || name == "xr")
-    return scene_names({"paper", "contact", "validation", "stability", "conformance"});
+    return scene_names({"paper", "contact", "garments", "validation", "stability", "conformance"});
   return names;
 }
 

@@ -40,7 +40,8 @@ nlohmann::json list_solvers() {
 
 nlohmann::json list_scenarios() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const std::string& name : scene_names({"paper", "contact", "validation", "stability"}))
+  for (const std::string& name :
+       scene_names({"paper", "contact", "garments", "validation", "stability", "conformance"}))
     rows.push_back({{"name", name}, {"why", load_scene(name).why}});
   return rows;
 }

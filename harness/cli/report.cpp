@@ -9,7 +9,7 @@ void add_report(CLI::App& app, Console& console) {
   auto& out = console.arguments<std::string>();
   out = "report";
   CLI::App* cmd = app.add_subcommand(
-      "report", "Write an interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PNG) from result files");
+      "report", "Write an interactive page, tables (Markdown, CSV, JSON) and figures (SVG, PDF) from result files");
   cmd->add_option("runs", runs, "Study folders or result files")->required();
   cmd->add_option("-o,--out", out, "Folder to write to")->capture_default_str();
   cmd->footer("Example: clothbench report results/runs/table3-20260101T000000Z -o report");
