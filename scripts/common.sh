@@ -1,5 +1,5 @@
 # Sourced by the other scripts: how many jobs run side by side, and stages with a time budget each.
-#   JOBS                  default: one a core, but no more than one for each 1.5 GiB of available memory
+#   JOBS                  default: number of cores, at most available memory / 1.5 GiB
 #   CLOTHBENCH_CMAKE      further arguments of `cmake` when a build is configured, such as -DCMAKE_CXX_COMPILER=clang++
 # shellcheck shell=bash
 

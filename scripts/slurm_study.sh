@@ -1,7 +1,7 @@
 #!/bin/sh
 # usage: scripts/slurm_study.sh STUDY OUT [options of `clothbench study`, such as --solver xpbd]
-# One run of the study a task of a Slurm array, all into the folder OUT on a file system that the nodes share; then whatever
-# needs all runs, and a report in OUT/report. $CLOTHBENCH: the program (default: clothbench on PATH, else this tree's build).
+# Each run becomes one task of a Slurm array; all write into the folder OUT, on a file system that the nodes share. Afterwards
+# come the steps that need all runs, and a report in OUT/report. $CLOTHBENCH: the program (default: clothbench on PATH, else this tree's build).
 # $SBATCH_…: Slurm's own defaults, such as SBATCH_PARTITION. Prints the numbers of both jobs.
 set -eu
 [ $# -ge 2 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }

@@ -19,7 +19,7 @@ inline constexpr Needs kColliders{"colliders",
 /// The contact of one cloth with all colliders of its scene, frame after frame: each collider
 /// placed as Scene::motion prescribes. The geometry of the collider kind decides the method
 /// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
-/// overlap, both count), the depth is the largest.
+/// overlap, both count); the depth is the maximum over colliders.
 class ColliderContact {
  public:
   /// `scene` outlives this. Throws Error naming the collider that cannot be probed.

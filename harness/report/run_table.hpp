@@ -104,8 +104,8 @@ struct Row {
   Resolution resolution = {};
   int repeat = 1;        ///< 2, 3, … where several files hold the same run
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
-  int published = -1;    ///< index of the paper's column whose value this is; -1 for a run
-  bool largest = false;  ///< no run of the family has a larger mesh
+  int published = -1;    ///< column of the paper's table, for a published value; -1 for a measured run
+  bool largest = false;  ///< finest resolution of its family
   int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable

@@ -49,10 +49,10 @@ nlohmann::json to_json(const TimedTrial&);
 nlohmann::json to_json(const AccuracyPass&);
 nlohmann::json to_json(const std::vector<StoredGroup>&);
 
-/// A run while it is measured, and the only form of one on a device without HDF5: a sequence of CBOR items (RFC 8949,
-/// RFC 8742), each an object with one member. First "header", then as they come "replay", "accuracy", "trial" (one
-/// item a trial), at last "outcome". A later item replaces an earlier one of the same kind and, of trials, index.
-/// Series of numbers are byte strings as memory holds them, little-endian.
+/// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
+/// device without HDF5 it stays the final form. First "header", then as they come "replay", "accuracy", "trial" (one
+/// item per trial), at last "outcome". A later item replaces an earlier one of the same kind (for trials: of the same
+/// index). Series of numbers are byte strings as memory holds them, little-endian.
 
 /// Creates the file with its header, whole or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);

@@ -75,7 +75,7 @@ Replay read_replay(const std::filesystem::path&, std::size_t stride);
 std::string trajectory_sha256(const AccuracyPass&);
 
 /// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite,
-/// not one set for each time, or another motion than the one that the file's outcome is of. Empty if nothing is. A run
+/// not one set for each time, or positions that do not match the hash in `/outcome`. Empty if nothing is wrong. A run
 /// that did not end well may lack frames and have values that are not finite. Throws Error naming the file if it cannot
 /// be read.
 std::string trajectory_fault(const std::filesystem::path&);

@@ -49,9 +49,9 @@ struct ConformanceResult {
 
 /// Runs a case and lists what is wrong: stages that do not serve what the scene needs; a start elsewhere than the
 /// scene's (1e-6 of the width); a frame that fails or is not finite; pins that moved (1e-6 of the width); grips farther
-/// than 1 mm from where they are held; costs without a stage; device times where there is no device or none where there
-/// is; a reset that does not restore the start bit for bit; messages of a validation layer. A whole scene ends after
-/// `limit_s` of wall time (0: never), with what was found until then. A relation is the only check of its case.
+/// than 1 mm from where they are held; costs without a stage; device times from a CPU solver, or none from a GPU
+/// solver; a reset that does not restore the start bit for bit; messages of a validation layer. A whole scene ends
+/// after `limit_s` of wall time (0: never), with what was found until then. A case with a relation checks nothing else.
 ConformanceResult run_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                   const Scene&, const ConformanceCase&, double limit_s = 0);
 

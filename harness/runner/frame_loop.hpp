@@ -24,7 +24,7 @@ struct FrameRules {
   int frames = 0;                           ///< one past the last
   int drop_frames = 0;                      ///< the scene restarts, untimed, after this many frames; 0 = never
   double max_wall_s = 0;                    ///< no frame begins after this much timed wall time; 0 = no limit
-  int min_frames = 0;                       ///< ... but never before this many
+  int min_frames = 0;                       ///< at least this many frames, even beyond `max_wall_s`
   const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: not interrupted
   bool cpu_clock = false;                   ///< also read the CPU clock, outside of the wall clock
 };

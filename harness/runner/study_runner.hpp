@@ -89,10 +89,10 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
 /// As execute_runs, but in worker processes. Timed trials of all runs take turns in one process, where everything is
-/// timed as usual; runs that are apart go to `jobs` workers, the longest first. If a process crashes, or a run makes no
-/// frame for too long (solver_limit_s(), or 1.2 times the limit of a run that is apart plus 5 s), the current run is
-/// stored as `crashed` or `timed_out` and a new process continues with the rest. `eye`: size of the pictures that the
-/// plan renders, or empty.
+/// timed as usual; runs with a process each (`apart`) are spread over `jobs` workers, the longest first. If a process
+/// crashes, or a run makes no frame for too long (solver_limit_s(), or (1.2 x its limit) + 5 s for a run that is
+/// apart), the current run is stored as `crashed` or `timed_out` and a new process continues with the rest. `eye`: size
+/// of the pictures that the plan renders, or empty.
 RunResult execute_in_worker(const RunPlan&, const RunOptions&, const std::string& eye = {});
 
 /// One run of a plan by this worker, stored in the folder and read back without positions. An exception of a solver

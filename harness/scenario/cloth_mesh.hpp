@@ -29,7 +29,7 @@ using PatternTriangle = std::array<std::array<double, 2>, 3>;
 /// The cloth of a file's triangles. Throws Error naming `source` and the first invalid vertex, edge or triangle: not
 /// finite, out of range, without area (at the start or at rest), duplicate, a vertex of no triangle, an edge of more
 /// than two triangles, neighbours that are wound oppositely. `pattern_m`: shape at rest of each triangle; empty: the
-/// vertices are it.
+/// vertices give the rest shape.
 ClothMesh cloth_mesh(assets::MeshFile, const std::string& source, std::vector<PatternTriangle> pattern_m = {});
 /// The same of triangles whose vertices are their shape at rest.
 ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,

@@ -15,10 +15,10 @@
 
 namespace clothbench {
 
-/// A scene with contact and the ranges of what is drawn in it: one entry of a study of protocol contact.
+/// A scene with contact and the ranges of its randomly chosen values: one entry of a study of protocol contact.
 struct ContactKind {
   std::string name;     ///< in tables, such as "sweep-mesh"
-  std::string how;      ///< which code draws it: "draw/how" of the study's schema
+  std::string how;      ///< which code generates it: "draw/how" of the study's schema
   nlohmann::json base;  ///< the scene, with the changes of the study
   nlohmann::json ranges;
   std::string at;  ///< file and JSON pointer of the block, for messages
@@ -29,23 +29,23 @@ struct ContactKind {
 ContactKind contact_kind(const nlohmann::json& entry, const std::filesystem::path& base, const std::string& at,
                          const nlohmann::json& ranges);
 
-/// Draws contact scenes. The same study, kind, seed and assets give the same scene on any machine: see `Dice`; numbers
-/// are rounded to 1e-6, so that they do not depend on the last bit of a math library either.
+/// Generates random contact scenes. The same study, kind, seed and assets give the same scene on any machine: see
+/// `Dice`; numbers are rounded to 1e-6, so that they do not depend on the last bit of a math library either.
 class ContactDrawer {
  public:
   /// Throws Error with Assets::Required if rooms or hands have not been fetched.
   explicit ContactDrawer(Assets assets);
   ~ContactDrawer();
 
-  /// An ordinary scene, not completed, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Drawn are:
-  ///   desk     any table of any room; place on it, height, yaw, tilt, throw (any direction not upwards)
-  ///   shape    size, place, height, yaw, tilt and throw of a cloth over a ball, or over a box in any orientation
-  ///   sweep    a hand's pose, orientation, way (any direction, either side), depth and speed
-  ///   push     a hand's pose, orientation, way, depth and the durations of push and hold
-  ///   stretch  speed and way of two hands, and where they hold the cloth
-  ///   fold     radius, height, thickness and unevenness of a cloth folded over
+  /// An ordinary scene, not completed, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Randomly chosen are:
+  ///   desk     any table of any room; position on it, height, yaw, tilt, initial velocity (any direction not upwards)
+  ///   shape    as desk, and the size of the cloth; over a sphere, or over a box in any orientation
+  ///   sweep    a hand's pose, orientation, direction (any, either side), depth and speed
+  ///   push     a hand's pose, orientation, direction, depth and the durations of push and hold
+  ///   stretch  speed and displacement of two hands, and where they are attached
+  ///   fold     radius, height, thickness and noise of a cloth folded over
   ///   keys     any numbers of the scene, each range named by its dotted key; the scene's grid stays
-  ///   crumple  height, throw, thickness and unevenness of a cloth that stands on edge
+  ///   crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
   /// Hands come, leave and stay away for 1 s. Drops have a floor 1 m below. Hands and grips of more than 5 m/s have
   /// shorter frames: a hand moves by at most 70 mm in one. Throws Error naming a range that is missing, unknown or
   /// empty.
@@ -57,14 +57,14 @@ class ContactDrawer {
   std::unique_ptr<Tables> tables_;
 };
 
-/// Values that are drawn from named ranges and noted under their names.
+/// Values chosen at random from named ranges and noted under their names.
 class DrawnValues {
  public:
   /// `at`: file and JSON pointer of the ranges.
   DrawnValues(Dice dice, const nlohmann::json& ranges, std::string at);
 
   double between(const std::string& range) { return between(range, range); }
-  /// Draws from a range and notes it under another name.
+  /// A random value of a range, noted under another name.
   double between(const std::string& range, const std::string& name);
   double log_between(const std::string& range);
   int whole(const std::string& range);

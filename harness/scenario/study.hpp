@@ -18,7 +18,7 @@ struct StudySolver {
   std::vector<std::string> set;                   ///< changes to the scenes only for this solver, `dotted.key=JSON`
   nlohmann::json tags = nlohmann::json::array();  ///< of the scenes it runs; empty: all
   bool joined = false;                            ///< comes from StudyOptions::solvers, not from the study
-  int work = 0;                                   ///< product of its ladder settings; 0: it is not on the ladder
+  int work = 0;                                   ///< product of its ladder settings; 0: not part of the settings sweep
   std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 

@@ -22,7 +22,7 @@ struct LoopOptions {
   DeviceOptions device;  ///< its index is ignored: the runtime chooses the device
   std::string runtime;   ///< argument of Instance
   double rate_hz = 72;   ///< requested refresh rate of the display
-  int frames = 0;        ///< 0: as many as the scenario lasts
+  int frames = 0;        ///< 0: the scene's length
   bool passthrough = true;
   double timeout_s = 120;  ///< for hands to be tracked
   std::filesystem::path out;

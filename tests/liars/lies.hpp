@@ -15,7 +15,7 @@ using V3 = Eigen::Vector3d;
 
 /// What a scene and its right motion are, for the choice of lies. All frames count from 0, the start.
 struct Facts {
-  int equations = 6;      ///< of the six of momentum, those that attachments leave
+  int equations = 6;      ///< how many of the six momentum equations attachments do not absorb
   bool falls = false;     ///< the scene has gravity
   bool attached = false;  ///< pins or grips
   bool solid = false;     ///< a collider

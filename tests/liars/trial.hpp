@@ -10,8 +10,8 @@
 
 namespace clothbench::liars {
 
-/// Which motions are told lies of. One motion per seed, which alone decides on the kind of scene and the solver, so
-/// that many small matrices are the same as a large one.
+/// Which motions are told lies of. One motion per seed; only the seed decides on the kind of scene and the solver, so a
+/// large matrix can be split into small ones.
 struct Matrix {
   std::uint64_t seed = 1000;
   int motions = 40;

@@ -11,8 +11,8 @@
 #include "script.hpp"
 #include "xr/openxr.hpp"
 
-/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images, and a strict eye on
-/// what it is asked. $CLOTHBENCH_NULL_XR is a list of `key=value`, parted by commas:
+/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images. Checks every
+/// call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
 ///   clock=virtual  time counts only frames; otherwise the clock of the machine
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
 ///   hands|capsules|passthrough|rate=0   leaves an extension out
