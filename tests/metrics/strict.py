@@ -139,7 +139,8 @@ def driven(run):
 
 def popping(run):
     """Greatest displacement in 1/36 s beyond twice that of vertices up to two edges away, before or after, or of what drives the cloth."""
-    window, count = max(1 / 36, 1 / run.scene["time"]["frame_rate_hz"]), run.x.shape[1]
+    rate, count = run.scene["time"]["frame_rate_hz"], run.x.shape[1]
+    window = max(2, np.ceil(rate / 36 - 1e-9)) / rate
     linked = np.zeros((count, count), int)
     linked[run.triangles[:, [0, 0, 1, 1, 2, 2]], run.triangles[:, [1, 2, 0, 2, 0, 1]]] = 1
     near = (linked + linked @ linked > 0) & ~np.eye(count, dtype=bool)

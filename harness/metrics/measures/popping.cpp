@@ -12,7 +12,11 @@ namespace clothbench {
 namespace {
 
 /// Within some 30 ms the eye sums what it sees (Barlow 1958, by daylight): a viewer sees a jump there, not a motion.
-double window_s(const Scene& scene) { return std::max(1.0 / 36, scene.time.dt()); }
+/// Whole frames, and two of them, since a snap that is shorter than a frame may begin before a frame and end after it.
+double window_s(const Scene& scene) {
+  constexpr double kRounding = 1e-9;
+  return std::max(2.0, std::ceil(1.0 / 36 / scene.time.dt() - kRounding)) * scene.time.dt();
+}
 
 // A body that is hit leaves at up to twice the speed of what hits it, and a wave that arrives at a free edge moves that
 // edge at twice its own.
