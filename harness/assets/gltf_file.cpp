@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION
 
+#include "assets/gltf_schema.hpp"
 #include "assets/mesh.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
@@ -46,6 +47,17 @@ bool is_appearance(const std::string& extension) {
   static const std::vector<std::string> kNames = {"KHR_lights_punctual", "KHR_texture_basisu", "KHR_texture_transform",
                                                   "EXT_texture_webp",    "EXT_texture_avif",   "KHR_xmp_json_ld"};
   return extension.starts_with("KHR_materials_") || contains(kNames, extension);
+}
+
+/// The JSON part of a file, with every value of the type that it should have. The check refuses long strings, so it
+/// sees no data URIs.
+nlohmann::json checked_json(const std::string& text, const std::string& source) {
+  nlohmann::json parsed = parse_json(text, source), without_data = parsed;
+  if (without_data.is_object() && without_data.contains("buffers"))
+    for (nlohmann::json& buffer : without_data["buffers"])
+      if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string()) buffer["uri"] = "";
+  validate_json(without_data, kSchema, source);
+  return parsed;
 }
 
 /// glTF 2.0, sections 3.2 and 3.12: what a reader that is right must not ignore.
@@ -157,6 +169,9 @@ tinygltf::Model parse_binary(const std::string& content, const std::string& sour
   if (size >= 12 && item_at<std::uint32_t>(bytes + 4) != kVersion)
     fail(source, fmt::format("not a binary glTF file of version {}: its version is {}", kVersion,
                              item_at<std::uint32_t>(bytes + 4)));
+  constexpr std::size_t kText = 20;  // after the file's header and the chunk's length and type
+  if (size >= kText && std::memcmp(bytes + 16, "JSON", 4) == 0 && item_at<std::uint32_t>(bytes + 12) <= size - kText)
+    checked_json(content.substr(kText, item_at<std::uint32_t>(bytes + 12)), source);
   return loaded(source, "binary glTF file (cut off?)", [&](auto& loader, auto& model, auto& error, auto& warning) {
     if (size >= 12 && size <= kMostBytes)
       return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, static_cast<unsigned>(size), "");
@@ -166,13 +181,11 @@ tinygltf::Model parse_binary(const std::string& content, const std::string& sour
 }
 
 tinygltf::Model parse_text(const std::string& text, const std::string& source) {
-  const nlohmann::json parsed = parse_json(text, source);
-  if (!parsed.is_object()) fail(source, "expected a glTF file: a JSON object");
+  const nlohmann::json parsed = checked_json(text, source);
   // The library would open any file that the text names; the hash of a scene's mesh would not include it.
   const nlohmann::json buffers = parsed.value("buffers", nlohmann::json::array());
   for (std::size_t k = 0; k < buffers.size(); ++k)
-    if (!buffers[k].is_object() || !buffers[k].contains("uri") || !buffers[k]["uri"].is_string() ||
-        !buffers[k]["uri"].get<std::string>().starts_with("data:"))
+    if (!buffers[k].value("uri", "").starts_with("data:"))
       fail(source, fmt::format("/buffers/{}/uri: expected the buffer inside the file: a data URI, or a .glb file", k));
   return loaded(source, "glTF file", [&](auto& loader, auto& model, auto& error, auto& warning) {
     return loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), "");

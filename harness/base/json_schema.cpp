@@ -19,13 +19,13 @@ namespace {
 using nlohmann::json;
 
 std::string pointer_of(const std::vector<std::string>& context) {
-  std::string pointer;
+  json::json_pointer pointer;
   for (std::size_t i = 1; i < context.size(); ++i) {
     std::string part = context[i];
     if (part.size() >= 2 && part.front() == '[' && part.back() == ']') part = part.substr(1, part.size() - 2);
-    pointer += "/" + part;
+    pointer.push_back(part);
   }
-  return pointer;
+  return pointer.to_string();
 }
 
 /// Sub-schema a pointer leads to; null where the schema says nothing of it.
@@ -40,6 +40,8 @@ json schema_at(const json& root, const std::string& pointer) {
       s = json(s["properties"][part]);
     else if (s.contains("items"))
       s = json(s["items"]);
+    else if (s.contains("additionalProperties"))
+      s = json(s["additionalProperties"]);
     else
       return json();
     i = end + 1;
@@ -129,7 +131,7 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   const std::string pointer = pointer_of(deepest);
   const json sub = schema_at(schema_json, pointer);
   const json found = value.at(json::json_pointer(pointer));
-  const std::string where = base + pointer;
+  const std::string where = base + shortened(pointer, 200);
   if (const std::string key = missing_key(found, sub); !key.empty())
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
   throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "assets/json_at.hpp"
 #include "clothbench/error.hpp"
@@ -249,6 +250,47 @@ TEST(MeshInput, RefusesBadGltfNamingThePlace) {
   EXPECT_NE(refusal([] { assets::parse_gltf("glTF, but no more", "cut.glb"); }).find("cut.glb: not a binary glTF"),
             std::string::npos);
   EXPECT_NE(refusal([] { assets::parse_gltf("{", "cut.gltf"); }).find("cut.gltf"), std::string::npos);
+}
+
+/// tinygltf leaves out a value of a wrong type. Replaces each value of a file, and each list and object, by others.
+TEST(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
+  json whole = square_gltf();
+  whole.update({{"scene", 0},
+                {"scenes", {{{"nodes", {0}}}}},
+                {"extensionsUsed", {"KHR_materials_unlit"}},
+                {"extensionsRequired", {"KHR_materials_unlit"}},
+                {"skins", {{{"inverseBindMatrices", 0}, {"joints", {0}}}}}});
+  whole["asset"]["minVersion"] = "2.0";
+  whole["nodes"][0].update({{"children", {0}},
+                            {"skin", 0},
+                            {"translation", {0.5, 0.5, 0.5}},
+                            {"rotation", {0.5, 0.5, 0.5, 0.5}},
+                            {"scale", {0.5, 0.5, 0.5}},
+                            {"matrix", std::vector<double>(16, 0.5)},
+                            {"weights", {0.5}}});
+  whole["meshes"][0]["weights"] = {0.5};
+  whole["meshes"][0]["primitives"][0].update({{"mode", 4}, {"targets", {{{"POSITION", 0}}}}});
+  whole["accessors"][0].update({{"byteOffset", 0}, {"normalized", false}, {"sparse", json::object()}});
+  whole["bufferViews"][0]["byteStride"] = 12;
+  std::set<json::json_pointer> places;
+  const json flat = whole.flatten();
+  for (const auto& [pointer, unused] : flat.items())
+    for (json::json_pointer at(pointer); !at.empty(); at.pop_back()) places.insert(at);
+  std::size_t tried = 0;
+  for (const json::json_pointer& at : places)
+    for (const json& wrong : {json("3"), json(true), json(1.5), json::object()}) {
+      if (whole.at(at).type() == wrong.type()) continue;
+      json j = whole;
+      j[at] = wrong;
+      const std::string why = refusal([&] { assets::parse_gltf(j.dump(), "m.gltf"); });
+      EXPECT_TRUE(why.starts_with("m.gltf: " + at.to_string() + ": expected ")) << at << wrong << why;
+      EXPECT_TRUE(why.ends_with("; found " + wrong.dump())) << at << wrong << why;
+      ++tried;
+    }
+  whole["accessors"][0]["count"] = "4";
+  EXPECT_EQ(refusal([&] { assets::parse_gltf(binary(whole), "m.glb"); }),
+            "m.glb: /accessors/0/count: expected integer, >= 0; found \"4\"");
+  EXPECT_GT(tried, 300u);
 }
 
 TEST(MeshInput, FilesThatAreTooLargeAreNotRead) {
