@@ -15,7 +15,7 @@ struct Answer {
   std::string text;
 };
 
-/// What a command's text holds.
+/// Streams in a command's text.
 enum class Streams { Both, Out };
 
 /// Runs `clothbench <arguments>` in a shell. `before`: assignments of its environment.

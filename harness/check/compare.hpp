@@ -77,7 +77,7 @@ struct Checked {
   bool passed() const { return count(Verdict::Failed) == 0; }
 };
 
-/// What is wrong with the motion in the record's file; empty if nothing is, or if it was not read from a file.
+/// The fault of the motion in the record's file; empty if there is none, or if it was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
 /// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats

@@ -10,7 +10,7 @@
 
 namespace clothbench {
 
-/// What a metric may use besides the state: the scene and the solver's declarations, never the solver itself.
+/// Inputs of a metric besides the state: the scene and the solver's declarations, never the solver itself.
 struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;

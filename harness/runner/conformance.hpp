@@ -8,7 +8,7 @@
 
 namespace clothbench {
 
-/// What every solver must do, whatever its method: six frames of each scene with every kind of sides on three grids and
+/// Checks of every solver, whatever its method: six frames of each scene with every kind of sides on three grids and
 /// on a triangle mesh, each scene whole at its own size, and relations of two runs that need no exact solution.
 struct ConformanceCase {
   std::string scene;    ///< as commands name it: "paper/gravity"
@@ -34,8 +34,8 @@ struct ConformanceCase {
 /// scenes of the folder "conformance" have, come before the whole scene.
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
 
-/// The scene of a case. Two or three grid lines are too few for some scenes, which then get the least grid that works.
-/// A mesh bends for the solvers that have bending of meshes.
+/// The scene of a case. Two or three grid lines are too few for some scenes, which then get the smallest grid that
+/// works. A mesh bends for the solvers that have bending of meshes.
 Scene conformance_scene(const ConformanceCase&, const std::string& solver);
 
 /// Why a case is no test of the solver, such as "xpbd has no render"; empty if it is.

@@ -51,7 +51,7 @@ struct ColliderKind {
   const char* name = "";                                       ///< name in result files
   Feature standing = Feature::Plane, moving = Feature::Plane;  ///< required of a solver for a static and a dynamic one
   std::vector<ColliderType> types = {};
-  /// What result files store: numbers, and the capsules or the mesh of every frame.
+  /// The form that result files store: numbers, and the capsules or the mesh of every frame.
   std::vector<ColliderNumbers> numbers = {};
   enum class Holds { Numbers, Capsules, Mesh } holds = Holds::Numbers;
 

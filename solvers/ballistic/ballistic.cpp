@@ -37,7 +37,7 @@ class Ballistic final : public ClothSolver {
   }
 
   StepStatus step(const FrameInput& frame) override {
-    // Semi-implicit Euler, once a frame: v += g h, x += v h.
+    // Semi-implicit Euler, once per frame: v += g h, x += v h.
     const double h = frame.dt_s;
     for (std::size_t k = 0; k < x_.size(); ++k) {
       v_[k] += scene_->gravity_m_per_s2[k % 3] * h;

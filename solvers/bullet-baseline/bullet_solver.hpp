@@ -11,7 +11,7 @@
 
 namespace clothbench::bullet_baseline {
 
-/// What both solvers of this folder share; each adds its own name, summary and settings.
+/// The part that both solvers of this folder share; each adds its own name, summary and settings.
 SolverInfo common_info();
 
 SettingSpec collision_margin_spec();

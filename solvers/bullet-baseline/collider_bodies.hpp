@@ -53,7 +53,7 @@ class ColliderBodies {
   btDiscreteDynamicsWorld& world_;
   std::vector<Body> bodies_;
   std::vector<MovingCapsule> capsules_;
-  std::vector<MovingTriangle> triangles_;  ///< those of one mesh are contiguous
+  std::vector<MovingTriangle> triangles_;  ///< triangles of one mesh are contiguous
 };
 
 }  // namespace clothbench::bullet_baseline

@@ -20,7 +20,7 @@ SolverInfo soft_info() {
   return info;
 }
 
-/// What Bullet needs to meet rigid bodies; members in the order in which they come to be.
+/// The objects of a Bullet world with rigid bodies; members in the order of construction.
 struct SoftWorld {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};

@@ -66,7 +66,7 @@ TEST_F(PackedAssets, UnpackOnceAndAgainWhenTheyChange) {
   EXPECT_EQ(file_text(dir_ / "to/assets/room with blanks.bin"), std::string("\0\1\2", 3));
   reads_ = 0;
   EXPECT_EQ(refusal(), "");
-  EXPECT_EQ(reads_, 1) << "the index alone";
+  EXPECT_EQ(reads_, 1) << "only the index";
   packed_.clear();
   add("scenarios/b.json", "[]");
   EXPECT_EQ(refusal(), "");

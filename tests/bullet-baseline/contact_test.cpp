@@ -122,8 +122,8 @@ TEST_P(Bullet, StaysOnAnOpenMesh) {
   EXPECT_LT(lowest(state, [](const Vec3& p) { return p[1]; }), -0.02) << "the overhang hangs";
 }
 
-/// What comes at a hanging cloth from behind and stops 0.15 m past it, a square or three capsules: a cloth that hangs
-/// gives way. (One stretched between two edges does not, and bullet-soft lets the square through.)
+/// A square or three capsules that hit a hanging cloth from behind and stop 0.15 m past it: a cloth that hangs gives
+/// way. (One stretched between two edges does not, and bullet-soft lets the square through.)
 TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
   for (bool capsules : {false, true}) {
     Collider c = square(0.1, true);

@@ -1,4 +1,4 @@
-// What people and machines read: the console, JUnit XML, JSON.
+// Output for people and machines: the console, JUnit XML, JSON.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -61,7 +61,7 @@ TEST(Robustness, NotFiniteIsNaN) {
   for (const double x : fields(against(burst, ball))) EXPECT_FALSE(std::isnan(x)) << "far too large, but finite";
 }
 
-// A power of two changes exponents alone.
+// A power of two changes only exponents.
 TEST(Robustness, ScaleInvarianceBitForBit) {
   const Mesh cloth = wavy(20), ball = bumpy_ball(10, 0.15);
   const ContactSample one = against(cloth, ball);

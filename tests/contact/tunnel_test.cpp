@@ -51,8 +51,8 @@ TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
       for (const double z : {0.0, 0.013}) {
         Watched w(patch(patch_cells), curtain(cells, 0.7, z));
         w.move(curtain(cells, 0.2, z));
-        // Special positions are those of a cloth moved by (e, e^2, e^3): the row in the plane is still above it, and
-        // the last column passes just beside the patch.
+        // Special positions count as if the cloth were moved by (e, e^2, e^3): the row in the plane is still above it,
+        // and the last column passes just beside the patch.
         const double rows = (cells + 1) / 2, columns = cells;
         EXPECT_NEAR(w.move(curtain(cells, 0, z)), rows * columns / ((cells + 1) * (cells + 1)), 1e-12);
         EXPECT_NEAR(w.contour_m(), 1, 1e-12) << cells << ' ' << patch_cells << ' ' << z;

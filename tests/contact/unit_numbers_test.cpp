@@ -19,7 +19,7 @@ Mesh lowered_sheet(int cells, double d) {
   return sheet(cells, cells, Point<3>(0, kRadius - d, 0) - 0.5 * (u + v), v, u);
 }
 
-/// Sphere turned so that the plane cuts it in no special way, but with a vertex on top, where the depth is greatest.
+/// Sphere turned so that the plane cuts it in no special way, but with a vertex on top, where the depth is largest.
 Mesh ball(int n) {
   const Mesh plain = octasphere(n, kRadius);
   const Point<3> top = plain.view().vertex(plain.triangles[n][0]).normalized();
@@ -44,8 +44,8 @@ TEST(UnitNumbers, SphereMesh) {
   }
 }
 
-/// The contour of a capsule's triangles lies between those of the capsule and of one whose radius is less by the stated
-/// error.
+/// The contour of a capsule's triangles lies between the contours of the capsule and of one whose radius is smaller by
+/// the stated error.
 void expect_contour(double found, double at_radius, double at_less, const char* what) {
   EXPECT_LE(found, at_radius * (1 + 1e-12)) << what;
   EXPECT_GE(found, at_less * (1 - kCapsuleError)) << what;
@@ -107,7 +107,7 @@ TEST(UnitNumbers, UnionOfCapsules) {
               0.01 * length({{a, b, kRadius}}));
 }
 
-// Smaller than a cloth triangle, and between its vertices: what vertices alone can't see.
+// Smaller than a cloth triangle, and between its vertices: vertices can't see it.
 TEST(UnitNumbers, FingertipInsideOneTriangle) {
   const Mesh cloth = sheet(2, 2, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
   const double r = 0.02, d = 0.005;

@@ -77,7 +77,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
     for (std::size_t k = 0; k < a.trials.size(); ++k) EXPECT_EQ(a.trials[k].frames(), b.trials[k].frames());
   }
 
-  /// What one refused call comes to.
+  /// Result of one refused call.
   void inject(int call, VkResult result, bool sticky, const RunRecord& right) {
     const std::string folder = std::to_string(call) + "_" + std::to_string(result) + (sticky ? "s" : "");
     forget_device();

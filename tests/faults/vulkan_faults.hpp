@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// A layer between pbd-gpu and Vulkan, of this program alone: the linker puts it in the way of every call
+/// A layer between pbd-gpu and Vulkan, only in this program: the linker puts it in the way of every call
 /// (-Wl,--wrap, vulkan_calls.def). It counts, makes one call fail, and knows which objects are alive.
 namespace clothbench::faults {
 

@@ -13,7 +13,7 @@ namespace clothbench::liars {
 
 using V3 = Eigen::Vector3d;
 
-/// What a scene and its right motion are, for the choice of lies. All frames count from 0, the start.
+/// Properties of a scene and its right motion, for the choice of lies. All frames count from 0, the start.
 struct Facts {
   int equations = 6;      ///< how many of the six momentum equations attachments do not absorb
   bool falls = false;     ///< the scene has gravity
@@ -21,7 +21,7 @@ struct Facts {
   bool solid = false;     ///< a collider
   bool mover = false;     ///< a collider that moves
   bool self = false;      ///< the cloth meets itself
-  bool slides = false;    ///< on planes alone, steep or faster than they stop in a tenth of a second
+  bool slides = false;    ///< only on planes, steep or faster than they stop in a tenth of a second
   std::size_t frames = 0;
   std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length

@@ -94,7 +94,7 @@ std::vector<Trial> tell_all(const Matrix& matrix) {
       if (!told) continue;
       Trial t = judged(right, lie, *told);
       if (!lie.right && !(t.difference_m > kNoticed * right.facts.length_m)) continue;
-      // What fails as it is cannot show whether a lie is seen.
+      // A right motion that fails cannot show whether a lie is seen.
       if (lie.right && t.failed()) trusted = false;
       add(std::move(t), *told);
     }

@@ -21,7 +21,7 @@ struct Matrix {
   std::filesystem::path store;     ///< folder for liar_plugin.c: motions by number, and their scenes; empty: none
 };
 
-/// What the check of motions says of one.
+/// Result of the motion check for one motion.
 struct Trial {
   std::string kind, solver, lie;
   std::uint64_t seed = 0;

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The scene without colliders and grips; or, of a cloth that meets itself, without that alone.
+/// The scene without colliders and grips; or only without self-contact, if it has any.
 Scene unaware(const Scene& scene) {
   json j = json::parse(scene.json);
   j.erase("expect");

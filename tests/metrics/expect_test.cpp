@@ -86,7 +86,7 @@ TEST(Expect, MistakesAreRefusedWithTheNearestName) {
   EXPECT_EQ(message(R"({"stretch_max":{"at_most":1}})"), "");
 }
 
-// The schema's names are those of the summary: an expectation that can never have a value is no use.
+// The schema's names are the names of the summary: an expectation that can never have a value is no use.
 TEST(Expect, EveryNameTheSchemaKnowsIsInTheSummary) {
   const Scene scene = scene_expecting("{}");
   const SolverEntry& entry = find_solver("ballistic");

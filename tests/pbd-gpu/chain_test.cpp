@@ -117,7 +117,7 @@ TEST_F(Chained, MeshesAndUnevenGridsEndWhereTheReferenceDoes) {
     const double coarse = error(1, 40), fine = error(1, 160);
     EXPECT_LT(fine, 4e-3) << s->cloth.rows;
     EXPECT_LT(fine, 0.4 * coarse) << "of order one in the substep";
-    // Of order two, rounding in single precision is of the same size with 160 substeps.
+    // With order two, rounding in single precision is of the same size with 160 substeps.
     EXPECT_LT(error(2, 40), 5e-4) << s->cloth.rows;
     EXPECT_LT(error(2, 160), 5e-4) << s->cloth.rows;
   }

@@ -12,9 +12,9 @@ struct PairCheck {
   long separated = 0;  ///< those that some plane parts at both ends of the frame, with the convex shape's radius
 };
 /// For solvers that move cloth and colliders in straight lines in a frame, as `xpbd` does with substeps=1: a plane that
-/// parts a pair at both ends then parts it in between. Convex shapes are capsules, spheres, and triangles (of boxes
-/// too); directions tried are those of the nearest points at both ends and 15 between them. In double, with no code of
-/// the solver's. Positions [m], three numbers a vertex.
+/// separates a pair at both ends then separates it in between. Convex shapes are capsules, spheres, and triangles (of
+/// boxes too); directions tried come from the nearest points at both ends and 15 between them. In double, with no code
+/// of the solver's. Positions [m], three numbers per vertex.
 PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after,
                       int frame);
 

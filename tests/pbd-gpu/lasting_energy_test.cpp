@@ -39,7 +39,7 @@ struct Gain {
   double lasting, greatest;  ///< over M g L
 };
 
-/// Kinetic, spring and gravity's energy less that at the start: its mean over the last second, and its greatest.
+/// Kinetic, spring and gravity's energy minus its value at the start: the mean over the last second, and the maximum.
 Gain gain(ClothSolver& solver, const Scene& s) {
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s), speed = initial_velocities(s);
   const auto energy = [&](const std::vector<double>& x, const std::vector<double>& v) {
@@ -94,7 +94,7 @@ TEST_P(Energy, DoesNotRiseAtAnyQuality) {
     solver->load(s);
     const Gain g = gain(*solver, s);
     RecordProperty(quality, std::to_string(g.lasting) + " " + std::to_string(g.greatest));
-    EXPECT_LE(g.lasting, 1e-3) << GetParam().scene << " " << quality << ", greatest " << g.greatest;
+    EXPECT_LE(g.lasting, 1e-3) << GetParam().scene << " " << quality << ", maximum " << g.greatest;
   }
 }
 

@@ -118,8 +118,8 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
   EXPECT_EQ(of(5, "default"), 18);
   EXPECT_EQ(of(7.5, "default"), 26) << "an eighth of a cell, which is more than a margin";
   EXPECT_EQ(of(5, "fast"), 9);
-  EXPECT_EQ(of(100, "fast"), 16) << "the most";
-  EXPECT_EQ(of(100, "default"), 32) << "the most";
+  EXPECT_EQ(of(100, "fast"), 16) << "the maximum";
+  EXPECT_EQ(of(100, "default"), 32) << "the maximum";
   s.jumps = {{2, 1.0}};
   for (std::size_t f = 0; f < s.motion.size(); ++f) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;

@@ -1,4 +1,4 @@
-// What the line solver is for: little stretch for few substeps, the reference cases, and that it stays whole where
+// Purposes of the line solver: little stretch for few substeps, the reference cases, and that it stays whole where
 // lines are singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation
 // of the same method gives.
 #include <cmath>
@@ -64,8 +64,8 @@ TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
     double error;
     int order = 1;
   };
-  // Of 60 Hz frames; 960 Hz in the last, whose waves are slowed where tension is held back (0.061 if it were not). The
-  // hands' speed there changes at each frame's end, which costs the second order some of it.
+  // Frames of 60 Hz, and of 960 Hz in the last, whose waves are slowed where tension is held back (0.061 if it were
+  // not). The hands' speed there changes at each frame's end, which costs the second order some of it.
   for (const Row& row : {Row{"swing-strip", 3, 4.5e-3},
                          {"swing-strip", 5, 2.7e-3},
                          {"swing-strip", 10, 1.5e-3},

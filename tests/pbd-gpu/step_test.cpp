@@ -117,7 +117,7 @@ TEST_F(Gpu, OneFrameAgreesWithDoublePrecision) {
       paper->load(s);
       expect_close(m, after(*paper, s, 1), 1 / s.time.dt(), "paper " + what);
       // The sheet, let go from 7 % of stretch, may be back and buckling by the end of the frame. How far a last bit of
-      // single precision at the start then moves it in double is the least error that can be demanded.
+      // single precision at the start then moves it in double is the smallest error that can be demanded.
       for (const int substeps : {10, 4}) {
         m = start(s);
         Model nudged = m;

@@ -115,7 +115,7 @@ TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
         fastest =
             std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
   }
-  // Of a fast one, what is seen at a frame's end is how it comes back from the stretched bow.
+  // A fast one is seen at a frame's end when it comes back from the stretched bow.
   if (GetParam() <= 5) {
     EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "they must have met for this to say anything";
   }

@@ -32,7 +32,7 @@ const RunRecord& healthy(const std::string& name) {
   return known.at(name);
 }
 
-/// What `clothbench check` says of a run, its failures alone; empty if it lets it pass.
+/// The failures of a run that `clothbench check` reports; empty if it passes.
 std::string caught_by(const RunRecord& was, const RunRecord& is) {
   try {
     std::string out;

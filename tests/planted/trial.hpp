@@ -19,7 +19,7 @@ struct Stage {
   nlohmann::json settings = nlohmann::json::object();
 };
 
-/// One thing that is wrong. Of the places where it may sit only one is filled.
+/// One thing that is wrong. Only one of the members that name its place is filled.
 struct Fault {
   std::string name, stage;
   // In the solver: a kernel, what it is given, what it gives back, what it says of itself.

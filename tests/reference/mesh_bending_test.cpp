@@ -49,7 +49,7 @@ std::string strip(int cells, double share, unsigned seed) {
   return out;
 }
 
-/// Mean deflection of the free end under a uniform load, divided by that of a beam: q L^4 / (8 B).
+/// Mean deflection of the free end under a uniform load, divided by a beam's: q L^4 / (8 B).
 double tip_over_beam(int cells, double share, unsigned seed) {
   const ClothMesh mesh = parse_obj(strip(cells, share, seed), "strip.obj");
   const int across = cells / 4, clamped = 2 * (across + 1), all = static_cast<int>(mesh.vertices.size());

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What reading a good file says after `change`.
+/// Message of reading a good file after `change`.
 std::string said(const std::function<void(hid_t file)>& change) {
   const fs::path path = fs::temp_directory_path() / ("clothbench-damage-" + std::to_string(getpid()) + ".h5");
   write_hdf5(path, sample_run());

@@ -1,4 +1,4 @@
-// A scene and a motion come back from a result file alone: without the scenario's folder, its meshes, rooms and hands.
+// A scene and a motion come back from only a result file: without the scenario's folder, its meshes, rooms and hands.
 #include <gtest/gtest.h>
 
 #include <cctype>

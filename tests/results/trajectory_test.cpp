@@ -34,7 +34,7 @@ class Trajectory : public WithFolder {
     H5Fclose(f);
   }
 
-  /// The same dataset with its first `rows` rows alone.
+  /// The same dataset with only its first `rows` rows.
   void cut(const char* dataset, hid_t type, hsize_t rows, hsize_t columns) const {
     const hid_t f = H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     ASSERT_GE(H5Ldelete(f, dataset, H5P_DEFAULT), 0) << dataset;

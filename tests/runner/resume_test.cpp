@@ -18,7 +18,7 @@ class Resume : public SmallRuns {
   RunPlan plan(const Scene& scene, int substeps = 4) const {
     return plan_of({{&scene, &entry_, {{"substeps", substeps}}}}, 1, 2);
   }
-  /// What going on is refused with, by a look before anything is written and by the run itself.
+  /// Error that refuses to continue, before anything is written and in the run itself.
   std::string refusal(const RunPlan& p) const {
     std::string looked = "no error";
     try {

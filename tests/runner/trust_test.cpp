@@ -1,4 +1,4 @@
-// What a failed or impossible run must not pass for.
+// A failed or impossible run must not pass for a good one.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -59,7 +59,7 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
                                  Feature::Friction, Feature::DoubleSided}));
   EXPECT_TRUE(s.motion.empty());
   EXPECT_EQ(s.motion_after(0), nullptr);
-  // What was computed is part of the record, and the record loads to the same scene.
+  // Computed values are part of the record, and the record loads to the same scene.
   const Scene again = scene_from_json(nlohmann::json::parse(s.json), s.source);
   EXPECT_EQ(again.json, s.json);
   EXPECT_EQ(again.cloth.center_m, s.cloth.center_m);

@@ -47,7 +47,7 @@ TEST(DrawContact, IsTheSameForASeedHoweverManyThreadsDraw) {
   for (std::string& other : others) threads.emplace_back([&other] { other = all_json(drawn(17, kKinds)); });
   for (std::thread& t : threads) t.join();
   for (const std::string& other : others) EXPECT_EQ(other, once);
-  // A scene depends on its own seed alone.
+  // A scene depends only on its own seed.
   const Study some = drawn(19, 1);
   EXPECT_EQ(some.scenes[0].scene.json, drawn(17, kKinds).scenes[2].scene.json);
   std::set<std::string> different;
@@ -84,7 +84,7 @@ std::vector<json> drawn_alone(std::uint64_t count) {
   return out;
 }
 
-/// Least and greatest of each drawn value, over kinds.
+/// Minimum and maximum of each random value, over kinds.
 std::map<std::string, std::array<double, 2>> extremes(const std::vector<json>& scenes, const std::string& kind) {
   std::map<std::string, std::array<double, 2>> out;
   for (const json& scene : scenes) {

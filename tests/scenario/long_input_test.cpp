@@ -1,5 +1,5 @@
-// What readers say of wrong input of any length: where it is, in few words, and not the input itself. And what they say
-// of radii that a headset did not know, and of more runs than a study may have.
+// Messages of readers about wrong input of any length: where it is, in few words, and not the input itself. Also
+// about radii that a headset did not know, and of more runs than a study may have.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -159,7 +159,7 @@ TEST(Polygon, ThatIsNoneIsRefused) {
   Draw draw(1);
   EXPECT_NE(why(draw.star(kMostCorners + 1)).find("1001 corners; expected at most 1000"), std::string::npos);
   for (unsigned seed = 1; seed <= 300; ++seed) {
-    // Of corners on a circle two neighbours change places: the sides before and after them cross.
+    // Two neighbouring corners on a circle change places: the sides before and after them cross.
     Draw other(seed);
     Polygon p = other.star(5 + other.below(20));
     for (Vec3& x : p) x = scaled(1 / length(x), x);

@@ -29,7 +29,7 @@ std::string refusal(Call call) {
   return "";
 }
 
-/// A folder of this process and test alone, gone afterwards: tests of two builds may run at once.
+/// A folder only for this process and test, gone afterwards: tests of two builds may run at once.
 class ScratchFolder {
  public:
   ScratchFolder()

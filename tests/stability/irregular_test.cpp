@@ -172,7 +172,7 @@ TEST(Capsules, MoveJumpAndTurn) {
   const Scene s = load(
       {R"(colliders=[{"type": "capsule", "center_m": [0, 1, 0], "radius_m": 0.1, "length_m": 0.4, "velocity_m_per_s": [0, -1, 0], "start_s": 0.1, "spin_rad_per_s": [0, 0, 3.141592653589793], "jumps": [{"time_s": 0, "by_m": [0, 0, 2]}]}])"});
   EXPECT_TRUE(s.needs.has(Feature::Capsules));
-  const Capsule end = s.motion.back().colliders[0].capsules[0];  // half a turn a second, for half a second
+  const Capsule end = s.motion.back().colliders[0].capsules[0];  // half a turn per second, for half a second
   EXPECT_NEAR(end.a_m[0], 0, 1e-12);
   EXPECT_NEAR(end.b_m[1] - end.a_m[1], 0.4, 1e-12);
   EXPECT_NEAR((end.a_m[1] + end.b_m[1]) / 2, 0.6, 1e-12);

@@ -1,4 +1,4 @@
-// What a scene with an exact solution expects by itself: the solution passes, one that is off on either side fails.
+// A scene with an exact solution has bounds of its own: the solution passes, one that is off on either side fails.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ Motion crept(const Scene& s, double share) {
   return [out](int) { return out; };
 }
 
-/// Greatest motion of a coordinate [m], and half a unit in the last place of float32 of the greatest coordinate.
+/// Largest motion of a coordinate [m], and half a unit in the last place of float32 of the largest coordinate.
 std::pair<double, double> moved_and_rounding_m(const Judged& j) {
   const std::vector<double> start = initial_positions(j.scene);
   double moved = 0, greatest = 0;
@@ -145,7 +145,7 @@ TEST(Tolerances, EveryReferenceCaseHasOneAndItsReason) {
   }
 }
 
-/// A scene with an exact solution needs no `expect`; the bound is that of the parameters in use.
+/// A scene with an exact solution needs no `expect`; the bound follows the parameters in use.
 TEST(ExactBounds, FollowsOverridesAndNeedsNoFile) {
   const Judged moon(load_scene("validation/incline-slip", {"gravity_m_per_s2=[0,-1.6,0]"}));
   EXPECT_TRUE(moon.scene.expect.empty());
@@ -156,7 +156,7 @@ TEST(ExactBounds, FollowsOverridesAndNeedsNoFile) {
   EXPECT_TRUE(judge(moon.scene, broken, {}, {}).text.starts_with("fail: outcome diverged, expected ok"));
 }
 
-/// The bounds are in every result, and are those of the function.
+/// The bounds are in every result, and equal the function's.
 TEST(ExactBounds, IsPartOfASummary) {
   const Scene s = load_scene("validation/pendulum");
   AccuracyPass pass;

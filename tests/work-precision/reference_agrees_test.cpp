@@ -44,7 +44,7 @@ TEST(SheetReferences, AgreeWithTheClosedForm) {
   EXPECT_LT(r.uncertainty, 1e-3);
 }
 
-/// What a mesh itself leaves falls with its cells, is known better than it is large, and is not below the continuum.
+/// The error of the mesh itself falls with its cells, is larger than its uncertainty, and is not below the continuum.
 TEST(MeshReferences, StateTheErrorOfTheMesh) {
   const std::vector<std::string> short_ones[] = {{}, {"time.duration_s=1", "material.damping_per_s=30"}, {}};
   const char* const names[] = {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};

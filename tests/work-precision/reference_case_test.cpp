@@ -80,7 +80,7 @@ TEST(SpaceError, FallsWithTheRun) {
   EXPECT_EQ(TruthJudge(fall).space_error(), 0);
 }
 
-/// Any triangulation of the rectangle has the same answer, and columns that are those of the continuum.
+/// Any triangulation of the rectangle has the same answer, and the columns of the continuum.
 TEST(MeshCases, DoNotDependOnTheTriangles) {
   for (const char* name : {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"}) {
     const Scene coarse = scene(name, {"cloth.mesh.drawn.cells=9"}),

@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A device that goes after so many calls that submit or wait (-1: never), and stays away. What it was doing is done by
+/// A device that goes after so many calls that submit or wait (-1: never), and stays away. Its work is done by
 /// then.
 struct {
   int calls_left = -1;

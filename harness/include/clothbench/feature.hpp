@@ -7,9 +7,9 @@
 
 namespace clothbench {
 
-/// What a scene can require of a solver: one per row of feature_table.hpp. The loader derives the required features
-/// from the scenario (`derive_needs`); a solver never does. A run fails unless its stages serve exactly the features
-/// that the scene needs (`check_stages`).
+/// A property of scenes that solvers must support: one per row of feature_table.hpp. The loader derives the required
+/// features from the scenario (`derive_needs`); a solver never does. A run fails unless its stages serve exactly the
+/// features that the scene needs (`check_stages`).
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"

@@ -201,8 +201,8 @@ std::vector<double> initial_positions(const Scene&);
 /// vertices have one too, but a solver still holds them.
 std::vector<double> initial_velocities(const Scene&);
 
-/// Y [N/m] of a structural or shear edge: that of its cell, or the mean of its two cells for an edge along v. Of a
-/// mesh: the mean of its triangles, by area. Empty = inextensible.
+/// Y [N/m] of a structural or shear edge of a grid: its cell's Y, or the mean of its two cells for an edge along v. In
+/// a mesh: the mean of its triangles, by area. Empty = inextensible.
 std::optional<double> membrane_stiffness(const Scene&, const struct Edge&);
 /// Y [N/m] of each triangle of a mesh; empty = inextensible.
 std::vector<std::optional<double>> triangle_stiffnesses(const Scene&);

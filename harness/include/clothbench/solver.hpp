@@ -32,7 +32,7 @@ struct SolverInfo {
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
   int time_order = 1;  ///< declared order of accuracy of the integrator in the time step, with exact inner solves
-  /// Settings for tests and measurements alone, members of one object setting: "tuning": {"shuffles": false}. They
+  /// Settings only for tests and measurements, members of one object setting: "tuning": {"shuffles": false}. They
   /// appear in no list.
   std::vector<SettingSpec> tuning = {};
   std::string engine = {};  ///< that a plugin wraps, as clothbench_plugin.h states it; empty for other solvers
@@ -140,7 +140,7 @@ class ClothSolver {
   /// How many frames of the loaded scene `run_frames` keeps in flight; 1: it calls `step` for one after another.
   virtual int frames_in_flight() const { return 1; }
   /// As `step` for each frame, all complete on return, but the next frame may start before one is complete. The final
-  /// state equals that of `step` bit for bit. Stops at the first frame whose status is not Ok.
+  /// state is bit-identical to the result of `step`. Stops at the first frame whose status is not Ok.
   virtual StepStatus run_frames(const std::vector<FrameInput>& frames) {
     StepStatus status = StepStatus::Ok;
     for (std::size_t k = 0; k < frames.size() && status == StepStatus::Ok; ++k) status = step(frames[k]);
@@ -158,7 +158,7 @@ class ClothSolver {
   virtual int validation_messages() const { return 0; }
 };
 
-/// What a solver folder registers: its description and a factory. The `settings` of `make` are complete: every
+/// An entry that a solver folder registers: its description and a factory. The `settings` of `make` are complete: every
 /// SettingSpec is present with its declared type.
 struct SolverEntry {
   SolverInfo info;
@@ -167,7 +167,7 @@ struct SolverEntry {
   /// vertical gravity, vertical initial velocity and damping. It follows the integrator's exact order of updates and
   /// serves the free-fall check.
   std::function<double(const Scene&, const nlohmann::json& settings, int frames)> free_fall_m;
-  /// Devices that this solver can run on, in the order of --device; empty function = the CPU alone.
+  /// Devices that this solver can run on, in the order of --device; empty function = only the CPU.
   std::function<std::vector<DeviceInfo>()> devices = nullptr;
 };
 

@@ -13,7 +13,7 @@ class UnsupportedScene : public SolverError {
   explicit UnsupportedScene(const std::string& message) : SolverError(message) {}
 };
 
-/// For solvers whose resistance to bending is that of grids. Throws if the scene has a triangle mesh that resists
+/// For solvers that can bend only grids. Throws if the scene has a triangle mesh that resists
 /// bending.
 inline void refuse_mesh_bending(const Scene& scene) {
   if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)

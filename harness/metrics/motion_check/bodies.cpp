@@ -16,7 +16,7 @@ namespace {
 
 /// Radius [m] of a finger: what a skinned hand may move in a frame before the direction of its force is unknown.
 constexpr double kFinger_m = 0.01;
-/// Frames whose contacts are kept: those of a window and its neighbours.
+/// Frames whose contacts are kept: a window and its neighbours.
 constexpr std::size_t kFramesKept = 16;
 
 }  // namespace

@@ -65,7 +65,7 @@ class Motion {
   /// Pinned vertices, and those that an attachment holds at the end of a frame.
   std::vector<std::uint32_t> held(std::size_t frame) const;
   bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
-  /// Of a frame, or the scene's last one after its end; null if nothing moves but cloth.
+  /// Colliders of a frame, or of the scene's last frame after its end; null if nothing moves but cloth.
   const FrameMotion* scripted(std::size_t frame) const;
   /// Acceleration [weights] of the mean of `count` vertices that are off by the resolution.
   double noise(std::size_t frame, std::size_t count) const {

@@ -7,7 +7,7 @@
 
 namespace clothbench::motion_check {
 
-/// What every run of every scene is checked for, from stored positions only; README.md defines each statistic.
+/// The check of every run of every scene, from stored positions only; README.md defines each statistic.
 enum class Check : std::uint8_t {
   Kinematic,   ///< attached vertices and the start are where the scene puts them
   Dynamic,     ///< the motion obeys momentum, energy and the speeds that the scene can cause

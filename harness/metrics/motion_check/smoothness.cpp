@@ -58,8 +58,8 @@ Field Smoothness::high_pass(std::size_t k) const {
   return f;
 }
 
-/// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. What of the vertex has
-/// another course, and what vertices two edges away have, is the noise.
+/// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. The rest of the
+/// vertex's motion, and the motion of vertices two edges away, is the noise.
 void Smoothness::spike(std::size_t k, const std::vector<Field>& around) {
   static constexpr std::array kSignature = {1.0 / 6, -2.0 / 3, 1.0, -2.0 / 3, 1.0 / 6};
   constexpr double kSquares = 35.0 / 18;

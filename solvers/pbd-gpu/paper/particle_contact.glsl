@@ -1,5 +1,5 @@
-// What the collision kernels of `paper` share. Bindings: 0 what is touched, 1 predicted positions, 2 positions at the
-// step's start (friction alone reads them), 3 vertices of a mesh.
+// Shared by the collision kernels of `paper`. Bindings: 0 the colliders, 1 predicted positions, 2 positions at the
+// step's start (only friction reads them), 3 vertices of a mesh.
 layout(std430, binding = BIND_PREDICTED) buffer Bdf2 { vec4 q[]; };
 layout(std430, binding = BIND_POSITIONS) readonly buffer Positions { vec4 x[]; };
 layout(push_constant) uniform Push { PaperContactConstants p; };

@@ -29,7 +29,7 @@ struct Binding {
   Access access;
 };
 
-/// One compute pipeline, bound to those of `buffers` that its code accesses. Throws Error if one of them is missing.
+/// One compute pipeline, bound to the `buffers` that its code accesses. Throws Error if one of them is missing.
 class Kernel {
  public:
   Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,

@@ -111,7 +111,7 @@ bool start_within(const Scene& s, const Tethers& t) {
   return true;
 }
 
-/// Of each vertex: neighbours and their distance at rest.
+/// Neighbours of each vertex, and their distance at rest.
 using Adjacency = std::vector<std::vector<std::pair<std::uint32_t, double>>>;
 
 Adjacency adjacency_of(const Scene& s) {

@@ -31,7 +31,7 @@ using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::Point;
 using Shared = JPH::SoftBodySharedSettings;
 
 constexpr JPH::ObjectLayer kCloth = 0, kObstacle = 1;
-/// Of the bend constraints [m/N]. With the 1e-5 of the engine's samples an inextensible sheet of 64 x 64 tears apart.
+/// Compliance of the bend constraints [m/N]. At the engine samples' 1e-5 an inextensible sheet of 64 x 64 tears apart.
 constexpr float kBendCompliance = 1e-2F;
 
 Vec3 vec3(const double* x) { return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])}; }

@@ -1,5 +1,5 @@
 #pragma once
-// What the null runtime's user does, as functions of time; tests compare what reached the solver with these.
+// Actions of the null runtime's user, as functions of time; tests compare what reached the solver with these.
 #include <array>
 #include <cmath>
 #include <vector>

@@ -25,7 +25,7 @@ double membrane_bound(const Scene&);
 /// Whether an elastic mesh is solved by triangles, all at once; else chains of springs along its edges solve it.
 FeatureDecision membrane_decision(const Scene&, const nlohmann::json& settings);
 
-/// What the kernel reads: the triangles around each vertex, turned so that it comes first. Rows shorter than the
+/// Input of the kernel: the triangles around each vertex, turned so that it comes first. Rows shorter than the
 /// slice's longest are padded with entries whose `a` is CHAIN_NO_VERTEX.
 SlicedRows<MembraneCorner> membrane_table(const Scene&);
 

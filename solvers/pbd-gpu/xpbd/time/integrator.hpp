@@ -33,8 +33,8 @@ bool is_held(const Scene&);
 /// True if the scene has neither self-collision nor a collider that the cloth can reach. The motion is then the same
 /// with and without its colliders. Meshes and kinematic colliders count as in reach.
 bool is_contact_free(const Scene&);
-/// Speed [m/s] at which a cloth that nothing holds meets static colliders: its first speed, and that of a fall by
-/// the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.
+/// Speed [m/s] at which a cloth that nothing holds meets static colliders: its first speed, and the speed of a fall
+/// by the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.
 double impact_speed_m_per_s(const Scene&);
 
 }  // namespace clothbench::pbd_gpu
