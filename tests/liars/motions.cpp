@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 
 #include "base/dice.hpp"
 #include "base/json_text.hpp"
@@ -90,12 +91,16 @@ void add_thin(std::vector<Kind>& out) {
                      json scene = json::parse(read_text(find_scenario("contact/box")));
                      const double thin = own == "needle" ? dice.between(0.003, 0.008) : dice.between(0.01, 0.05);
                      const double wide = own == "plate" ? dice.between(0.3, 0.6) : thin, turn = dice.between(0, 180);
+                     const double length = dice.between(0.5, 0.9), tilt = dice.between(-20, 20);
                      json& box = scene["colliders"][0];
-                     box["size_m"] = {dice.between(0.5, 0.9), thin, wide};
-                     box["rotation_deg"] = {0, turn, dice.between(-20, 20)};
+                     box["size_m"] = {length, thin, wide};
+                     box["rotation_deg"] = {0, turn, tilt};
                      box["friction"] = dice.between(0.2, 0.8);
                      box["margin_m"] = std::min(0.004, thin / 4);
-                     const double top = thin / 2 + dice.between(0.05, 0.4);
+                     // The cloth starts above the highest corner of the box.
+                     const double top = thin / 2 +
+                                        (length + wide) / 2 * std::abs(std::sin(tilt * std::numbers::pi / 180)) +
+                                        dice.between(0.05, 0.4);
                      scene["cloth"]["pose"]["center_m"] = {dice.between(-0.05, 0.05), top, dice.between(-0.05, 0.05)};
                      scene["cloth"]["sides"] = "double";
                      scene["time"]["duration_s"] = 1.2;
@@ -164,11 +169,12 @@ std::vector<RightSolver> right_solvers(const Scene& scene, const std::string& on
           !(entry.info.on_gpu && entry.devices().empty()))
         out.push_back(with);
   };
-  // Bullet keeps neither friction nor thin bodies, and its soft bodies rebound.
-  const bool alone = scene.colliders.empty() && scene.motion.empty();
+  // Bullet keeps neither friction nor thin bodies, and its soft bodies rebound. They also take velocities from
+  // positions in single precision: after a fall of 70 m, forces are off by a tenth of the weight.
+  const bool alone = scene.colliders.empty() && scene.motion.empty(), pinned = !scene.pins.vertices.empty();
   add(true, {"xpbd", R"({"quality": "accurate"})"});
   add(true, {"reference", "{}"});
-  add(alone, {"bullet-soft", "{}"});
+  add(alone && pinned, {"bullet-soft", "{}"});
   add(alone, {"bullet-deformable", "{}"});
   return out;
 }

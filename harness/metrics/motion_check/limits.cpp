@@ -1,5 +1,6 @@
 // What falls, colliders and attachments can give to the cloth: speed, energy and strain.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -24,7 +25,7 @@ class Limits {
         moves_(b.any_moves() || m.grip_speed > 0) {
     driven_ = std::max(scripted_, m.start_speed);
     area_m2_ = m.mass_kg / m.scene.cloth.areal_density_kg_per_m2;
-    whip_ = std::max(3.0, std::sqrt(1 + m.length_m / m.cell_m));
+    whip_ = std::max(3.0, std::sqrt(2 * m.length_m / m.cell_m));
     stiffness_ = m.scene.material.membrane_stiffness_N_per_m;
     is_held_.assign(m.vertices, false);
     for (const std::uint32_t v : m.scene.pins.vertices) is_held_[v] = true;
@@ -43,6 +44,7 @@ class Limits {
   void rise(std::size_t k, double energy, double kinetic, double mean_square);
   bool driven(std::size_t k) const;
   void strain(std::size_t k);
+  double impact_speed(std::size_t k, const Edge& e) const;
   double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
   /// Of a membrane wave [m/s].
   double wave_speed() const {
@@ -55,7 +57,8 @@ class Limits {
   Findings& found_;
   double scripted_, driven_ = 0, area_m2_ = 0;
   bool moves_;
-  double whip_;  ///< a whip puts the energy of the sheet into one line of its vertices
+  /// A whip puts the energy of the sheet into its border, whose vertices have half the mass of the others.
+  double whip_;
   std::optional<double> stiffness_;
   std::vector<bool> is_held_;  ///< in any frame
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
@@ -166,16 +169,30 @@ void Limits::rise(std::size_t k, double energy, double kinetic, double mean_squa
   least_ = std::min(least_, *std::max_element(had_.begin(), had_.end()));
 }
 
+/// Speed [m/s] at which an edge in reach of a collider meets it in the interval before a frame: the collider may stop
+/// or reverse one end, and the other end goes on. It is the speed of the interval before: no jump excuses itself.
+double Limits::impact_speed(std::size_t k, const Edge& e) const {
+  double fastest = 0;
+  bool in_reach = false;
+  for (const std::uint32_t v : {e.a, e.b}) {
+    in_reach = in_reach || bodies_.touched(k - 1, v) || bodies_.touched(k, v);
+    fastest = std::max(
+        fastest, k > 1 ? (m_.at(k - 1, v) - m_.at(k - 2, v)).norm() / m_.dt(k - 1) : m_.start_velocity_of(v).norm());
+  }
+  return in_reach ? fastest : 0;
+}
+
 void Limits::strain(std::size_t k) {
   double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
   std::vector<bool> held(m_.vertices, false);
   if (!m_.scene.grips.vertices.empty())
     for (const std::uint32_t v : m_.held(k)) held[v] = true;
-  std::vector<double> loose;  // changes of strain in the frame
+  std::vector<std::array<double, 2>> loose;  // changes of strain in the frame, and the speeds of impacts
   for (const Edge& e : m_.edges) {
     if (!(e.rest_m > 0)) continue;
     const double s = m_.strain(k, e);
-    if (k > 0 && !is_held_[e.a] && !is_held_[e.b]) loose.push_back(std::abs(s - m_.strain(k - 1, e)));
+    if (k > 0 && !is_held_[e.a] && !is_held_[e.b])
+      loose.push_back({std::abs(s - m_.strain(k - 1, e)), impact_speed(k, e)});
     charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
     compressed += std::max(-s, 0.0) / count;
     if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
@@ -183,8 +200,11 @@ void Limits::strain(std::size_t k) {
   constexpr std::ptrdiff_t kOthers = 12;
   if (loose.size() > 2 * kOthers) {
     std::nth_element(loose.begin(), loose.begin() + kOthers, loose.end(), std::greater());
-    const double most = *std::max_element(loose.begin(), loose.begin() + kOthers);
-    found_.add("tear", most / (0.15 + 2 * scripted_ * m_.dt(k) / m_.cell_m + 4 * loose[kOthers]), k);
+    const double others = 0.15 + 4 * loose[kOthers][0], rebound = 2 * m_.dt(k) / m_.cell_m;
+    double most = 0;
+    for (const auto& [change, impact] : loose)
+      most = std::max(most, change / (others + rebound * (scripted_ + impact)));
+    found_.add("tear", most, k);
   }
   if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
   const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
