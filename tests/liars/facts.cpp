@@ -1,37 +1,14 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "lies.hpp"
 #include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/wrench.hpp"
 
 namespace clothbench::liars {
 namespace {
 
-using V6 = Eigen::Matrix<double, 6, 1>;
-using M6 = Eigen::Matrix<double, 6, 6>;
-
-V6 wrench_of(const V3& force, const V3& arm) {
-  V6 w;
-  w << force, arm.cross(force);
-  return w;
-}
-
-/// Projection on the wrenches about `middle` that attachments cannot exert.
-M6 free_of_attachments(const motion_check::Motion& m, const V3& middle) {
-  M6 gram = M6::Zero();
-  for (const std::uint32_t v : m.held(0))
-    for (int axis = 0; axis < 3; ++axis) {
-      const V6 w = wrench_of(V3::Unit(axis), (m.at(0, v) - middle) / (m.length_m / 2));
-      gram += w * w.transpose();
-    }
-  const Eigen::SelfAdjointEigenSolver<M6> eigen(gram);
-  M6 keep = M6::Zero();
-  for (int i = 0; i < 6; ++i)
-    if (!(eigen.eigenvalues()[i] > 1e-6 * eigen.eigenvalues()[5]))
-      keep += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
-  return keep;
-}
+using motion_check::M6, motion_check::V6, motion_check::wrench_of;
 
 V3 middle_of(const motion_check::Motion& m, std::size_t frame, std::span<const std::uint32_t> vertices) {
   V3 sum = V3::Zero();
@@ -77,7 +54,7 @@ Facts facts_of(const Motion& motion) {
   f.up = f.falls ? V3(-m.gravity.normalized()) : V3(V3::UnitY());
   f.attached = m.has_attachments();
   const std::vector<std::uint32_t> held = m.held(0);
-  f.equations = held.empty() ? 6 : static_cast<int>(std::lround(free_of_attachments(m, middle_of(m, 0, held)).trace()));
+  f.equations = static_cast<int>(std::lround(motion_check::free_of_attachments(m, 0, middle_of(m, 0, held)).trace()));
   f.gravity = m.gravity.norm();
   const double Y = s.material.membrane_stiffness_N_per_m.value_or(1e4);
   f.soft_strain = 0.02 + 2 * m.mass_kg * m.weight_unit / (m.length_m * Y) +
@@ -125,7 +102,7 @@ bool changes_force(const Right& right, const Motion& told) {
   const std::vector<std::uint32_t> held = was.held(0);
   std::vector<std::uint32_t> about = held;
   for (std::uint32_t v = 0; held.empty() && v < was.vertices; ++v) about.push_back(v);
-  const M6 keep = held.empty() ? M6(M6::Identity()) : free_of_attachments(was, middle_of(was, 0, about));
+  const M6 keep = motion_check::free_of_attachments(was, 0, middle_of(was, 0, about));
   // Sliding on a face is judged more closely than what colliders of other shapes push.
   const double lasting = right.facts.slides ? 0.035 : 0.05;
   // A moving collider may exert any force on attached cloth.

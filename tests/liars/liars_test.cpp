@@ -11,7 +11,7 @@ TEST(Liars, AreToldFromRightMotions) {
   Matrix matrix;
   matrix.solver = "bullet-deformable";
   matrix.kinds = {"bar", "plate"};
-  matrix.motions = 2;
+  matrix.motions = 3;
   std::size_t told = 0, caught = 0;
   std::string missed;
   for (const Trial& t : tell_all(matrix)) {

@@ -19,14 +19,6 @@ Motion one_vertex(const Right& r, double by_m, Dice& dice) {
 std::vector<Lie> lies_of_shape() {
   return {
       // --- shape
-      {"vertices permuted", always, surely,
-       [](const Right& r, Dice& dice) -> Told {
-         const std::vector<Index> of = loose(r);
-         std::vector<Index> to(r.motion.vertices());
-         std::iota(to.begin(), to.end(), Index{0});
-         for (Index i = of.size(); i-- > 1;) std::swap(to[of[i]], to[of[between(0, i, dice)]]);
-         return moved(r, [&](Index k, Index v, const V3& x) { return k == 0 ? x : v3(r.motion.at(k, to[v])); });
-       }},
       {"two vertices exchanged", always, surely,
        [](const Right& r, Dice& dice) -> Told {
          const std::vector<Index> of = loose(r);
@@ -39,8 +31,6 @@ std::vector<Lie> lies_of_shape() {
        }},
       {"a vertex 1 cm off for a frame", always, beyond_impact<10>,
        [](const Right& r, Dice& dice) -> Told { return one_vertex(r, 0.01, dice); }},
-      {"a vertex 3 cm off for a frame", always, beyond_impact<30>,
-       [](const Right& r, Dice& dice) -> Told { return one_vertex(r, 0.03, dice); }},
       {"a vertex 10 cm off for a frame", always, beyond_impact<100>,
        [](const Right& r, Dice& dice) -> Told { return one_vertex(r, 0.1, dice); }},
       {"smoothed over 5 frames", always, judged,
@@ -67,7 +57,7 @@ std::vector<Lie> lies_of_shape() {
              for (Index v = 0; v < r.motion.vertices(); ++v)
                about += v3(r.motion.at(k, v)) / static_cast<double>(r.motion.vertices());
            }
-           return V3(about + (1 - 0.05 * smooth(static_cast<double>(k) / 10)) * (x - about));
+           return V3(about + (1 - 0.05 * faded(k, 0, 10)) * (x - about));
          });
        }},
       {"a patch frozen for 10 frames", always, hangs_still,
@@ -87,15 +77,6 @@ std::vector<Lie> lies_of_shape() {
        [](const Right& r, Dice& dice) -> Told {
          const V3 by = 0.002 * direction(dice);
          return moved(r, [&](Index k, Index, const V3& x) { return V3(x + (k % 2 == 0 ? 0.0 : 1.0) * by); });
-       }},
-      {"a band buzzes by 1 cm at 9 Hz", always, judged,
-       [](const Right& r, Dice& dice) -> Told {
-         const Cloth& c = r.motion.scene->cloth;
-         const V3 by = 0.01 * direction(dice);
-         return moved(r, [&](Index k, Index v, const V3& x) {
-           const double phase = 2 * std::numbers::pi * 9 * r.motion.time_s[k];
-           return static_cast<int>(v) % c.columns < c.columns / 4 ? V3(x + std::sin(phase) * by) : x;
-         });
        }},
   };
 }

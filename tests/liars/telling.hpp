@@ -26,8 +26,9 @@ inline V3 level(const V3& up, Dice& dice) {
   }
 }
 
-inline double smooth(double x) {
-  x = std::clamp(x, 0.0, 1.0);
+/// 0 up to frame `from`, then smoothly up to 1 within `frames`.
+inline double faded(Index k, Index from, double frames) {
+  const double x = std::min(static_cast<double>(std::max(k, from) - from) / frames, 1.0);
   return x * x * (3 - 2 * x);
 }
 

@@ -45,6 +45,7 @@ struct Body {
   std::unique_ptr<contact::TriangleTree> middle = nullptr;           ///< the middle plane of a box
   std::vector<double> middle_positions = {};
   std::vector<Corners> middle_triangles = {};
+  std::vector<V3> inner = {};  ///< points deep inside, of a body at rest
 
   bool moves() const { return collider.moves(); }
 };

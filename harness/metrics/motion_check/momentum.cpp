@@ -2,23 +2,21 @@
 // material is needed: what is left over gravity and damping must be a force that attachments and colliders in reach
 // can exert. The least distance to their cone is found by column generation and non-negative least squares (Lawson &
 // Hanson 1974, chapter 23).
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "metrics/motion_check/bodies.hpp"
-#include "metrics/motion_check/motion.hpp"
+#include "metrics/motion_check/wrench.hpp"
 
 namespace clothbench::motion_check {
 namespace {
 
-using V6 = Eigen::Matrix<double, 6, 1>;
-using M6 = Eigen::Matrix<double, 6, 6>;
-
 /// An impulse acts at a third of a frame from the stored one on average (the mean of the hat weights of a second
 /// difference); so far may its lever be wrong.
 constexpr double kChord = 1.0 / 3;
+/// Tolerance [weights] of a force that lasts, and the share of a tolerance below which distances are not resolved.
+constexpr double kLasting = 0.05, kResolved = 0.1;
 /// Frames over which mean forces are taken.
 constexpr std::size_t kWindow = 12;
 /// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
@@ -64,13 +62,6 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
     rest = w - columns * multiples;
   }
   return rest;
-}
-
-/// The wrench, in weights and half lengths, of a unit force.
-V6 wrench_of(const V3& force, const V3& arm) {
-  V6 w;
-  w << force, arm.cross(force);
-  return w;
 }
 
 /// The unit force of a contact that does most against a direction; zero if none does anything. `coulomb`: within the
@@ -122,10 +113,10 @@ class Momentum {
   };
 
   Interval interval(std::size_t k);
-  M6 free_of_attachments(std::size_t k, const V3& middle) const;
   std::vector<Contact> contacts_round(std::size_t k);
+  /// Distance of a wrench from the cone of what contacts can exert; an upper bound if that is `enough` or less.
   double outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
-                      bool coulomb = false) const;
+                      double enough, bool coulomb = false) const;
   Slip slip_of(std::size_t k) const;
   void sliding(std::size_t k, std::size_t span);
   void window(std::size_t k);
@@ -146,28 +137,6 @@ V3 Momentum::middle_of(std::size_t k) const {
   return sum / m_.mass_kg;
 }
 
-/// Projection on the wrenches that no attachment can exert. Held vertices of both intervals count.
-M6 Momentum::free_of_attachments(std::size_t k, const V3& middle) const {
-  M6 gram = M6::Zero();
-  int count = 0;
-  for (const std::size_t f : {k == 0 ? k : k - 1, k, std::min(k + 1, m_.frames - 1)})
-    for (const std::uint32_t v : m_.held(f)) {
-      const V3 arm = (m_.at(k, v) - middle) / arm_m_;
-      for (int axis = 0; axis < 3; ++axis) {
-        const V6 w = wrench_of(V3::Unit(axis), arm);
-        gram += w * w.transpose();
-      }
-      ++count;
-    }
-  if (count == 0) return M6::Identity();
-  const Eigen::SelfAdjointEigenSolver<M6> eigen(gram);
-  M6 keep = M6::Zero();
-  for (int i = 0; i < 6; ++i)
-    if (eigen.eigenvalues()[i] < 1e-6 * eigen.eigenvalues()[5])
-      keep += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
-  return keep;
-}
-
 std::vector<Contact> Momentum::contacts_round(std::size_t k) {
   std::vector<Contact> out;
   if (bodies_.empty()) return out;
@@ -179,14 +148,14 @@ std::vector<Contact> Momentum::contacts_round(std::size_t k) {
 }
 
 double Momentum::outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
-                              bool coulomb) const {
+                              double enough, bool coulomb) const {
   constexpr int kRounds = 60;
   Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
   Eigen::VectorXd multiples;
   V6 rest = w;
   // Without a projection a unit force has a wrench of at least 1, so that it gains at most its own work.
   const bool whole = keep.isIdentity();
-  for (int round = 0; round < kRounds && rest.norm() > 1e-3; ++round) {
+  for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
     V6 best = V6::Zero();
     double gain = 1e-4 * std::max(1.0, w.norm());
     const V3 turning = rest.tail<3>();
@@ -252,7 +221,7 @@ void Momentum::run() {
     Interval& now = all_[k];
     now = interval(k);
     const V3 middle = middle_of(k);
-    const M6 keep = free_of_attachments(k, middle);
+    const M6 keep = free_of_attachments(m_, k, middle);
     now.wrench = keep * now.wrench;
     const std::vector<Contact> contacts = contacts_round(k);
     now.contact = !contacts.empty();
@@ -262,15 +231,18 @@ void Momentum::run() {
         !(attached && std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.any_force; }));
     window(k);
     if (!now.judged) continue;
-    off[k] = std::max(
-        0.0, (now.contact ? outside_cone(now.wrench, contacts, keep, middle) : now.wrench.norm()) - now.hidden);
+    const double allowed = kLasting + noise(k);
+    off[k] = now.contact ? outside_cone(now.wrench, contacts, keep, middle, now.hidden + kResolved * allowed)
+                         : now.wrench.norm();
+    off[k] = std::max(0.0, off[k] - now.hidden);
     if (k == 0)
       found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
     else
       found_.add("impulse", off[k] / (0.5 + noise(k)), k);
     for (const std::size_t span : kSlidingSpans) sliding(k, span);
     if (now.contact && !attached) {
-      slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle, true);
+      slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle,
+                             kResolved * allowed, true);
       // Of one interval of an impact, a quarter of the force.
       found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
     }
@@ -278,8 +250,8 @@ void Momentum::run() {
     const auto median = [&](const std::vector<double>& x) {
       return std::max(std::min(x[k - 2], x[k - 1]), std::min(std::max(x[k - 2], x[k - 1]), x[k]));
     };
-    found_.add("force", median(off) / (0.05 + noise(k)), k);
-    if (now.contact && !attached) found_.add("friction", median(slip) / (0.05 + noise(k)), k);
+    found_.add("force", median(off) / allowed, k);
+    if (now.contact && !attached) found_.add("friction", median(slip) / allowed, k);
   }
   if (!bodies_.empty() && !m_.has_attachments()) free_motion();
 }
@@ -346,7 +318,7 @@ void Momentum::window(std::size_t k) {
     contact = contact || all_[i].contact;
   }
   if (!contact) {
-    found_.add("mean_force", std::max(0.0, mean.norm() - hidden) / (0.05 + noise(k) / kWindow), k);
+    found_.add("mean_force", std::max(0.0, mean.norm() - hidden) / (kLasting + noise(k) / kWindow), k);
     return;
   }
   double moved = 0;
@@ -360,8 +332,10 @@ void Momentum::window(std::size_t k) {
     const std::vector<Contact>& more = bodies_.contacts(f);
     contacts.insert(contacts.end(), more.begin(), more.end());
   }
-  const double off = outside_cone(mean, contacts, free_of_attachments(at, middle), middle, true);
-  found_.add("support", off / (0.03 + noise(k) / kWindow), k);
+  const double allowed = 0.03 + noise(k) / kWindow;
+  const double off =
+      outside_cone(mean, contacts, free_of_attachments(m_, at, middle), middle, kResolved * allowed, true);
+  found_.add("support", off / allowed, k);
 }
 
 /// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
@@ -389,6 +363,23 @@ void Momentum::free_motion() {
 }
 
 }  // namespace
+
+M6 free_of_attachments(const Motion& m, std::size_t k, const V3& middle) {
+  M6 gram = M6::Zero();
+  for (const std::size_t f : {k == 0 ? k : k - 1, k, std::min(k + 1, m.frames - 1)})
+    for (const std::uint32_t v : m.held(f))
+      for (int axis = 0; axis < 3; ++axis) {
+        const V6 w = wrench_of(V3::Unit(axis), (m.at(k, v) - middle) / (m.length_m / 2));
+        gram += w * w.transpose();
+      }
+  if (gram.isZero(0)) return M6::Identity();
+  const Eigen::SelfAdjointEigenSolver<M6> eigen(gram);
+  M6 keep = M6::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (eigen.eigenvalues()[i] < 1e-6 * eigen.eigenvalues()[5])
+      keep += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+  return keep;
+}
 
 void check_momentum(const Motion& m, Bodies& bodies, Findings& found) { Momentum(m, bodies, found).run(); }
 

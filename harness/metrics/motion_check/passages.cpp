@@ -131,7 +131,12 @@ int Bodies::passages(std::size_t frame) const {
   int count = 0;
   for (Body& b : s.bodies) {
     if (b.kind.half_space) continue;
-    count += s.through_cloth(frame, s.inner_points(b, frame - 1), s.inner_points(b, frame));
+    if (b.moves()) {
+      count += s.through_cloth(frame, s.inner_points(b, frame - 1), s.inner_points(b, frame));
+    } else {
+      if (b.inner.empty()) b.inner = s.inner_points(b, 0);
+      count += s.through_cloth(frame, b.inner, b.inner);
+    }
     if (b.still && b.collider.shape != Collider::Shape::Box)
       count += s.through_surface(frame, *b.still, s.pose(b, 0).positions, b.triangles);
     if (b.middle) count += s.through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
