@@ -22,7 +22,7 @@ double rms_way(const motion_check::Motion& m, std::size_t from, std::size_t to) 
   return std::sqrt(sum / static_cast<double>(m.vertices));
 }
 
-/// Of the mean of the vertices, between a frame and the one before it.
+/// Velocity of the mean of the vertices, between a frame and the one before it.
 V3 mean_velocity(const motion_check::Motion& m, std::size_t frame) {
   V3 sum = V3::Zero();
   for (std::size_t v = 0; v < m.vertices; ++v) sum += m.at(frame, v) - m.at(frame - 1, v);
@@ -66,7 +66,7 @@ Facts facts_of(const Motion& motion) {
     tensile = std::max(tensile, sum / static_cast<double>(std::max<std::size_t>(m.edges.size(), 1)));
   }
   f.soft_strain += std::sqrt(tensile);
-  f.solid = !s.colliders.empty();
+  f.collider = !s.colliders.empty();
   for (std::size_t c = 0; c < s.colliders.size(); ++c) {
     const double said = c < motion.contact_offsets_m.size() ? motion.contact_offsets_m[c] : 0;
     f.offset_m = std::max({f.offset_m, s.colliders[c].margin_m, std::isfinite(said) ? said : 0});
@@ -74,15 +74,15 @@ Facts facts_of(const Motion& motion) {
   f.self = s.cloth.self_collision.thickness_m > 0;
   f.length_m = m.length_m;
   f.frame_s = s.time.dt();
-  for (const Collider& c : s.colliders) f.mover = f.mover || c.moves();
+  for (const Collider& c : s.colliders) f.kinematic = f.kinematic || c.moves();
   f.frames = f.first_touch = f.at_rest = f.fastest = f.deepest_touch = m.frames;
   std::size_t most = 0;
   std::vector<bool> air(m.frames, true);
   for (std::size_t k = 0; k < m.frames; ++k) {
-    const std::size_t count = f.solid ? bodies.contacts(k).size() : 0;
+    const std::size_t count = f.collider ? bodies.contacts(k).size() : 0;
     air[k] = count == 0;
     if (count > 0) f.first_touch = std::min(f.first_touch, k);
-    if (f.mover && count > most) most = count, f.deepest_touch = k;
+    if (f.kinematic && count > most) most = count, f.deepest_touch = k;
     if (k == 0) continue;
     const double speed = rms_way(m, k - 1, k) / m.dt(k);
     if (f.fastest == m.frames || speed > f.speed_m_per_s) f.fastest = k, f.speed_m_per_s = speed;
@@ -108,7 +108,7 @@ bool changes_force(const Right& right, const Motion& told) {
   // A moving collider may exert any force on attached cloth.
   const std::vector<std::size_t>& air = right.facts.air;
   const auto touched = [&](std::size_t k) {
-    return right.facts.attached && right.facts.mover && !std::binary_search(air.begin(), air.end(), k);
+    return right.facts.attached && right.facts.kinematic && !std::binary_search(air.begin(), air.end(), k);
   };
   std::vector<V6> sums = {V6::Zero()};
   std::vector<double> hidden = {0};

@@ -15,18 +15,18 @@ using V3 = Eigen::Vector3d;
 
 /// Properties of a scene and its right motion, for the choice of lies. All frames count from 0, the start.
 struct Facts {
-  int equations = 6;      ///< how many of the six momentum equations attachments do not absorb
-  bool falls = false;     ///< the scene has gravity
-  bool attached = false;  ///< pins or grips
-  bool solid = false;     ///< a collider
-  bool mover = false;     ///< a collider that moves
-  bool self = false;      ///< the cloth meets itself
-  bool slides = false;    ///< only on planes, steep or faster than they stop in a tenth of a second
+  int equations = 6;       ///< how many of the six momentum equations attachments do not absorb
+  bool falls = false;      ///< the scene has gravity
+  bool attached = false;   ///< pins or grips
+  bool collider = false;   ///< static or kinematic
+  bool kinematic = false;  ///< a kinematic collider
+  bool self = false;       ///< the cloth meets itself
+  bool slides = false;     ///< only on planes, steep or faster than they stop in a tenth of a second
   std::size_t frames = 0;
   std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
   std::size_t fastest = 0;        ///< frame of the highest RMS speed
-  std::size_t deepest_touch = 0;  ///< with a mover: the frame with most contacts; `frames` if there is none
+  std::size_t deepest_touch = 0;  ///< with kinematic: the frame with most contacts; else `frames`
   std::vector<std::size_t> air;   ///< frames without contact and two neighbours without
   double speed_m_per_s = 0;       ///< at `fastest`
   double frame_s = 0;             ///< duration of a frame

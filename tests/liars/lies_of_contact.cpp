@@ -72,7 +72,7 @@ std::vector<Lie> lies_of_contact() {
          return moved(r, [&](Index k, Index, const V3& x) { return V3(x - deep_m * faded(k, from, 20) * r.facts.up); });
        }},
       {"falls through", drops, surely, [](const Right& r, Dice&) -> Told { return without_colliders(r, false); }},
-      {"ignores the mover", has_mover, surely,
+      {"ignores the mover", has_kinematic, surely,
        [](const Right& r, Dice&) -> Told { return without_colliders(r, true); }},
       {"jumps through", drops, surely, [](const Right& r, Dice&) -> Told { return jumped_through(r); }},
       {"slides at 0.5 m/s", lies_still, surely,

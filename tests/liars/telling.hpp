@@ -1,5 +1,5 @@
 #pragma once
-// What lies are made of: a right motion at other places, at other moments.
+// Ingredients of lies: a right motion at other places, at other moments.
 #include <algorithm>
 #include <cmath>
 
@@ -86,9 +86,9 @@ inline bool stiff(const Right& r, const Motion&) { return r.facts.soft_strain < 
 inline bool drags(const Right& r, const Motion& told) { return r.facts.slides && judged(r, told); }
 inline bool attached(const Facts& f) { return f.attached; }
 inline bool flies(const Facts& f) { return !f.air.empty(); }
-inline bool drops(const Facts& f) { return f.falls && !f.attached && f.solid; }
+inline bool drops(const Facts& f) { return f.falls && !f.attached && f.collider; }
 inline bool lies_still(const Facts& f) { return drops(f) && f.at_rest + 24 < f.frames; }
-inline bool has_mover(const Facts& f) { return f.mover && f.deepest_touch < f.frames; }
+inline bool has_kinematic(const Facts& f) { return f.kinematic && f.deepest_touch < f.frames; }
 /// A vertex off in one frame looks like an impact unless it moves by more than vertices are accelerated around it.
 template <int Millimetres>
 inline bool beyond_impact(const Right& r, const Motion& told) {

@@ -129,7 +129,7 @@ TEST(Popping, IsNoneInAFallAndWhereASheetStopsOnAPlane) {
 }
 
 /// A wave runs along the sheet to its free edge, which it moves at twice its speed and beyond. That is no popping. The
-/// same motion of the edge alone is.
+/// same motion of only the edge is.
 TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   const Scene scene = scene_of(72);
   const auto cracked = [](double from_column, double doubled) -> Motion {

@@ -1,4 +1,4 @@
-// What falls, colliders and attachments can give to the cloth: speed, energy and strain.
+// Speed, energy and strain that falls, colliders and attachments can give to the cloth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +46,7 @@ class Limits {
   void strain(std::size_t k);
   double impact_speed(std::size_t k, const Edge& e) const;
   double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
-  /// Of a membrane wave [m/s].
+  /// Speed of a membrane wave [m/s].
   double wave_speed() const {
     return std::sqrt(stiffness_.value_or(kInextensible) / m_.scene.cloth.areal_density_kg_per_m2);
   }
@@ -208,7 +208,7 @@ void Limits::strain(std::size_t k) {
   }
   if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
   const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
-  // A recoil compresses by as much as was stretched, an impact by its speed over that of a wave.
+  // A recoil compresses by the previous stretch, an impact by its speed over the speed of a wave.
   const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
   found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
   // The stiffness of links that should not stretch at all is the solver's own.

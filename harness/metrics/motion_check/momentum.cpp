@@ -21,7 +21,7 @@ constexpr double kLasting = 0.05, kResolved = 0.1;
 constexpr std::size_t kWindow = 12;
 /// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
-/// Of cloth that slides steadily on a face: change of the normal force, and what is left over friction [weights].
+/// For cloth that slides steadily on a face: change of the normal force, and what is left over friction [weights].
 constexpr double kSteady = 0.05, kSliding = 0.03, kFrictionShare = 0.05;
 /// Intervals over which sliding is averaged.
 constexpr std::size_t kSlidingSpans[] = {4, 12};
@@ -213,7 +213,7 @@ Momentum::Interval Momentum::interval(std::size_t k) {
 void Momentum::run() {
   found_.define("impulse");
   std::vector<double> off(m_.frames, 0), slip(m_.frames, 0);
-  // The force alone: where in a frame a sliding contact acts is not known well enough for moments.
+  // Only the force: where in a frame a sliding contact acts is not known well enough for moments.
   M6 forces_only = M6::Zero();
   forces_only.topLeftCorner<3, 3>().setIdentity();
   all_.resize(m_.frames);
@@ -243,7 +243,7 @@ void Momentum::run() {
     if (now.contact && !attached) {
       slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle,
                              kResolved * allowed, true);
-      // Of one interval of an impact, a quarter of the force.
+      // One interval of an impact: a quarter of the force.
       found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
     }
     if (k < 3) continue;
@@ -326,7 +326,7 @@ void Momentum::window(std::size_t k) {
   if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
   const std::size_t at = k - kWindow / 2;
   const V3 middle = middle_of(at);
-  // What rests may have been touched later, or only until earlier.
+  // Cloth at rest may have been touched later, or only until earlier.
   std::vector<Contact> contacts = contacts_round(at);
   for (const std::size_t f : {k - kWindow, k - 1}) {
     const std::vector<Contact>& more = bodies_.contacts(f);
