@@ -1,3 +1,4 @@
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -176,7 +177,9 @@ ReferenceCase incline(const Strip& s) {
 
 ReferenceCase capstan(const Strip& s) {
   const Draped strip = draped(s);
-  s.need(strip.friction > 0, "friction");
+  const double half_turn = std::numbers::pi / (2 * strip.turns);
+  s.need(strip.friction > 0 && strip.friction * std::tan(half_turn) < 1,
+         "friction above 0 and below 1 / tan(half a turn of the strip)");
   const Capstan polygon{strip.friction, strip.radius_m, s.scene.cloth.areal_density_kg_per_m2, s.g, strip.turns};
   const auto moved = [&](int turns) {
     Capstan cylinder = polygon;

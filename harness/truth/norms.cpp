@@ -6,7 +6,6 @@
 #include <string>
 
 #include "clothbench/error.hpp"
-#include "truth/solutions.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -22,12 +21,6 @@ std::array<int, 2> covered(double low, double high, double side) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-void same_size(std::size_t got, std::size_t expected, const char* argument) {
-  if (got != expected)
-    throw Error(std::string("argument ") + argument + ": expected " + std::to_string(expected) + " values, got " +
-                std::to_string(got));
-}
-
 /// Infinity counts as NaN: a mean with one infinite part says nothing.
 double finite_or_nan(double value) { return std::isfinite(value) ? value : kNan; }
 
@@ -37,17 +30,9 @@ double square_distance(std::span<const double> a, std::span<const double> b, std
   return sum;
 }
 
-void check(const MaterialLattice& lattice, std::span<const double> values, std::span<const double> truth,
-           double scale) {
-  same_size(values.size(), 3 * lattice.size(), "values");
-  same_size(truth.size(), 3 * lattice.size(), "truth");
-  positive(scale, "scale");
-}
-
 }  // namespace
 
-MaterialLattice::MaterialLattice(double width, double height)
-    : width_(positive(width, "width_m")), height_(positive(height, "height_m")) {
+MaterialLattice::MaterialLattice(double width, double height) : width_(width), height_(height) {
   const double cell = width / (kSide - 1) * height / (kSide - 1);
   const auto share = [](int i) { return i == 0 || i == kSide - 1 ? 0.5 : 1.0; };
   for (int j = 0; j < kSide; ++j)
@@ -61,7 +46,7 @@ double MaterialLattice::longer_side_m() const { return std::max(width_, height_)
 
 LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const double> rest,
                                std::span<const std::uint32_t> triangles)
-    : vertices_(rest.size() / 2), points_(lattice.size()) {
+    : points_(lattice.size()) {
   const double width = lattice.points_m().back()[0], height = lattice.points_m().back()[1];
   // How far a point lies outside the best triangle so far, as its smallest barycentric weight.
   std::vector<double> inside(lattice.size(), -std::numeric_limits<double>::infinity());
@@ -69,7 +54,6 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
     std::array<std::array<double, 2>, 3> p;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t v = triangles[t + k];
-      if (v >= vertices_) throw Error("argument triangles: expected vertices below " + std::to_string(vertices_));
       p[k] = {rest[2 * v], rest[2 * v + 1]};
     }
     const auto cross = [](const auto& a, const auto& b, const auto& c) {
@@ -101,9 +85,6 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
 }
 
 std::vector<double> LatticeSampler::sample(std::span<const double> values) const {
-  if (values.size() != 3 * vertices_)
-    throw Error("argument values: expected 3 for each of " + std::to_string(vertices_) + " vertices, got " +
-                std::to_string(values.size()));
   std::vector<double> out(3 * points_.size());
   for (std::size_t s = 0; s < points_.size(); ++s)
     for (std::size_t k = 0; k < 3; ++k)
@@ -114,7 +95,6 @@ std::vector<double> LatticeSampler::sample(std::span<const double> values) const
 
 double lattice_rms_error(const MaterialLattice& lattice, std::span<const double> values, std::span<const double> truth,
                          double scale) {
-  check(lattice, values, truth, scale);
   double sum = 0, area = 0;
   for (std::size_t s = 0; s < lattice.size(); ++s) {
     sum += lattice.areas_m2()[s] * square_distance(values, truth, s);
@@ -124,23 +104,17 @@ double lattice_rms_error(const MaterialLattice& lattice, std::span<const double>
 }
 
 double time_rms(std::span<const double> times, std::span<const double> errors) {
-  same_size(errors.size(), times.size(), "errors");
-  if (times.size() < 2) throw Error("argument times_s: expected 2 times or more");
   double sum = 0;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1])) throw Error("argument times_s: expected ascending times");
+  for (std::size_t i = 1; i < times.size(); ++i)
     sum += 0.5 * (times[i] - times[i - 1]) * (errors[i] * errors[i] + errors[i - 1] * errors[i - 1]);
-  }
   return finite_or_nan(std::sqrt(sum / (times.back() - times.front())));
 }
 
 double quantity_error(double value, double truth, double scale) {
-  return finite_or_nan(std::abs(value - truth) / positive(scale, "scale"));
+  return finite_or_nan(std::abs(value - truth) / scale);
 }
 
 StretchError stretch_error(std::span<const double> strains, std::span<const double> truth) {
-  same_size(truth.size(), strains.size(), "truth");
-  if (strains.empty()) throw Error("argument strains: expected 1 or more");
   std::vector<double> excess(strains.size());
   double squares = 0;
   for (std::size_t i = 0; i < excess.size(); ++i) {

@@ -8,7 +8,7 @@ namespace clothbench::truth {
 
 /// The 33 x 33 material points at which every mesh is compared with its truth, at any resolution: a regular lattice
 /// over the rest rectangle [0, width] x [0, height], row by row (u fastest), with Voronoi areas (half a cell on an
-/// edge, a quarter at a corner). Throws Error for a side that is not positive.
+/// edge, a quarter at a corner).
 class MaterialLattice {
  public:
   static constexpr int kSide = 33;
@@ -29,11 +29,11 @@ class MaterialLattice {
 /// per mesh. A point on an edge belongs to the triangle listed first; either gives the same value.
 class LatticeSampler {
  public:
-  /// `rest_m`: u, v per vertex; `triangles`: 3 per triangle, of either orientation. Throws Error for an index out of
-  /// range, or if a point of the lattice lies in no triangle (by more than 1e-9 of the longer side).
+  /// `rest_m`: u, v per vertex; `triangles`: 3 per triangle, of either orientation. Throws Error if a point
+  /// of the lattice lies in no triangle (by more than 1e-9 of the longer side).
   LatticeSampler(const MaterialLattice&, std::span<const double> rest_m, std::span<const std::uint32_t> triangles);
 
-  /// `values`: x, y, z per vertex; returns x, y, z per point of the lattice. Throws Error for another number of values.
+  /// `values`: x, y, z per vertex; returns x, y, z per point of the lattice.
   std::vector<double> sample(std::span<const double> values) const;
 
  private:
@@ -41,12 +41,11 @@ class LatticeSampler {
     std::array<std::uint32_t, 3> vertex;
     std::array<double, 3> weight;
   };
-  std::size_t vertices_;
   std::vector<Weights> points_;
 };
 
 // Distances between a run and its truth, with one definition for every scene. A value that is not finite gives NaN,
-// never a small error. Throws Error for sizes that do not match or a scale that is not positive.
+// never a small error. Both sides have the same points, edges or times.
 
 /// e2: area-weighted RMS distance of the lattice's points (x, y, z each) over `scale`. The scale is the longer side.
 double lattice_rms_error(const MaterialLattice&, std::span<const double> values, std::span<const double> truth,

@@ -6,8 +6,8 @@
 #include <vector>
 
 // Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
-// All values are in SI units; tensions and loads are per width. A value outside its range throws an Error that names
-// the argument.
+// All values are in SI units; tensions and loads are per width. The cases of strip_cases.cpp and contact_cases.cpp have
+// checked the ranges.
 
 namespace clothbench::truth {
 
@@ -19,11 +19,10 @@ std::array<double, 2> node_position(const Nodes&, double share);
 
 /// A free body in uniform gravity with damping proportional to its mass: dv/dt = -g - c v (upwards is positive). Every
 /// point of a cloth without internal motion follows it, whatever its stiffness.
-///   v = v0 e^{-ct} - g (1 - e^{-ct})/c,   z = z0 + v0 t p1(ct) - g t^2 p2(ct),
+///   v = v0 e^{-ct} - g (1 - e^{-ct})/c,   z = v0 t p1(ct) - g t^2 p2(ct),
 ///   p1(x) = (1 - e^{-x})/x,  p2(x) = (x - 1 + e^{-x})/x^2  (1 and 1/2 at x = 0).
 /// Source: Newton's second law. Errors of rounding only.
 struct FreeFall {
-  double height_m = 0;
   double speed_m_per_s = 0;  ///< upwards
   double gravity_m_per_s2 = 9.81;
   double damping_per_s = 0;
@@ -65,7 +64,8 @@ std::vector<Nodes> swing(const SwingingChain&, std::span<const double> times_s, 
 
 /// A strip of springs, T = Y (lambda - 1) per unit rest width, that hangs at rest from its upper edge (s = 0), under
 /// its weight and a load F on its lower edge: T(s) = rho g (L - s) + F, displacement u = (rho g/Y)(L s - s^2/2) + F
-/// s/Y. Source: equilibrium of a heavy bar. Errors of rounding only.
+/// s/Y. Rows of springs whose cells give half of their mass to either row lie exactly on this curve. Source:
+/// equilibrium of a heavy bar. Errors of rounding only.
 struct HeavyStrip {
   double length_m = 1;
   double areal_density_kg_per_m2 = 0.2;
@@ -74,10 +74,6 @@ struct HeavyStrip {
   double end_load_N_per_m = 0;
 };
 double hang_displacement_m(const HeavyStrip&, double rest_m);
-
-/// Displacement of row `row` (0 = fixed .. cells) of `cells` springs. Either row of a cell has half of its mass, so
-/// rows lie exactly on the curve above.
-double hang_row_displacement_m(const HeavyStrip&, int cells, int row);
 
 /// Shape at rest of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum
 /// of potential and bending energy, (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 per link (quadratic isometric bending, Bergou
@@ -159,19 +155,12 @@ double greatest_overhang_m(const Capstan&, double light_overhang_m);
 /// The strip sliding from rest: at speed v, pressure times R is T + rho g R sin phi - rho v^2 and
 ///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = overhangs now,
 /// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that does not slip stays static.
-/// Throws Error for a time at which the light end has reached the axis. Integrated as above, tolerance 1e-12.
+/// Throws Error for a time at which the light end has reached the axis. Expects light_overhang_m <= heavy_overhang_m.
+/// Integrated as above, tolerance 1e-12.
 struct SlidState {
   double displacement_m, speed_m_per_s;
 };
 std::vector<SlidState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
                                   std::span<const double> times_s);
-
-/// Each returns the value if it meets the condition in the function's name. Otherwise (also for NaN and infinity) it
-/// throws an Error that names the argument, the expected range, and the value.
-double positive(double value, const char* argument);
-double non_negative(double value, const char* argument);
-double within(double value, double least, double greatest, const char* argument);  ///< ends included
-double between(double value, double lower, double upper, const char* argument);    ///< ends excluded
-int at_least(int value, int least, const char* argument);
 
 }  // namespace clothbench::truth

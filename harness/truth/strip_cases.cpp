@@ -34,7 +34,7 @@ ReferenceCase free_fall(const Strip& s) {
   s.need_flat();
   ReferenceCase known = s.reference_case();
   known.quantity_name = "fall of the centre of mass";
-  const auto body = [c = s.scene.material.damping_per_s](double v, double g) { return FreeFall{0, v, g, c}; };
+  const auto body = [c = s.scene.material.damping_per_s](double v, double g) { return FreeFall{v, g, c}; };
   known.quantity_scale = -fall_height_m(body(0, s.g), s.time_s(s.scene.time.frames()));
   const Vec3 v0 = s.scene.cloth.initial_velocity_m_per_s;
   const auto fallen = [s, v0, body](double share, int frame) {
@@ -174,7 +174,7 @@ ReferenceCase heavy_strip(const Strip& s) {
   known.columns = [s, strip](int) {
     Columns out;
     for (int i = 0; i <= s.links; ++i)
-      out.push_back(s.at(s.length_m * i / s.links + hang_row_displacement_m(strip, s.links, i), 0));
+      out.push_back(s.at(s.length_m * i / s.links + hang_displacement_m(strip, s.length_m * i / s.links), 0));
     return out;
   };
   if (sheet)
@@ -213,6 +213,7 @@ ReferenceCase cantilever(const Strip& s) {
   const double cell = s.mesh() ? clamp_of_mesh_m(s) : s.scene.cloth.du(), free_m = s.length_m - cell,
                weight = s.scene.cloth.areal_density_kg_per_m2 * s.g;
   const double gamma = weight * free_m * free_m * free_m / s.scene.material.bending_rigidity_N_m;
+  s.need(gamma <= 1e4, "areal density * g * length^3 / bending rigidity of at most 1e4");
   ReferenceCase known = s.reference_case();
   known.settles = true;
   known.quantity_name = "drop of the free end";

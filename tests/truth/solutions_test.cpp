@@ -6,7 +6,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -18,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 using State = std::vector<double>;
-constexpr double kDegree = pi / 180, kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = pi / 180;
 
 /// A table of published numbers: comment lines with its source and "# digits N" (significant), a line of column names,
 /// rows.
@@ -76,11 +75,11 @@ State integrated(State y, double end, F f) {
 }
 
 TEST(FreeFall, SolvesItsEquation) {
-  const FreeFall undamped{2, 3, 9.81, 0};
-  EXPECT_DOUBLE_EQ(fall_height_m(undamped, 0.5), 2 + 1.5 - 9.81 / 8);
+  const FreeFall undamped{3, 9.81, 0};
+  EXPECT_DOUBLE_EQ(fall_height_m(undamped, 0.5), 1.5 - 9.81 / 8);
   for (const double c : {1e-9, 1e-3, 0.1, 1.0, 1.999999, 2.000001, 30.0}) {
-    const FreeFall f{2, 3, 9.81, c};
-    const auto y = integrated({2, 3}, 0.5, [&](const State& s, State& d, double) { d = {s[1], -9.81 - c * s[1]}; });
+    const FreeFall f{3, 9.81, c};
+    const auto y = integrated({0, 3}, 0.5, [&](const State& s, State& d, double) { d = {s[1], -9.81 - c * s[1]}; });
     EXPECT_NEAR(fall_height_m(f, 0.5), y[0], 1e-12) << c;
   }
 }
@@ -151,9 +150,13 @@ TEST(HeavyStrip, HasThePublishedStretchAlsoInRows) {
                  slope = (hang_displacement_m(loaded, at + h) - hang_displacement_m(loaded, at - h)) / (2 * h);
     EXPECT_NEAR(slope, (0.3 * 9.81 * (1.5 - at) + 7) / 200, 1e-8) << "the strain carries what hangs below";
   }
-  for (const int n : {1, 7, 32})
-    for (int row = 0; row <= n; ++row)
-      EXPECT_NEAR(hang_row_displacement_m(loaded, n, row), hang_displacement_m(loaded, 1.5 * row / n), 1e-14);
+  for (const int n : {1, 7, 32}) {
+    double moved = 0;  // springs that carry half of their own cell and all below it
+    for (int row = 1; row <= n; ++row) {
+      moved += 1.5 / n * (0.3 * 9.81 * 1.5 / n * (n - row + 0.5) + 7) / 200;
+      EXPECT_NEAR(moved, hang_displacement_m(loaded, 1.5 * row / n), 1e-14);
+    }
+  }
 }
 
 /// Euler's elastica by shooting for the angle of the tip: from there inwards theta'' = -Gamma s cos(theta).
@@ -310,54 +313,6 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
     EXPECT_TRUE(slow > 0 && slow < 1e-3) << slow;
   }
   EXPECT_THROW(slide_over({}, 0.2, 5, State{0, 0.5}), Error) << "the light end is over";
-  EXPECT_THROW(slide_over({}, 2, 0.1, times), Error) << "it would slip to the other side";
-}
-
-TEST(Arguments, AreNamedWhenTheyAreBad) {
-  const State backwards{0.2, 0.1}, one{0.1};
-  const std::pair<const char*, std::function<void()>> calls[] = {
-      {"time_s", [] { fall_height_m({}, -1); }},
-      {"gravity",
-       [] {
-         fall_height_m({0, 0, -1, 0}, 1);
-       }},
-      {"amplitude_rad",
-       [] {
-         pendulum_period_s({1, 9.81, 3.2});
-       }},
-      {"links", [&] { swing({0}, one); }},
-      {"times_s", [&] { swing({}, backwards); }},
-      {"tolerance", [&] { swing({}, one, kNan); }},
-      {"share",
-       [] {
-         node_position({{0, 0}, {1, 0}}, 1.1);
-       }},
-      {"rest_m", [] { hang_displacement_m({}, 1.1); }},
-      {"row", [] { hang_row_displacement_m({}, 4, 5); }},
-      {"own_weight", [] { cantilever_nodes(8, kNan); }},
-      {"times_s", [&] { pull({}, one, one, one); }},
-      {"angle_rad",
-       [] {
-         slide_down({2, 0.3, 0, 9.81}, 1);
-       }},
-      {"friction",
-       [] {
-         slide_down({0.1, kNan, 0, 9.81}, 1);
-       }},
-      {"friction",
-       [] {
-         greatest_overhang_m({2, 0.05, 0.2, 9.81, 2}, 1);
-       }},
-      {"light_overhang", [] { greatest_overhang_m({}, -1); }}};
-  for (const auto& [argument, call] : calls) {
-    try {
-      call();
-      ADD_FAILURE() << "accepted a bad " << argument;
-    } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find(argument), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find("expected"), std::string::npos) << e.what();
-    }
-  }
 }
 
 }  // namespace
