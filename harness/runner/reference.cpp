@@ -12,8 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "base/files.hpp"
+#include "base/json_number.hpp"
 #include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
@@ -103,14 +105,23 @@ bool has_reference_solver() {
 
 }  // namespace
 
+namespace {
+
+constexpr std::pair<const char*, double ReferenceResult::*> kScalars[] = {
+    {"truth_value", &ReferenceResult::truth},
+    {"truth_space_error", &ReferenceResult::space_error},
+    {"reference_value", &ReferenceResult::value},
+    {"reference_uncertainty", &ReferenceResult::uncertainty},
+    {"reference_order_bdf2", &ReferenceResult::order_bdf2},
+    {"reference_order_conservative", &ReferenceResult::order_conservative},
+    {"reference_truth_distance", &ReferenceResult::truth_distance}};
+
+}  // namespace
+
 std::map<std::string, double> ReferenceResult::scalars() const {
-  return {{"truth_value", truth},
-          {"truth_space_error", space_error},
-          {"reference_value", value},
-          {"reference_uncertainty", uncertainty},
-          {"reference_order_bdf2", order_bdf2},
-          {"reference_order_conservative", order_conservative},
-          {"reference_truth_distance", truth_distance}};
+  std::map<std::string, double> out;
+  for (const auto& [name, member] : kScalars) out[name] = this->*member;
+  return out;
 }
 
 /// The result for a scene beyond the reference solver's scope: its truth is a closed form and needs none.
@@ -118,7 +129,6 @@ ReferenceResult closed_form(const Scene& scene) {
   const TruthJudge judge(scene);
   const truth::ReferenceCase& known = judge.reference_case();
   ReferenceResult r;
-  r.scale = known.quantity_scale;
   r.truth = known.quantity(known.columns(scene.time.frames()));
   r.value = r.order_bdf2 = r.order_conservative = r.truth_distance = kMissing;
   r.space_error = judge.space_error();
@@ -132,8 +142,8 @@ ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rule
   const int frames = scene.time.frames();
   const auto per_frame = static_cast<unsigned>(std::max(1, (rules.moving_steps + frames - 1) / frames));
   ReferenceResult r;
-  r.least_substeps = known.settles ? rules.settling_substeps : static_cast<int>(std::bit_ceil(per_frame));
-  r.scale = known.quantity_scale;
+  const int least_substeps = known.settles ? rules.settling_substeps : static_cast<int>(std::bit_ceil(per_frame));
+  const double scale = known.quantity_scale;
   r.truth = known.quantity(known.columns(frames));
   r.space_error = judge.space_error();
   Extrapolated found[2];
@@ -141,21 +151,20 @@ ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rule
   for (int i = 0; i < 2; ++i) {
     Run f[3];
     for (int level = 0; level < 3; ++level)
-      f[level] =
-          run_quantity(scene, judge, i == 0 ? "bdf2" : "conservative", r.least_substeps << level, rules.tolerance);
+      f[level] = run_quantity(scene, judge, i == 0 ? "bdf2" : "conservative", least_substeps << level, rules.tolerance);
     if (i == 0) coarsest = f[0].value;
     if (scene.cloth.mesh && !(f[2].error <= r.space_error)) r.space_error = f[2].error;
     found[i] = known.settles
                    ? Extrapolated{f[2].value, std::max(std::abs(f[2].value - f[1].value), f[2].unrest), kMissing}
-                   : extrapolate(f[2].value, f[1].value, f[0].value, r.scale);
+                   : extrapolate(f[2].value, f[1].value, f[0].value, scale);
   }
-  const double strict = run_quantity(scene, judge, "bdf2", r.least_substeps, rules.tolerance / 10).value;
+  const double strict = run_quantity(scene, judge, "bdf2", least_substeps, rules.tolerance / 10).value;
   r.order_bdf2 = found[0].order;
   r.order_conservative = found[1].order;
   r.value = (found[0].value + found[1].value) / 2;
   const double between = std::abs(found[0].value - found[1].value), of_tolerance = std::abs(coarsest - strict);
-  r.uncertainty = std::max({found[0].uncertainty, found[1].uncertainty, between, of_tolerance}) / r.scale;
-  r.truth_distance = std::abs(r.value - r.truth) / r.scale;
+  r.uncertainty = std::max({found[0].uncertainty, found[1].uncertainty, between, of_tolerance}) / scale;
+  r.truth_distance = std::abs(r.value - r.truth) / scale;
   return r;
 }
 
@@ -208,28 +217,6 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
 
 namespace {
 
-json to_json(const json& key, const ReferenceResult& r) {
-  json j = {{"key", key}, {"scale", r.scale}, {"least_substeps", r.least_substeps}};
-  for (const auto& [name, value] : r.scalars()) j[name] = value;  // NaN becomes null
-  return j;
-}
-
-double number(const json& j, const char* key) { return j.at(key).is_null() ? kMissing : j.at(key).get<double>(); }
-
-ReferenceResult from_json(const json& j) {
-  ReferenceResult r;
-  r.scale = number(j, "scale");
-  r.least_substeps = j.at("least_substeps");
-  r.truth = number(j, "truth_value");
-  r.value = number(j, "reference_value");
-  r.uncertainty = number(j, "reference_uncertainty");
-  r.order_bdf2 = number(j, "reference_order_bdf2");
-  r.order_conservative = number(j, "reference_order_conservative");
-  r.truth_distance = number(j, "reference_truth_distance");
-  r.space_error = number(j, "truth_space_error");
-  return r;
-}
-
 /// The scene first, so that a person finds its file; then what else the key says, shortened. The file has the whole
 /// key.
 fs::path cache_file(const fs::path& folder, const json& key) {
@@ -258,15 +245,19 @@ std::optional<ReferenceResult> read_reference(const fs::path& folder, const json
   std::ifstream in(cache_file(folder, key));
   const json j = in ? json::parse(in, nullptr, false) : json();
   if (!j.is_object() || j.value("key", json()) != key) return std::nullopt;
+  ReferenceResult r;
   try {
-    return from_json(j);
-  } catch (const json::exception&) {  // not whole: it is computed again
+    const std::map<std::string, double> values = numbers_from_json(j.at("values"));
+    for (const auto& [name, member] : kScalars) r.*member = values.at(name);
+  } catch (const std::exception&) {  // not whole: it is computed again
     return std::nullopt;
   }
+  return r;
 }
 
 void write_reference(const fs::path& folder, const json& key, const ReferenceResult& r) {
-  write_file_atomically(cache_file(folder, key), to_json(key, r).dump(2) + "\n");
+  write_file_atomically(cache_file(folder, key),
+                        json{{"key", key}, {"values", numbers_to_json(r.scalars())}}.dump(2) + "\n");
 }
 
 }  // namespace clothbench

@@ -14,14 +14,12 @@ namespace clothbench {
 /// truth.
 struct ReferenceResult {
   double truth = 0;                               ///< from the reference case, same grid; of a mesh, the continuum's
-  double scale = 1;                               ///< of the quantity: errors below are over it
   double value = 0;                               ///< extrapolated, mean of both integrators
-  double uncertainty = 0;                         ///< U_ref / scale
+  double uncertainty = 0;                         ///< U_ref over the scale of the quantity
   double order_bdf2 = 0, order_conservative = 0;  ///< observed; NaN where there is none
   double truth_distance = 0;                      ///< |value - truth| / scale
   double space_error =
       0;  ///< this grid's truth, or the finest run of this mesh, against the continuum, in the ranking error
-  int least_substeps = 0;  ///< on the coarsest of three levels, each with twice as many as the one before
 
   /// Names as in a run's summary: reference_value, reference_uncertainty, ... truth_space_error.
   std::map<std::string, double> scalars() const;

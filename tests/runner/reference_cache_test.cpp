@@ -61,7 +61,7 @@ TEST(ReferenceCache, FindsWhatIsOfTheSameKeyAlone) {
   for (const char* part : {"code_sha256", "solver_version", "settling_substeps", "solver_settings"}) {
     json other = stored;
     other["key"][part] = "another";
-    other["reference_value"] = 42;
+    other["values"]["reference_value"] = 42;
     std::ofstream(file) << other;
     EXPECT_EQ(value(kCoarse), right) << part;
   }
