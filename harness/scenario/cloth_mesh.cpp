@@ -19,6 +19,7 @@
 #include "scenario/drawn_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
+#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -179,6 +180,19 @@ void notice_welded(const ClothMesh& m, const std::string& file) {
              m.welded_vertices);
 }
 
+/// The vertex of "u0v1" and the like.
+std::uint32_t corner(const Cloth& c, const std::string& name) {
+  const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;
+  return static_cast<std::uint32_t>(j * c.columns + i);
+}
+
+std::uint32_t nearest_vertex(const ClothMesh& m, const Vec3& point) {
+  std::size_t best = 0;
+  for (std::size_t v = 1; v < m.vertices.size(); ++v)
+    if (edge_length(minus(m.vertices[v], point)) < edge_length(minus(m.vertices[best], point))) best = v;
+  return static_cast<std::uint32_t>(best);
+}
+
 }  // namespace
 
 ClothMesh cloth_mesh(assets::MeshFile file, const std::string& source, std::vector<PatternTriangle> pattern_m) {
@@ -243,10 +257,38 @@ const std::vector<std::uint32_t>& group_vertices(const Cloth& c, const std::stri
                          : fmt::format("one of: {}{}", shortened(joined(known), 400), all > kMost ? ", ..." : "")));
 }
 
-std::vector<std::uint32_t> named_edge(const Cloth& c, const std::string& edge, const std::string& source,
-                                      const std::string& pointer) {
-  if (c.mesh) refuse(source, pointer, "not available on a mesh; expected \"group\"");
-  return edge_vertices(c, edge);
+std::vector<std::uint32_t> listed_vertices(const Cloth& c, const nlohmann::json& list, const std::string& source,
+                                           const std::string& pointer) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const auto v = list[k].get<std::uint64_t>();
+    if (v >= c.vertex_count())
+      refuse(source, fmt::format("{}/{}", pointer, k),
+             fmt::format("vertex {} of {} (the first is 0)", v, c.vertex_count()));
+    out.push_back(static_cast<std::uint32_t>(v));
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> selected_vertices(const Cloth& c, const nlohmann::json& j, const std::string& source,
+                                             const std::string& pointer) {
+  for (const char* of_grids : {"corners", "edge", "clamp"})
+    if (c.mesh && j.contains(of_grids))
+      refuse(source, pointer + "/" + of_grids,
+             "not available on a mesh; expected \"group\", \"vertices\" or \"nearest_m\"");
+  if (!c.mesh && j.contains("nearest_m")) refuse(source, pointer + "/nearest_m", "expected a cloth that is a mesh");
+  std::vector<std::uint32_t> out;
+  const auto add = [&](const auto& more) { out.insert(out.end(), more.begin(), more.end()); };
+  if (j.contains("group")) add(group_vertices(c, j["group"].get<std::string>(), source, pointer + "/group"));
+  if (j.contains("nearest_m"))
+    for (const auto& point : j["nearest_m"]) out.push_back(nearest_vertex(*c.mesh, vec3(point)));
+  if (j.contains("corners"))
+    for (const auto& name : j["corners"]) out.push_back(corner(c, name.get<std::string>()));
+  if (j.contains("edge")) add(edge_vertices(c, j["edge"].get<std::string>()));
+  if (j.contains("clamp")) add(clamp_vertices(c, j["clamp"].get<std::string>()));
+  if (j.contains("vertices")) add(listed_vertices(c, j["vertices"], source, pointer + "/vertices"));
+  if (out.empty()) refuse(source, pointer, "expected \"edge\", \"group\" or \"vertices\"");
+  return out;
 }
 
 std::pair<double, double> longest_sides(const ClothMesh& m) {
@@ -259,13 +301,6 @@ std::pair<double, double> longest_sides(const ClothMesh& m) {
   Vec3 sides = minus(high, low);
   std::sort(sides.begin(), sides.end());
   return {sides[2], sides[1]};
-}
-
-std::uint32_t nearest_vertex(const ClothMesh& m, const Vec3& point) {
-  std::size_t best = 0;
-  for (std::size_t v = 1; v < m.vertices.size(); ++v)
-    if (edge_length(minus(m.vertices[v], point)) < edge_length(minus(m.vertices[best], point))) best = v;
-  return static_cast<std::uint32_t>(best);
 }
 
 }  // namespace clothbench

@@ -40,14 +40,17 @@ ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uin
 const std::vector<std::uint32_t>& group_vertices(const Cloth&, const std::string& name, const std::string& source,
                                                  const std::string& pointer);
 
-/// Vertices of an edge ("u0") of a grid. Throws Error at `pointer` of the scene if the cloth is a mesh.
-std::vector<std::uint32_t> named_edge(const Cloth&, const std::string& edge, const std::string& source,
-                                      const std::string& pointer);
+/// The list of vertices at `pointer` of the scene. Throws Error for one that the cloth does not have.
+std::vector<std::uint32_t> listed_vertices(const Cloth&, const nlohmann::json& list, const std::string& source,
+                                           const std::string& pointer);
+
+/// All vertices that an object of the scene names: "corners", "edge" and "clamp" of a grid, "group" and "nearest_m" (to
+/// points in the mesh's frame; the first of several at the same distance) of a mesh, "vertices" of either. Throws Error
+/// at `pointer` of the scene if it names none, or what the cloth does not have.
+std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&, const std::string& source,
+                                             const std::string& pointer);
 
 /// Longest and second longest side [m] of the mesh's bounding box.
 std::pair<double, double> longest_sides(const ClothMesh&);
-
-/// The vertex nearest to a point [m] in the mesh's frame; the first of several at the same distance.
-std::uint32_t nearest_vertex(const ClothMesh&, const Vec3& point);
 
 }  // namespace clothbench

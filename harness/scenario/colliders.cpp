@@ -107,9 +107,7 @@ class StageReader {
     Grip g;
     g.bar = reader_.path(j);
     if (j.contains("edge") == j.contains("group")) reader_.refuse("", "expected either \"edge\" or \"group\"");
-    const std::string at = reader_.pointer() + (j.contains("edge") ? "/edge" : "/group");
-    g.vertices = j.contains("edge") ? named_edge(scene_.cloth, j["edge"].get<std::string>(), reader_.source(), at)
-                                    : group_vertices(scene_.cloth, j["group"].get<std::string>(), reader_.source(), at);
+    g.vertices = selected_vertices(scene_.cloth, j, reader_.source(), reader_.pointer());
     return g;
   }
 

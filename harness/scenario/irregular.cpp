@@ -50,26 +50,10 @@ class IrregularReader {
       refuse(source_, "/cloth/pose/span_m", "expected columns of one width for a sheet that starts as an arc");
   }
 
-  std::vector<std::uint32_t> vertices(const json& j, const std::string& pointer) const {
-    std::vector<std::uint32_t> out;
-    if (j.contains("group"))
-      return group_vertices(s_.cloth, j["group"].get<std::string>(), source_, pointer + "/group");
-    if (j.contains("edge")) return named_edge(s_.cloth, j["edge"].get<std::string>(), source_, pointer + "/edge");
-    if (j.contains("vertices"))
-      for (const json& v : j["vertices"]) {
-        if (v.get<std::size_t>() >= s_.cloth.vertex_count())
-          refuse(source_, pointer,
-                 fmt::format("vertex {} of {} (the first is 0)", v.get<std::size_t>(), s_.cloth.vertex_count()));
-        out.push_back(v.get<std::uint32_t>());
-      }
-    if (out.empty()) refuse(source_, pointer, "expected \"edge\", \"group\" or \"vertices\"");
-    return out;
-  }
-
   void masses(const json& list) {
     s_.cloth.mass_factors.assign(s_.cloth.vertex_count(), 1);
     for (std::size_t k = 0; k < list.size(); ++k)
-      for (std::uint32_t v : vertices(list[k], fmt::format("/cloth/mass_factors/{}", k)))
+      for (std::uint32_t v : selected_vertices(s_.cloth, list[k], source_, fmt::format("/cloth/mass_factors/{}", k)))
         s_.cloth.mass_factors[v] = list[k]["factor"].get<double>();
   }
 
@@ -87,9 +71,10 @@ class IrregularReader {
     s.noise_m = j["noise_m"].get<double>();
     s.seed = j["seed"].get<std::uint64_t>();
     for (std::size_t k = 0; k < j["merge"].size(); ++k)
-      s.merged.push_back(vertices({{"vertices", j["merge"][k]}}, fmt::format("/cloth/start/merge/{}", k)));
+      s.merged.push_back(listed_vertices(s_.cloth, j["merge"][k], source_, fmt::format("/cloth/start/merge/{}", k)));
     for (std::size_t k = 0; k < j["move"].size(); ++k)
-      s.moved.push_back({vertices(j["move"][k], fmt::format("/cloth/start/move/{}", k)), vec3(j["move"][k]["by_m"])});
+      s.moved.push_back({selected_vertices(s_.cloth, j["move"][k], source_, fmt::format("/cloth/start/move/{}", k)),
+                         vec3(j["move"][k]["by_m"])});
   }
 
   StiffnessRegion region_of_grid(const json& r, const std::string& pointer) const {

@@ -28,43 +28,10 @@ constexpr double kMostFrames = 1e7;
 constexpr std::size_t kMostName = 100;
 constexpr std::size_t kShown = 200;  // bytes of an argument in a message
 
-std::uint32_t corner(const Cloth& c, const std::string& name) {
-  const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;
-  return static_cast<std::uint32_t>(j * c.columns + i);
-}
-
 Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   std::set<std::uint32_t> pinned;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const json& pin = list[k];
-    if (c.mesh)
-      for (const char* of_grids : {"corners", "edge", "clamp"})
-        if (pin.contains(of_grids))
-          refuse(source, fmt::format("/pins/{}/{}", k, of_grids),
-                 "not available on a mesh; expected \"group\", \"vertices\" or \"nearest_m\"");
-    if (!c.mesh && pin.contains("nearest_m"))
-      refuse(source, fmt::format("/pins/{}/nearest_m", k), "expected a cloth that is a mesh");
-    if (pin.contains("group"))
-      for (std::uint32_t v :
-           group_vertices(c, pin["group"].get<std::string>(), source, fmt::format("/pins/{}/group", k)))
-        pinned.insert(v);
-    if (pin.contains("nearest_m"))
-      for (const json& point : pin["nearest_m"]) pinned.insert(nearest_vertex(*c.mesh, vec3(point)));
-    if (pin.contains("corners"))
-      for (const auto& name : pin["corners"]) pinned.insert(corner(c, name.get<std::string>()));
-    if (pin.contains("edge"))
-      for (std::uint32_t v : edge_vertices(c, pin["edge"].get<std::string>())) pinned.insert(v);
-    if (pin.contains("clamp"))
-      for (std::uint32_t v : clamp_vertices(c, pin["clamp"].get<std::string>())) pinned.insert(v);
-    if (pin.contains("vertices"))
-      for (std::size_t v = 0; v < pin["vertices"].size(); ++v) {
-        const auto index = pin["vertices"][v].get<std::uint64_t>();
-        if (index >= c.vertex_count())
-          refuse(source, fmt::format("/pins/{}/vertices/{}", k, v),
-                 fmt::format("vertex {} of {} (the first is 0)", index, c.vertex_count()));
-        pinned.insert(static_cast<std::uint32_t>(index));
-      }
-  }
+  for (std::size_t k = 0; k < list.size(); ++k)
+    for (const std::uint32_t v : selected_vertices(c, list[k], source, fmt::format("/pins/{}", k))) pinned.insert(v);
   return {{pinned.begin(), pinned.end()}};
 }
 

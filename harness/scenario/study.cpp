@@ -20,6 +20,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr double kFpsAccuracy_s = 0.5;
+constexpr int kQuickRatio = 8;  ///< of the values on a ladder: every third of those in the full form
 constexpr std::uint64_t kGreatestSeed = std::uint64_t{1} << 53;  ///< what every reader of JSON keeps
 
 StudyRules read_rules(const json& j) {
@@ -38,6 +39,63 @@ Words assignments(const json& set) {
 bool chosen(const json& choice, const Words& tags) {
   return choice.empty() ||
          std::any_of(choice.begin(), choice.end(), [&](const json& c) { return contains(tags, c.get<std::string>()); });
+}
+
+/// One form of a scene of a study: a choice of a value on each axis.
+struct Variant {
+  std::string suffix;     ///< of the scene's name: "-32-single"
+  Words overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
+};
+
+void check_lengths(const json& axis, std::size_t a, const std::string& pointer, const std::string& source) {
+  if (axis["values"].size() != axis["labels"].size())
+    throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label a value, {}; found {}", source, pointer, a,
+                            axis["values"].size(), axis["labels"].size()));
+  for (const auto& [key, values] : axis["with"].items())
+    if (values.size() != axis["values"].size())
+      throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source,
+                              pointer, a, key, axis["values"].size(), values.size()));
+}
+
+/// An override of the key would give all values of the axis the same scene.
+void check_free(const json& axis, const std::vector<std::string>& set) {
+  const std::string start = axis["key"].get<std::string>() + "=";
+  for (const std::string& item : set)
+    if (item.starts_with(start))
+      throw Error("--set " + shortened(item, 200) + ": the study varies this key; give it in a copy of the study file");
+}
+
+Variant with_value(Variant v, const json& axis, std::size_t k) {
+  v.tags.push_back(axis["labels"][k].get<std::string>());
+  v.suffix += "-" + v.tags.back();
+  v.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
+  for (const auto& [key, values] : axis["with"].items()) v.overrides.push_back(key + "=" + values[k].dump());
+  return v;
+}
+
+/// Cartesian product of a scene's axes; the first varies slowest. Throws Error naming `source` and the JSON pointer if
+/// the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes; and Error if one of
+/// `set` (`key=value`, as in `--set`) is the key of an axis.
+std::vector<Variant> expand(const json& axes, const std::string& pointer, const std::string& source,
+                            const std::vector<std::string>& set) {
+  std::vector<Variant> all(1);
+  double count = 1;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const json& axis = axes[a];
+    check_lengths(axis, a, pointer, source);
+    check_free(axis, set);
+    count *= static_cast<double>(axis["values"].size());
+  }
+  if (!(count <= static_cast<double>(kMostRuns)))
+    throw Error(fmt::format("{}: {}/axes: they make {:.0f} scenes; a study may have at most {} runs", source, pointer,
+                            count, kMostRuns));
+  for (const json& axis : axes) {
+    std::vector<Variant> next;
+    for (const Variant& v : all)
+      for (std::size_t k = 0; k < axis["values"].size(); ++k) next.push_back(with_value(v, axis, k));
+    all = std::move(next);
+  }
+  return all;
 }
 
 /// Builds a Study from its completed file.
@@ -61,7 +119,6 @@ class Builder {
     const double standard_s = study_.protocol == "fps" ? kFpsAccuracy_s : std::numeric_limits<double>::infinity();
     study_.accuracy_duration_s = j_.value("accuracy_duration_s", standard_s);
     study_.run_limit_s = j_["run_limit_s"].get<double>();
-    study_.stage_times = j_["stage_times"].get<bool>();
     study_.pipelined = j_["pipelined"].get<bool>();
     read_solvers();
     if (study_.protocol == "contact")
@@ -92,7 +149,7 @@ class Builder {
     for (const std::string& name : options_.solvers) {
       if (contains(named, name)) continue;
       const auto knobs = options_.knobs.find(name);
-      const bool climbs = knobs != options_.knobs.end() && ladder().is_object();
+      const bool climbs = knobs != options_.knobs.end() && j_.contains("ladder");
       for (StudySolver& rung : climb({name, "default", json::object(), {}, json::array(), true},
                                      climbs ? knobs->second : Words{}, source_)) {
         study_.solvers.push_back(std::move(rung));
@@ -102,16 +159,13 @@ class Builder {
     }
   }
 
-  /// The ladder for this form of the study; null if it has none.
-  json ladder() const { return (quick_.contains("ladder") ? quick_ : j_).value("ladder", json()); }
-
   /// The solver with each combination of its ladder settings, in order of increasing work; only the solver itself if
   /// `knobs` is empty.
   std::vector<StudySolver> climb(const StudySolver& solver, const Words& knobs, const std::string& at) const {
     if (knobs.empty()) return {solver};
-    const json ladder = this->ladder();
-    if (!ladder.is_object()) throw Error(at + ": the study has no \"ladder\"");
-    const int most = ladder["product_at_most"].get<int>(), ratio = ladder["ratio"].get<int>();
+    if (!j_.contains("ladder")) throw Error(at + ": the study has no \"ladder\"");
+    const json& ladder = j_["ladder"];
+    const int most = ladder["product_at_most"].get<int>(), ratio = quick_.is_null() ? 2 : kQuickRatio;
     std::vector<StudySolver> rungs = {solver};
     rungs[0].label.clear();
     rungs[0].work = 1;
@@ -219,9 +273,7 @@ class Builder {
       const auto [at, is_new] = forms.emplace(solver.set, study_.scenes.size());
       if (is_new) {
         Words all = v.overrides;
-        const Words quick = quick_.is_null() ? Words{} : assignments(quick_["set"]);
-        for (const Words* more : {&solver.set, &quick, &options_.overrides})
-          all.insert(all.end(), more->begin(), more->end());
+        for (const Words* more : {&solver.set, &options_.overrides}) all.insert(all.end(), more->begin(), more->end());
         Scene scene = scene_from_json(scenario, path, all, options_.assets);
         scene.name += v.suffix;
         const int group = group_of(scene);

@@ -61,7 +61,7 @@ struct Study {
   int trials = 0, drop_frames = 0;
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double run_limit_s = 0;          ///< 0 = none
-  bool stage_times = true, pipelined = false;
+  bool pipelined = false;
   StudyRules rules;           ///< of `length`
   nlohmann::json definition;  ///< the file with its defaults filled in
 };
@@ -80,18 +80,5 @@ bool is_study_of(const std::string& name_or_path, const std::string& protocol);
 
 /// Most runs of a study: each is a file, and all are planned before the first begins.
 inline constexpr std::size_t kMostRuns = 100000;
-
-/// One form of a scene of a study: a choice of a value on each axis.
-struct Variant {
-  std::string suffix;                        ///< of the scene's name: "-32-single"
-  std::vector<std::string> overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
-};
-
-/// Cartesian product of a scene's axes; the first varies slowest. Throws Error naming `source` and the JSON pointer if
-/// the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes; and Error if one of
-/// `set`
-/// (`key=value`, as in `--set`) is the key of an axis.
-std::vector<Variant> expand(const nlohmann::json& axes, const std::string& pointer, const std::string& source,
-                            const std::vector<std::string>& set);
 
 }  // namespace clothbench
