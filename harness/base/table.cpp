@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "base/columns.hpp"
-#include "base/tint.hpp"
 
 namespace clothbench {
 namespace {
@@ -159,19 +158,18 @@ std::string Table::console() const {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], display_width(row[k]));
   }
-  std::string out = "\n" + tinted(Tone::Heading, title) + "\n";
+  std::string out = "\n" + title + "\n";
   for (std::size_t first = labels; first == labels || first < widths.size();) {
     std::size_t total = 1, last = first;
     for (std::size_t k = 0; k < std::min(labels, widths.size()); ++k) total += widths[k] + kGap;
     while (last < widths.size() && (last == first || total + widths[last] + kGap <= console_columns()))
       total += widths[last++] + kGap;
     for (const auto& row : rows) {
-      const bool head = &row == &rows.front();
       out += " ";
       for (std::size_t k = 0; k < row.size(); ++k) {
         if (k >= labels && (k < first || k >= last)) continue;
         const std::string pad(widths[k] - display_width(row[k]), ' ');
-        out += k == 0 ? " " + row[k] + pad : "  " + pad + tinted(head ? Tone::Plain : tone_of(row[k]), row[k]);
+        out += k == 0 ? " " + row[k] + pad : "  " + pad + row[k];
       }
       out += "\n";
     }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "base/columns.hpp"
 #include "base/json_number.hpp"
-#include "base/tint.hpp"
 
 namespace clothbench {
 namespace {
@@ -120,38 +120,20 @@ std::string valid_utf8(const std::string& text) {
   return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/// For element text and attributes alike. Line breaks are written as references, or attributes would lose them.
+/// For element text and attributes alike. Line breaks are written as references, or attributes would lose them; other
+/// control characters, U+FFFE and U+FFFF exist in no XML 1.0 text.
 std::string xml_escaped(const std::string& text) {
+  static const std::map<char, const char*> kReferences = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}, {'\r', "&#13;"}, {'\t', "&#9;"}};
   std::string out;
   for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        continue;
-      case '<':
-        out += "&lt;";
-        continue;
-      case '>':
-        out += "&gt;";
-        continue;
-      case '"':
-        out += "&quot;";
-        continue;
-      case '\n':
-        out += "&#10;";
-        continue;
-      case '\r':
-        out += "&#13;";
-        continue;
-      case '\t':
-        out += "&#9;";
-        continue;
-      default:
-        break;
-    }
-    out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // the other control characters exist in no XML 1.0 text
+    const auto reference = kReferences.find(c);
+    if (reference != kReferences.end())
+      out += reference->second;
+    else
+      out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
   }
-  for (const char* no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE and U+FFFF neither
+  for (const char* no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
     for (std::size_t at = 0; (at = out.find(no_character, at)) != std::string::npos;) out.replace(at, 3, "?");
   return out;
 }
@@ -178,10 +160,10 @@ std::string test_case(const CheckedRun& run) {
 std::string check_text(const Checked& checked, const std::string& file) {
   std::string out = checked.differing.marks();
   out += findings_text("Different from " + file, checked.runs);
-  out += fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}",
-                     checked.passed() ? tinted(Tone::Good, "passed") : tinted(Tone::Bad, "FAILED"),
-                     runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
-                     checked.count(Verdict::New), checked.count(Verdict::Same), file);
+  out +=
+      fmt::format("check {}: {}: {} failed, {} improved, {} new, {} as in {}", checked.passed() ? "passed" : "FAILED",
+                  runs_word(checked.runs.size()), checked.count(Verdict::Failed), checked.count(Verdict::Improved),
+                  checked.count(Verdict::New), checked.count(Verdict::Same), file);
   if (checked.passed() && checked.count(Verdict::Improved) > 0) out += "; --update accepts the improved ones";
   return out + "\n";
 }

@@ -34,7 +34,6 @@ void DeviceFlags::add_to(CLI::App& app) {
                  "dispatches per submission)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
-  app.add_flag("--allow-no-device", allow_no_device, "Skip GPU solvers if there is no Vulkan device");
 }
 
 CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names,

@@ -60,10 +60,7 @@ inline std::string message_of(const std::string& text) {
 /// Declares the command and its options.
 using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
-    add_compare, add_completion, add_render, add_xr, add_conformance;
-
-/// The lists of `clothbench list`: solvers, features, scenarios, studies, devices, metrics, scalars, assets, terms.
-std::vector<std::string> list_names();
+    add_compare, add_render, add_xr, add_conformance;
 
 /// The plan of a solver for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
 /// contact_margins; the worker's side of `clothbench plan`.
@@ -72,8 +69,9 @@ nlohmann::json plan_answer(const nlohmann::json& request);
 /// The rendering that --with-rendering times, from the size of a picture.
 Rendering rendering_of(const std::string& eye);
 
-/// Options of every command that runs a solver: --device, --validate, --allow-no-device.
-struct DeviceFlags : DeviceChoice {
+/// Options of every command that runs a solver: --device, --device-profile, --validate.
+struct DeviceFlags {
+  DeviceOptions options;
   void add_to(CLI::App&);
 };
 
@@ -98,7 +96,8 @@ struct RunFlags {
 
 /// Executes a plan, in worker processes, and makes its folder; `before_runs` is called once the folder is known to be
 /// usable. Prints faults, tables and summary, and sets the exit code.
-void execute_study(RunPlan, StudyManifest, const RunFlags&, Console&, const std::function<void()>& before_runs = {});
+void execute_study(const RunPlan&, StudyManifest, const RunFlags&, Console&,
+                   const std::function<void()>& before_runs = {});
 
 /// An option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
 CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,

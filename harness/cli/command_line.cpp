@@ -1,12 +1,9 @@
 #include "cli/command_line.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "base/plugin_environment.hpp"
-#include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "runner/build_info.hpp"
@@ -17,22 +14,22 @@ namespace {
 /// Says why the command failed, to people and, with --json, to machines.
 int report_error(const Console& console, const std::string& message, ExitCode code) {
   const std::string why = message_of(message);
-  const bool colour = takes_colour(STDERR_FILENO);
-  fmt::print(stderr, "{}clothbench:{} {}\n", colour ? "\x1b[31m" : "", colour ? "\x1b[0m" : "", why);
+  fmt::print(stderr, "clothbench: {}\n", why);
   if (console.json) Console::print({{"error", why}, {"exit_code", static_cast<int>(code)}});
   return static_cast<int>(code);
 }
 
 /// In the order of the help.
-constexpr AddCommand* kCommands[] = {add_list,      add_validate, add_plan,  add_run,     add_run_child,   add_study,
-                                     add_report,    add_import,   add_check, add_compare, add_conformance,
+constexpr AddCommand* kCommands[] = {
+    add_list,   add_validate, add_plan,  add_run,     add_run_child,   add_study,
+    add_report, add_import,   add_check, add_compare, add_conformance,
 #ifdef CLOTHBENCH_WITH_RENDER
-                                     add_render,
+    add_render,
 #endif
 #ifdef CLOTHBENCH_WITH_XR
-                                     add_xr,
+    add_xr,
 #endif
-                                     add_completion};
+};
 
 /// Suggests the nearest command if the first word is not a command.
 void suggest_command(const CLI::App& app, const std::vector<std::string>& words) {
@@ -61,7 +58,6 @@ int run_command_line(const std::vector<std::string>& words) {
       "terms\nExit codes: 0 ok, 1 a "
       "check failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
-  colour_output(takes_colour(STDOUT_FILENO));
   console.command_line = "clothbench " + joined(words, " ");
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/plugin_environment.hpp"
-#include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
@@ -31,59 +31,58 @@ nlohmann::json figures_of(const std::vector<RunRecord>& runs) {
   return all;
 }
 
-nlohmann::json summary_of(const RunResult& r, const std::vector<RunRecord>& runs, const std::filesystem::path& out,
-                          nlohmann::json figures) {
+/// How runs ended, and the stability grades of those whose scene is graded.
+struct Ends {
+  int ok = 0, unsupported = 0, over_budget = 0, failed = 0;
+  int stable = 0, degraded = 0, unstable = 0, crashed = 0;  ///< crashed: unstable ones whose process crashed or hung
+
+  explicit Ends(const std::vector<RunRecord>& runs) {
+    for (const RunRecord& r : runs) {
+      const std::string& status = r.outcome.status;
+      ++(status == "ok" ? ok : status == "unsupported" ? unsupported : status == "over_budget" ? over_budget : failed);
+      const auto at = r.summary.find("stability_grade");
+      if (at == r.summary.end() || std::isnan(at->second) || status == "unsupported") continue;
+      ++(at->second == 0 ? stable : at->second == 1 ? degraded : unstable);
+      if (status == "crashed" || r.outcome.message.starts_with("its process")) ++crashed;
+    }
+  }
+};
+
+nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vector<RunRecord>& runs,
+                          const std::filesystem::path& out, nlohmann::json figures) {
   std::vector<std::string> failed;
   for (const RunRecord& c : runs)
     if (verdict(c) == "fail") failed.push_back(run_name(c.header) + ": " + c.outcome.expect);
+  const Ends ends(runs);
   return {{"out", out.string()},
-          {"ok", r.runs_ok},
-          {"unsupported", r.runs_unsupported},
-          {"over_budget", r.runs_over_budget},
-          {"failed", r.runs_failed},
-          {"grades", {{"stable", r.grades.stable}, {"degraded", r.grades.degraded}, {"failed", r.grades.failed}}},
-          {"crashed", r.grades.crashed},
-          {"seconds", r.seconds},
-          {"faults", r.faults},
+          {"ok", ends.ok},
+          {"unsupported", ends.unsupported},
+          {"over_budget", ends.over_budget},
+          {"failed", ends.failed},
+          {"grades", {{"stable", ends.stable}, {"degraded", ends.degraded}, {"failed", ends.unstable}}},
+          {"crashed", ends.crashed},
+          {"faults", faults},
           {"with_bound", count_verdicts(runs).runs},
           {"expect_passed", count_verdicts(runs).passed},
           {"expect_failed", failed},
           {"runs", std::move(figures)}};
 }
 
-/// Where the time went, and what was not measured for its sake.
-std::string spent(const RunResult& r) {
-  if (r.seconds.empty()) return "";
-  std::string text;
-  double all = 0;
-  for (const auto& [name, s] : r.seconds) {
-    text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, s);
-    all += s;
-  }
-  text = fmt::format("seconds: {}; together {:.0f}\n", text, all);
-  if (r.runs_over_budget > 0)
-    text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
-                        r.runs_over_budget);
-  return text;
-}
-
 /// A few runs at a glance, under the tables; many are what the tables are for.
-std::string text_of(const RunResult& r, const std::vector<std::string>& names, const std::filesystem::path& out) {
+std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::path& out) {
   constexpr std::size_t kFew = 24;
-  const auto counted = [](int n, const char* what, Tone tone) {
-    return tinted(n > 0 ? tone : Tone::Plain, fmt::format("{} {}", n, what));
-  };
-  const std::vector<RunRecord> runs = stored_runs(names, out);
   const VerdictCounts verdicts = count_verdicts(runs);
-  std::string text = fmt::format("\n{}, {}, {}", counted(r.runs_ok, "runs ok", Tone::Good),
-                                 counted(r.runs_unsupported, "unsupported", Tone::Doubtful),
-                                 counted(r.runs_failed, "failed", Tone::Bad));
-  if (r.grades.any())
-    text += fmt::format("; {} stable, {} degraded, {} failed ({} of them crashed or hung)", r.grades.stable,
-                        r.grades.degraded, r.grades.failed, r.grades.crashed);
+  const Ends ends(runs);
+  std::string text = fmt::format("\n{} runs ok, {} unsupported, {} failed", ends.ok, ends.unsupported, ends.failed);
+  if (ends.stable + ends.degraded + ends.unstable > 0)
+    text += fmt::format("; {} stable, {} degraded, {} failed ({} of them crashed or hung)", ends.stable, ends.degraded,
+                        ends.unstable, ends.crashed);
   if (verdicts.runs > 0) text += "; with a bound: " + verdicts.text();
-  return (names.empty() || names.size() > kFew ? "" : in_short_table(runs).console()) + text +
-         fmt::format("; results in {}\n", out.string()) + spent(r);
+  text += fmt::format("; results in {}\n", out.string());
+  if (ends.over_budget > 0)
+    text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
+                        ends.over_budget);
+  return (runs.empty() || runs.size() > kFew ? "" : in_short_table(runs).console()) + text;
 }
 
 }  // namespace
@@ -97,9 +96,9 @@ std::filesystem::path default_folder(const std::string& study) {
   return folder;
 }
 
-void execute_study(RunPlan plan, StudyManifest manifest, const RunFlags& flags, Console& console,
+void execute_study(const RunPlan& plan, StudyManifest manifest, const RunFlags& flags, Console& console,
                    const std::function<void()>& before_runs) {
-  settle_device(plan, flags.device);
+  require_device(plan, flags.device.options);
   const std::filesystem::path out =
       flags.out.empty() ? default_folder(manifest.study) : std::filesystem::path(flags.out);
   const std::vector<std::string> names = run_names(plan);
@@ -126,15 +125,14 @@ void execute_study(RunPlan plan, StudyManifest manifest, const RunFlags& flags, 
     options.progress = [&](const std::string& what, std::size_t done, std::size_t of) { line.show(what, done, of); };
     result = solvers_in_process() ? execute_runs(plan, options) : execute_in_worker(plan, options, flags.eye);
   }
+  const std::vector<RunRecord> runs = stored_runs(names, out);
+  for (std::string& fault : solver_faults(runs)) result.faults.push_back(std::move(fault));
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!console.json && !flags.part) print_console_report({out});
   console.print(
-      [&] {
-        const std::vector<RunRecord> runs = stored_runs(names, out);
-        return summary_of(result, runs, out, flags.part ? nlohmann::json::array() : figures_of(runs));
-      },
-      [&] { return text_of(result, names, out); });
+      [&] { return summary_of(result.faults, runs, out, flags.part ? nlohmann::json::array() : figures_of(runs)); },
+      [&] { return text_of(runs, out); });
 }
 
 }  // namespace clothbench

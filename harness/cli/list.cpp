@@ -7,7 +7,6 @@
 #include "base/json_text.hpp"
 #include "check/baseline.hpp"
 #include "cli/command.hpp"
-#include "cli/texts.hpp"
 #include "metrics/registry.hpp"
 #include "report/features.hpp"
 #include "runner/study_plan.hpp"
@@ -15,6 +14,9 @@
 #include "scenario/study.hpp"
 
 namespace clothbench {
+
+extern const char* const kGlossary;  ///< GLOSSARY.md, a Markdown table of term and meaning
+
 namespace {
 
 nlohmann::json list_solvers() {
@@ -108,7 +110,7 @@ std::string without_emphasis(std::string text) {
 /// The glossary: term and meaning, in alphabetical order.
 nlohmann::json list_terms() {
   nlohmann::json rows = nlohmann::json::array();
-  std::istringstream lines(texts::kGlossary);
+  std::istringstream lines(kGlossary);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t middle = line.find(" | ");
     if (!line.starts_with("| ") || middle == std::string::npos || line.starts_with("| term |")) continue;
@@ -147,15 +149,11 @@ std::string rows_text(const nlohmann::json& rows) {
   return out;
 }
 
-}  // namespace
-
 std::vector<std::string> list_names() {
   std::vector<std::string> names;
   for (const auto& [name, unused] : kLists) names.emplace_back(name);
   return names;
 }
-
-namespace {
 
 nlohmann::json list_of(const std::string& what) {
   const auto list = std::find_if(std::begin(kLists), std::end(kLists), [&](auto& l) { return l.first == what; });

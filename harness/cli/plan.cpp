@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "base/json_number.hpp"
-#include "base/tint.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "runner/worker.hpp"
@@ -59,8 +58,7 @@ std::string plan_text(const json& p) {
   const auto text = [](const json& j) { return j.get<std::string>(); };
   std::string out =
       fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(words(p["needs"])));
-  if (p["status"] != "ok")
-    out += fmt::format("  {}: {}\n", tinted(tone_of(text(p["status"])), text(p["status"])), text(p["message"]));
+  if (p["status"] != "ok") out += fmt::format("  {}: {}\n", text(p["status"]), text(p["message"]));
   if (!p["stages"].empty())
     out += fmt::format("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B",
                        "written B", "serves");

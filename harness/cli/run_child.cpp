@@ -5,11 +5,9 @@
 namespace clothbench {
 
 void add_run_child(CLI::App& app, Console& console) {
-  std::string& folder = console.arguments<std::string>();
   CLI::App* cmd = app.add_subcommand("run-child", "Execute what another process of this program asks for");
   cmd->group("");  // not for people
-  cmd->add_option("folder", folder)->required();
-  cmd->callback([&console, &folder] {
+  cmd->callback([&console] {
     const auto silent = [](nlohmann::json (*work)(const nlohmann::json&)) {
       return [work](const nlohmann::json& request, const WorkerProgress&) { return work(request); };
     };
@@ -17,7 +15,6 @@ void add_run_child(CLI::App& app, Console& console) {
       return execute_plan(request, progress, known_solver, rendering_of);
     };
     console.exit_code = static_cast<ExitCode>(run_child_main(
-        folder,
         {{"plan", plan}, {"plan-of-solver", silent(plan_answer)}, {"conformance", silent(conformance_answer)}}));
   });
 }

@@ -1,4 +1,3 @@
-#include "base/tint.hpp"
 #include "cli/command.hpp"
 #include "results/result_folder.hpp"
 #include "runner/study_plan.hpp"
@@ -33,8 +32,7 @@ void add_validate(CLI::App& app, Console& console) {
         console.exit_code = ExitCode::BadInput;
       }
       rows.push_back({{"file", file}, {"ok", fault.empty()}, {"message", fault}});
-      if (!console.json)
-        fmt::print("{}\n", fault.empty() ? file + ": " + tinted(Tone::Good, "ok") : tinted(Tone::Bad, fault));
+      if (!console.json) fmt::print("{}\n", fault.empty() ? file + ": ok" : fault);
     }
     if (console.json) Console::print(rows);
   });

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/tint.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/unsupported_scene.hpp"
@@ -257,7 +256,6 @@ std::vector<std::string> conformance_scenes(const std::vector<std::string>& chos
 
 std::string conformance_text(const std::string& solver, const json& r) {
   const std::string status = r["status"];
-  const Tone tone = status == "pass" ? Tone::Good : status == "FAIL" ? Tone::Bad : Tone::Doubtful;
   const int skipped = r["skipped"], frames = r["frames_whole"], all_frames = r["frames_of_scene"];
   std::string text = fmt::format("{} cases", r["cases"].get<int>() - skipped);
   if (skipped > 0) text += fmt::format(", {} skipped", skipped);
@@ -267,8 +265,7 @@ std::string conformance_text(const std::string& solver, const json& r) {
     text += fmt::format(", all {} frames", frames);
   const auto faults = r["faults"].get<std::vector<std::string>>();
   if (status == "skipped" && !faults.empty()) text = faults.front();
-  text = fmt::format("{} {} {}: {}\n", tinted(tone, fmt::format("{:<7}", status)), solver,
-                     r["scene"].get<std::string>(), text);
+  text = fmt::format("{:<7} {} {}: {}\n", status, solver, r["scene"].get<std::string>(), text);
   if (status != "FAIL") return text;
   for (const std::string& f : faults) text += fmt::format("        {}\n", f);
   return text;

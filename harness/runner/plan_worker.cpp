@@ -103,29 +103,6 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   }
 }
 
-json to_json(const RunResult& r) {
-  return {{"ok", r.runs_ok},
-          {"unsupported", r.runs_unsupported},
-          {"over_budget", r.runs_over_budget},
-          {"failed", r.runs_failed},
-          {"grades", {r.grades.stable, r.grades.degraded, r.grades.failed, r.grades.crashed}},
-          {"seconds", r.seconds},
-          {"faults", r.faults}};
-}
-
-RunResult result_from_json(const json& j) {
-  RunResult r;
-  j.at("ok").get_to(r.runs_ok);
-  j.at("unsupported").get_to(r.runs_unsupported);
-  j.at("over_budget").get_to(r.runs_over_budget);
-  j.at("failed").get_to(r.runs_failed);
-  const json& g = j.at("grades");
-  r.grades = {g.at(0), g.at(1), g.at(2), g.at(3)};
-  j.at("seconds").get_to(r.seconds);
-  j.at("faults").get_to(r.faults);
-  return r;
-}
-
 /// "<run>: trial 2 of 5" -> that run; null if it is not the plan's.
 const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
   const std::string name = doing.substr(0, doing.find(": "));
@@ -168,7 +145,7 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
           if (options.progress) options.progress(what, done, total);
           return run_of(plan, what) != nullptr ? limit_s : 0;
         });
-    if (!answer.end) return result_from_json(answer.value);
+    if (!answer.end) return {{}, answer.value.get<std::vector<std::string>>()};
     request["resume"] = true;
     const bool hung = answer.end->how == ChildEnd::How::TimedOut;
     if (!hung && worker.calls_of_child() > 1) continue;
@@ -211,17 +188,15 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program
 
 /// Gives each run to a worker of its own, `jobs` at a time.
 RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
-  RunResult result;
   std::size_t done = 0;
-  const auto ended = [&](const RunSpec& spec, const RunRecord& r) {
-    result.add(spec, r);
+  const auto ended = [&](const RunSpec& spec) {
     if (options.progress) options.progress(run_name(spec), ++done, plan.size());
   };
   std::vector<const RunSpec*> todo;
   for (const auto& group : plan.groups)
     for (const RunSpec& spec : group)
-      if (const auto before = finished_run(spec, options))
-        ended(spec, *before);
+      if (finished_run(spec, options))
+        ended(spec);
       else
         todo.push_back(&spec);
   const auto work = [](const RunSpec* s) {
@@ -234,17 +209,16 @@ RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
   for (const RunSpec* spec : todo)
     tasks.push_back([&, spec](Worker& worker) {
       stop_if_interrupted(kRunsKept);
-      const RunRecord r = run_apart(worker, plan, *spec, options);
+      run_apart(worker, plan, *spec, options);
       const std::lock_guard lock(mutex);
-      ended(*spec, r);
+      ended(*spec);
     });
   // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
   const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
   if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
-  result.faults = result.ends.faults();
-  return result;
+  return {};
 }
 
 }  // namespace
@@ -294,11 +268,11 @@ json execute_plan(const json& request, const WorkerProgress& progress, const Sol
     if (repeat) repeat();
   });
   try {
-    return to_json(execute_runs(own.plan, options));
+    return execute_runs(own.plan, options).faults;
   } catch (const std::exception& e) {  // what a solver throws is a row of the table
     if (!own.plan.apart) throw;
     write_row(own.plan.groups[0][0], own.plan, options.out, {"error", "F3", -1, e.what()});
-    return to_json(RunResult{});
+    return json::array();
   }
 }
 

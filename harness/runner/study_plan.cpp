@@ -50,8 +50,8 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
   plan.rules = {study.trials,   rules.frames,      rules.max_wall_s,          rules.min_frames,
                 rules.warmup_s, study.drop_frames, study.accuracy_duration_s, study.run_limit_s,
                 rules.agree,    study.pipelined};
-  if (!study.stage_times) plan.rules.profiled_frames = 0;
   plan.references = study.protocol == "work-precision";
+  if (plan.references) plan.rules.profiled_frames = 0;
   plan.apart = study.protocol == "contact" || study.protocol == "stability-map";
   if (plan.apart) plan.rules.trials = 0;
   std::vector<const SolverEntry*> entries;
@@ -113,29 +113,6 @@ RunPlan only_runs(RunPlan plan, const std::vector<std::size_t>& runs) {
   return plan;
 }
 
-namespace {
-
-/// Whether GPU solvers have a device; a notice if there is none and that is allowed.
-bool check_device(const SolverEntry& gpu, const DeviceChoice& choice) {
-  const std::vector<DeviceInfo> devices = gpu.devices();
-  if (devices.empty()) {
-    if (!choice.allow_no_device)
-      throw Error(
-          "no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers) or give --allow-no-device",
-          ExitCode::NoDevice);
-    fmt::print(stderr, "no Vulkan device: GPU solvers are left out\n");
-    return false;
-  }
-  if (choice.options.index >= static_cast<int>(devices.size()))
-    throw Error(
-        fmt::format("--device {}: expected a number below {}, the count of devices (see `clothbench list devices`)",
-                    choice.options.index, devices.size()),
-        ExitCode::NoDevice);
-  return true;
-}
-
-}  // namespace
-
 Overrides split_overrides(const std::vector<std::string>& set) {
   const std::string prefix = "solver.";
   Overrides out;
@@ -194,13 +171,20 @@ std::vector<std::string> solver_names(bool (*are)(const SolverInfo&)) {
   return names;
 }
 
-void settle_device(RunPlan& plan, const DeviceChoice& choice) {
-  const SolverEntry* gpu = nullptr;
+void require_device(const RunPlan& plan, const DeviceOptions& chosen) {
   for (const auto& group : plan.groups)
-    for (const RunSpec& c : group)
-      if (c.entry->info.on_gpu && c.entry->devices) gpu = c.entry;
-  if (gpu == nullptr || check_device(*gpu, choice)) return;
-  for (auto& group : plan.groups) std::erase_if(group, [](const RunSpec& c) { return c.entry->info.on_gpu; });
+    for (const RunSpec& c : group) {
+      if (!c.entry->info.on_gpu || !c.entry->devices) continue;
+      const std::size_t devices = c.entry->devices().size();
+      if (devices == 0)
+        throw Error("no Vulkan device is present; install a driver (Debian: mesa-vulkan-drivers)", ExitCode::NoDevice);
+      if (chosen.index >= static_cast<int>(devices))
+        throw Error(
+            fmt::format("--device {}: expected a number below {}, the count of devices (see `clothbench list devices`)",
+                        chosen.index, devices),
+            ExitCode::NoDevice);
+      return;
+    }
 }
 
 }  // namespace clothbench

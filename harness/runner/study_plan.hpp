@@ -60,14 +60,7 @@ std::vector<const SolverEntry*> all_solvers();
 /// Names of all solvers of the build, or of those that `are` accepts.
 std::vector<std::string> solver_names(bool (*are)(const SolverInfo&) = nullptr);
 
-/// The device of a command, and whether GPU solvers may be left out where there is none.
-struct DeviceChoice {
-  DeviceOptions options;
-  bool allow_no_device = false;
-};
-
-/// Before anything is measured: drops GPU solvers from the plan, with a notice on stderr, where there is no device and
-/// that is allowed. Throws Error if it is not, and if the chosen device is missing.
-void settle_device(RunPlan&, const DeviceChoice&);
+/// Before anything is measured: throws Error if the plan has GPU solvers and there is no device, or not the chosen one.
+void require_device(const RunPlan&, const DeviceOptions&);
 
 }  // namespace clothbench

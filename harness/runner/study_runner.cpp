@@ -46,20 +46,6 @@ struct Running {
   std::string name() const { return run_name(run->header()); }
 };
 
-/// Adds the time from its construction to its end.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& to) : to_(to) {}
-  ~Stopwatch() { to_ += seconds(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& to_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 class GroupRun {
  public:
   GroupRun(const RunPlan& plan, const RunOptions& options, RunResult& result, std::size_t& done)
@@ -96,8 +82,6 @@ class GroupRun {
     if (options_.progress) options_.progress(what, done_, plan_.size());
   }
 
-  double& seconds_of(const RunSpec& spec) { return result_.seconds[spec.entry->info.name]; }
-
   /// Why a run of a ladder is left out: a setting of less work has timed out. Empty if it is not.
   std::string over_budget(const RunSpec& spec) const {
     const auto at = timed_out_work_.find(spec.entry->info.name);
@@ -112,12 +96,11 @@ class GroupRun {
 
   /// Load and untimed pass.
   void begin(const RunSpec& given) {
-    const Stopwatch watch(seconds_of(given));
+    const auto start = std::chrono::steady_clock::now();
     RunSpec spec = given;
     const std::string name = run_name(spec);
     if (options_.resume) remove_leftovers(options_.out, name);
     if (const auto before = finished_run(spec, options_)) {
-      result_.add(spec, *before);
       note_end(spec, before->outcome.status);
       ++done_;
       return;
@@ -126,7 +109,7 @@ class GroupRun {
     open(spec, name);
     Running& r = running_.back();
     if (r.run->alive() && !r.run->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
-    r.untimed_s = watch.seconds();
+    r.untimed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     note_end(spec, r.run->outcome().status);
   }
 
@@ -154,7 +137,6 @@ class GroupRun {
   }
 
   void trial(Running& r, int k, const TrialRules& rules) {
-    const Stopwatch watch(seconds_of(r.run->spec()));
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
     TimedTrial t;
     int before = 0;
@@ -169,7 +151,6 @@ class GroupRun {
   }
 
   void finish(Running& r) {
-    const Stopwatch watch(seconds_of(r.run->spec()));
     Outcome outcome = r.run->outcome();
     const int messages = r.run->validation_messages();
     if (messages > 0) outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
@@ -183,9 +164,6 @@ class GroupRun {
     outcome.expect = std::move(verdict.text);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
-    r.record.outcome = std::move(outcome);
-    r.record.summary = std::move(summary);
-    result_.add(r.run->spec(), r.record);
     ++done_;
   }
 
@@ -205,37 +183,25 @@ std::size_t RunPlan::size() const {
   return n;
 }
 
-void SolverEnds::add(const std::string& solver, const Outcome& outcome) {
-  if (outcome.status == "unsupported" || outcome.status == "over_budget") return;
-  Ends& e = ends_[solver];
-  if (outcome.status == "ok" || outcome.expect == "pass") {
-    ++e.finished;
-    return;
+std::vector<std::string> solver_faults(const std::vector<RunRecord>& runs) {
+  struct Ends {
+    int finished = 0, failed = 0;
+    std::string last;  ///< how the last one failed
+  };
+  std::map<std::string, Ends> by_solver;
+  for (const RunRecord& r : runs) {
+    const Outcome& o = r.outcome;
+    if (o.status == "unsupported" || o.status == "over_budget" || o.status == "missing") continue;
+    Ends& e = by_solver[r.header.solver];
+    const bool good = o.status == "ok" || o.expect == "pass";
+    ++(good ? e.finished : e.failed);
+    if (!good) e.last = o.message.empty() ? o.status : o.status + ": " + o.message;
   }
-  ++e.failed;
-  e.last = outcome.message.empty() ? outcome.status : outcome.status + ": " + outcome.message;
-}
-
-std::vector<std::string> SolverEnds::faults() const {
   std::vector<std::string> out;
-  for (const auto& [solver, e] : ends_)
+  for (const auto& [solver, e] : by_solver)
     if (e.finished == 0)
       out.push_back(fmt::format("{}: finished none of {} runs; the last: {}", solver, e.failed, e.last));
   return out;
-}
-
-void RunResult::add(const RunSpec& spec, const RunRecord& r) {
-  const std::string& status = r.outcome.status;
-  ends.add(spec.entry->info.name, r.outcome);
-  ++(status == "ok"            ? runs_ok
-     : status == "unsupported" ? runs_unsupported
-     : status == "over_budget" ? runs_over_budget
-                               : runs_failed);
-  if (spec.scene->stability.name.empty() || status == "unsupported") return;
-  const auto at = r.summary.find("stability_grade");
-  const double grade = at != r.summary.end() && std::isfinite(at->second) ? at->second : 2;
-  ++(grade == 0 ? grades.stable : grade == 1 ? grades.degraded : grades.failed);
-  if (status == "crashed" || r.outcome.message.starts_with("its process")) ++grades.crashed;
 }
 
 RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
@@ -249,7 +215,6 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
     const auto note = [&](const std::string& what) {
       if (options.progress) options.progress(what, 0, plan.size());
     };
-    const Stopwatch watch(result.seconds["reference solutions"]);
     const auto found = references(scenes, options.reference_cache, note);
     for (auto& group : plan.groups)
       for (RunSpec& c : group)
@@ -262,7 +227,6 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
       }
   }
   for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);
-  for (std::string& fault : result.ends.faults()) result.faults.push_back(std::move(fault));
   if (options.progress) options.progress("", done, plan.size());
   return result;
 }

@@ -40,43 +40,15 @@ struct RunOptions {
   std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
 };
 
-/// The rule of exit codes for every command that runs solvers: 1 if a solver finished none of its runs, whether they
-/// crashed, hung, diverged, lost the device or could not be made. Runs that the solver does not support, or that were
-/// left out for time, do not count; a run that ends as its scene expects does.
-class SolverEnds {
- public:
-  void add(const std::string& solver, const Outcome&);
-  /// One sentence per solver that finished none of its runs.
-  std::vector<std::string> faults() const;
-
- private:
-  struct Ends {
-    int finished = 0, failed = 0;
-    std::string last;  ///< how the last one failed
-  };
-  std::map<std::string, Ends> ends_;
-};
-
-/// Number of runs of each stability grade, of scenes that are graded.
-struct Grades {
-  int stable = 0, degraded = 0, failed = 0;
-  int crashed = 0;  ///< runs among the failed ones whose process crashed or hung
-  bool any() const { return stable + degraded + failed > 0; }
-};
-
 struct RunResult {
   std::vector<std::filesystem::path> files;  ///< of this session
-  /// Counts over all runs of the plan, including runs that an earlier session stored.
-  int runs_ok = 0, runs_unsupported = 0, runs_over_budget = 0, runs_failed = 0;
-  /// Wall time by solver for loads, passes, trials and files; "reference solutions" is another entry.
-  std::map<std::string, double> seconds;
-  /// Runs that broke a rule of the harness (stages, counts, validation) and solvers that finished no run: exit code 1.
-  std::vector<std::string> faults;
-  SolverEnds ends;  ///< of all runs of the plan
-  Grades grades;    ///< of all runs of the plan
-
-  void add(const RunSpec&, const RunRecord&);
+  std::vector<std::string> faults;           ///< runs that broke a rule of the harness: stages, counts, validation
 };
+
+/// The rule of exit codes for every command that runs solvers: one sentence per solver that finished none of its runs,
+/// whether they crashed, hung, diverged, lost the device or could not be made. Runs that the solver does not support,
+/// or that were left out for time, do not count; a run that ends as its scene expects does.
+std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 
 /// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name, and Error
 /// naming the file, the difference and a remedy if a stored run of the plan, finished or begun, is of another scene,

@@ -9,14 +9,11 @@
 #endif
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
 #include "runner/interrupt.hpp"
@@ -37,31 +34,34 @@ std::string last_words(const fs::path& log, std::uintmax_t from) {
   return last.size() > 300 ? last.substr(0, 300) + "…" : last;
 }
 
-/// What the function answers or throws.
+void tell_parent(const std::string& line) {
+  static_cast<void>(send(STDIN_FILENO, (line + "\n").data(), line.size() + 1, MSG_NOSIGNAL));
+}
+
+/// What the function answers or throws, and its progress on the way.
 json answer_of(const WorkerFunctions& functions, const json& request) {
+  const auto progress = [](const std::string& what, std::size_t done, std::size_t total) {
+    tell_parent(fmt::format("{} {} {}", done, total, what));
+  };
   try {
-    return {{"value", functions.at(request.at("function"))(
-                          request.at("request"), [](const std::string& what, std::size_t done, std::size_t total) {
-                            tell_parent(fmt::format("{} {} {}", done, total, what));
-                          })}};
+    return {{"value", functions.at(request.at("function"))(request.at("request"), progress)}};
   } catch (const Error& e) {
     return {{"error", e.what()}, {"code", static_cast<int>(e.code())}};
   }
 }
 
-/// A new folder for a worker's files.
-fs::path scratch_folder() {
-  static std::atomic<int> made{0};
-  return fs::temp_directory_path() / fmt::format("clothbench-call-{}-{}", getpid(), ++made);
-}
-
-void send_parent(const std::string& text) {
-  static_cast<void>(send(STDIN_FILENO, text.data(), text.size(), MSG_NOSIGNAL));
-}
-
 }  // namespace
 
-void serve_parent(const std::function<void(const std::string&)>& answer) {
+std::filesystem::path own_program() {
+#ifdef __ANDROID__
+  // An app's process is the system's program, not this one.
+  throw Error("the app cannot start child processes, which this study needs; use the plain executable");
+#else
+  return std::filesystem::read_symlink("/proc/self/exe");
+#endif
+}
+
+int run_child_main(const WorkerFunctions& functions) {
   // Ctrl-C is the parent's to act on; here it would make a row of a run that is to be repeated.
   signal(SIGINT, SIG_IGN);
 #ifdef __linux__
@@ -75,30 +75,10 @@ void serve_parent(const std::function<void(const std::string&)>& answer) {
     }
     // A parent that was killed before prctl sends no signal any more, but its end of the socket is closed.
     pollfd parent{STDIN_FILENO, POLLIN, 0};
-    if (poll(&parent, 1, 0) > 0 && (parent.revents & POLLHUP) != 0) return;
-    answer(line);
-    send_parent("\n");
+    if (poll(&parent, 1, 0) > 0 && (parent.revents & POLLHUP) != 0) return 0;
+    tell_parent(answer_of(functions, json::parse(line)).dump());
     line.clear();
   }
-}
-
-void tell_parent(const std::string& line) { send_parent(line + "\n"); }
-
-std::filesystem::path own_program() {
-#ifdef __ANDROID__
-  // An app's process is the system's program, not this one.
-  throw Error("the app cannot start child processes, which this study needs; use the plain executable");
-#else
-  return std::filesystem::read_symlink("/proc/self/exe");
-#endif
-}
-
-int run_child_main(const fs::path& folder, const WorkerFunctions& functions) {
-  serve_parent([&](const std::string& number) {
-    const fs::path file = folder / ("request-" + number + ".json");
-    const json answer = answer_of(functions, parse_json(read_text(file), file.string()));
-    write_file_atomically(folder / ("answer-" + number + ".json"), answer.dump() + "\n");
-  });
   return 0;
 }
 
@@ -121,19 +101,10 @@ DeviceOptions device_from_json(const json& j) {
   return d;
 }
 
-Worker::Worker(fs::path program, fs::path scratch, bool keep_output)
-    : program_(std::move(program)), scratch_(std::move(scratch)), keep_output_(keep_output) {}
-
-Worker::Worker(fs::path program) : Worker(std::move(program), scratch_folder(), false) {}
-
-Worker::~Worker() {
-  std::error_code ignored;
-  child_.reset();
-  if (!keep_output_) fs::remove_all(scratch_, ignored);
-}
+Worker::Worker(fs::path program, fs::path scratch) : program_(std::move(program)), scratch_(std::move(scratch)) {}
 
 std::optional<ChildEnd> Worker::ask(const std::string& line, double limit_s, const char* interrupted,
-                                    const std::function<double(const std::string&)>& heard) {
+                                    const std::function<double(const std::string&)>& heard, std::string& answer) {
   using namespace std::chrono_literals;
   auto since = std::chrono::steady_clock::now();
   const auto waited = [&](ChildEnd end) {
@@ -146,7 +117,10 @@ std::optional<ChildEnd> Worker::ask(const std::string& line, double limit_s, con
     char c = 0;
     const ChildProcess::Heard byte = child_->read(c, 50ms);
     if (byte == ChildProcess::Heard::Byte && c == '\n') {
-      if (said.empty()) return std::nullopt;
+      if (said.starts_with('{')) {
+        answer = std::move(said);
+        return std::nullopt;
+      }
       if (heard) limit_s = heard(said);
       since = std::chrono::steady_clock::now();
       said.clear();
@@ -167,37 +141,35 @@ std::optional<ChildEnd> Worker::ask(const std::string& line, double limit_s, con
 WorkerAnswer Worker::call(const std::string& function, const json& request, double limit_s, const char* interrupted,
                           const std::function<double(const std::string&, std::size_t, std::size_t)>& heard) {
   constexpr int kCallsAChild = 100;  // what drivers leak is theirs to keep for so long
-  const fs::path log = keep_output_ ? scratch_ / "output.txt" : fs::path();
+  const fs::path log = scratch_.empty() ? fs::path() : scratch_ / "output.txt";
   if (calls_ == kCallsAChild) child_.reset();
   if (!child_) {
-    fs::create_directories(scratch_);
+    if (!scratch_.empty()) fs::create_directories(scratch_);
     const fs::path program = program_.empty() ? own_program() : program_;
-    child_ = std::make_unique<ChildProcess>(std::vector<std::string>{program.string(), "run-child", scratch_.string()},
+    child_ = std::make_unique<ChildProcess>(std::vector<std::string>{program.string(), "run-child"},
                                             ChildSetup{.socket = true, .out = log.string(), .err = log.string()});
     ++children_;
     calls_ = 0;
   }
   std::error_code ignored;
-  said_ = calls_ == 0 || !keep_output_ ? 0 : fs::file_size(log, ignored);
-  ++number_;
+  said_ = calls_ == 0 || log.empty() ? 0 : fs::file_size(log, ignored);
   ++calls_;
-  const fs::path asked = scratch_ / fmt::format("request-{}.json", number_),
-                 answered = scratch_ / fmt::format("answer-{}.json", number_);
-  write_file_atomically(asked, json{{"function", function}, {"request", request}}.dump() + "\n");
-  const std::optional<ChildEnd> end = ask(std::to_string(number_), limit_s, interrupted, [&](auto& line) {
+  const auto progress = [&](const std::string& line) {
     std::istringstream words(line);
     std::size_t done = 0, total = 0;
     words >> done >> total;
     std::string what;
     std::getline(words >> std::ws, what);
     return heard ? heard(what, done, total) : limit_s;
-  });
+  };
+  std::string text;
+  const std::optional<ChildEnd> end =
+      ask(json{{"function", function}, {"request", request}}.dump(), limit_s, interrupted, progress, text);
   if (end) {
     child_.reset();
-    return {nullptr, end, keep_output_ ? last_words(log, said_) : ""};
+    return {nullptr, end, log.empty() ? "" : last_words(log, said_)};
   }
-  const json answer = parse_json(read_text(answered), answered.string());
-  for (const fs::path& file : {asked, answered}) fs::remove(file, ignored);
+  const json answer = json::parse(text);
   if (answer.contains("error"))
     throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
   return {answer["value"]};

@@ -13,14 +13,6 @@
 
 namespace clothbench {
 
-/// The child's side: reads requests line by line from its standard input, a socket, calls `answer` for each, and
-/// answers with an empty line on the same socket; lines before it report progress. The process ends with its parent,
-/// even if it hangs in a solver.
-void serve_parent(const std::function<void(const std::string&)>& answer);
-
-/// Reports progress to the parent; `line` is not empty.
-void tell_parent(const std::string& line);
-
 /// Path of this program's executable, for running it again. Throws Error in an app.
 std::filesystem::path own_program();
 
@@ -32,15 +24,16 @@ using WorkerProgress = std::function<void(const std::string& what, std::size_t d
 using WorkerFunction = std::function<nlohmann::json(const nlohmann::json& request, const WorkerProgress&)>;
 using WorkerFunctions = std::map<std::string, WorkerFunction>;
 
-/// Main function of `PROGRAM run-child FOLDER`: for every line n of its standard input, until it ends, executes
-/// FOLDER/request-n.json and writes FOLDER/answer-n.json. A request names one of the functions.
-int run_child_main(const std::filesystem::path& folder, const WorkerFunctions&);
+/// Main function of `PROGRAM run-child`, the child's side: reads requests from its standard input, a socket, one JSON
+/// object per line, calls the function that each names, and answers on the same socket with a JSON object on one line;
+/// lines before it report progress. The process ends with its parent, even if it hangs in a solver.
+int run_child_main(const WorkerFunctions&);
 
 /// An answer, or how the worker ended without one.
 struct WorkerAnswer {
   nlohmann::json value;
   std::optional<ChildEnd> end = {};
-  std::string last_words = {};  ///< the last line of its output, if the worker keeps that and ended: mostly why
+  std::string last_words = {};  ///< the last line of its output, if the worker keeps it and ended: mostly why
 };
 
 /// Longest time [s] that a solver may take for a frame or a load: $CLOTHBENCH_SOLVER_LIMIT_S, or 900.
@@ -54,13 +47,9 @@ DeviceOptions device_from_json(const nlohmann::json&);
 /// replaced. Not thread-safe.
 class Worker {
  public:
-  /// `program`: this one if empty. `scratch`: a folder for the exchanged files, used by this worker only.
-  /// `keep_output`: the child's output goes to a file there, whose last line explains a crash; otherwise it is this
-  /// process's.
-  Worker(std::filesystem::path program, std::filesystem::path scratch, bool keep_output = true);
-  /// In a temporary folder, with this process's output.
-  explicit Worker(std::filesystem::path program = {});
-  ~Worker();
+  /// `program`: this one if empty. `scratch`: a folder of this worker, for a file with the child's output, whose last
+  /// line explains a crash; if empty, the child's output is this process's.
+  explicit Worker(std::filesystem::path program = {}, std::filesystem::path scratch = {});
 
   /// Calls a function of the child, and throws the Error that it throws. The child is killed after `limit_s` (0 =
   /// never) without progress; `heard` receives progress and returns the limit from then on. On Ctrl-C it is killed too,
@@ -76,12 +65,11 @@ class Worker {
  private:
   /// Sends a line and waits for the answer. Returns nothing if it came, or how the child ended instead.
   std::optional<ChildEnd> ask(const std::string& line, double limit_s, const char* interrupted,
-                              const std::function<double(const std::string&)>& heard);
+                              const std::function<double(const std::string&)>& heard, std::string& answer);
 
   const std::filesystem::path program_, scratch_;
-  const bool keep_output_;
   std::unique_ptr<ChildProcess> child_;
-  int number_ = 0, calls_ = 0, children_ = 0;
+  int calls_ = 0, children_ = 0;
   std::uintmax_t said_ = 0;  ///< bytes of the child's output before the request
 };
 

@@ -6,7 +6,7 @@ set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(data ${CMAKE_INSTALL_DATADIR}/clothbench)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/clothbench)
-set(generated ${CMAKE_BINARY_DIR}/packaging)  # by generate.cmake, when the program is built
+set(generated ${CMAKE_BINARY_DIR}/packaging)
 
 install(TARGETS clothbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scenarios DESTINATION ${data})
@@ -28,10 +28,10 @@ install(EXPORT clothbench NAMESPACE clothbench:: FILE clothbenchConfig.cmake DES
 write_basic_package_version_file(${generated}/clothbenchConfigVersion.cmake COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${generated}/clothbenchConfigVersion.cmake DESTINATION ${package})
 
-install(FILES ${generated}/clothbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME clothbench)
-install(FILES ${generated}/clothbench.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _clothbench)
-install(FILES ${generated}/clothbench.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-
+# A time of its own would make the file differ from build to build.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+file(ARCHIVE_CREATE OUTPUT ${generated}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw
+  COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)
 install(FILES scripts/packaging/copyright ${generated}/changelog.gz DESTINATION ${doc})
 install(FILES results/README.md DESTINATION ${doc} RENAME result-files.md)
 install(FILES solvers/plugin/README.md DESTINATION ${doc} RENAME plugins.md)

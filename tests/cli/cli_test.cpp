@@ -43,30 +43,6 @@ class Cli : public WithFolder {
   }
 };
 
-TEST_F(Cli, CompletesFromWhatThereIs) {
-  const auto words = [](const std::string& line) { return command("completion words -- " + line, Streams::Out).text; };
-  EXPECT_EQ(words("stud"), "study\n");
-  EXPECT_EQ(words("study table"), "table3\n");
-  EXPECT_EQ(words("run paper/hand"), "paper/hand-push\n");
-  EXPECT_EQ(words("run paper/gravity --solver ballis"), "ballistic\n");
-  EXPECT_EQ(words("run paper/gravity --solver bullet-soft --set solver.iter"), "solver.iterations=\n");
-  EXPECT_NE(words("study table3 --").find("--resume\n"), std::string::npos);
-  EXPECT_EQ(words("nonsense x"), "");
-  EXPECT_EQ(words("run-child ''").find("run-child"), std::string::npos);
-  // Bash itself: what TAB would put on the line.
-  const std::string line = "clothbench run paper/gravity --solver ballis";
-  std::ofstream(dir_ / "complete.sh") << "PATH=$(dirname " CLOTHBENCH_COMMAND
-                                         "):$PATH\nsource <(clothbench completion bash)\n"
-                                      << "COMP_LINE='" << line << "' COMP_POINT=" << line.size() << " COMP_WORDS=("
-                                      << line << ") COMP_CWORD=4\n_clothbench 2>/dev/null\necho \"${COMPREPLY[@]}\"\n";
-  FILE* pipe = popen(("bash " + (dir_ / "complete.sh").string()).c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::array<char, 256> answer{};
-  const std::size_t n = fread(answer.data(), 1, answer.size(), pipe);
-  EXPECT_EQ(pclose(pipe), 0);
-  EXPECT_EQ(std::string(answer.data(), n), "ballistic\n");
-}
-
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Answer a = command("--help");
   EXPECT_EQ(a.code, 0);

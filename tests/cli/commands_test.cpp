@@ -57,7 +57,6 @@ const std::vector<Pair> kPairs = {
      {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
     {{"conformance", "ballistic", "--set", "cloth.grid=[3,3]"},
      {"--json", "conformance", "ballistic", "--scene", "conformance/sheet", "--no-whole"}},
-    {{"completion", "words", "--", "study", "--"}, {"--json", "completion", "zsh"}},
     {{"study", "table3", "--quick", "--only", "nothing", "--job", "0"}, {"--json", "study", "table3", "--list-jobs"}},
 };
 

@@ -151,20 +151,6 @@ class Tree(unittest.TestCase):
             # A whole path below the tree: the name of a folder in / is part of many other words.
             self.assertNotRegex(content, rb"(?<![\w.-])" + re.escape(SOURCE.encode()) + rb"/(harness|scenarios|scripts|solvers|build)\b", file)
 
-    def test_completions_lie_where_debian_expects_them(self):
-        share = self.tree / "share"
-        for file, word in (
-            ("bash-completion/completions/clothbench", "complete -o default -F _clothbench clothbench"),
-            ("zsh/vendor-completions/_clothbench", "#compdef clothbench"),
-            ("fish/vendor_completions.d/clothbench.fish", "complete -c clothbench"),
-        ):
-            self.assertIn(word, (share / file).read_text(encoding="utf-8"))
-        script = f"PATH='{self.tree}/bin':$PATH; source '{share}/bash-completion/completions/clothbench'\n" + (
-            "COMP_LINE='clothbench val' COMP_POINT=14 COMP_WORDS=(clothbench val) COMP_CWORD=1; _clothbench; echo ${COMPREPLY[@]}"
-        )
-        done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-        self.assertEqual(done.stdout, "validate\n", done.stderr)
-
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[4:])

@@ -125,7 +125,8 @@ void execute(const std::filesystem::path& folder) {
     options.out = folder / std::to_string(k);
     std::filesystem::create_directories(options.out);
     const RunResult result = execute_runs(plan, options);
-    if (result.runs_ok != 1) throw Error(all[k].scene + ": the run did not end well");
+    if (read_run_summary(result.files.at(0)).outcome.status != "ok")
+      throw Error(all[k].scene + ": the run did not end well");
   }
 }
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "base/tint.hpp"
 #include "report/report.hpp"
 
 namespace clothbench {
@@ -48,27 +47,6 @@ TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
   EXPECT_EQ(t.rows[1][4], "3.00 (first 5 frames)") << "too few frames for an interval";
   EXPECT_EQ(t.rows[2][1] + " " + t.rows[2][3] + " " + t.rows[2].back(), "held 5.00 1");
   EXPECT_EQ(t.rows[3][1] + " " + t.rows[3][3] + " " + t.rows[3].back(), "torn 357 –");
-}
-
-TEST(Tint, IsPlainUntilSwitchedOn) {
-  Table t{"Title",
-          "",
-          {{"run", "pass", "how"},
-           {"a", "b", "pass"},
-           {"a", "b", "*noise*"},
-           {"a", "b", "1.5 ✓"},
-           {"a", "b", "NO: why"},
-           {"a", "b", "node"}}};
-  const std::string plain = t.console();
-  EXPECT_EQ(plain.find('\x1b'), std::string::npos);
-  colour_output(true);
-  const std::string coloured = t.console();
-  colour_output(false);
-  for (const char* part : {"\x1b[1mTitle\x1b[0m", "\x1b[32mpass\x1b[0m", "\x1b[2m*noise*\x1b[0m",
-                           "\x1b[32m1.5 ✓\x1b[0m", "\x1b[31mNO: why\x1b[0m", "  node\n"})
-    EXPECT_NE(coloured.find(part), std::string::npos) << part << " in " << coloured;
-  EXPECT_NE(coloured.find("  run  pass      how"), std::string::npos) << "no verdict in a header: " << coloured;
-  EXPECT_EQ(t.console(), plain);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ def clothbench(*arguments):
 
 runs = out / "runs"
 runs.mkdir(parents=True)
-clothbench("study", "table3", "--quick", "--trials", "1", *solvers, "--out", str(runs / "table3"), "--allow-no-device")
+clothbench("study", "table3", "--quick", "--trials", "1", *solvers, "--out", str(runs / "table3"))
 contact = ["contact/" + name for name in ("sphere", "box", "plane", "open-sheet")]
 paper = ["paper/" + name for name in ("desk-corner-low", "capsule-sweep", "hand-push", "two-hand-stretch-2mps")]
 clothbench("run", *contact, *paper, *solvers, "--set", "cloth.grid=[17,13]", "--set", "time.duration_s=0.75",

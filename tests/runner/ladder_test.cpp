@@ -20,17 +20,15 @@ TEST_F(Ladder, EndsAtATimeOutAndStoresTheRestWithItsReason) {
   plan.rules.run_limit_s = 0.4;
   plan.rules.agree = 0.5;  // a sleep is never that far off by itself
   const RunResult result = execute_runs(plan, options_);
-  EXPECT_EQ(result.runs_ok, 2);
-  EXPECT_EQ(result.runs_over_budget, 2);
-  EXPECT_EQ(result.runs_failed, 1);
   EXPECT_TRUE(result.faults.empty());
-  EXPECT_GT(result.seconds.at("ballistic"), 0.2);
   std::map<std::string, RunRecord> runs;
   for (const std::filesystem::path& f : result.files) {
     RunRecord c = read_run(f);
     runs[c.header.setting] = std::move(c);
   }
+  for (const char* rung : {"substeps=10", "substeps=20"}) EXPECT_EQ(runs.at(rung).outcome.status, "ok");
   EXPECT_EQ(runs.at("substeps=80").outcome.status, "timed_out");
+  EXPECT_EQ(runs.at("substeps=160").outcome.status, "over_budget");
   EXPECT_EQ(runs.at("substeps=320").outcome.status, "over_budget");
   EXPECT_EQ(runs.at("substeps=320").outcome.message, "not run: 4 times the work of a setting that timed out");
   EXPECT_TRUE(runs.at("substeps=320").trials.empty());

@@ -84,10 +84,10 @@ const SolverEntry* look_up(const std::string& name) {
 }  // namespace
 }  // namespace clothbench
 
-int main(int argc, char** argv) {
-  if (argc != 3) return 64;
+int main(int argc, char**) {
+  if (argc != 2) return 64;
   using namespace clothbench;
-  return run_child_main(argv[2], {{"plan", [](const nlohmann::json& request, const WorkerProgress& progress) {
-                                     return execute_plan(request, progress, look_up, nullptr);
-                                   }}});
+  return run_child_main({{"plan", [](const nlohmann::json& request, const WorkerProgress& progress) {
+                            return execute_plan(request, progress, look_up, nullptr);
+                          }}});
 }
