@@ -86,7 +86,6 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["compiler"] = build_info::kCompiler;
   e["shader_compiler"] = build_info::kShaderCompiler;
   e["build_type"] = build_info::kBuildType;
-  e["version"] = build_info::kVersion;
   e["git_commit"] = build_info::kGitCommit;
   e["git_dirty"] = build_info::kGitDirty;
   e["source_sha256"] = build_info::kSourceSha256;
@@ -161,8 +160,6 @@ json read_sensors(const fs::path& root) {
   for (const auto& [number, folder] : numbered(root / "sys/devices/system/cpu", "cpu")) {
     json cpu;
     put_number(cpu, "frequency_Hz", folder / "cpufreq/scaling_cur_freq", kKiloHertz);
-    put_number(cpu, "min_Hz", folder / "cpufreq/scaling_min_freq", kKiloHertz);
-    put_number(cpu, "max_Hz", folder / "cpufreq/scaling_max_freq", kKiloHertz);
     put_text(cpu, "governor", folder / "cpufreq/scaling_governor");
     if (cpu.is_null()) continue;
     cpu["cpu"] = number;
@@ -171,15 +168,13 @@ json read_sensors(const fs::path& root) {
   const fs::path adreno = root / "sys/class/kgsl/kgsl-3d0";
   put_text(all["gpu"], "model", adreno / "gpu_model");
   put_number(all["gpu"], "frequency_Hz", adreno / "gpuclk", 1);
-  put_number(all["gpu"], "max_Hz", adreno / "max_gpuclk", 1);
   put_text(all["gpu"], "governor", adreno / "devfreq/governor");
   put_number(all["gpu"], "temperature_C", adreno / "temp", kMilliDegree);
-  for (const auto& [number, folder] : numbered(root / "sys/class/thermal", "thermal_zone")) {
+  for (const auto& [unused, folder] : numbered(root / "sys/class/thermal", "thermal_zone")) {
     json zone;
     // A zone that is switched off answers with an error, or with a value below absolute zero.
     put_number(zone, "temperature_C", folder / "temp", kMilliDegree);
     if (zone.is_null() || !(zone["temperature_C"].get<double>() > -273.15)) continue;
-    zone["zone"] = number;
     put_text(zone, "type", folder / "type");
     all["temperatures"].push_back(std::move(zone));
   }

@@ -23,9 +23,9 @@ void describe_solver(const SolverInfo&, nlohmann::json& environment);
 std::string utc_now();
 
 /// Clocks and temperatures from Linux and Android, in Hz and degrees Celsius; values that cannot be read are left out:
-///   cpus: [{cpu, frequency_Hz, min_Hz, max_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
-///   gpu: {model, frequency_Hz, max_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
-///   temperatures: [{zone, type, temperature_C}]   /sys/class/thermal
+///   cpus: [{cpu, frequency_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
+///   gpu: {model, frequency_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
+///   temperatures: [{type, temperature_C}]   /sys/class/thermal
 /// Units and files: Linux, Documentation/admin-guide/pm/cpufreq.rst and driver-api/thermal/sysfs-api.rst; Qualcomm's
 /// kgsl driver. `root` stands for "/".
 nlohmann::json read_sensors(const std::filesystem::path& root = "/");

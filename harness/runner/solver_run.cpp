@@ -77,11 +77,6 @@ std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohman
   return settings;
 }
 
-void describe_scene(const Scene& scene, nlohmann::json& environment) {
-  if (!scene.assets.empty()) environment["assets"] = scene.assets;
-  if (scene.seed) environment["seed"] = std::to_string(*scene.seed);
-}
-
 }  // namespace
 
 std::string run_name(const RunSpec& c) { return run_name(c.scene->name, c.entry->info.name, c.setting); }
@@ -107,7 +102,7 @@ SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::strin
   const SolverInfo& info = spec_.entry->info;
   header_ = header_of(scene, info.name, spec_.setting, spec_.settings, protocol);
   const auto describe_run = [&] {
-    describe_scene(scene, header_.environment);
+    if (!scene.assets.empty()) header_.environment["assets"] = scene.assets;
     if (spec_.entry->make) describe_solver(info, header_.environment);
   };
   describe_run();

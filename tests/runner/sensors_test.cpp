@@ -24,7 +24,7 @@ TEST_F(Sensors, ReadsAPhonesTree) {
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_cur_freq", "1382400");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "schedutil");
   put("sys/devices/system/cpu/cpu10/cpufreq/scaling_cur_freq", "2054400");
-  put("sys/devices/system/cpu/cpu2/cpufreq/scaling_max_freq", "2361600");
+  put("sys/devices/system/cpu/cpu2/cpufreq/scaling_governor", "schedutil");
   put("sys/devices/system/cpu/cpuidle/current_driver", "none");
   put("sys/class/kgsl/kgsl-3d0/gpuclk", "456000000");
   put("sys/class/kgsl/kgsl-3d0/gpu_model", "Adreno740v3");
