@@ -36,7 +36,10 @@ TEST(ClothMesh, IsReadFromAnObjFile) {
   EXPECT_EQ(m.edges.size(), 5u);
   EXPECT_DOUBLE_EQ(std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0), 3 * 1.0)
       << "each triangle at three edges";
-  EXPECT_EQ(nearest_vertex(m, {0.9, 0.8, 0}), 2u);
+  Cloth cloth;
+  cloth.mesh = std::make_shared<const ClothMesh>(m);
+  EXPECT_EQ(selected_vertices(cloth, {{"nearest_m", {{0.9, 0.8, 0}}}}, "test", "/pins/0"),
+            std::vector<std::uint32_t>{2});
   EXPECT_EQ(longest_sides(m), (std::pair{1.0, 1.0}));
 }
 
