@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the two sides of a comparison, and a failure, are called.
+/// Names of the two sides of a comparison, and of a failure.
 struct Sides {
   const char *a = "baseline", *b = "found", *worse = "FAILED";
 };

@@ -19,7 +19,7 @@ std::filesystem::path own_program();
 /// Null if there is none of that name.
 using SolverLookup = std::function<const SolverEntry*(const std::string&)>;
 
-/// What a worker does by name: request -> answer.
+/// Functions of a worker by name: request -> answer.
 using WorkerProgress = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
 using WorkerFunction = std::function<nlohmann::json(const nlohmann::json& request, const WorkerProgress&)>;
 using WorkerFunctions = std::map<std::string, WorkerFunction>;

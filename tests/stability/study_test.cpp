@@ -143,7 +143,7 @@ TEST(StabilityCases, AreAllThereAndLoad) {
       cases.insert(item.scene.stability.name);
       const std::string number = item.scene.name.substr(1, 2);
       EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
-      // What a process of its own is handed is the scene that --resume looks for.
+      // A separate process receives the scene that --resume looks for.
       if (length == StudyLength::Quick) {
         EXPECT_EQ(scene_from_json(json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256)
             << item.scene.name;
