@@ -10,13 +10,11 @@
 namespace clothbench {
 namespace {
 
-/// "≥ 12.3 / 4.50" of the bytes read and written, times `scale`; ≥ where the bytes read are a lower bound.
+/// "12.3 / 4.50" of the bytes read and written, times `scale`.
 std::string bytes(const Row& r, const char* read, const char* written, double scale) {
   const double in = scale * r.value(read), out = scale * r.value(written);
   if (!std::isfinite(in) && !std::isfinite(out)) return "–";
-  const bool bound = std::isfinite(in) && std::any_of(r.run->header.stages.begin(), r.run->header.stages.end(),
-                                                      [](const StageRecord& s) { return s.bytes == "at least"; });
-  return (bound ? "≥ " : "") + significant(in, 3) + " / " + significant(out, 3);
+  return significant(in, 3) + " / " + significant(out, 3);
 }
 
 /// "Over windows of 5 s, or of the whole trial where it is shorter (here 0.3 to 2 s)."
@@ -148,9 +146,8 @@ View other_clocks() {
 
 View memory() {
   View v{"time", "Bytes and device memory per frame",
-         "Bytes: loads and stores of the shaders, computed from the scene and the kernels' loops; tests compare them "
-         "with instrumented kernels. ≥: a lower bound, where the bytes read depend on the shape of the cloth, "
-         "as in contact. Retries of atomics are not counted. Peak bandwidth: computed bytes divided by wall time. "
+         "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
+         "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time. "
          "Memory: device-local buffers. CPU solvers, whose bytes are not known, are left out.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Stability && std::isfinite(r.value("device_memory_B"));

@@ -28,10 +28,10 @@ inline constexpr TrialSeries kTrialSeries[] = {
      false, true},
     {"timing", "stage_device_s", "s", "device time of a stage, from the profiled twin", &TimedTrial::stage_device_s,
      true},
-    {"bandwidth", "read_B", "B", "bytes loaded by shaders, computed from the scene and the kernels",
-     &TimedTrial::stage_read_B, true},
-    {"bandwidth", "write_B", "B", "bytes stored by shaders, computed from the scene and the kernels",
-     &TimedTrial::stage_write_B, true},
+    {"bandwidth", "read_B", "B", "bytes loaded by shaders, counted in a run of its own", &TimedTrial::stage_read_B,
+     true},
+    {"bandwidth", "write_B", "B", "bytes stored by shaders, counted in a run of its own", &TimedTrial::stage_write_B,
+     true},
 };
 
 struct TrialNumber {

@@ -34,12 +34,6 @@ bool all_finite(const std::vector<double>& values) {
   return true;
 }
 
-/// The kind of the declared bytes of a stage.
-std::string bytes_word(const StagePlan& s) {
-  if (!std::isfinite(s.read_B) && !std::isfinite(s.write_B)) return "";
-  return s.at_least ? "at least" : "computed";
-}
-
 nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   nlohmann::json j;
   for (const BufferPlan& b : plan.buffers)
@@ -70,11 +64,14 @@ std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vecto
   return fault;
 }
 
-/// Settings with per-stage timestamps on, if the solver offers them.
-std::optional<nlohmann::json> with_stage_times(const SolverEntry& entry, nlohmann::json settings) {
-  if (!settings.contains("stage_times") || !entry.info.on_gpu) return std::nullopt;
-  settings["stage_times"] = settings["stage_times"].is_boolean() ? nlohmann::json(true) : nlohmann::json(1);
-  return settings;
+/// The solver again, loaded with a setting on that makes it slower; null if it has no such setting or is not on a GPU.
+std::unique_ptr<ClothSolver> twin_with(const char* setting, const RunSpec& spec, const DeviceOptions& device) {
+  nlohmann::json settings = spec.settings;
+  if (!settings.contains(setting) || !spec.entry->info.on_gpu) return nullptr;
+  settings[setting] = settings[setting].is_boolean() ? nlohmann::json(true) : nlohmann::json(1);
+  std::unique_ptr<ClothSolver> twin = spec.entry->make(settings, device);
+  twin->load(*spec.scene);
+  return twin;
 }
 
 }  // namespace
@@ -134,7 +131,7 @@ SolverRun::SolverRun(RunSpec spec, const DeviceOptions& device, const std::strin
   plan_ = solver_->plan();
   header_.plan = plan_json(plan_, scene);
   for (const StagePlan& s : plan_.stages) {
-    StageRecord record{s.name, {}, s.dispatches, bytes_word(s)};
+    StageRecord record{s.name, {}, s.dispatches};
     s.serves.for_each([&](Feature f) { record.serves.emplace_back(name_of(f)); });
     header_.stages.push_back(std::move(record));
   }
@@ -272,7 +269,10 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   trial.jobs = std::max(jobs_before, jobs_now());
   if (outcome_.status == "ok" && rules.pipelined && solver_->frames_in_flight() > 1) run_pipelined(trial, rules);
   if (outcome_.status == "ok" && rules.rendering.make) run_rendered(trial, rules);
-  if (outcome_.status == "ok" && rules.profiled_frames > 0) profile_stages(trial, rules.profiled_frames);
+  if (outcome_.status == "ok" && rules.profiled_frames > 0) {
+    profile_stages(trial, rules.profiled_frames);
+    count_bytes(trial, rules);
+  }
 }
 
 /// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the
@@ -310,12 +310,8 @@ void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
 /// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the
 /// timestamps themselves would slow the frames that are timed. Frames without a profiled twin stay NaN.
 void SolverRun::profile_stages(TimedTrial& trial, int frames) {
-  if (!profiled_) {
-    const auto settings = with_stage_times(*spec_.entry, spec_.settings);
-    if (!settings) return;
-    profiled_ = spec_.entry->make(*settings, device_);
-    profiled_->load(*spec_.scene);
-  }
+  if (!profiled_) profiled_ = twin_with("stage_times", spec_, device_);
+  if (!profiled_) return;
   profiled_->reset();
   const std::size_t stages = plan_.stages.size();
   FrameLoop loop(*profiled_, *spec_.scene, {.frames = std::min(frames, trial.frames()), .interrupted = kTrialsKept});
@@ -324,6 +320,28 @@ void SolverRun::profile_stages(TimedTrial& trial, int frames) {
     for (std::size_t k = 0; k < std::min(stages, cost.stage_device_s.size()); ++k)
       trial.stage_device_s[static_cast<std::size_t>(loop.index()) * stages + k] = cost.stage_device_s[k];
   }
+}
+
+/// Bytes come from a twin whose kernels count them, on the frames of the first trial; those of the others are the same.
+void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
+  if (counted_.frames() != trial.frames()) {
+    const std::unique_ptr<ClothSolver> twin = twin_with("count_bytes", spec_, device_);
+    if (!twin) return;
+    twin->reset();
+    counted_ = {};
+    FrameLoop loop(*twin, *spec_.scene, frame_rules(rules, trial.frames()));
+    while (loop.next()) {
+      const FrameCost cost = twin->last_cost();
+      counted_.frame_wall_s.push_back(loop.wall_s());
+      counted_.stage_read_B.insert(counted_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+      counted_.stage_write_B.insert(counted_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+    }
+    fail(loop.status(), loop.index());
+    counted_messages_ += twin->validation_messages();
+    if (loop.failed()) return;
+  }
+  trial.stage_read_B = counted_.stage_read_B;
+  trial.stage_write_B = counted_.stage_write_B;
 }
 
 std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, const RunRecord& record) {

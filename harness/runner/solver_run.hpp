@@ -49,7 +49,7 @@ struct TrialRules {
   double agree =
       0;  ///< trials end once two or more agree to this: half the range of frame rates over the median; 0 = never
   bool pipelined = false;    ///< also time the frames of a trial without waiting for each, if the solver supports it
-  int profiled_frames = 12;  ///< frames of each trial run again with a timestamp around every stage; 0 = none
+  int profiled_frames = 12;  ///< frames of each trial run again with timestamps around stages; 0: none, and no bytes
   Rendering rendering = {};  ///< also time frames with rendering
 };
 
@@ -87,9 +87,10 @@ class SolverRun {
   AccuracyPass run_accuracy(const TrialRules& rules);
   /// Runs one timed trial. `frames` > 0 sets the exact number (so that all trials of a run agree).
   TimedTrial run_trial(int index, const TrialRules& rules, int frames);
-  /// Number of validation messages so far, from its solver and the twin used to time stages; a run with any is not ok.
+  /// Number of validation messages so far, from its solver and its twins; a run with any is not ok.
   int validation_messages() const {
-    return (solver_ ? solver_->validation_messages() : 0) + (profiled_ ? profiled_->validation_messages() : 0);
+    return counted_messages_ + (solver_ ? solver_->validation_messages() : 0) +
+           (profiled_ ? profiled_->validation_messages() : 0);
   }
 
  private:
@@ -100,6 +101,7 @@ class SolverRun {
   void run_pipelined(TimedTrial& trial, const TrialRules& rules);
   void run_rendered(TimedTrial& trial, const TrialRules& rules);
   void profile_stages(TimedTrial& trial, int frames);
+  void count_bytes(TimedTrial& trial, const TrialRules& rules);
 
   RunSpec spec_;
   DeviceOptions device_;
@@ -108,6 +110,8 @@ class SolverRun {
   Plan plan_;
   std::unique_ptr<ClothSolver> solver_;
   std::unique_ptr<ClothSolver> profiled_;  ///< twin with per-stage timestamps, only on a GPU
+  TimedTrial counted_;                     ///< the bytes that a twin counted in the frames of a trial
+  int counted_messages_ = 0;               ///< validation messages of that twin
 };
 
 /// Every scalar of the tables, from the record of one run. NaN where not applicable.

@@ -27,7 +27,7 @@ TEST_F(Gpu, RowsOfGroupsReachEveryItemOnce) {
       std::make_unique<Buffer>(device_, "velocities", (kItems + kBeyond) * sizeof(vec4), Buffer::Place::Host);
   auto* v = static_cast<vec4*>(buffer->mapped());
   for (std::uint32_t i = 0; i < kItems + kBeyond; ++i) v[i] = {static_cast<float>(i), 0, 0, 1};
-  const vulkan::Kernel kernel(device_, "forces", shader("apply_external_forces").code, {64},
+  const vulkan::Kernel kernel(device_, "forces", shader("apply_external_forces"), {64},
                               {{BIND_VELOCITIES, buffer.get()}}, sizeof(PaperConstants));
   vulkan::Program program(device_);
   PaperConstants c{};

@@ -38,9 +38,9 @@ class Gpu : public ::testing::Test {
   }
 
   static std::unique_ptr<GpuSolver> make(const std::string& name,
-                                         const nlohmann::json& given = nlohmann::json::object(), bool count = false) {
-    return name == "paper" ? make_paper(complete_settings(paper_info(), given), options(), count)
-                           : make_xpbd(complete_settings(xpbd_info(), given), options(), count);
+                                         const nlohmann::json& given = nlohmann::json::object()) {
+    return name == "paper" ? make_paper(complete_settings(paper_info(), given), options())
+                           : make_xpbd(complete_settings(xpbd_info(), given), options());
   }
 
   /// The same bits from a second solver, and after a reset.

@@ -11,7 +11,7 @@ namespace {
 class Mirror final : public GpuSolver {
  public:
   Mirror(bool as_convex_shapes, Vec3 origin)
-      : GpuSolver(paper_info(), complete_settings(paper_info(), nlohmann::json::object()), {-1, true}, false),
+      : GpuSolver(paper_info(), complete_settings(paper_info(), nlohmann::json::object()), {-1, true}),
         as_convex_shapes_(as_convex_shapes),
         origin_(origin) {}
   template <class T>

@@ -11,10 +11,10 @@ using Profiles = Gpu;
 TEST(Kernels, AccessesAreReadFromTheCode) {
   using vulkan::Access;
   EXPECT_EQ(
-      vulkan::accesses_of(shader("update_positions").code),
+      vulkan::accesses_of(shader("update_positions")),
       (std::map<std::uint32_t, Access>{
           {BIND_POSITIONS, Access::ReadWrite}, {BIND_VELOCITIES, Access::Write}, {BIND_PREDICTED, Access::Read}}));
-  const vulkan::SpirV code = shader("update_positions").code;
+  const vulkan::SpirV code = shader("update_positions");
   // The header has five words, and the first instruction (OpCapability) has two.
   EXPECT_THROW(vulkan::accesses_of({code.words, 6 * sizeof(std::uint32_t)}), Error) << "torn";
 }
@@ -26,7 +26,7 @@ TEST_F(Profiles, CutLimitsAndRefuseLargerWorkgroups) {
   EXPECT_LE(device->limits().maxComputeWorkGroupInvocations, 256u);
   vulkan::Buffer buffer(device, "velocities", 1024, vulkan::Buffer::Place::Device);
   const auto make = [&](std::uint32_t group) {
-    return vulkan::Kernel(device, "forces", shader("apply_external_forces").code, {group}, {{BIND_VELOCITIES, &buffer}},
+    return vulkan::Kernel(device, "forces", shader("apply_external_forces"), {group}, {{BIND_VELOCITIES, &buffer}},
                           sizeof(PaperConstants));
   };
   make(256);

@@ -225,18 +225,6 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   EXPECT_EQ(entry(table_of({runs[1]}, kTable3), "crowd", "8²"), "–");
 }
 
-TEST(Tables, BytesThatAreALowerBoundSaySo) {
-  std::vector<RunRecord> runs = {fake_run("a", 8, "single", 0.002), fake_run("b", 8, "single", 0.002)};
-  runs[0].header.stages = {{"Lines", {}, 1, "computed"}, {"Contact", {}, 1, "at least"}};
-  runs[1].header.stages = {{"Lines", {}, 1, "computed"}};
-  const auto value = [&](const std::string& solver, const char* head) {
-    return entry(table_of(runs, kMemory), "gravity-8-single", solver, head);
-  };
-  EXPECT_EQ(value("a", "kB per frame, read / written"), "≥ 16.0 / 8.00");
-  EXPECT_EQ(value("b", "kB per frame, read / written"), "16.0 / 8.00");
-  EXPECT_EQ(value("a", kBandwidth), "≥ 4.00 / 2.00");
-}
-
 TEST(Tables, EveryLineFitsTheTerminal) {
   std::vector<RunRecord> runs;
   for (const int n : {8, 128}) {

@@ -94,14 +94,11 @@ double jobs_beside(const RunView& r) {
   return most;
 }
 
-/// Value of the first frame.
+/// Mean over the frames of the first trial.
 double bytes_per_frame(const RunRecord& run, std::vector<double> TimedTrial::*bytes) {
   if (run.trials.empty() || run.trials.front().frames() == 0) return kMissing;
   const TimedTrial& t = run.trials.front();
-  const std::size_t stages = (t.*bytes).size() / static_cast<std::size_t>(t.frames());
-  double sum = 0;
-  for (std::size_t s = 0; s < stages; ++s) sum += (t.*bytes)[s];
-  return sum;
+  return std::accumulate((t.*bytes).begin(), (t.*bytes).end(), 0.0) / t.frames();
 }
 
 double device_memory(const RunView& r) {
@@ -200,9 +197,9 @@ MetricGroup timing_metrics() {
       median_frame("frame_rendered_median_s", "wall time of a frame with both eye views rendered, median",
                    &T::frame_rendered_s),
       median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s),
-      reported("read_B_per_frame", "B", "bytes that a frame's shaders read",
+      reported("read_B_per_frame", "B", "bytes that shaders read per frame, mean",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
-      reported("write_B_per_frame", "B", "bytes that a frame's shaders write",
+      reported("write_B_per_frame", "B", "bytes that shaders write per frame, mean",
                [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
       bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read divided by wall time, maximum over the windows",
                        &T::stage_read_B, &B::peak),

@@ -171,9 +171,7 @@ void ColliderBuffers::record() {
   if (capsules_host_ != nullptr) frame_.copy(stage_upload_, *capsules_host_, *capsules.buffer);
   if (joints_host_ == nullptr) return;
   frame_.copy(stage_upload_, *joints_host_, *joints_);
-  const double n = skinned_vertices_, start = as_convex_shapes_ ? 16 : 0;
-  frame_.dispatch(*skin_, skinned_vertices_, SkinConstants{skinned_vertices_},
-                  {n * (sizeof(SkinVertex) + 4 * sizeof(JointMatrix) + start), n * (16 + start)});
+  frame_.dispatch(*skin_, skinned_vertices_, SkinConstants{skinned_vertices_});
 }
 
 void ColliderBuffers::reset() {
@@ -228,8 +226,7 @@ void GripBuffer::record_upload() { frame_.copy(stage_upload_, *host_, *grips_); 
 
 void GripBuffer::record_move(const FrameKernel& kernel, double fraction, double frame_s) {
   const auto n = static_cast<std::uint32_t>(layers_ * scene_.grips.vertices.size());
-  frame_.dispatch(kernel, n, GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0},
-                  {n * (sizeof(GripVertex) + 32.0), n * 32.0});
+  frame_.dispatch(kernel, n, GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0});
 }
 
 void GripBuffer::reset() {

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "vulkan/count_bytes.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -40,12 +42,17 @@ void FrameBuilder::require_room(const std::string& name, std::uint64_t bytes) co
                           device_->info().name, why));
 }
 
-FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : settings_(settings), count_bytes_(count_bytes), device_(vulkan::Device::get(device)) {}
+FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device)
+    : settings_(settings), device_(vulkan::Device::get(device)) {}
 
 void FrameBuilder::begin(const Scene& scene) {
   scene_ = &scene;
   for (auto* program : {&frame_, &upload_, &download_}) *program = std::make_unique<vulkan::Program>(device_);
+  constexpr std::uint64_t kBytes = 64 * 4 * sizeof(std::uint32_t);  // no scene has 64 stages
+  if (!settings_.value("count_bytes", false)) return;
+  counters_ = &add_buffer(BIND_COUNTER, "byte counters", kBytes);
+  counted_ = &add_host_buffer("bytes counted", kBytes);
+  zeros_ = &add_host_buffer("no bytes counted", kBytes);
 }
 
 const Buffer& FrameBuilder::add_buffer(int binding, const std::string& name, std::uint64_t bytes, const void* initial,
@@ -70,9 +77,9 @@ const Buffer& FrameBuilder::add_host_buffer(const std::string& name, std::uint64
   return buffer;
 }
 
-int FrameBuilder::add_stage(const std::string& name, FeatureSet serves, bool at_least) {
-  plan_.stages.push_back({name, serves, 0, 0, 0, at_least});
-  counters_.push_back(count_bytes_ ? &add_buffer(kUnbound, "bytes counted in " + name, 8) : nullptr);
+int FrameBuilder::add_stage(const std::string& name, FeatureSet serves) {
+  plan_.stages.push_back({name, serves, 0, kMissing, kMissing});
+  copied_B_.push_back(0);
   return static_cast<int>(plan_.stages.size()) - 1;
 }
 
@@ -86,29 +93,24 @@ vulkan::Buffers FrameBuilder::buffers_with(vulkan::Buffers own) const {
 const FrameKernel* FrameBuilder::add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
                                             std::vector<std::uint32_t> constants, std::uint32_t group_size,
                                             const vulkan::Buffers& own) {
-  const Shader& s = shader(name);
-  const vulkan::SpirV code = count_bytes_ ? s.counted : s.code;
-  if (code.words == nullptr)
-    throw SolverError("bytes cannot be counted, because this program was built without tests (BUILD_TESTING)");
-  vulkan::Buffers buffers = buffers_with(own);
-  if (count_bytes_) buffers[BIND_COUNTER] = counters_[static_cast<std::size_t>(stage)];
+  vulkan::SpirV code = shader(name);
+  std::vector<std::uint32_t> counting;
+  if (counters_ != nullptr) {
+    counting = vulkan::with_byte_counters(code, BIND_COUNTER, 4 * static_cast<std::uint32_t>(stage),
+                                          {BIND_BARRIER, BIND_TIMED_OUT});
+    code = {counting.data(), counting.size() * sizeof(std::uint32_t)};
+  }
   constants.resize(std::max<std::size_t>(1, constants.size()));
   constants[0] = group_size;
   kernels_.push_back(std::unique_ptr<FrameKernel>(
-      new FrameKernel{stage, group_size, vulkan::Kernel(device_, name, code, constants, buffers, push_bytes)}));
+      new FrameKernel{stage, group_size, std::move(counting),
+                      vulkan::Kernel(device_, name, code, constants, buffers_with(own), push_bytes)}));
   return kernels_.back().get();
 }
 
 void FrameBuilder::copy(int stage, const Buffer& from, const Buffer& to) {
   frame_->copy(stage, from, to);
-  const auto bytes = static_cast<double>(std::min(from.bytes(), to.bytes()));
-  count(stage, {bytes, bytes});
-}
-
-void FrameBuilder::count(int stage, Traffic traffic) {
-  StagePlan& s = plan_.stages[static_cast<std::size_t>(stage)];
-  s.read_B += traffic.read_B;
-  s.write_B += traffic.write_B;
+  copied_B_[static_cast<std::size_t>(stage)] += static_cast<double>(std::min(from.bytes(), to.bytes()));
 }
 
 namespace {
@@ -117,10 +119,9 @@ namespace {
 
 }  // namespace
 
-const Shader& shader(const std::string& name) {
-  static const std::vector<Shader> all = {KERNELS};
-  for (const Shader& s : all)
-    if (s.name == name) return s;
+vulkan::SpirV shader(const std::string& name) {
+  static const std::map<std::string, vulkan::SpirV> all = {KERNELS};
+  if (const auto found = all.find(name); found != all.end()) return found->second;
   throw Error("no kernel " + name);
 }
 

@@ -14,27 +14,14 @@ namespace clothbench::pbd_gpu {
 
 inline constexpr std::uint32_t kGroupSize = 64;
 
-/// A kernel's code: as it runs, and with byte counters. The latter is null in builds without BUILD_TESTING.
-struct Shader {
-  std::string name;
-  vulkan::SpirV code, counted;
-};
-
-/// Finds a kernel by name: its file's, plus the variant's suffix from CMakeLists.txt. Throws Error if there is none.
-const Shader& shader(const std::string& name);
-
-/// Bytes of one dispatch, computed from the scene and the kernel's loops: pinned and attached vertices count as
-/// written, and retries of atomics not at all.
-struct Traffic {
-  double read_B = 0, write_B = 0;
-  Traffic operator+(const Traffic& t) const { return {read_B + t.read_B, write_B + t.write_B}; }
-  Traffic operator*(double times) const { return {times * read_B, times * write_B}; }
-};
+/// Code of a kernel by name: its file's, plus the variant's suffix from CMakeLists.txt. Throws Error if there is none.
+vulkan::SpirV shader(const std::string& name);
 
 /// A kernel, and the stage of its dispatches.
 struct FrameKernel {
   int stage;
   std::uint32_t group_size;
+  std::vector<std::uint32_t> counting;  ///< its code, where it counts bytes
   vulkan::Kernel kernel;
 };
 
@@ -44,10 +31,10 @@ std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint6
                         std::uint64_t memory_B);
 
 /// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
-/// with its plan and its traffic.
+/// with its plan. With the setting `count_bytes` kernels count the bytes that they load and store.
 class FrameBuilder {
  public:
-  FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+  FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device);
   FrameBuilder(const FrameBuilder&) = delete;
   FrameBuilder& operator=(const FrameBuilder&) = delete;
 
@@ -69,8 +56,7 @@ class FrameBuilder {
   /// A buffer in host memory, filled with zeros.
   const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
 
-  /// `at_least`: the stage's traffic depends on the shape of the cloth; the declared bytes are the least in a frame.
-  int add_stage(const std::string& name, FeatureSet serves, bool at_least = false);
+  int add_stage(const std::string& name, FeatureSet serves);
   /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over those of
   /// add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound instead.
   /// `constants` by number.
@@ -86,23 +72,20 @@ class FrameBuilder {
   void set_timed_out(const vulkan::Buffer& word) { timed_out_ = &word; }
 
   template <class Constants>
-  void dispatch(const FrameKernel& k, std::uint64_t items, const Constants& constants, Traffic traffic) {
-    dispatch_groups(k, vulkan::groups_for(items, k.group_size), constants, traffic);
+  void dispatch(const FrameKernel& k, std::uint64_t items, const Constants& constants) {
+    dispatch_groups(k, vulkan::groups_for(items, k.group_size), constants);
   }
   template <class Constants>
-  void dispatch_groups(const FrameKernel& k, vulkan::Groups groups, const Constants& constants, Traffic traffic) {
+  void dispatch_groups(const FrameKernel& k, vulkan::Groups groups, const Constants& constants) {
     frame_->dispatch(k.stage, k.kernel, groups, constants);
-    count(k.stage, traffic);
   }
   void copy(int stage, const vulkan::Buffer& from, const vulkan::Buffer& to);
 
  protected:
   void begin(const Scene&);
-  void count(int stage, Traffic);
   void require_room(const std::string& name, std::uint64_t bytes) const;
 
   const nlohmann::json settings_;
-  const bool count_bytes_;
   std::shared_ptr<vulkan::Device> device_;
   const Scene* scene_ = nullptr;
   Plan plan_;
@@ -110,7 +93,10 @@ class FrameBuilder {
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  std::vector<const vulkan::Buffer*> counters_;  ///< one a stage
+  /// Of all stages (four words each; vulkan/count_bytes.hpp), on the device and as the host reads them, and zeros; null
+  /// unless bytes are counted.
+  const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
+  std::vector<double> copied_B_;  ///< by stage, in a frame
   std::vector<std::unique_ptr<FrameKernel>> kernels_;
   std::unique_ptr<vulkan::Program> frame_, upload_, download_;
 };

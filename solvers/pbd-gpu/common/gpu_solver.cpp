@@ -30,8 +30,8 @@ void require_one_of(const char* solver, const nlohmann::json& settings, const ch
                             nlohmann::json(known).dump(), settings[key].dump()));
 }
 
-GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes)
-    : FrameBuilder(settings, device, count_bytes), info_(std::move(info)) {
+GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device)
+    : FrameBuilder(settings, device), info_(std::move(info)) {
   take_messages();
 }
 
@@ -69,8 +69,10 @@ void GpuSolver::record(double dt_s, double last_dt_s) {
   frame_->clear();
   dt_s_ = dt_s;
   last_dt_s_ = last_dt_s;
-  for (StagePlan& s : plan_.stages) s.read_B = s.write_B = 0;
+  copied_B_.assign(plan_.stages.size(), 0);
+  if (counters_ != nullptr) frame_->copy(0, *zeros_, *counters_);
   record_frame(dt_s, last_dt_s);
+  if (counters_ != nullptr) frame_->copy(0, *counters_, *counted_);
   for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan is of a frame like the last
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
@@ -213,25 +215,15 @@ FrameCost GpuSolver::last_cost() const {
   FrameCost cost;
   cost.device_s = frame_->device_s();
   cost.stage_device_s = frame_->stage_s(static_cast<int>(plan_.stages.size()));
-  for (const StagePlan& s : plan_.stages) {
-    cost.stage_read_B.push_back(s.read_B);
-    cost.stage_write_B.push_back(s.write_B);
+  const auto* word = counted_ == nullptr ? nullptr : static_cast<const std::uint32_t*>(counted_->mapped());
+  for (std::size_t k = 0; k < plan_.stages.size(); ++k) {
+    const auto bytes = [&](std::size_t at) {
+      return word == nullptr ? kMissing : copied_B_[k] + word[4 * k + at] + 0x1p32 * word[4 * k + at + 1];
+    };
+    cost.stage_read_B.push_back(bytes(0));
+    cost.stage_write_B.push_back(bytes(2));
   }
   return cost;
-}
-
-std::vector<Traffic> GpuSolver::counted() {
-  std::vector<Traffic> all;
-  for (const vulkan::Buffer* counter : counters_) {
-    vulkan::Buffer host(device_, "counted", counter->bytes(), vulkan::Buffer::Place::Host);
-    vulkan::Program fetch(device_);
-    fetch.copy(0, *counter, host);
-    fetch.record(false);
-    run(fetch);
-    const auto* bytes = static_cast<const std::uint32_t*>(host.mapped());
-    all.push_back({static_cast<double>(bytes[0]), static_cast<double>(bytes[1])});
-  }
-  return all;
 }
 
 }  // namespace clothbench::pbd_gpu

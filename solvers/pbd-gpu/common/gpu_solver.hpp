@@ -13,7 +13,7 @@ namespace clothbench::pbd_gpu {
 /// method adds its buffers and its frame.
 class GpuSolver : public ClothSolver, protected FrameBuilder {
  public:
-  GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes);
+  GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device);
 
   const SolverInfo& info() const override { return info_; }
   DeviceInfo device() const override { return device_->info(); }
@@ -28,8 +28,6 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   Plan plan() const override { return plan_; }
   int validation_messages() const override { return *messages_; }
 
-  /// Bytes that the instrumented kernels of each stage counted since the last call; needs `count_bytes`.
-  std::vector<Traffic> counted();
   /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
   /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
@@ -93,8 +91,8 @@ void require_between(const char* solver, const nlohmann::json& settings, const c
 void require_one_of(const char* solver, const nlohmann::json& settings, const char* key,
                     const std::vector<nlohmann::json>& known);
 
-std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
-std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&, bool count_bytes = false);
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions&);
+std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&);
 SolverInfo paper_info();
 SolverInfo xpbd_info();
 double paper_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);

@@ -19,13 +19,13 @@ vec3 moved(JointMatrix m, vec3 at) {
 void main() {
   uint i = item();
   if (i >= p.vertices) return;
-  SkinVertex v = LOAD(48u, skin, i);
-  vec3 at = v.weights.x * moved(LOAD(48u, joints, v.joints.x), v.rest.xyz);
-  at += v.weights.y * moved(LOAD(48u, joints, v.joints.y), v.rest.xyz);
-  at += v.weights.z * moved(LOAD(48u, joints, v.joints.z), v.rest.xyz);
-  at += v.weights.w * moved(LOAD(48u, joints, v.joints.w), v.rest.xyz);
+  SkinVertex v = skin[i];
+  vec3 at = v.weights.x * moved(joints[v.joints.x], v.rest.xyz);
+  at += v.weights.y * moved(joints[v.joints.y], v.rest.xyz);
+  at += v.weights.z * moved(joints[v.joints.z], v.rest.xyz);
+  at += v.weights.w * moved(joints[v.joints.w], v.rest.xyz);
 #ifdef KEEP_START
-  STORE16(x0, i, LOAD16(x, i));
+  x0[i] = x[i];
 #endif
-  STORE16(x, i, vec4(at, 0.0));
+  x[i] = vec4(at, 0.0);
 }

@@ -9,6 +9,6 @@ layout(push_constant) uniform Push { PaperConstants p; };
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  vec4 vel = LOAD16(v, i);
-  STORE16(q, i, vec4(LOAD16(x, i).xyz + vel.xyz * p.h, vel.w));
+  vec4 vel = v[i];
+  q[i] = vec4(x[i].xyz + vel.xyz * p.h, vel.w);
 }

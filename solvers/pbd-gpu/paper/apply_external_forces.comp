@@ -7,7 +7,7 @@ layout(push_constant) uniform Push { PaperConstants p; };
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  vec4 vel = LOAD16(v, i);
+  vec4 vel = v[i];
   if (vel.w == 0.0) return;
-  STORE16(v, i, vec4(vel.xyz + p.gravity.xyz * p.h, vel.w));
+  v[i] = vec4(vel.xyz + p.gravity.xyz * p.h, vel.w);
 }

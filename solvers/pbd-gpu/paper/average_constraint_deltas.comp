@@ -8,9 +8,9 @@ layout(push_constant) uniform Push { PaperConstants p; };
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  uvec4 sum = LOAD16(d, i);
+  uvec4 sum = d[i];
   if (sum.w == 0u) return;
-  vec4 at = LOAD16(q, i);
-  STORE16(q, i, vec4(at.xyz + uintBitsToFloat(sum.xyz) / float(sum.w), at.w));
-  STORE16(d, i, uvec4(0u));
+  vec4 at = q[i];
+  q[i] = vec4(at.xyz + uintBitsToFloat(sum.xyz) / float(sum.w), at.w);
+  d[i] = uvec4(0u);
 }

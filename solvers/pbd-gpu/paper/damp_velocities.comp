@@ -7,6 +7,6 @@ layout(push_constant) uniform Push { PaperConstants p; };
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  vec4 vel = LOAD16(v, i);
-  STORE16(v, i, vec4(vel.xyz * p.keep, vel.w));
+  vec4 vel = v[i];
+  v[i] = vec4(vel.xyz * p.keep, vel.w);
 }

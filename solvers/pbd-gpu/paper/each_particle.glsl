@@ -2,8 +2,8 @@
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  vec4 particle = LOAD16(q, i);
+  vec4 particle = q[i];
   if (particle.w == 0.0) return;
-  vec3 at = particle.xyz, from = FRICTION == 1u ? LOAD16(x, i).xyz : vec3(0.0);
-  STORE16(q, i, vec4(satisfied(at, from), particle.w));
+  vec3 at = particle.xyz, from = FRICTION == 1u ? x[i].xyz : vec3(0.0);
+  q[i] = vec4(satisfied(at, from), particle.w);
 }

@@ -9,8 +9,7 @@ layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // x y z as
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void add(uint at, float value) {
-  uint seen = LOAD4(d, at);
-  COUNT_ATOMIC
+  uint seen = d[at];
   for (;;) {
     uint found = atomicCompSwap(d[at], seen, floatBitsToUint(uintBitsToFloat(seen) + value));
     if (found == seen) return;
@@ -22,15 +21,14 @@ void add_delta(uint particle, vec3 delta) {
   add(4u * particle, delta.x);
   add(4u * particle + 1u, delta.y);
   add(4u * particle + 2u, delta.z);
-  COUNT_ATOMIC
   atomicAdd(d[4u * particle + 3u], 1u);
 }
 
 void main() {
   uint k = item();
   if (k >= p.constraints) return;
-  DistanceConstraint e = LOAD16(c, k);
-  vec4 a = LOAD16(q, e.a), b = LOAD16(q, e.b);
+  DistanceConstraint e = c[k];
+  vec4 a = q[e.a], b = q[e.b];
   float w = a.w + b.w;
   if (w == 0.0) return;
   vec3 d_ab = b.xyz - a.xyz;

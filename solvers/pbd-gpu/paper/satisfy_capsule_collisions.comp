@@ -7,7 +7,7 @@ layout(std430, binding = BIND_CAPSULES) readonly buffer Capsules { CapsuleShape 
 
 vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) {
-    vec4 a = LOAD16_OF(capsules[k].a1), b = LOAD16_OF(capsules[k].b1);
+    vec4 a = capsules[k].a1, b = capsules[k].b1;
     vec3 ab = b.xyz - a.xyz;
     float squared = dot(ab, ab);
     float t = squared > 0.0 ? clamp(dot(at - a.xyz, ab) / squared, 0.0, 1.0) : 0.0;

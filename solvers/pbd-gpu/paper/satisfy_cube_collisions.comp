@@ -17,7 +17,7 @@ vec3 out_of_box(vec3 at, vec3 from, BoxShape b) {
 }
 
 vec3 satisfied(vec3 at, vec3 from) {
-  for (uint k = 0u; k < p.count; ++k) at = out_of_box(at, from, LOAD(80u, boxes, k));
+  for (uint k = 0u; k < p.count; ++k) at = out_of_box(at, from, boxes[k]);
   return at;
 }
 #include "paper/each_particle.glsl"

@@ -14,8 +14,8 @@ bool projects_into(vec3 d, vec3 ab, vec3 ac, vec3 normal) {
 
 vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) {
-    uvec4 t = LOAD16(triangles, p.first + k);
-    vec3 a = LOAD16(vertex, t.x).xyz, ab = LOAD16(vertex, t.y).xyz - a, ac = LOAD16(vertex, t.z).xyz - a;
+    uvec4 t = triangles[p.first + k];
+    vec3 a = vertex[t.x].xyz, ab = vertex[t.y].xyz - a, ac = vertex[t.z].xyz - a;
     vec3 normal = cross(ab, ac), d = at - a;
     float area = length(normal);
     if (!(area > 0.0)) continue;

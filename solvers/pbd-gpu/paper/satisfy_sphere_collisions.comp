@@ -6,7 +6,7 @@ layout(std430, binding = BIND_SPHERES) readonly buffer Spheres { SphereShape sph
 
 vec3 satisfied(vec3 at, vec3 from) {
   for (uint k = 0u; k < p.count; ++k) {
-    SphereShape s = LOAD(32u, spheres, k);
+    SphereShape s = spheres[k];
     at = out_of_ball(at, from, s.center.xyz, s.radius + s.margin, s.friction);
   }
   return at;

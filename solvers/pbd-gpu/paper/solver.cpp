@@ -22,10 +22,8 @@ class PaperContact {
   struct Pass {
     const FrameKernel* kernel;
     PaperContactConstants constants;
-    std::uint32_t item_bytes;  ///< read by a particle for each shape or triangle it is tested against
-    bool friction;
   };
-  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel, std::uint32_t item_bytes);
+  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel);
   void add_meshes(const char* stage, const MeshBuffers&, Feature, float depth_m);
 
   FrameBuilder& frame_;
@@ -47,22 +45,19 @@ std::vector<std::uint32_t> with_friction(bool friction) {
 PaperContact::PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m,
                            float hand_depth_m)
     : frame_(frame) {
-  add_shapes("SatisfySphereCollisions", colliders.spheres, Feature::Sphere, "satisfy_sphere_collisions",
-             sizeof(SphereShape));
-  add_shapes("SatisfyCubeCollisions", colliders.boxes, Feature::Box, "satisfy_cube_collisions", sizeof(BoxShape));
+  add_shapes("SatisfySphereCollisions", colliders.spheres, Feature::Sphere, "satisfy_sphere_collisions");
+  add_shapes("SatisfyCubeCollisions", colliders.boxes, Feature::Box, "satisfy_cube_collisions");
   add_meshes("SatisfyMeshCollisions", colliders.static_meshes, Feature::StaticMesh, mesh_depth_m);
   add_meshes("SatisfyHandMeshCollisions", colliders.kinematic_meshes, Feature::MovingMesh, hand_depth_m);
-  // Only the capsule at the frame's end is read: two of the four vec4.
-  add_shapes("SatisfyCapsuleCollisions", colliders.capsules, Feature::Capsules, "satisfy_capsule_collisions", 32);
+  add_shapes("SatisfyCapsuleCollisions", colliders.capsules, Feature::Capsules, "satisfy_capsule_collisions");
 }
 
-void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name,
-                              std::uint32_t item_bytes) {
+void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name) {
   if (shapes.count == 0) return;
   const int stage = frame_.add_stage(stage_name, with_friction(kind, shapes.friction));
   const FrameKernel* kernel =
       frame_.add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
-  passes_.push_back({kernel, {0, 0, shapes.count, 0, 0, 0}, item_bytes, shapes.friction});
+  passes_.push_back({kernel, {0, 0, shapes.count, 0, 0, 0}});
 }
 
 void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
@@ -74,15 +69,13 @@ void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes,
       frame_.add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), with_friction(friction),
                         kGroupSize, {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
   for (const MeshRange& r : meshes.ranges)
-    passes_.push_back({kernel, {0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction}, 64, friction});
+    passes_.push_back({kernel, {0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction}});
 }
 
 void PaperContact::record(std::uint32_t particles) {
-  const auto n = static_cast<double>(particles);
   for (Pass& pass : passes_) {
     pass.constants.particles = particles;
-    const double each = static_cast<double>(pass.constants.count) * pass.item_bytes + (pass.friction ? 16 : 0);
-    frame_.dispatch(*pass.kernel, particles, pass.constants, {(16 + each) * n, 16 * n});
+    frame_.dispatch(*pass.kernel, particles, pass.constants);
   }
 }
 
@@ -194,20 +187,18 @@ class Paper final : public GpuSolver {
   }
 
   void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
-    const auto n = static_cast<double>(particles()), all = static_cast<double>(constraint_count_);
     // Vertices are held or released from the step's start on; the kernels that follow read it from the inverse mass.
     if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
-    dispatch(*forces_, particles(), c, {16 * n, 16 * n});
-    if (damp_ != nullptr) dispatch(*damp_, particles(), c, {16 * n, 16 * n});
-    dispatch(*euler_, particles(), c, {32 * n, 16 * n});
+    dispatch(*forces_, particles(), c);
+    if (damp_ != nullptr) dispatch(*damp_, particles(), c);
+    dispatch(*euler_, particles(), c);
     if (aim_ != nullptr) grips()->record_move(*aim_, static_cast<double>(step + 1) / steps, dt_s);
     for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
-      // Constraint and both ends; per end 3 sums and a count.
-      dispatch(*project_, constraint_count_, c, {(16 + 32 + 2 * 28) * all, 2 * 16 * all});
-      dispatch(*average_, particles(), c, {32 * n, 32 * n});
+      dispatch(*project_, constraint_count_, c);
+      dispatch(*average_, particles(), c);
     }
     if (contact_) contact_->record(static_cast<std::uint32_t>(particles()));
-    dispatch(*update_, particles(), c, {32 * n, 32 * n});
+    dispatch(*update_, particles(), c);
   }
 
   int layers_ = 1;
@@ -244,17 +235,18 @@ SolverInfo paper_info() {
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
       {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
       {"hand_depth_m", "0.01", "as mesh_depth_m, for the mesh of a hand"},
-      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+      {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
+      {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
   return info;
 }
 
-std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
+std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device) {
   require_one_of("paper", settings, "readback", {"none", "blocking"});
   require_between("paper", settings, "iterations", 1, 100000);
   require_between("paper", settings, "substeps", 1, 4096);
   require_between("paper", settings, "stiffness", 0, 1);
   for (const char* key : {"mesh_depth_m", "hand_depth_m"}) require_between("paper", settings, key, 0, 1000);
-  return std::make_unique<Paper>(paper_info(), settings, device, count_bytes);
+  return std::make_unique<Paper>(paper_info(), settings, device);
 }
 
 /// v <- (v + g h) keep, x <- x + h v, every substep; damping comes after the forces.

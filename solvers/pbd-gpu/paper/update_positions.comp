@@ -9,8 +9,8 @@ layout(push_constant) uniform Push { PaperConstants p; };
 void main() {
   uint i = item();
   if (i >= p.particles) return;
-  vec4 to = LOAD16(q, i);
-  vec4 from = LOAD16(x, i);
-  STORE16(v, i, vec4((to.xyz - from.xyz) / p.h, to.w));
-  STORE16(x, i, to);
+  vec4 to = q[i];
+  vec4 from = x[i];
+  v[i] = vec4((to.xyz - from.xyz) / p.h, to.w);
+  x[i] = to;
 }

@@ -65,7 +65,7 @@ bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std
   std::memset(zeros.mapped(), 0, 8);
   std::memset(timed_out.mapped(), 0, 4);
   specialization[0] = threads;
-  const vulkan::Kernel kernel(device, kernel_name, shader(kernel_name).code, specialization,
+  const vulkan::Kernel kernel(device, kernel_name, shader(kernel_name), specialization,
                               frame.buffers_with({{BIND_BARRIER, &barrier_counter}, {BIND_TIMED_OUT, &timed_out}}),
                               sizeof(Constants));
   vulkan::Program program(device);

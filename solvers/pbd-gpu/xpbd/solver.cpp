@@ -258,7 +258,8 @@ SolverInfo xpbd_info() {
                    {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
                    {"tethers", "true",
                     "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
-                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"}};
+                   {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
+                   {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
   info.tuning = {
       {"contact_frame", "\"auto\"",
        "with contact, a frame in one dispatch in one dispatch: auto (on GPUs), always, never"},
@@ -289,7 +290,7 @@ SolverInfo xpbd_info() {
   return info;
 }
 
-std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device, bool count_bytes) {
+std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions& device) {
   require_between("xpbd", settings, "substeps", 0, 4096);
   require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
   require_between("xpbd", settings, "time_order", 1, 2);
@@ -305,7 +306,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
   require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
-  return std::make_unique<Xpbd>(xpbd_info(), settings, device, count_bytes);
+  return std::make_unique<Xpbd>(xpbd_info(), settings, device);
 }
 
 /// The prediction alone, every substep: without forces inside the cloth it is the whole step.

@@ -109,7 +109,7 @@ function rates(doc) {
     title: s => `${s.Value} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
-        'above 1 %, so the rate has no meaning. Bandwidth: bytes that shaders load and store, computed from the scene and the kernels, ' +
+        'above 1 %, so the rate has no meaning. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
         'per second of wall time; the bytes of CPU solvers are not known.',
     choices: [
       choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v])))),

@@ -51,9 +51,8 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
   add_primitives(particle);
   if (with_itself_) add_self_pairs(particle);
   if (kinematic_points_ == 0) return;
-  stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves(), true);
-  update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * groups_,
-                         {48.0 * kinematic_points_, 32.0 * kinematic_points_ + 32.0 * groups_})};
+  stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
+  update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * groups_)};
 }
 
 void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
@@ -148,19 +147,17 @@ FeatureSet XpbdContact::serves() const {
          (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
-XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, Traffic traffic,
-                                    std::uint32_t threads, const ContactSpecialization* constants,
-                                    const vulkan::Buffers& own) {
+XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads,
+                                    const ContactSpecialization* constants, const vulkan::Buffers& own) {
   const std::vector<std::uint32_t> values = (constants != nullptr ? *constants : constants_).by_number();
   return {frame_.add_kernel(stage, name, sizeof(ContactConstants), values, threads, own),
-          vulkan::groups_for(items, threads), traffic};
+          vulkan::groups_for(items, threads)};
 }
 
 void XpbdContact::add_broad_phase() {
-  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves(), true);
+  if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
-  const double t = triangles_;
-  broad_phase_ = {pass(stage_pairs_, "contact_motion_bounds", n, {16.0 * n, 16.0 * n})};
+  broad_phase_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   ContactSpecialization fill = constants_;
   fill.FILL = 1;
   if (with_itself_) {
@@ -168,52 +165,47 @@ void XpbdContact::add_broad_phase() {
     const std::uint64_t shared = std::uint64_t{lanes} * triangles_;
     ContactSpecialization self = fill;
     self.OF_SELF = 1;
-    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", triangles_, {68 * t, 64 * t}));
-    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, {84 * t, 16 * t}, threads));
-    broad_phase_.push_back(
-        pass(stage_pairs_, "prefix_sum", 1, {16 * t, 16 * t}, kScanThreads, &self, {{BIND_RANGES, self_ranges_}}));
-    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, {100 * t, 0}, threads, &self));
+    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", triangles_));
+    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads));
+    broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads, &self, {{BIND_RANGES, self_ranges_}}));
+    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads, &self));
   }
   if (shapes_ == 0) return;
   const std::uint32_t primitives = triangles_ + n, threads = std::min(primitives, kPairThreads);
-  const double bytes = 16.0 * primitives;
-  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, {2 * bytes, bytes}));
-  broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, {bytes, bytes}, kScanThreads));
-  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, {2 * bytes, 0}, kGroupSize, &fill));
+  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads));
+  broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads));
+  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, kGroupSize, &fill));
 }
 
 void XpbdContact::add_kernels() {
   add_broad_phase();
-  const int stage = frame_.add_stage("ContactSubstep", serves(), true);
+  const int stage = frame_.add_stage("ContactSubstep", serves());
   const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
   const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   const std::uint32_t at_once = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
   const std::uint64_t shared = std::uint64_t{constants_.LANES_PER_VERTEX} * n;
-  const double t = triangles_;
   const auto add = [](std::initializer_list<Phase*> phases, const Pass& one) {
     for (Phase* p : phases) p->push_back(one);
   };
-  const Traffic vertices{16.0 * n, 16.0 * n}, read{16.0 * n, 0};  // what no contact moves is read and not written
-  if (kinematic_points_ > 0) add({&before_}, pass(stage, "contact_predict", n, vertices));
-  const Pass clamp = pass(stage, "contact_clamp", n, vertices);
+  if (kinematic_points_ > 0) add({&before_}, pass(stage, "contact_predict", n));
+  const Pass clamp = pass(stage, "contact_clamp", n);
   add({&first_round_}, clamp);
   if (constants_.SECOND_SOLVE != 0) add({&later_round_}, clamp);
   if (shapes_ > 0) {
-    add({&before_, &first_round_}, pass(stage, "contact_active_pairs", at_once, {}));
-    add({&before_, &first_round_}, pass(stage, "contact_nearest_points", at_once, {}));
-    add({&later_round_}, pass(stage, "contact_respond", at_once, {}));
-    add({&end_}, pass(stage, "contact_select_plane", at_once, {}));
+    add({&before_, &first_round_}, pass(stage, "contact_active_pairs", at_once));
+    add({&before_, &first_round_}, pass(stage, "contact_nearest_points", at_once));
+    add({&later_round_}, pass(stage, "contact_respond", at_once));
+    add({&end_}, pass(stage, "contact_select_plane", at_once));
   }
   if (with_itself_) {
-    add({&first_round_}, pass(stage, "self_max_displacement", triangles_, {76 * t, 16 * t}));
-    add({&first_round_},
-        pass(stage, "self_active_pairs", std::uint64_t{lanes} * triangles_, {32 * t, 16 * t}, threads));
-    add({&first_round_}, pass(stage, "self_nearest_points", at_once, {}));
-    add({&later_round_}, pass(stage, "self_respond", at_once, {}));
-    add({&end_}, pass(stage, "self_select_plane", at_once, {}));
+    add({&first_round_}, pass(stage, "self_max_displacement", triangles_));
+    add({&first_round_}, pass(stage, "self_active_pairs", std::uint64_t{lanes} * triangles_, threads));
+    add({&first_round_}, pass(stage, "self_nearest_points", at_once));
+    add({&later_round_}, pass(stage, "self_respond", at_once));
+    add({&end_}, pass(stage, "self_select_plane", at_once));
   }
-  add({&before_, &first_round_, &later_round_}, pass(stage, "contact_accumulate", shared, read, threads));
-  add({&end_}, pass(stage, "contact_project", shared, read, threads));
+  add({&before_, &first_round_, &later_round_}, pass(stage, "contact_accumulate", shared, threads));
+  add({&end_}, pass(stage, "contact_project", shared, threads));
 }
 
 ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const {
@@ -241,7 +233,7 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
 }
 
 void XpbdContact::run(const Phase& phase, const ContactConstants& c) {
-  for (const Pass& p : phase) frame_.dispatch_groups(*p.kernel, p.groups, c, p.traffic);
+  for (const Pass& p : phase) frame_.dispatch_groups(*p.kernel, p.groups, c);
 }
 
 void XpbdContact::record_shapes(double dt_s, int substeps) { run(update_shapes_, constants(0, substeps, dt_s)); }

@@ -50,11 +50,10 @@ class XpbdContact {
   struct Pass {
     const FrameKernel* kernel;
     vulkan::Groups groups;
-    Traffic traffic;
   };
   using Phase = std::vector<Pass>;
   /// `constants`: null: constants_.
-  Pass pass(int stage, const char* name, std::uint64_t items, Traffic traffic, std::uint32_t threads = kGroupSize,
+  Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize,
             const ContactSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle);

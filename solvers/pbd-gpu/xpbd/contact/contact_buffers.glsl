@@ -66,7 +66,7 @@ const float kTiny = 1e-6;       // a weight below is none
 #define FOR_EACH_PAIR_OF(BITS, RANGE, BODY)                                                                                      \
   uvec2 of = (RANGE).xy;                                                                                                     \
   for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) {                                              \
-    uint bits = LOAD4(active_bits, (BITS) + word);                                                                             \
+    uint bits = active_bits[(BITS) + word];                                                                             \
     if (32u * word < of.x) bits &= ~0u << of.x % 32u;                                                                        \
     if (last - 32u * word < 32u) bits &= (1u << last % 32u) - 1u;                                                            \
     for (; bits != 0u; bits &= bits - 1u) {                                                                                  \

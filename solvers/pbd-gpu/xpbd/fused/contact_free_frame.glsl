@@ -9,16 +9,16 @@ float rest, by_hands;
 
 /// How far a vertex may go, in .w of where it is.
 vec4 contact_free_position(uint i) {
-  vec4 at = LOAD16(x, i);
-  return vec4(at.xyz, contact_free_bound(length(LOAD16(v, i).xyz), rest, by_hands));
+  vec4 at = x[i];
+  return vec4(at.xyz, contact_free_bound(length(v[i].xyz), rest, by_hands));
 }
 
 bool overlaps_shapes(uint group, vec3 low, vec3 high) {
-  ShapeAabb of = LOAD(32u, boxes, SHAPES + group);
+  ShapeAabb of = boxes[SHAPES + group];
   if (!(all(lessThanEqual(low, of.high.xyz)) && all(lessThanEqual(of.low.xyz, high)))) return false;
   uint first = SHAPES_PER_GROUP * group, end = min(first + SHAPES_PER_GROUP, SHAPES);
   for (uint q = first; q < end; ++q) {
-    ShapeAabb b = LOAD(32u, boxes, q);
+    ShapeAabb b = boxes[q];
     if (all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high))) return true;
   }
   return false;
@@ -50,13 +50,13 @@ bool cannot_reach_any_collider() {
   by_hands = pulled();
   uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
   for (uint i = thread; i < COLUMNS * ROWS; i += THREADS) {
-    vec4 at = LOAD16(x, i);
-    widen(from, to, vec4(at.xyz, motion_bound(length(LOAD16(v, i).xyz), rest, max_shape_displacement, by_hands)));
+    vec4 at = x[i];
+    widen(from, to, vec4(at.xyz, motion_bound(length(v[i].xyz), rest, max_shape_displacement, by_hands)));
   }
   widen_box(from, to);
   barrier();  // the box before convex shapes are looked for in it
   for (uint g = thread; g < GROUPS; g += THREADS) {
-    if (!overlaps_cloth(LOAD(32u, boxes, SHAPES + g))) continue;
+    if (!overlaps_cloth(boxes[SHAPES + g])) continue;
     uint n = atomicAdd(nearby_group_count, 1u);
     if (n < kMaxNearbyGroups) nearby_groups[n] = g;
     if (n >= kMaxNearbyGroups || !tests_cells) any_nearby = 1u;
@@ -89,7 +89,7 @@ void check_motion_bound() {
 void record_max_displacement() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    if (on_chain(i)) atomicMax(max_displacement, floatBitsToUint(distance(pos[k], LOAD16(x, index_of(vertex(i))).xyz)));
+    if (on_chain(i)) atomicMax(max_displacement, floatBitsToUint(distance(pos[k], x[index_of(vertex(i))].xyz)));
   }
   barrier();  // all displacements before the farthest is read
   if (thread != 0u) return;

@@ -33,7 +33,7 @@ void fill_at(float fraction, uint level) {
     low = vec3(1e30);
     high = vec3(-1e30);
     if (valid) {
-      uvec4 e = LOAD16(primitives, k);
+      uvec4 e = primitives[k];
       box_for(e, fraction);
       if (kTestsContactFree) contact_free_aabb_for(e);
     }
@@ -42,7 +42,7 @@ void fill_at(float fraction, uint level) {
         uint bit = uint(findLSB(own));
         if (mine < kKept) kept[mine] = uvec2(q + bit, n + slot_in(overlapping, bit));
         ++mine;
-        if (kTestsContactFree && !overlaps_it) overlaps_it = overlaps_contact_free(LOAD(32u, boxes, q + bit));
+        if (kTestsContactFree && !overlaps_it) overlaps_it = overlaps_contact_free(boxes[q + bit]);
       }
       n += uint(bitCount(overlapping));
     )
@@ -56,7 +56,7 @@ void fill_at(float fraction, uint level) {
     barrier();  // the part's beginning before it is filled
     at = min(first_listed + at, CAPACITY);
     uint room = min(n, CAPACITY - at);
-    if (valid && PRIMITIVE_LANE == 0u) STORE16(ranges, k, uvec4(n > 0u ? at : 0u, room, 0u, 0u))
+    if (valid && PRIMITIVE_LANE == 0u) ranges[k] = uvec4(n > 0u ? at : 0u, room, 0u, 0u);
     if (ANY_IN_SUBGROUP(mine > kKept ? 1u : 0u))
       fill_pairs(min(k, TRIANGLES + VERTICES - 1u), fraction, at, room);
     else
@@ -90,7 +90,7 @@ bool broad_phase() {
   GRID_BARRIER_OR_FAIL;  // motion bounds before the list
   if (global_thread == 0u) frame_state.max_displacement = 0u;  // until here of the last frame
   for (uint g = thread; g < GROUPS; g += THREADS)
-    if (overlaps_cloth(LOAD(32u, boxes, SHAPES + g))) {
+    if (overlaps_cloth(boxes[SHAPES + g])) {
       uint bit = g / GROUPS_A_BIT;
       atomicOr(nearby_groups[bit / 32u], 1u << bit % 32u);
       any_nearby = kNearby;

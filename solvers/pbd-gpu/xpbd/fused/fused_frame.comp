@@ -16,7 +16,6 @@ FUSED_FRAME_CONSTANTS(SPECIALIZE)
 #include "xpbd/lines/grid_lines.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 vec3 anchor(uvec2 at, uint k) {
-  if (w[k] > 0.0) COUNT_READ(16u)
   return x[index_of(at)].xyz;
 }
 #include "xpbd/lines/integrate_lines.glsl"
@@ -104,9 +103,9 @@ bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >
 #ifdef CONTACT_FREE
 /// All that is left of contact in a substep: how far a vertex may go in the frame.
 void end_lines(uint i, vec4 at) {
-  vec4 free = LOAD16(starts, i);
+  vec4 free = starts[i];
   vec3 to = any_nearby != kOutOfReach ? clamp_to(i, at.xyz, at.w, free.xyz, free.w) : clamp_to_bounds(i, at.xyz, at.w);
-  if (to != at.xyz) STORE16(x, i, vec4(to, at.w));
+  if (to != at.xyz) x[i] = vec4(to, at.w);
   if (substep_now + 1u == p.substeps) record_displacement(i, to);
 }
 #else

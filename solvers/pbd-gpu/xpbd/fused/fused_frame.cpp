@@ -55,7 +55,7 @@ bool FusedFrame::add_kernels() {
   const std::vector<std::uint32_t> constants = both(lines, contact_.frame_specialization());
   if (!runs_at_once<LineConstants>(frame_, "fused_frame", constants, shape.threads, groups_)) return false;
   add_grid_barrier(frame_);
-  const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kOfLines) | contact_.serves(), true);
+  const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kOfLines) | contact_.serves());
   kernel_ = frame_.add_kernel(stage, "fused_frame", sizeof(LineConstants), constants, shape.threads);
   add_contact_free(constants, shape.threads);
   return true;
@@ -68,7 +68,7 @@ void FusedFrame::add_contact_free(const std::vector<std::uint32_t>& constants, s
   const bool in_one_group = one.threads > 0;
   if (!in_one_group && !runs_at_once<LineConstants>(frame_, "fused_frame_contact_free", constants, threads, groups_))
     return;
-  const int stage = frame_.add_stage("ContactFreeFrame", frame_.scene().needs & kOfLines, true);
+  const int stage = frame_.add_stage("ContactFreeFrame", frame_.scene().needs & kOfLines);
   if (!in_one_group) {
     contact_free_lists_ = true;
     contact_free_ = frame_.add_kernel(stage, "fused_frame_contact_free", sizeof(LineConstants), constants, threads);
@@ -91,12 +91,9 @@ LineConstants FusedFrame::constants(double dt_s, const Steps& steps, bool listed
 }
 
 void FusedFrame::record(double dt_s, const Steps& contact, const Steps& contact_free) {
-  const auto n = static_cast<double>(frame_.scene().cloth.vertex_count());
   if (contact_free_ != nullptr)
-    frame_.dispatch_groups(*contact_free_, contact_free_groups_, constants(dt_s, contact_free, false),
-                           {64 * n, 64 * n});
-  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, contact, contact_free_lists_),
-                         lines_.substep_traffic() * contact.substeps + Traffic{32 * n, 36 * n});
+    frame_.dispatch_groups(*contact_free_, contact_free_groups_, constants(dt_s, contact_free, false));
+  frame_.dispatch_groups(*kernel_, groups_, constants(dt_s, contact, contact_free_lists_));
 }
 
 }  // namespace clothbench::pbd_gpu

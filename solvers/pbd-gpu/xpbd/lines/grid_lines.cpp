@@ -204,39 +204,6 @@ LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) 
   return c;
 }
 
-/// The creep of every link of a colour is read and written.
-Traffic Lines::creep_traffic(std::uint32_t colour) const {
-  if (!corrects_splitting_) return {};
-  const double columns = scene_.cloth.columns, rows = scene_.cloth.rows;
-  const double bytes = 4 * (colour == 1 ? columns : columns - 1) * (colour == 0 ? rows : rows - 1);
-  return {bytes, bytes};
-}
-
-/// Traffic of one pass of a substep: it reads and writes every vertex; the first also reads tether ends.
-Traffic Lines::pass_traffic(std::uint32_t pass) const {
-  const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  const std::uint32_t colour = colour_of(pass);
-  const auto chains = static_cast<double>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  const Traffic shifts = corrects_splitting_ ? Traffic{16 * n, colour < 2 ? 16 * n : 0} : Traffic{};
-  return creep_traffic(colour) + shifts +
-         Traffic{32 * n + (regularised_ ? 4.0 * shape_[std::min(colour, 2u)].lanes * chains : 0) +
-                     (pass == 0 ? 16 * static_cast<double>(tethers_.to.size()) * n : 0),
-                 32 * n};
-}
-
-Traffic Lines::substep_traffic() const {
-  Traffic t;
-  for (std::uint32_t k = 0; k < passes(); ++k) t = t + pass_traffic(k);
-  return t;
-}
-
-/// Traffic of the rounding errors of compensated sums, and of what BDF2 goes on from, in each dispatch that
-/// integrates.
-Traffic Lines::compensated_traffic() const {
-  const double all_B = (uses_bdf2_ ? 64.0 : 32.0) * static_cast<double>(scene_.cloth.vertex_count());
-  return {all_B, all_B};
-}
-
 void Lines::record(int first, int count, int substeps, double dt_s, const TimeStep& step) {
   LineConstants c = constants(dt_s, substeps, step);
   c.first_substep = static_cast<std::uint32_t>(first);
@@ -247,26 +214,17 @@ void Lines::record(int first, int count, int substeps, double dt_s, const TimeSt
     return;
   }
   c.passes = c.substeps * passes();
-  const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  const double a_vertex_B = (uses_bdf2_ ? 96 : 64) + (corrects_splitting_ ? 16 : 0);
-  Traffic t = persistent_ != nullptr ? compensated_traffic() : Traffic{a_vertex_B * n, a_vertex_B * n};
   if (single_dispatch_ != nullptr)
-    t.read_B += static_cast<double>(sizeof(GripVertex) * scene_.grips.vertices.size()) * (1 + count);
-  for (std::uint32_t k = 0; k < passes(); ++k)
-    t = t + (single_dispatch_ != nullptr ? creep_traffic(colour_of(k)) : pass_traffic(k)) * count;
-  if (single_dispatch_ != nullptr)
-    frame_.dispatch_groups(*single_dispatch_, {1, 1}, c, t);
+    frame_.dispatch_groups(*single_dispatch_, {1, 1}, c);
   else
-    frame_.dispatch_groups(*persistent_, all_groups(), c, t);
+    frame_.dispatch_groups(*persistent_, all_groups(), c);
 }
 
 void Lines::record_pass(const LineConstants& c) {
   const std::uint32_t colour = colour_of(c.first_pass);
   const std::size_t kind = std::min(colour, 2u);
   const auto chains = static_cast<std::uint32_t>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  const Traffic t = pass_traffic(c.first_pass);
-  frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c,
-                         c.first_pass == 0 ? t + compensated_traffic() : t);
+  frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c);
 }
 
 }  // namespace clothbench::pbd_gpu

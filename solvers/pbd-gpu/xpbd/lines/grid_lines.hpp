@@ -28,7 +28,6 @@ class Lines {
   LineSpecialization single_dispatch_specialization(const LineShape&) const;
   vulkan::Groups groups_of(const LineShape&) const;
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
-  Traffic substep_traffic() const;  ///< of all passes
   std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
 
   /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
@@ -48,12 +47,9 @@ class Lines {
   bool add_persistent();
   void add_passes();
   LineRequest request() const;
-  Traffic pass_traffic(std::uint32_t pass) const;
-  Traffic compensated_traffic() const;
   /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
   std::uint32_t colour_of(std::uint32_t pass) const { return passes() - 1 - pass; }
   vulkan::Groups all_groups() const { return groups_of(shape_[0]); }
-  Traffic creep_traffic(std::uint32_t colour) const;
   void record_pass(const LineConstants&);
 
   FrameBuilder& frame_;

@@ -4,12 +4,12 @@
 void store_history(uint at[K]) {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
-    STORE16(rx, at[k], vec4(rest_pos[k], 0.0));
-    STORE16(rv, at[k], vec4(rest_vel[k], 0.0));
+    rx[at[k]] = vec4(rest_pos[k], 0.0);
+    rv[at[k]] = vec4(rest_vel[k], 0.0);
 #ifndef FUSED_FRAME
     if (!kUsesBdf2) continue;
-    STORE16(lx, at[k], vec4(last_pos[k], 0.0));
-    STORE16(lv, at[k], vec4(last_vel[k], 0.0));
+    lx[at[k]] = vec4(last_pos[k], 0.0);
+    lv[at[k]] = vec4(last_vel[k], 0.0);
 #endif
   }
 }
@@ -25,13 +25,12 @@ void pass(uint substep, bool first, bool last) {
     at[k] = 0u;
     if (!(EXACT || on_chain(i))) continue;
     at[k] = index_of(vertex(i));
-    COUNT_READ(!fetches ? 32u : kUsesBdf2 ? 96u : 64u)
     vec4 here = x[at[k]];
     pos[k] = here.xyz;
     w[k] = here.w;
     vel[k] = v[at[k]].xyz;
     if (kCorrectsSplitting) {
-      vec4 by_lines = LOAD16(shifts, at[k]);
+      vec4 by_lines = shifts[at[k]];
       if (w[k] > 0.0) shift[k] = p.h * p.h * by_lines;
     }
     if (fetches) {
@@ -47,7 +46,7 @@ void pass(uint substep, bool first, bool last) {
   }
   float smallest = 0.0;
   if ((FEATURES & LINES_REGULARISED) != 0u && chain < chain_count())
-    smallest = LOAD4(regularisation, colour * max(COLUMNS, ROWS) + chain);
+    smallest = regularisation[colour * max(COLUMNS, ROWS) + chain];
   if (first) {
     integrate();
     if (substep + 1u >= p.substeps) store_history(at);
@@ -57,8 +56,8 @@ void pass(uint substep, bool first, bool last) {
   if (last) limit_speed();
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
-    STORE16(x, at[k], vec4(pos[k], w[k]));
-    STORE16(v, at[k], vec4(vel[k], 0.0));
-    if (kCorrectsSplitting && colour < 2u) STORE16(shifts, at[k], p.per_h * p.per_h * shift[k]);
+    x[at[k]] = vec4(pos[k], w[k]);
+    v[at[k]] = vec4(vel[k], 0.0);
+    if (kCorrectsSplitting && colour < 2u) shifts[at[k]] = p.per_h * p.per_h * shift[k];
   }
 }

@@ -93,20 +93,20 @@ void load() {
     uint i = lane * K + k;
     if (!on_chain(i)) continue;
     uint o = index_of(vertex(i));
-    vec4 here = LOAD16(x, o);
-    put(vertex(i), here.xyz, LOAD16(v, o).xyz);
-    if (kCorrectsSplitting) put_shift(vertex(i), LOAD16(shifts, o));
-    rest_pos[k] = LOAD16(rx, o).xyz;
-    rest_vel[k] = LOAD16(rv, o).xyz;
+    vec4 here = x[o];
+    put(vertex(i), here.xyz, v[o].xyz);
+    if (kCorrectsSplitting) put_shift(vertex(i), shifts[o]);
+    rest_pos[k] = rx[o].xyz;
+    rest_vel[k] = rv[o].xyz;
     if (kUsesBdf2) {
-      last_pos[k] = LOAD16(lx, o).xyz;
-      last_vel[k] = LOAD16(lv, o).xyz;
+      last_pos[k] = lx[o].xyz;
+      last_vel[k] = lv[o].xyz;
     }
     if (here.w == 0.0) atomicOr(held[vertex(i).y], 1u << vertex(i).x);
   }
   barrier();  // the state and the bits of pinned vertices before hands change them and all read them
   for (uint g = thread; g < GRIPS; g += THREADS) {
-    GripVertex grip = LOAD(48u, grips, g);
+    GripVertex grip = grips[g];
     uint bit = 1u << grip.vertex % COLUMNS;
     if (grip.held != 0u) atomicOr(held[grip.vertex / COLUMNS], bit);
     else atomicAnd(held[grip.vertex / COLUMNS], ~bit);
@@ -118,15 +118,15 @@ void store() {
     uint i = lane * K + k;
     if (!on_chain(i)) continue;
     uint o = index_of(vertex(i));
-    STORE16(x, o, vec4(pos[k], w[k]));
-    STORE16(v, o, vec4(vel[k], 0.0));
+    x[o] = vec4(pos[k], w[k]);
+    v[o] = vec4(vel[k], 0.0);
     uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
-    if (kCorrectsSplitting) STORE16(shifts, o, vec4(su[at], sv[at], filter_u[at], filter_v[at]));
-    STORE16(rx, o, vec4(rest_pos[k], 0.0));
-    STORE16(rv, o, vec4(rest_vel[k], 0.0));
+    if (kCorrectsSplitting) shifts[o] = vec4(su[at], sv[at], filter_u[at], filter_v[at]);
+    rx[o] = vec4(rest_pos[k], 0.0);
+    rv[o] = vec4(rest_vel[k], 0.0);
     if (!kUsesBdf2) continue;
-    STORE16(lx, o, vec4(last_pos[k], 0.0));
-    STORE16(lv, o, vec4(last_vel[k], 0.0));
+    lx[o] = vec4(last_pos[k], 0.0);
+    lv[o] = vec4(last_vel[k], 0.0);
   }
 }
 
@@ -136,7 +136,7 @@ void move_held(uint substep) {
   // As the host has it for move_grips: the quotient, not a multiple of a rounded part.
   float fraction = float(p.first_substep + substep + 1u) / floor(1.0 / p.substep_part + 0.5);
   for (uint g = thread; g < GRIPS; g += THREADS) {
-    GripVertex grip = LOAD(48u, grips, g);
+    GripVertex grip = grips[g];
     if (grip.held == 0u) continue;
     put(uvec2(grip.vertex % COLUMNS, grip.vertex / COLUMNS),
         grip.from.xyz * (1.0 - fraction) + grip.to.xyz * fraction,

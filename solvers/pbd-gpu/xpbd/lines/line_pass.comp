@@ -16,7 +16,6 @@ layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { f
 
 /// Pinned vertices are never written, so reading them here races with nothing.
 vec3 anchor(uvec2 at, uint k) {
-  if (w[k] > 0.0) COUNT_READ(16u)
   return x[index_of(at)].xyz;
 }
 #include "xpbd/lines/integrate_lines.glsl"

@@ -29,7 +29,7 @@ uint creep_index(uint k) { return colour * COLUMNS * ROWS + index_of(vertex(lane
 void load_creep() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     creep[k] = 0.0;
-    if (goes_on(lane * K + k)) creep[k] = LOAD4(link_creep, creep_index(k));
+    if (goes_on(lane * K + k)) creep[k] = link_creep[creep_index(k)];
   }
 }
 
@@ -38,7 +38,7 @@ void record_multipliers(float alpha, float lambda[K], float below) {
   float rate = filter_rate();
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (goes_on(lane * K + k))
-      STORE4(link_creep, creep_index(k), creep[k] + rate * ((1.0 - at_once()) * alpha * lambda[k] - creep[k]));
+      link_creep[creep_index(k)] = creep[k] + rate * ((1.0 - at_once()) * alpha * lambda[k] - creep[k]);
     float before = below;
     if (k > 0u) before = lambda[k - 1u];
     float moved = w[k] * (before - lambda[k]), largest = kMaxShift * (colour == 0u ? p.rest_u : p.rest_v);

@@ -41,7 +41,6 @@ void integrate(uint i) {
   vel = limited(vel);
   fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
-    COUNT_READ(24u)
     TetherEnd end = tether_ends[TETHERS * i + t];
     if (end.reach < 0.0) continue;
     vec3 back = tethered(pos, x[end.to].xyz, end.reach + prediction_fall());
@@ -137,36 +136,36 @@ void stretch(ChainEntry entry, uint rounds) {
 #endif
 
 void pass(uint number, bool first, bool links, uint rounds) {
-  ChainEntry entry = LOAD(16u, entries, number);
+  ChainEntry entry = entries[number];
   bool is = entry.vertex != CHAIN_NO_VERTEX;
   uint i = is ? entry.vertex : 0u;
   pos = vel = rest_pos = rest_vel = last_pos = last_vel = vec3(0.0);
   w = 0.0;
   if (is) {
-    vec4 here = LOAD16(x, i);
+    vec4 here = x[i];
     pos = here.xyz;
     w = here.w;
-    vel = LOAD16(v, i).xyz;
+    vel = v[i].xyz;
     if (first) {
-      rest_pos = LOAD16(rx, i).xyz;
-      rest_vel = LOAD16(rv, i).xyz;
+      rest_pos = rx[i].xyz;
+      rest_vel = rv[i].xyz;
       if (kUsesBdf2) {
-        last_pos = LOAD16(lx, i).xyz;
-        last_vel = LOAD16(lv, i).xyz;
+        last_pos = lx[i].xyz;
+        last_vel = lv[i].xyz;
       }
       if (w > 0.0) integrate(i);
     }
   }
   if (links) stretch(entry, rounds);
   if (w == 0.0) return;
-  STORE16(x, i, vec4(pos, w));
-  STORE16(v, i, vec4(vel, 0.0));
+  x[i] = vec4(pos, w);
+  v[i] = vec4(vel, 0.0);
   if (!first) return;
-  STORE16(rx, i, vec4(rest_pos, 0.0));
-  STORE16(rv, i, vec4(rest_vel, 0.0));
+  rx[i] = vec4(rest_pos, 0.0);
+  rv[i] = vec4(rest_vel, 0.0);
   if (!kUsesBdf2) return;
-  STORE16(lx, i, vec4(last_pos, 0.0));
-  STORE16(lv, i, vec4(last_vel, 0.0));
+  lx[i] = vec4(last_pos, 0.0);
+  lv[i] = vec4(last_vel, 0.0);
 }
 
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
@@ -191,11 +190,11 @@ float weight_at(uint k) {
 /// K times steps, or with k == 1 times positions: rows of K sum to 0, and differences of neighbours lose no digits.
 vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
   vec3 force = vec3(0.0);
-  BendingSlice slice = LOAD(8u, slices, i / BENDING_ROWS);
+  BendingSlice slice = slices[i / BENDING_ROWS];
   uint at = slice.first + i % BENDING_ROWS;
   for (uint j = 0u; j < slice.width; ++j) {
-    BendingEntry entry = LOAD(8u, bending, at + BENDING_ROWS * j);
-    vec3 other = k > 1u ? LOAD16(bent, before + entry.column).xyz : LOAD16(x, entry.column).xyz;
+    BendingEntry entry = bending[at + BENDING_ROWS * j];
+    vec3 other = k > 1u ? bent[before + entry.column].xyz : x[entry.column].xyz;
     force += entry.stiffness * (other - mine);
   }
   return force;
@@ -206,16 +205,16 @@ vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
 /// iteration found, since the last writes its own.
 vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
   vec3 pull = vec3(0.0);
-  BendingSlice slice = LOAD(8u, membrane_slices, i / BENDING_ROWS);
+  BendingSlice slice = membrane_slices[i / BENDING_ROWS];
   uint at = slice.first + i % BENDING_ROWS, found = 3u * p.vertices;
   for (uint j = 0u; j < slice.width; ++j) {
-    MembraneCorner c = LOAD(48u, corners, at + BENDING_ROWS * j);
+    MembraneCorner c = corners[at + BENDING_ROWS * j];
     if (c.a == CHAIN_NO_VERTEX) continue;
     if (k == 1u)
-      pull += membrane_force(c, here, LOAD16(x, c.a).xyz, LOAD16(x, c.b).xyz);
+      pull += membrane_force(c, here, x[c.a].xyz, x[c.b].xyz);
     else
-      pull += membrane_change(c, here, LOAD16(bent, found + c.a).xyz, LOAD16(bent, found + c.b).xyz, mine,
-                              LOAD16(bent, before + c.a).xyz, LOAD16(bent, before + c.b).xyz);
+      pull += membrane_change(c, here, bent[found + c.a].xyz, bent[found + c.b].xyz, mine,
+                              bent[before + c.a].xyz, bent[before + c.b].xyz);
   }
   return -pull;
 }
@@ -225,37 +224,37 @@ vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
 /// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
 void bend(uint i, uint k) {
   uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
-  vec4 here = LOAD16(x, i);
+  vec4 here = x[i];
 #ifdef MEMBRANE
-  if (k == 1u) STORE16(bent, 3u * p.vertices + i, here);
+  if (k == 1u) bent[3u * p.vertices + i] = here;
 #endif
   if (here.w == 0.0) {  // attached vertices do not move; one may have moved in the last frame
-    if (k < p.bending_iterations) STORE16(bent, now + i, vec4(0.0));
+    if (k < p.bending_iterations) bent[now + i] = vec4(0.0);
     return;
   }
-  vec3 mine = k > 1u ? LOAD16(bent, before + i).xyz : here.xyz, force = vec3(0.0);
+  vec3 mine = k > 1u ? bent[before + i].xyz : here.xyz, force = vec3(0.0);
   if (kBends) force = bending_force(i, k, before, mine);
 #ifdef MEMBRANE
   force += triangle_force(i, k, before, here.xyz, mine);
 #endif
   vec3 step = -p.bending_step * here.w * force;
   if (k == 1u) {
-    if (k < p.bending_iterations) STORE16(bent, i, vec4(step, 0.0));
+    if (k < p.bending_iterations) bent[i] = vec4(step, 0.0);
     step *= p.bending_gain;
   } else {
-    vec3 last = k > 2u ? LOAD16(bent, now + i).xyz : vec3(0.0);
-    step += LOAD16(bent, i).xyz - mine;
+    vec3 last = k > 2u ? bent[now + i].xyz : vec3(0.0);
+    step += bent[i].xyz - mine;
     step = last + weight_at(k) * (p.bending_gain * step + mine - last);
   }
   if (k < p.bending_iterations) {
-    STORE16(bent, now + i, vec4(step, 0.0));
+    bent[now + i] = vec4(step, 0.0);
     return;
   }
   pos = here.xyz;
-  vel = LOAD16(v, i).xyz;
+  vel = v[i].xyz;
   move(step);
-  STORE16(x, i, vec4(pos, here.w));
-  STORE16(v, i, vec4(vel, 0.0));
+  x[i] = vec4(pos, here.w);
+  v[i] = vec4(vel, 0.0);
 }
 
 void main() {
@@ -270,7 +269,7 @@ void main() {
     }
     uint f = number < bends ? 0u : number - bends;
     ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
-    if (PERSISTENT) range = LOAD(16u, ranges, f);
+    if (PERSISTENT) range = ranges[f];
     if (block < range.blocks) pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);
   }
   if (PERSISTENT) leave_grid_barrier();

@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::uint32_t kBlock = 256;
 
-double rows_of(const std::vector<BendingSlice>& slices) {
-  double sum = 0;
-  for (const BendingSlice& s : slices) sum += s.width * BENDING_ROWS;
-  return sum;
-}
-
 }  // namespace
 
 Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension,
@@ -76,10 +70,7 @@ void Chains::add_colours(const ChainCloth& cloth) {
   for (std::size_t f = 0; f < colours.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(colours[f], scene_, cloth, block_, f == 0);
     const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(colours[f].longest() - 1));
-    const auto vertices =
-        std::count_if(more.begin(), more.end(), [](const ChainEntry& e) { return e.vertex != CHAIN_NO_VERTEX; });
-    colours_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds,
-                        static_cast<double>(vertices)});
+    colours_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds});
     entries_.insert(entries_.end(), more.begin(), more.end());
   }
 }
@@ -102,7 +93,6 @@ void Chains::add_bending() {
   const BendingMatrix K = bending_matrix(scene_);
   max_per_s2_ = K.max_per_s2;
   const SlicedRows<BendingEntry> table = bending_table(K);
-  row_entries_ = rows_of(table.slices);
   frame_.add_buffer(BIND_BENDING_SLICES, "bending slices", table.slices);
   frame_.add_buffer(BIND_BENDING_ENTRIES, "bending entries", table.entries);
 }
@@ -111,7 +101,6 @@ void Chains::add_membrane() {
   if (!membrane_) return;
   max_per_s2_ += membrane_bound(scene_);
   const SlicedRows<MembraneCorner> table = membrane_table(scene_);
-  row_corners_ = rows_of(table.slices);
   frame_.add_buffer(BIND_MEMBRANE_SLICES, "triangle slices", table.slices);
   frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.entries);
 }
@@ -121,35 +110,6 @@ vulkan::Groups Chains::all_groups() const {
   std::uint32_t largest = 0;
   for (const Colour& f : colours_) largest = std::max(largest, f.entries);
   return vulkan::groups_for(largest, block_);
-}
-
-Traffic Chains::traffic(std::size_t colour, bool integrates) const {
-  const Colour& f = colours_[colour];
-  const double compensation = integrates ? 1 : 0, of_start = (uses_bdf2_ ? 64 : 32) * compensation;
-  return {16.0 * f.entries + (32 + of_start) * f.vertices + 24 * compensation * tethers_ * f.vertices,
-          (32 + of_start) * f.vertices};
-}
-
-/// The first iteration reads positions and no steps, and writes the right side, with triangles also positions; the last
-/// writes the state.
-Traffic Chains::bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const {
-  const auto n = static_cast<double>(scene_.cloth.vertex_count());
-  const bool last = iteration == iterations;
-  const double steps = iteration == 1 ? 0 : iteration == 2 ? 2 : 3;
-  const double slices = (bends_ ? 8 : 0) + (membrane_ ? 8 : 0);
-  const double corners = 3.0 * (membrane_ ? static_cast<double>(scene_.cloth.mesh->triangles.size()) : 0);
-  const double read = (16 + slices + 16 * steps + (last ? 16 : 0)) * n + 24 * row_entries_ + 48 * row_corners_ +
-                      (iteration == 1 ? 32 : 64) * corners;
-  const double found = membrane_ && iteration == 1 ? 16 * n : 0;
-  return {read, last ? 32 * n : 16 * n + found + (iteration == 1 ? 16 * n : 0)};
-}
-
-std::vector<Traffic> Chains::passes(const ChainConstants& c) const {
-  std::vector<Traffic> all;
-  if (solves_together()) all.push_back(traffic(0, true));
-  for (std::uint32_t k = 1; k <= c.bending_iterations; ++k) all.push_back(bending_traffic(k, c.bending_iterations));
-  for (std::size_t f = 0; f < c.colours; ++f) all.push_back(traffic(f, f == 0 && !solves_together() && c.again == 0));
-  return all;
 }
 
 void Chains::record(int count, const TimeStep& step, bool again) {
@@ -165,18 +125,12 @@ void Chains::record(int count, const TimeStep& step, bool again) {
     c.bending_gain = static_cast<float>(2 / (2 + largest));
     c.bending_spread = static_cast<float>(largest / (2 + largest) * (largest / (2 + largest)) / 4);
   }
-  const std::vector<Traffic> all = passes(c);
-  const auto first_colour = static_cast<std::uint32_t>(all.size()) - c.colours, first = again ? first_colour : 0,
-             end = static_cast<std::uint32_t>(all.size());
+  const std::uint32_t first_colour = solves_together() ? 1 + c.bending_iterations : 0, first = again ? first_colour : 0,
+                      end = first_colour + c.colours;
   if (persistent_) {
-    const vulkan::Groups groups = all_groups();
-    const double ranges = 16.0 * groups.x * groups.y * block_;
-    Traffic sum;
-    for (std::uint32_t k = first; k < end; ++k)
-      sum = sum + (all[k] + Traffic{k == 0 || k >= first_colour ? ranges : 0, 0}) * count;
     c.first_pass = first;
     c.passes = (end - first) * static_cast<std::uint32_t>(count);
-    frame_.dispatch_groups(*kernel_, groups, c, sum);
+    frame_.dispatch_groups(*kernel_, all_groups(), c);
     return;
   }
   c.passes = 1;
@@ -186,14 +140,14 @@ void Chains::record(int count, const TimeStep& step, bool again) {
       const Colour& colour = colours_[k < first_colour ? 0 : k - first_colour];
       c.first_entry = colour.first_entry;
       c.rounds = colour.rounds;
-      frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.entries, c, all[k]);
+      frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.entries, c);
     }
     record_welds();
   }
 }
 
 void Chains::record_welds() {
-  if (weld_ != nullptr) frame_.dispatch(*weld_, welds_, welds_, {40.0 * welds_, 32.0 * welds_});
+  if (weld_ != nullptr) frame_.dispatch(*weld_, welds_, welds_);
 }
 
 }  // namespace clothbench::pbd_gpu

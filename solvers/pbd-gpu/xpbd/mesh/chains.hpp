@@ -26,17 +26,11 @@ class Chains {
  private:
   struct Colour {
     std::uint32_t first_entry, entries, rounds;
-    double vertices;  ///< on its chains; the first colour has all vertices, with triangles it is the only one
   };
   void add_colours(const ChainCloth&);
   void add_bending();
   void add_membrane();
   ChainSpecialization specialization() const;
-  Traffic traffic(std::size_t colour, bool integrates) const;
-  Traffic bending_traffic(std::uint32_t iteration, std::uint32_t iterations) const;
-  /// Number and traffic of a substep's passes: one that integrates and the iterations of bending, if there are any,
-  /// then colours.
-  std::vector<Traffic> passes(const ChainConstants&) const;
   /// Whether bending or triangles are solved, all at once.
   bool solves_together() const { return bends_ || membrane_; }
   vulkan::Groups all_groups() const;
@@ -52,8 +46,7 @@ class Chains {
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
   bool bends_ = false;
-  double max_per_s2_ = 0;                     ///< at least the maximum eigenvalue of bending and triangles
-  double row_entries_ = 0, row_corners_ = 0;  ///< of all rows of bending and of triangles, with what pads them
+  double max_per_s2_ = 0;  ///< at least the maximum eigenvalue of bending and triangles
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -9,8 +9,8 @@ layout(push_constant) uniform Push { uint count; };
 void main() {
   uint i = item();
   if (i >= count) return;
-  uvec2 w = LOAD(8u, welds, i);
-  vec4 here = LOAD16(x, w.y), speed = LOAD16(v, w.y);
-  STORE16(x, w.x, here);
-  STORE16(v, w.x, speed);
+  uvec2 w = welds[i];
+  vec4 here = x[w.y], speed = v[w.y];
+  x[w.x] = here;
+  v[w.x] = speed;
 }

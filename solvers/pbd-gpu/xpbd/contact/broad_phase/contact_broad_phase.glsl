@@ -6,7 +6,7 @@ void box_for(uvec4 e, float fraction) {
   high = vec3(-1e30);
   float drifts = drift_m();
   for (uint c = 0u; c < e.w; ++c) {
-    vec4 r = LOAD16(motion_bounds, e[c]);
+    vec4 r = motion_bounds[e[c]];
     low = min(low, r.xyz - fraction * (r.w + drifts));
     high = max(high, r.xyz + fraction * (r.w + drifts));
   }
@@ -52,7 +52,7 @@ uint overlapping_shapes(uint first, uint end, out uint own) {
   own = 0u;
   [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
     uint of = n * LANES_PER_PRIMITIVE + PRIMITIVE_LANE;
-    if (aabb_overlaps(LOAD(32u, boxes, min(first + of, SHAPES - 1u))) && first + of < end) own |= 1u << of;
+    if (aabb_overlaps(boxes[min(first + of, SHAPES - 1u)]) && first + of < end) own |= 1u << of;
   }
   return cluster_or(own);
 }
@@ -76,7 +76,7 @@ uint overlapping_groups(inout uint bits, uint word, uint part) {
   for (uint n = 0u; n < PRIMITIVE_LANE; ++n) step_bits &= step_bits - 1u;
   [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
     uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(step_bits))) + part;
-    if (step_bits != 0u && g < GROUPS && aabb_overlaps(LOAD(32u, boxes, SHAPES + g))) overlapping |= step_bits & -step_bits;
+    if (step_bits != 0u && g < GROUPS && aabb_overlaps(boxes[SHAPES + g])) overlapping |= step_bits & -step_bits;
     for (uint k = 0u; k < LANES_PER_PRIMITIVE; ++k) step_bits &= step_bits - 1u;
   }
   return cluster_or(overlapping);
@@ -96,7 +96,7 @@ uint overlapping_groups(inout uint bits, uint word, uint part) {
         }
 
 void write_pair(uint at, uint primitive, uint of_shape) {
-  STORE16(pairs, at, uvec4(primitive, of_shape, 0u, 0u))
+  pairs[at] = uvec4(primitive, of_shape, 0u, 0u);
   states[at].normal = vec4(0.0);
   states[at].correction = vec4(0.0);
 }
@@ -106,7 +106,7 @@ uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((
 
 /// Writes the `count` first pairs of primitive k, from place `at` on.
 void fill_pairs(uint k, float fraction, uint at, uint count) {
-  box_for(LOAD16(primitives, k), fraction);
+  box_for(primitives[k], fraction);
   uint end = at + count;
   FOR_EACH_OVERLAPPING_SHAPES(
     for (; own != 0u; own &= own - 1u) {
@@ -120,16 +120,16 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
 
 /// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.
 void list_touched_vertices(uint i) {
-  uint pairs_of = LOAD16(ranges, TRIANGLES + i).y;
-  for (uint f = LOAD4(vertex_triangles, i), end = LOAD4(vertex_triangles, i + 1u); f < end; ++f) pairs_of += LOAD16(ranges, LOAD4(vertex_triangles, f) / 4u).y;
-  STORE4(touched, PAIR_COUNT(i), pairs_of);
+  uint pairs_of = ranges[TRIANGLES + i].y;
+  for (uint f = vertex_triangles[i], end = vertex_triangles[i + 1u]; f < end; ++f) pairs_of += ranges[vertex_triangles[f] / 4u].y;
+  touched[PAIR_COUNT(i)] = pairs_of;
   if (pairs_of == 0u) return;
-  STORE4(touched, atomicAdd(frame_state.touched_vertices, 1u), i);
+  touched[atomicAdd(frame_state.touched_vertices, 1u)] = i;
 }
 
 /// Pairs of primitive k where its vertices go no farther than a fraction of their motion bounds.
 uint pairs_at(uint k, float fraction) {
-  box_for(LOAD16(primitives, k), fraction);
+  box_for(primitives[k], fraction);
   uint n = 0u;
   FOR_EACH_OVERLAPPING_SHAPES(n += uint(bitCount(overlapping));)
   return n;

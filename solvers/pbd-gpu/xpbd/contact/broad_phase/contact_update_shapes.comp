@@ -15,14 +15,14 @@ layout(push_constant) uniform Push { ContactConstants p; };
 shared uint lows[3u * SHAPES_PER_GROUP], highs[3u * SHAPES_PER_GROUP], displacements[SHAPES_PER_GROUP];
 
 ShapePoint point_of(PointSource s) {
-  if (s.capsule == 0u) return ShapePoint(LOAD16(kinematic_start, s.index), LOAD16(kinematic_end, s.index));
-  CapsuleShape c = LOAD(64u, capsules, s.index / 2u);
+  if (s.capsule == 0u) return ShapePoint(kinematic_start[s.index], kinematic_end[s.index]);
+  CapsuleShape c = capsules[s.index / 2u];
   return s.index % 2u == 1u ? ShapePoint(c.b0, c.b1) : ShapePoint(c.a0, c.a1);
 }
 
 ShapeAabb box_of(uint k, uint t) {
-  ConvexShape shape = LOAD(32u, shapes, k);
-  if (shape.is_kinematic == 0u) return LOAD(32u, boxes, k);
+  ConvexShape shape = shapes[k];
+  if (shape.is_kinematic == 0u) return boxes[k];
   float more = shape.radius + shape.margin;
   ShapeAabb b = ShapeAabb(vec4(0.0, 0.0, 0.0, uintBitsToFloat(displacements[t])), vec4(0.0));
   for (uint c = 0u; c < 3u; ++c) {
@@ -44,12 +44,12 @@ void main() {
     }
   }
   barrier();  // empty boxes before they are widened
-  ConvexShape last = LOAD(32u, shapes, first + n - 1u);
-  uint begin = LOAD(32u, shapes, first).first_source, end = last.first_source + (last.is_kinematic != 0u ? last.count : 0u);
+  ConvexShape last = shapes[first + n - 1u];
+  uint begin = shapes[first].first_source, end = last.first_source + (last.is_kinematic != 0u ? last.count : 0u);
   for (uint k = begin + t; k < end; k += gl_WorkGroupSize.x) {
-    PointSource s = LOAD(16u, sources, k);
+    PointSource s = sources[k];
     ShapePoint q = point_of(s);
-    STORE32(points, s.point, q);
+    points[s.point] = q;
     uint o = s.shape - first;
     for (uint c = 0u; c < 3u; ++c) {
       atomicMin(lows[3u * o + c], ordered(min(q.start[c], q.end[c])));
@@ -61,7 +61,7 @@ void main() {
   ShapeAabb b = ShapeAabb(vec4(1e30, 1e30, 1e30, 0.0), vec4(-1e30));
   if (t < n) {
     b = box_of(first + t, t);
-    STORE32(boxes, first + t, b);
+    boxes[first + t] = b;
   }
   barrier();  // reads of the points' boxes before they hold the convex shapes'
   if (t < n) {
@@ -80,5 +80,5 @@ void main() {
       b.high[c] = max(b.high[c], of_ordered(highs[3u * o + c]));
     }
   }
-  STORE32(boxes, p.shapes + group, b);
+  boxes[p.shapes + group] = b;
 }

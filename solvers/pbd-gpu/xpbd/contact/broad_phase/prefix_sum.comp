@@ -12,7 +12,7 @@ void main() {
   uint n = OF_SELF ? TRIANGLES : TRIANGLES + VERTICES, capacity = OF_SELF ? SELF_CAPACITY : CAPACITY, each = (n + kThreads - 1u) / kThreads;
   uint begin = min(t * each, n), end = min(begin + each, n);
   uvec4 sum = uvec4(0u);
-  for (uint k = begin; k < end; ++k) sum += LOAD16(ranges, k);
+  for (uint k = begin; k < end; ++k) sum += ranges[k];
   sums[t] = sum;
   barrier();  // the threads' sums before those of blocks of threads
   if (t % kBlock == 0u) {
@@ -32,7 +32,7 @@ void main() {
   uint first = before[level];
   for (uint k = begin; k < end; ++k) {
     uint count = ranges[k][level], room = first < capacity ? capacity - first : 0u;
-    STORE16(ranges, k, uvec4(min(first, capacity), min(count, room), 0u, 0u));
+    ranges[k] = uvec4(min(first, capacity), min(count, room), 0u, 0u);
     first += count;
   }
   if (t > 0u) return;

@@ -12,7 +12,7 @@ SelfAabb box_of(uvec4 e) {
   SelfAabb box = SelfAabb(vec4(1e30), vec4(-1e30), vec4(1e30), vec4(-1e30));
   float half_m = 0.5 * THICKNESS_M;
   [[unroll]] for (uint c = 0u; c < 3u; ++c) {
-    vec4 r = LOAD16(motion_bounds, e[c]);
+    vec4 r = motion_bounds[e[c]];
     box.low_0.xyz = min(box.low_0.xyz, r.xyz - half_m);
     box.high_0.xyz = max(box.high_0.xyz, r.xyz + half_m);
     box.low_1.xyz = min(box.low_1.xyz, r.xyz - (half_m + r.w));
@@ -30,8 +30,8 @@ void main() {
   }
   barrier();  // empty boxes before they are widened
   if (q < TRIANGLES) {
-    SelfAabb box = box_of(LOAD16(primitives, LOAD4(self_order, q)));
-    STORE64(self_aabbs, q, box);
+    SelfAabb box = box_of(primitives[self_order[q]]);
+    self_aabbs[q] = box;
     vec3 low = low_at(box, 1.0), high = high_at(box, 1.0);
     for (uint c = 0u; c < 3u; ++c) {
       atomicMin(group_low[3u * group + c], ordered(low[c]));
@@ -49,5 +49,5 @@ void main() {
   of_group.high_0.w = -1e30;
   of_group.low_1 = of_group.low_0;  // so that rounding does not part it from a triangle of its own
   of_group.high_1 = of_group.high_0;
-  STORE64(self_aabbs, TRIANGLES + q / SHAPES_PER_GROUP, of_group);
+  self_aabbs[TRIANGLES + q / SHAPES_PER_GROUP] = of_group;
 }

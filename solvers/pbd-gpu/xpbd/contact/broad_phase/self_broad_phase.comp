@@ -23,13 +23,13 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
   for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) {                                             \
     uint g = begin + triangle_lane();                                                                                                \
     bool overlaps_group = triangle_lane() < lanes_per_triangle() && g * SHAPES_PER_GROUP < TRIANGLES;                                                \
-    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, LOAD(64u, self_aabbs, TRIANGLES + g), 1.0);                                \
+    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, self_aabbs[TRIANGLES + g], 1.0);                                \
     for (uint groups = ballot_bits(overlaps_group); groups != 0u; groups &= groups - 1u) {                                             \
       uint first = SHAPES_PER_GROUP * (begin + uint(findLSB(groups))), last = min(first + SHAPES_PER_GROUP, TRIANGLES);           \
       for (uint part = first; part < last; part += lanes_per_triangle()) {                                                               \
         uint q = part + triangle_lane();                                                                                             \
         bool mine = triangle_lane() < lanes_per_triangle() && q < last;                                                                         \
-        if (mine) mine = aabbs_overlap(BOX, LOAD(64u, self_aabbs, q), SHARE);                                                    \
+        if (mine) mine = aabbs_overlap(BOX, self_aabbs[q], SHARE);                                                    \
         BODY                                                                                                                  \
       }                                                                                                                       \
     }                                                                                                                         \
@@ -42,27 +42,27 @@ float min_distance(SelfAabb a, SelfAabb b) {
 }
 
 void fill_self_pairs_of(uint slot) {
-  uint own = LOAD4(self_order, slot);
-  uvec4 range = LOAD16(self_ranges, own), e = LOAD16(primitives, own);
-  SelfAabb box = LOAD(64u, self_aabbs, slot);
+  uint own = self_order[slot];
+  uvec4 range = self_ranges[own], e = primitives[own];
+  SelfAabb box = self_aabbs[slot];
   uint at = range.x, end = range.x + range.y;
   FOR_EACH_NEIGHBOUR(box, frame_state.self_bound_fraction,
-    uint other = mine ? LOAD4(self_order, q) : 0u;
-    mine = mine && !share_a_vertex(e, LOAD16(primitives, other));
+    uint other = mine ? self_order[q] : 0u;
+    mine = mine && !share_a_vertex(e, primitives[other]);
     uint bits = ballot_bits(mine);
     uint to = at + uint(bitCount(bits & ((1u << triangle_lane()) - 1u)));
-    if (mine && to < end) self_pairs[to] = SelfPair(other, min_distance(box, LOAD(64u, self_aabbs, q)));
+    if (mine && to < end) self_pairs[to] = SelfPair(other, min_distance(box, self_aabbs[q]));
     at += uint(bitCount(bits));
   )
 }
 
 void count_self_pairs_of(uint slot) {
-  uint own = LOAD4(self_order, slot);
-  uvec4 e = LOAD16(primitives, own), n = uvec4(0u);
-  SelfAabb box = LOAD(64u, self_aabbs, slot);
+  uint own = self_order[slot];
+  uvec4 e = primitives[own], n = uvec4(0u);
+  SelfAabb box = self_aabbs[slot];
   FOR_EACH_NEIGHBOUR(box, 1.0,
-    if (mine && !share_a_vertex(e, LOAD16(primitives, LOAD4(self_order, q)))) {
-      SelfAabb other = LOAD(64u, self_aabbs, q);
+    if (mine && !share_a_vertex(e, primitives[self_order[q]])) {
+      SelfAabb other = self_aabbs[q];
       float fraction = 1.0;
       for (uint l = 0u; l < PAIR_LEVELS && aabbs_overlap(box, other, fraction); ++l) {
         ++n[l];
@@ -71,7 +71,7 @@ void count_self_pairs_of(uint slot) {
     }
   )
   n = sum_over_lanes(n);
-  if (triangle_lane() == 0u) STORE16(self_ranges, own, n);
+  if (triangle_lane() == 0u) self_ranges[own] = n;
 }
 
 void main() {

@@ -7,7 +7,7 @@
 /// Maximum displacement of a point of any convex shape in the frame.
 float max_displacement_of_shapes() {
   float max_shape_displacement = 0.0;
-  for (uint g = 0u; HAS_KINEMATIC != 0u && g < GROUPS; ++g) max_shape_displacement = max(max_shape_displacement, LOAD16_OF(boxes[SHAPES + g].low).w);
+  for (uint g = 0u; HAS_KINEMATIC != 0u && g < GROUPS; ++g) max_shape_displacement = max(max_shape_displacement, boxes[SHAPES + g].low.w);
   return max_shape_displacement;
 }
 
@@ -27,8 +27,8 @@ float bound_at_rest() {
 float pulled() {
   float largest = 0.0;
   for (uint k = 0u; k < GRIPS; ++k) {
-    GripVertex grip = LOAD(48u, grips, k);
-    if (grip.held != 0u) largest = max(largest, distance(LOAD16(x, grip.vertex).xyz, grip.to.xyz));
+    GripVertex grip = grips[k];
+    if (grip.held != 0u) largest = max(largest, distance(x[grip.vertex].xyz, grip.to.xyz));
   }
   return largest;
 }
@@ -37,7 +37,7 @@ float pulled() {
 /// right, for vertices keep to a motion bound around it.
 vec3 drift() {
   vec3 all = vec3(0.0);
-  for (uint k = 0u; SELF != 0u && k < 4u; ++k) all += 0.25 * LOAD16(v, (2u * k + 1u) * VERTICES / 8u).xyz;
+  for (uint k = 0u; SELF != 0u && k < 4u; ++k) all += 0.25 * v[(2u * k + 1u) * VERTICES / 8u].xyz;
   return all;
 }
 
@@ -53,18 +53,18 @@ float contact_free_bound(float speed, float rest, float by_hands) {
 #if !defined(CONTACT_FREE) || defined(FUSED_FRAME)
 /// The same in .w of its place, and kept for the frame.
 vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
-  vec4 at = LOAD16(x, i);
+  vec4 at = x[i];
   vec3 along = drift();
-  float speed = length(LOAD16(v, i).xyz - along), rest = bound_at_rest(), by_hands = pulled();
+  float speed = length(v[i].xyz - along), rest = bound_at_rest(), by_hands = pulled();
   float bound = motion_bound(speed, rest, max_shape_displacement, by_hands);
 #ifdef FUSED_FRAME
-  STORE16(starts, i, vec4(at.xyz, contact_free_bound(speed, rest, by_hands)));
+  starts[i] = vec4(at.xyz, contact_free_bound(speed, rest, by_hands));
 #else
-  STORE16(starts, i, vec4(at.xyz, 0.0));
+  starts[i] = vec4(at.xyz, 0.0);
 #endif
-  STORE16(y, i, at);
-  STORE16(motion_bounds, i, vec4(at.xyz, bound));
-  STORE4(vertex_displacement, i, 0.0);
+  y[i] = at;
+  motion_bounds[i] = vec4(at.xyz, bound);
+  vertex_displacement[i] = 0.0;
   return vec4(at.xyz, bound + length(along) * p.frame_s);
 }
 #endif

@@ -162,12 +162,12 @@ vec3 within(vec3 to, float room) {
 
 void end_substep(uint i, vec4 proposed, vec3 at) {
   if (proposed.w > 0.0) {
-    if (at != proposed.xyz) STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (at - proposed.xyz), 0.0));
+    if (at != proposed.xyz) v[i] = vec4(v[i].xyz + p.per_h * (at - proposed.xyz), 0.0);
     if (substep_now + 1u == p.substeps) record_displacement(i, at);
-    STORE16(x, i, vec4(at, proposed.w));
+    x[i] = vec4(at, proposed.w);
   }
-  STORE4(vertex_displacement, i, distance(at, start));
-  STORE16(starts, i, vec4(at, 0.0));
+  vertex_displacement[i] = distance(at, start);
+  starts[i] = vec4(at, 0.0);
 #ifdef FUSED_FRAME
   if (kPredictsNextSubstep && substep_now + 1u < p.substeps) predict(i);
 #endif
@@ -175,7 +175,7 @@ void end_substep(uint i, vec4 proposed, vec3 at) {
 
 /// Of a vertex without planes.
 void project_free(uint i) {
-  vec4 proposed = LOAD16(y, i), from = LOAD16(starts, i);
+  vec4 proposed = y[i], from = starts[i];
   start = from.xyz;
   end_substep(i, proposed, proposed.w > 0.0 ? within(proposed.xyz, from.w) : proposed.xyz);
 }
@@ -185,18 +185,18 @@ void project(uint i, bool valid) {
   vec4 proposed = vec4(0.0), from = vec4(0.0);
   float smallest = 1e30;
   if (valid) {
-    proposed = LOAD16(y, i);
-    from = LOAD16(starts, i);
+    proposed = y[i];
+    from = starts[i];
   }
   start = from.xyz;
   vec3 at = proposed.xyz;
   if (proposed.w > 0.0) {
     at = within(at, from.w);
   }
-  bool behind = PLANES > 0u || SELF != 0u || (SHAPES > 0u && valid && LOAD4(touched, NEEDS_PROJECTION(i)) != 0u);
+  bool behind = PLANES > 0u || SELF != 0u || (SHAPES > 0u && valid && touched[NEEDS_PROJECTION(i)] != 0u);
   if (proposed.w > 0.0 && (behind || at != proposed.xyz)) {
-    uint first = LOAD4(vertex_triangles, i);
-    end_vertex_triangle = LOAD4(vertex_triangles, i + 1u);
+    uint first = vertex_triangles[i];
+    end_vertex_triangle = vertex_triangles[i + 1u];
     first_vertex_triangle = first + cluster_lane();
     vertex_triangle_step = LANES_PER_VERTEX;
     smallest = min_plane_distance(at);
@@ -205,7 +205,7 @@ void project(uint i, bool valid) {
   }
   smallest = cluster_min(smallest);
   if (!valid || cluster_lane() != 0u) return;
-  if (behind && SHAPES > 0u) STORE4(touched, NEEDS_PROJECTION(i), 0u);
+  if (behind && SHAPES > 0u) touched[NEEDS_PROJECTION(i)] = 0u;
   if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);
   end_substep(i, proposed, at);
 }
@@ -214,12 +214,12 @@ void project(uint i, bool valid) {
 void project_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   for (uint i = first; !all_of_them && i < VERTICES; i += at_once)
-    if (SHAPES == 0u || LOAD4(touched, PAIR_COUNT(i)) == 0u) project_free(i);
+    if (SHAPES == 0u || touched[PAIR_COUNT(i)] == 0u) project_free(i);
   uint count = all_of_them ? VERTICES : SHAPES == 0u ? 0u : frame_state.touched_vertices;
   for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
     bool valid = n < count;
     uint i = n;
-    if (valid && !all_of_them) i = LOAD4(touched, n);
+    if (valid && !all_of_them) i = touched[n];
     project(i, valid);
   }
 }

@@ -25,9 +25,9 @@ bool find_alternative_normal(vec3 old, float smallest, out vec3 n) {
 }
 
 void select_plane(uint k) {
-  uvec4 pair = LOAD16(pairs, k);
+  uvec4 pair = pairs[k];
   if ((pair.z & PAIR_PLANE) == 0u) return;
-  uvec4 e = LOAD16(primitives, pair.x);
+  uvec4 e = primitives[pair.x];
   shape = shapes[pair.y];
   vec4 normal = states[k].normal;
   around = starts[e.x].xyz;

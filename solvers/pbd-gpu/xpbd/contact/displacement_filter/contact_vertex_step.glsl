@@ -17,17 +17,17 @@ void clear_correction_bits(uint first, uint at_once) {
 
 /// Inverse mass of a vertex that has `in_lines` there. Hands hold and released between the two.
 float mass_of(uint i, float in_lines) {
-  float w = LOAD16(y, i).w;
+  float w = y[i].w;
   return in_lines == 0.0 || w == 0.0 ? in_lines : w;
 }
 
 /// Where a vertex would be without links and contact. Tethers come with the lines.
 void predict(uint i) {
-  vec4 at = LOAD16(x, i);
-  vec3 vel = LOAD16(v, i).xyz;
+  vec4 at = x[i];
+  vec3 vel = v[i].xyz;
   at.w = mass_of(i, at.w);
   if (at.w > 0.0) at.xyz += p.h * (vel + p.gravity_h.xyz - p.damping_fraction * vel);
-  STORE16(y, i, at);
+  y[i] = at;
   starts[i].w = max_displacement(i, at.xyz);
 }
 
@@ -37,12 +37,12 @@ vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
   float l = length(displacement);
   if (!(w > 0.0 && l > largest)) return to;
   vec3 kept = from + (largest / l) * displacement;
-  STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * (kept - to), 0.0));
+  v[i] = vec4(v[i].xyz + p.per_h * (kept - to), 0.0);
   return kept;
 }
 /// The same within the frame's motion bound.
 vec3 clamp_to_bounds(uint i, vec3 to, float w) {
-  vec4 bound = LOAD16(motion_bounds, i);
+  vec4 bound = motion_bounds[i];
   if (SELF != 0u) {
     vec3 drift = (t_end * p.frame_s) * vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2]);
     to = clamp_to(i, to, w, bound.xyz + drift, bound.w * frame_state.self_bound_fraction);
@@ -53,6 +53,6 @@ vec3 clamp_to_bounds(uint i, vec3 to, float w) {
 void clamp_to_motion_bound(uint i, vec4 at) {
   float w = mass_of(i, at.w);
   vec3 to = clamp_to_bounds(i, at.xyz, w);
-  STORE16(y, i, vec4(to, w));
+  y[i] = vec4(to, w);
   if (!SECOND_SOLVE || response_round < 2u) starts[i].w = max_displacement(i, to);
 }

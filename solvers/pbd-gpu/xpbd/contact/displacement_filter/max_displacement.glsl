@@ -1,6 +1,6 @@
 /// At the frame's end.
 void record_displacement(uint i, vec3 at) {
-  uint displacement = floatBitsToUint(distance(at, LOAD16(motion_bounds, i).xyz));
+  uint displacement = floatBitsToUint(distance(at, motion_bounds[i].xyz));
   atomicMax(frame_state.max_displacement, displacement);
 #ifndef FUSED_FRAME
   atomicMax(diagnostics.max_displacement, displacement);

@@ -5,7 +5,7 @@
 void select_self_plane(uint k) {
   if ((self_active[k].marks & SELF_PLANE) == 0u) return;
   uint own = self_active[k].own, other = self_active[k].other;
-  uvec4 a = LOAD16(primitives, min(own, other)), b = LOAD16(primitives, max(own, other));
+  uvec4 a = primitives[min(own, other)], b = primitives[max(own, other)];
   vec3 origin = starts[a.x].xyz, n = self_active[k].plane.xyz;
   float start_a = 1e30, end_a = 1e30, held_a = 1e30, start_b = -1e30, end_b = -1e30, held_b = -1e30;
   for (uint c = 0u; c < 3u; ++c) {

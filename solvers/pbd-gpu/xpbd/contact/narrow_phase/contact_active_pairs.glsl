@@ -4,12 +4,12 @@
 // An active pair is recorded twice: as a bit in active_bits, so that a vertex visits its pairs in the fixed order of the candidate list
 // (sums stay reproducible), and as an entry of a list in any order, over which threads are distributed.
 
-float shape_displacement(uint k) { return p.substep_part * LOAD16_OF(boxes[k].low).w; }
+float shape_displacement(uint k) { return p.substep_part * boxes[k].low.w; }
 float max_of(uvec4 e, bool of_ways) {
   float largest = 0.0;
   [[unroll]] for (uint c = 0u; c < 3u; ++c) {
     uint i = e[min(c, e.w - 1u)];
-    largest = max(largest, of_ways ? LOAD4(vertex_displacement, i) : starts[i].w);
+    largest = max(largest, of_ways ? vertex_displacement[i] : starts[i].w);
   }
   return largest;
 }
@@ -20,8 +20,8 @@ float approach_of(uvec4 e, uint k) { return max_of(e, false) + shape_displacemen
 /// Whether the bound of a pair's distance lets it be active in this substep, or whether it has been. First the bound loses the displacements of the
 /// last one.
 bool may_be_active(uint k) {
-  uvec4 pair = LOAD16(pairs, k);
-  uvec4 e = LOAD16(primitives, pair.x);
+  uvec4 pair = pairs[k];
+  uvec4 e = primitives[pair.x];
   float bound = states[k].normal.w;
   if (response_round == FIRST_ROUND) {
     bound -= max_of(e, true) + shape_displacement(pair.y);
@@ -34,15 +34,15 @@ bool may_be_active(uint k) {
 /// Whether it is: not if the gap along the last normal, or from middle to middle, is too wide. That is a bound like any other, and costs
 /// less than nearest points.
 bool is_active(uint k) {
-  uvec4 pair = LOAD16(pairs, k);
+  uvec4 pair = pairs[k];
   if (pair.z != 0u) return true;
-  uvec4 e = LOAD16(primitives, pair.x);
+  uvec4 e = primitives[pair.x];
   shape = shapes[pair.y];
   around = starts[e.x].xyz;
   [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = starts[e[min(c, e.w - 1u)]].xyz - around;
   vec3 n = states[k].normal.xyz;
   if (n == vec3(0.0)) {
-    ShapeAabb box = LOAD(32u, boxes, pair.y);
+    ShapeAabb box = boxes[pair.y];
     n = (cloth[0] + cloth[1] + cloth[2]) / 3.0 - (0.5 * (box.low.xyz + box.high.xyz) - around);
   }
   float l = length(n);

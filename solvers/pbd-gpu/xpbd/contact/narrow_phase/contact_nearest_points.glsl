@@ -49,8 +49,8 @@ uint find_contact(uvec4 e, inout PairState s) {
 
 /// Asks a pair that is active for its nearest points, unless that is done, and what its contact proposes.
 void process_pair(uint k) {
-  uvec4 pair = LOAD16(pairs, k);
-  uvec4 e = LOAD16(primitives, pair.x);
+  uvec4 pair = pairs[k];
+  uvec4 e = primitives[pair.x];
   PairState s = states[k];
   shape = shapes[pair.y];
   if ((pair.z & PAIR_NEAREST) == 0u) {

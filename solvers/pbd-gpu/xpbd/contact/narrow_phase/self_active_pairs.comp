@@ -22,7 +22,7 @@ bool is_active_pair[kPairUnroll];
 void test_pairs(uint first, uint end, vec4 own, bool lessens) {
   vec4 displacement[kPairUnroll];
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) pair[n] = self_pairs[min(first + n * lanes_per_triangle() + triangle_lane(), end - 1u)];
-  [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) displacement[n] = LOAD16(triangle_max_displacement, pair[n].other);
+  [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) displacement[n] = triangle_max_displacement[pair[n].other];
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) {
     uint k = first + n * lanes_per_triangle() + triangle_lane();
     is_active_pair[n] = triangle_lane() < lanes_per_triangle() && k < end;
@@ -33,8 +33,8 @@ void test_pairs(uint first, uint end, vec4 own, bool lessens) {
 }
 
 void collect_active_pairs(uint t) {
-  uvec4 range = LOAD16(self_ranges, t);
-  vec4 own = LOAD16(triangle_max_displacement, t);
+  uvec4 range = self_ranges[t];
+  vec4 own = triangle_max_displacement[t];
   uint count = 0u, end = range.x + range.y;
   for (uint first = range.x; first < end; first += kPairUnroll * lanes_per_triangle()) {
     test_pairs(first, end, own, true);
@@ -44,7 +44,7 @@ void collect_active_pairs(uint t) {
   uvec2 slot = uvec2(0u);
   if (triangle_lane() == 0u) {
     slot = reserve(count);
-    STORE16(self_ranges, t, uvec4(range.xy, slot));
+    self_ranges[t] = uvec4(range.xy, slot);
   }
   uint at = from_first_lane(slot.x), last = at + from_first_lane(slot.y);
   for (uint first = range.x; first < end && at < last; first += kPairUnroll * lanes_per_triangle()) {

@@ -4,9 +4,9 @@
 #include "xpbd/contact/contact_buffers.glsl"
 void main() {
   for (uint t = item(); t < TRIANGLES; t += stride()) {
-    uvec4 e = LOAD16(primitives, t);
+    uvec4 e = primitives[t];
     vec2 largest = vec2(0.0);
-    for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(LOAD4(vertex_displacement, e[c]), LOAD16(starts, e[c]).w));
-    STORE16(triangle_max_displacement, t, vec4(largest, 0.0, 0.0));
+    for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(vertex_displacement[e[c]], starts[e[c]].w));
+    triangle_max_displacement[t] = vec4(largest, 0.0, 0.0);
   }
 }

@@ -11,10 +11,10 @@ bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
 
 /// A vertex and a triangle are the contact of one pair of the vertex' triangles: the first that has no vertex of the other.
 bool owns(uint v, uint own, uvec4 other) {
-  uint end = LOAD4(vertex_triangles, v + 1u);
-  for (uint f = LOAD4(vertex_triangles, v); f < end; ++f) {
-    uint t = LOAD4(vertex_triangles, f) / 4u;
-    uvec4 e = LOAD16(primitives, t);
+  uint end = vertex_triangles[v + 1u];
+  for (uint f = vertex_triangles[v]; f < end; ++f) {
+    uint t = vertex_triangles[f] / 4u;
+    uvec4 e = primitives[t];
     if (!(has_vertex(other, e.x) || has_vertex(other, e.y) || has_vertex(other, e.z))) return t == own;
   }
   return false;
@@ -104,7 +104,7 @@ void store_contacts(uint k) {
 
 void query_self(uint k) {
   uint first = min(self_active[k].own, self_active[k].other), second = max(self_active[k].own, self_active[k].other);
-  uvec4 a = LOAD16(primitives, first), b = LOAD16(primitives, second);
+  uvec4 a = primitives[first], b = primitives[second];
   vec3 origin = starts[a.x].xyz;
   float max_a = 0.0, max_b = 0.0;
   for (uint c = 0u; c < 3u; ++c) {

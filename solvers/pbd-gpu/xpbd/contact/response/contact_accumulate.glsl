@@ -18,7 +18,7 @@ void propose(vec3 velocity_part, vec3 depenetration) {
 void from_half_spaces(vec4 at, vec3 start) {
   if (response_round == 0u) return;
   for (uint k = 0u; k < PLANES; ++k) {
-    PlaneShape s = LOAD(32u, half_spaces, k);
+    PlaneShape s = half_spaces[k];
     float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
     Correction c = respond_along(s.normal.xyz, min(s.margin, before) - gap, recovery(s.margin - before, s.margin), at.xyz - start, s.friction);
     if (c.velocity_part != vec3(0.0) || c.depenetration > 0.0) propose(c.velocity_part, c.depenetration * s.normal.xyz);
@@ -26,8 +26,8 @@ void from_half_spaces(vec4 at, vec3 start) {
 }
 
 void from_pairs(uint primitive, uint corner, float w) {
-  FOR_EACH_PAIR_OF(CORRECTION_BITS, LOAD16(ranges, primitive), {
-    vec4 correction = LOAD16_OF(states[k].correction);
+  FOR_EACH_PAIR_OF(CORRECTION_BITS, ranges[primitive], {
+    vec4 correction = states[k].correction;
     float share = w * states[k].weights[corner];
     propose(share * correction.xyz, share * correction.w * states[k].normal.xyz);
   })
@@ -37,7 +37,7 @@ void from_pairs(uint primitive, uint corner, float w) {
 const uint kSelfPairUnroll = 4u, kNoCorrection = ~0u;
 /// From the pairs of the vertex' triangles with others of the cloth.
 void from_self(uint primitive, uint corner) {
-  uvec4 range = LOAD16(self_ranges, primitive);
+  uvec4 range = self_ranges[primitive];
   for (uint first = range.z, end = range.z + range.w; first < end; first += kSelfPairUnroll) {
     uint at[kSelfPairUnroll];
     vec4 all[kSelfPairUnroll], velocity_part[kSelfPairUnroll];
@@ -48,8 +48,8 @@ void from_self(uint primitive, uint corner) {
     }
     [[unroll]] for (uint n = 0u; n < kSelfPairUnroll; ++n) {
       uint from = at[n] == kNoCorrection ? 0u : at[n];
-      all[n] = LOAD16_OF(self_corrections[from].all);
-      velocity_part[n] = LOAD16_OF(self_corrections[from].velocity_part);
+      all[n] = self_corrections[from].all;
+      velocity_part[n] = self_corrections[from].velocity_part;
     }
     [[unroll]] for (uint n = 0u; n < kSelfPairUnroll; ++n) {
       if (at[n] == kNoCorrection || all[n].w == 0.0) continue;
@@ -62,12 +62,12 @@ void from_self(uint primitive, uint corner) {
 
 void accumulate_part(uint i, vec4 at, uint part) {
   if (part + 1u == kPartialSums) {
-    from_half_spaces(at, LOAD16(starts, i).xyz);
+    from_half_spaces(at, starts[i].xyz);
     if (any_pairs) from_pairs(TRIANGLES + i, 0u, at.w);
   }
-  uint first = LOAD4(vertex_triangles, i) + part, end = LOAD4(vertex_triangles, i + 1u);
+  uint first = vertex_triangles[i] + part, end = vertex_triangles[i + 1u];
   for (uint k = first; k < end; k += kPartialSums) {
-    uint vertex_triangle = LOAD4(vertex_triangles, k);
+    uint vertex_triangle = vertex_triangles[k];
     if (any_pairs) from_pairs(vertex_triangle / 4u, vertex_triangle % 4u, at.w);
     if (SELF != 0u && response_round > 0u) from_self(vertex_triangle / 4u, vertex_triangle % 4u);
   }
@@ -93,21 +93,21 @@ void accumulate_parts(uint i, vec4 at, bool live) {
 }
 
 void accumulate(uint i, bool valid) {
-  vec4 at = valid ? LOAD16(y, i) : vec4(0.0);
-  any_pairs = valid && SHAPES > 0u && LOAD4(touched, CORRECTED(i)) != 0u;
+  vec4 at = valid ? y[i] : vec4(0.0);
+  any_pairs = valid && SHAPES > 0u && touched[CORRECTED(i)] != 0u;
   accumulate_parts(i, at, at.w != 0.0 && (any_pairs || PLANES > 0u || SELF != 0u));
   if (cluster_lane() != 0u) return;
-  if (any_pairs) STORE4(touched, CORRECTED(i), 0u);
+  if (any_pairs) touched[CORRECTED(i)] = 0u;
   if (!(lengths > 0.0)) return;
   vec3 by = sum / lengths, velocity_part = sum_velocity_part / lengths;
-  STORE16(v, i, vec4(LOAD16(v, i).xyz + p.per_h * velocity_part, 0.0));
+  v[i] = vec4(v[i].xyz + p.per_h * velocity_part, 0.0);
   if (response_round > 0u) {
-    STORE16(y, i, vec4(at.xyz + by, at.w));
-    if (SECOND_SOLVE && response_round == 1u) STORE16(x, i, vec4(at.xyz + by, at.w));
+    y[i] = vec4(at.xyz + by, at.w);
+    if (SECOND_SOLVE && response_round == 1u) x[i] = vec4(at.xyz + by, at.w);
     return;
   }
   float held = dot(by, by) / (kImpactMassFactor * MARGIN_M * kImpactMassFactor * MARGIN_M);
-  STORE16(x, i, vec4(LOAD16(x, i).xyz + by - velocity_part, at.w / (1.0 + held)));
+  x[i] = vec4(x[i].xyz + by - velocity_part, at.w / (1.0 + held));
 }
 
 /// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices that contact may move.
@@ -117,7 +117,7 @@ void accumulate_all(uint first, uint at_once) {
   for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
     bool valid = n < count;
     uint i = n;
-    if (valid && !all_of_them) i = LOAD4(touched, n);
+    if (valid && !all_of_them) i = touched[n];
     accumulate(i, valid);
   }
 }

@@ -35,8 +35,8 @@ void correct_self(uint k) {
   uint own = self_active[k].own, other = self_active[k].other, contacts = self_active[k].marks & ~SELF_PLANE, at = self_active[k].link;
   if (contacts == 0u) return;
   for (uint c = 0u; c < 3u; ++c) own_correction[c] = SelfCorrection(vec4(0.0), vec4(0.0));
-  uvec4 a = LOAD16(primitives, min(own, other)), b = LOAD16(primitives, max(own, other));
+  uvec4 a = primitives[min(own, other)], b = primitives[max(own, other)];
   for (uint c = 0u; c < SELF_CONTACTS; ++c)
-    if ((contacts & (1u << c)) != 0u) correct_contact(LOAD(48u, self_contacts, SELF_CONTACTS * at + c), a, b, own < other);
-  for (uint c = 0u; c < 3u; ++c) STORE32(self_corrections, 3u * at + c, own_correction[c]);
+    if ((contacts & (1u << c)) != 0u) correct_contact(self_contacts[SELF_CONTACTS * at + c], a, b, own < other);
+  for (uint c = 0u; c < 3u; ++c) self_corrections[3u * at + c] = own_correction[c];
 }
