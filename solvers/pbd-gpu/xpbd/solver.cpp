@@ -14,6 +14,7 @@
 #include "xpbd/mesh/chains.hpp"
 #include "xpbd/mesh/membrane.hpp"
 #include "xpbd/time/integrator.hpp"
+#include "xpbd/time/rules.hpp"
 #include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -147,7 +148,7 @@ class Xpbd final : public GpuSolver {
 
   /// Of a frame that takes `by_rule` of them if it is as long as the scene's.
   int in_frames(int by_rule, double dt_s) const {
-    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? kCrumpledSubsteps : 1);
+    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor.value : 1);
   }
 
   FusedFrame::Steps contact_free_steps(double dt_s) const {
@@ -214,18 +215,16 @@ class Xpbd final : public GpuSolver {
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no
-  /// vertex is thrown. The substeps of 1 s are the most: in a longer frame the simulation itself has fallen behind.
+  /// vertex is thrown.
   int frames_in(double dt_s) const {
-    constexpr double kSlack = 1.25, kMax_s = 1;  // jitter is no hitch
     const double frame = scene().time.dt();
-    if (!(dt_s > kSlack * frame)) return 1;
-    return static_cast<int>(std::ceil(std::min(dt_s, std::max(kMax_s, frame)) / frame - 1e-9));
+    if (!(dt_s > rules::kLongFrame * frame)) return 1;
+    return static_cast<int>(std::ceil(std::min(dt_s, std::max<double>(rules::kMaxLongFrame_s, frame)) / frame - 1e-9));
   }
 
   SubstepController controller_;
   int recorded_substeps_ = 0;
-  double last_dt_s_ = 0;                       ///< of the last frame; 0: none
-  static constexpr int kCrumpledSubsteps = 4;  ///< factor; with less a tangle takes longer than 1 s
+  double last_dt_s_ = 0;  ///< of the last frame; 0: none
 
   bool crumpled_ = false;
   bool second_solve_ = false;       ///< chains, between the responses of contact

@@ -13,16 +13,14 @@
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
 #include "xpbd/mesh/membrane.hpp"
+#include "xpbd/time/rules.hpp"
 #include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
 
 TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_per_s) {
   if (!uses_bdf2) return {h_s, 0, -std::expm1(-damping_per_s * h_s), 1};
-  // BDF2 with variable steps is zero-stable below a ratio of 1 + sqrt(2) (Hairer, Norsett & Wanner, Solving Ordinary
-  // Differential Equations I, section III.5); above 2 the history says little, and the integration begins anew.
-  constexpr double kMaxRatio = 2;
-  const double ratio = last_h_s > 0 && h_s <= kMaxRatio * last_h_s ? h_s / last_h_s : 0;
+  const double ratio = last_h_s > 0 && h_s <= rules::kMaxStepRatio * last_h_s ? h_s / last_h_s : 0;
   const double h = ratio > 0 ? h_s * (1 + ratio) / (1 + 2 * ratio) : h_s;
   const double force_scale = 1 / (1 + damping_per_s * h);
   return {h, ratio * ratio / (1 + 2 * ratio), 1 - force_scale, force_scale};
@@ -65,18 +63,16 @@ double reach_m(const Scene& s) {
 /// True if its lines share no links: nothing is left by one colour to another.
 bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
-/// True unless a stretch wave crosses more than kMaxOfCloth of an elastic cloth in a substep. Above, a horizontal
-/// sheet released by two corners gains up to seven times the energy that it gains under backward Euler, and below less
-/// (xpbd/time/README.md has the table). Inextensible cloth stores no energy in its links.
+/// True unless a stretch wave crosses more than a part of an elastic cloth in a substep. Inextensible cloth stores no
+/// energy in its links.
 bool resolves_waves(const Scene& scene, int substeps) {
-  constexpr double kMaxOfCloth = 0.6;
   double largest = scene.material.membrane_stiffness_N_per_m.value_or(0), lightest = 1;
   for (const StiffnessRegion& r : scene.material.regions)
     largest = std::max(largest, r.membrane_stiffness_N_per_m.value_or(0));
   for (const double factor : scene.cloth.mass_factors) lightest = std::min(lightest, factor);
   const double h = scene.time.dt() / substeps,
                speed = std::sqrt(largest / (lightest * scene.cloth.areal_density_kg_per_m2));
-  return h * speed <= kMaxOfCloth * std::max(scene.cloth.width_m, scene.cloth.height_m);
+  return h * speed <= rules::kMaxWaveOfCloth * std::max(scene.cloth.width_m, scene.cloth.height_m);
 }
 
 /// h'^2 T / (m l) for the maximum tension T [N] of a link at a pin, at one substep per frame: the number that decides
@@ -99,22 +95,16 @@ double tension_number(const Scene& s) {
   return h * h * total * norm(s.gravity_m_per_s2) / carrying / (share * inner * link);
 }
 
-/// Explicit tension is stable up to this number (xpbd/time/README.md).
-constexpr double kMaxExplicitTension = 1.0 / 3;
-
 /// True if tethers hold the cloth well enough without implicit tension: inextensible cloth, whose tethers carry the
 /// load, and elastic cloth whose tension may be explicit.
 bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
   return !scene.material.membrane_stiffness_N_per_m ||
-         tension_number(scene) <= kMaxExplicitTension * substeps * substeps;
+         tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
 }
 
-/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it uses. The maximum
-/// stretch of two-hand-stretch-10mps, whose hands double their distance, is 12 % above the converged one under BDF2 and
-/// 3 % under backward Euler; where they add a third to it BDF2 is not above backward Euler at any speed.
+/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it uses.
 bool is_pulled_far(const Scene& scene) {
-  constexpr double kMaxStrain = 0.5;
-  return !scene.grips.vertices.empty() && !(grip_strain(scene) <= kMaxStrain);
+  return !scene.grips.vertices.empty() && !(grip_strain(scene) <= rules::kMaxGripStrain);
 }
 
 constexpr const char* kPulledFar =
@@ -185,25 +175,17 @@ FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings
 }
 
 double substeps_for_splitting(const Scene& scene) {
-  // Squared, h'^2 Y / m: at 100 a patch of 65 x 17 vertices leaves its modulus within seconds, at 52 within a minute;
-  // at 47 it keeps it.
-  constexpr double kMaxCells = 6.9;
-  // Beyond the shorter side, what the colours keep of one another feeds oscillations.
-  constexpr double kMaxOfSide = 1.15;
   const Cloth& c = scene.cloth;
   const double way = 2.0 / 3 * scene.time.dt() *
                      std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
-  // Links under tension lose the rest of the margin: with K = h'^2 Y / m and the tension number tau, K tau of 39 is
-  // stable over 20 s and 81 grows (33 x 33 vertices held by one corner). Both go with the square of the step.
-  constexpr double kMaxStiffnessTimesTension = 25;
+  // Stiffness and tension both go with the square of the step.
   const double cell = std::min(c.du(), c.dv()), by_tension = way * way / (cell * cell) * tension_number(scene);
-  return std::max(way / std::min(kMaxCells * cell, kMaxOfSide * std::min(c.width_m, c.height_m)),
-                  std::pow(by_tension / kMaxStiffnessTimesTension, 0.25));
+  return std::max(
+      way / std::min(rules::kMaxSplittingCells * cell, rules::kMaxSplittingOfSide * std::min(c.width_m, c.height_m)),
+      std::pow(by_tension / rules::kMaxStiffnessTimesTension, 0.25));
 }
 
 FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& settings) {
-  constexpr int kMinLinks = 4;
-  constexpr double kSquare = 0.05;
   const std::string wanted = tuned(settings, "splitting_correction");
   if (wanted == "never") return {false, "setting tuning.splitting_correction=never"};
   const Cloth& c = scene.cloth;
@@ -214,8 +196,9 @@ FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& 
   if (wanted == "always") return {true, ""};
   if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
-  if (!(std::abs(c.du() / c.dv() - 1) <= kSquare)) return {false, "cells are not square"};
-  if (std::min(c.columns, c.rows) <= kMinLinks) return {false, "fewer than four links across the cloth"};
+  if (!(std::abs(c.du() / c.dv() - 1) <= rules::kMaxSplittingOblong)) return {false, "cells are not square"};
+  if (std::min(c.columns, c.rows) <= rules::kMinSplittingLinks)
+    return {false, "fewer than four links across the cloth"};
   return {true, ""};
 }
 
