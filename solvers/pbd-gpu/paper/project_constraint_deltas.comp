@@ -1,7 +1,7 @@
 #version 450
-// Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends are added
-// up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics: integer
-// compare-and-swap on the bits, until it holds.
+// Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends
+// are added up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics:
+// integer compare-and-swap on the bits, until it holds.
 #include "common/common.glsl"
 layout(std430, binding = BIND_CONSTRAINTS) readonly buffer Constraints { DistanceConstraint c[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Bdf2 { vec4 q[]; };

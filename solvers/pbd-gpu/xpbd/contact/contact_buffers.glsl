@@ -1,6 +1,7 @@
-// What the kernels of contact share: what is known of primitives and convex shapes, and of the substep. Primitives are the cloth's
-// triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a pass has its counts as
-// push constants, the kernel of a frame in one dispatch as specialization constants of the same names.
+// What the kernels of contact share: what is known of primitives and convex shapes, and of the substep. Primitives are
+// the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a
+// pass has its counts as push constants, the kernel of a frame in one dispatch as specialization constants of the same
+// names.
 #ifndef FUSED_FRAME
 #include "common/common.glsl"
 layout(push_constant) uniform Push { ContactConstants p; };
@@ -15,11 +16,13 @@ CONTACT_CONSTANTS(SPECIALIZE)
 
 layout(std430, binding = BIND_SHAPES) readonly buffer ConvexShapeBuffer { ConvexShape shapes[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { ShapePoint points[]; };
-layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // groups' after convex shapes'
+// Groups' after convex shapes'.
+layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };
 layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_spaces[]; };
 #define THICKNESS_M uintBitsToFloat(THICKNESS_BITS)
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
-layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 primitives[]; };  // vertices, number of them
+// Vertices, number of them.
+layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 primitives[]; };
 
 // A kernel has those that it accesses; others are removed as it is compiled.
 #ifdef FUSED_FRAME
@@ -32,30 +35,38 @@ layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 motion_bounds[]; };
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
-layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // at the substep's start; w: farthest it may go
+// At the substep's start; w: farthest it may go.
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
-layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };  // first entry a vertex; 4 triangle + corner
+// First entry a vertex; 4 triangle + corner.
+layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
-layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // of the first of them, w: pairs that are processed
+// Of the first of them, w: pairs that are processed.
+layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) STATE buffer Diagnostics { ContactDiagnostics diagnostics; };
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };
 layout(std430, binding = BIND_SELF_AABBS) STATE buffer SelfAabbs { SelfAabb self_aabbs[]; };
-layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };  // z: first active pair, w: active pairs
+// z: first active pair, w: active pairs.
+layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };
 layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
-layout(std430, binding = BIND_TRIANGLE_MAX_DISPLACEMENTS) STATE buffer TriangleMaxDisplacements { vec4 triangle_max_displacement[]; };
+layout(std430, binding = BIND_TRIANGLE_MAX_DISPLACEMENTS) STATE buffer TriangleMaxDisplacements {
+  vec4 triangle_max_displacement[];
+};
 layout(std430, binding = BIND_SELF_ACTIVE) STATE buffer SelfActivePairs { SelfActivePair self_active[]; };
 layout(std430, binding = BIND_SELF_CONTACTS) STATE buffer SelfContacts { SelfContact self_contacts[]; };
 layout(std430, binding = BIND_SELF_CORRECTIONS) STATE buffer SelfCorrections { SelfCorrection self_corrections[]; };
 layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
-#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the motion bound by two to the power of it: a greater motion bound, larger steps
+// A cut divides the motion bound by two to the power of it: a greater motion bound, larger steps.
+#define CUT_BITS (GRIPS > 0u ? 2u : 1u)
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // fraction of the margin by which what is too near is let out a substep
 const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes
-const float kImpactMassFactor = 0.25;        // a push before the lines of so many margins doubles a vertex' mass in them
+// A push before the lines of so many margins doubles a vertex' mass in them.
+const float kImpactMassFactor = 0.25;
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
@@ -63,16 +74,16 @@ const float kTiny = 1e-6;       // a weight below is none
 #define ACTIVE_BITS 0u
 #define CORRECTION_BITS (CAPACITY / 32u + 1u)
 /// Of a range of pairs those that have a bit, `k`, in the list's order.
-#define FOR_EACH_PAIR_OF(BITS, RANGE, BODY)                                                                                      \
-  uvec2 of = (RANGE).xy;                                                                                                     \
-  for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) {                                              \
-    uint bits = active_bits[(BITS) + word];                                                                             \
-    if (32u * word < of.x) bits &= ~0u << of.x % 32u;                                                                        \
-    if (last - 32u * word < 32u) bits &= (1u << last % 32u) - 1u;                                                            \
-    for (; bits != 0u; bits &= bits - 1u) {                                                                                  \
-      uint k = 32u * word + uint(findLSB(bits));                                                                             \
-      BODY                                                                                                                   \
-    }                                                                                                                        \
+#define FOR_EACH_PAIR_OF(BITS, RANGE, BODY) \
+  uvec2 of = (RANGE).xy; \
+  for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) { \
+    uint bits = active_bits[(BITS) + word]; \
+    if (32u * word < of.x) bits &= ~0u << of.x % 32u; \
+    if (last - 32u * word < 32u) bits &= (1u << last % 32u) - 1u; \
+    for (; bits != 0u; bits &= bits - 1u) { \
+      uint k = 32u * word + uint(findLSB(bits)); \
+      BODY \
+    } \
   }
 
 // In `touched`, after the list of vertices that pairs may move: marks of a vertex.
@@ -80,7 +91,8 @@ const float kTiny = 1e-6;       // a weight below is none
 #define CORRECTED(i) (2u * VERTICES + (i))          // a contact proposes a correction in this round
 #define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
-uint response_round = 0u;  // 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them
+// 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them.
+uint response_round = 0u;
 // Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
 // without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
 // 0.7 % less with one response.
@@ -97,6 +109,7 @@ void begin_substep(uint substep) {
 }
 
 /// How far the list of self-contact pairs moves in the frame [m].
-#define drift_m() (SELF != 0u ? p.frame_s * length(vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])) : 0.0)
+#define drift_velocity() vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])
+#define drift_m() (SELF != 0u ? p.frame_s * length(drift_velocity()) : 0.0)
 
 uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }

@@ -1,5 +1,5 @@
-// The threads that share a triangle's list take a pair, a convex shape or a group each in turn: a subgroup, or one where lanes cannot exchange
-// values.
+// The threads that share a triangle's list take a pair, a convex shape or a group each in turn: a subgroup, or one
+// where lanes cannot exchange values.
 uint lanes_per_triangle() { return min(gl_SubgroupSize, 32u); }
 uint triangle_lane() { return gl_SubgroupInvocationID; }
 /// Of all sharers, a bit each.
@@ -15,7 +15,7 @@ uvec4 sum_over_lanes(uvec4 value) {
 }
 
 /// The body once for each triangle `t`, with all threads that share it.
-#define FOR_EACH_TRIANGLE(t, COUNT, BODY)                                                          \
-  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;                     \
-  uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups;                \
+#define FOR_EACH_TRIANGLE(t, COUNT, BODY) \
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; \
+  uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups; \
   for (uint t = group * gl_NumSubgroups + gl_SubgroupID; t < (COUNT); t += subgroups) BODY

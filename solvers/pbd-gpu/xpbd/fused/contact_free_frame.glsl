@@ -1,7 +1,7 @@
-// Contact-free fast path. A frame takes it if no collider shape overlaps the cloth's conservative motion bound. Such a frame runs the
-// constraint solve only and is bit-identical to a frame of the same scene without colliders.
-// The bound is an estimate of how far the cloth moves, not a guarantee. check_motion_bound() tests it after every substep. If a vertex
-// leaves its bound, the frame's result is discarded and the contact kernel simulates the frame from its start.
+// Contact-free fast path. A frame takes it if no collider shape overlaps the cloth's conservative motion bound. Such a
+// frame runs the constraint solve only and is bit-identical to a frame of the same scene without colliders. The bound
+// is an estimate of how far the cloth moves, not a guarantee. check_motion_bound() tests it after every substep. If a
+// vertex leaves its bound, the frame's result is discarded and the contact kernel simulates the frame from its start.
 const uint kMaxNearbyGroups = 32u;  // of convex shapes; where more are active, some meet the cloth
 shared uint nearby_groups[kMaxNearbyGroups], nearby_group_count, max_displacement;
 vec3 box_low, box_high;
@@ -38,8 +38,9 @@ bool cell_may_touch(uint cell) {
   return false;
 }
 
-/// For all threads alike. Whether the frame is to be done with contact is in the frame state. Where the last one had contact, this one has it if
-/// a group of convex shapes is within the motion bound: to look closer would cost a tenth of a frame on a desk.
+/// For all threads alike. Whether the frame is to be done with contact is in the frame state. Where the last one had
+/// contact, this one has it if a group of convex shapes is within the motion bound: to look closer would cost a tenth
+/// of a frame on a desk.
 bool cannot_reach_any_collider() {
   bool tests_cells = frame_state.contact_possible == 0u && is_slow();
   if (thread == 0u) any_nearby = nearby_group_count = max_displacement = 0u;
@@ -64,7 +65,8 @@ bool cannot_reach_any_collider() {
   box_low = vec3(of_ordered(cloth_low[0]), of_ordered(cloth_low[1]), of_ordered(cloth_low[2]));
   box_high = vec3(of_ordered(cloth_high[0]), of_ordered(cloth_high[1]), of_ordered(cloth_high[2]));
   barrier();  // the near groups before cells are held against them
-  for (uint cell = thread; nearby_group_count > 0u && cell < (COLUMNS - 1u) * (ROWS - 1u) && any_nearby == 0u; cell += THREADS)
+  const uint cells = (COLUMNS - 1u) * (ROWS - 1u);
+  for (uint cell = thread; nearby_group_count > 0u && cell < cells && any_nearby == 0u; cell += THREADS)
     if (cell_may_touch(cell)) any_nearby = 1u;
   barrier();  // every thread's look before the answer
   if (thread == 0u) frame_state.contact_free = 0u;

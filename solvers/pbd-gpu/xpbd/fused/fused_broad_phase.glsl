@@ -1,11 +1,13 @@
 // The list of a frame's pairs, by all workgroups of fused_frame.comp.
 #ifdef CONTACT_FREE
-const bool kTestsContactFree = true;  // whether the cloth may touch a convex shape if nothing but its own speed takes it there
+// Whether the cloth may touch a convex shape if nothing but its own speed takes it there.
+const bool kTestsContactFree = true;
 #else
 const bool kTestsContactFree = false;
 #endif
 // Of the workgroup's primitives in this frame.
-const uint kOutOfReach = 0u, kNearby = 1u, kOverlaps = 2u;  // no group of convex shapes is within the motion bound; one is; one would meet the cloth without contact
+// No group of convex shapes is within the motion bound; one is; one would meet the cloth without contact.
+const uint kOutOfReach = 0u, kNearby = 1u, kOverlaps = 2u;
 shared uint any_nearby;
 
 /// Motion bounds of all vertices, and the box of everywhere that the cloth may go in the frame.
@@ -22,10 +24,12 @@ void bound_and_grow(float max_shape_displacement) {
 
 shared uint listed, first_listed;  // of the workgroup
 const uint kKept = 16u;
-/// Lists the pairs of all primitives at a fraction of the motion bounds, a cluster of lanes per primitive. Elements have their places in no fixed order; the order
-/// within a primitive's is that of convex shapes. What the list has no place for is counted only.
+/// Lists the pairs of all primitives at a fraction of the motion bounds, a cluster of lanes per primitive. Elements
+/// have their places in no fixed order; the order within a primitive's is that of convex shapes. What the list has no
+/// place for is counted only.
 void fill_at(float fraction, uint level) {
-  for (uint base = (global_thread - thread) / LANES_PER_PRIMITIVE; base < TRIANGLES + VERTICES; base += grid_stride / LANES_PER_PRIMITIVE) {
+  for (uint base = (global_thread - thread) / LANES_PER_PRIMITIVE; base < TRIANGLES + VERTICES;
+       base += grid_stride / LANES_PER_PRIMITIVE) {
     uint k = base + thread / LANES_PER_PRIMITIVE, n = 0u, mine = 0u;
     uvec2 kept[kKept];  // of this lane: convex shape, place among the primitive's
     bool valid = k < TRIANGLES + VERTICES, overlaps_it = false;

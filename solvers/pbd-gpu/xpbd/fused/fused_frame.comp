@@ -1,9 +1,10 @@
 #version 450
-// Simulates one frame in a single dispatch: broad phase, then in each substep the constraint solve and all contact passes. It calls
-// the same functions as the path with one kernel per pass; on a software device results are bit-identical to that path.
-// All workgroups must run at once (grid_barrier.glsl). Grid barriers per substep: 9 with kinematic shapes, 8 otherwise.
-// CONTACT_FREE: dispatched first. Runs the broad phase; if no collider is within the cloth's motion bound, it simulates the frame with
-// constraints only and sets frame_state.contact_free, so that the kernel with contact exits.
+// Simulates one frame in a single dispatch: broad phase, then in each substep the constraint solve and all contact
+// passes. It calls the same functions as the path with one kernel per pass; on a software device results are
+// bit-identical to that path. All workgroups must run at once (grid_barrier.glsl). Grid barriers per substep: 9 with
+// kinematic shapes, 8 otherwise. CONTACT_FREE: dispatched first. Runs the broad phase; if no collider is within the
+// cloth's motion bound, it simulates the frame with constraints only and sets frame_state.contact_free, so that the
+// kernel with contact exits.
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
@@ -64,13 +65,14 @@ uint global_thread, grid_stride;  // this thread among those of all workgroups
 #ifndef CONTACT_FREE
 
 // All active pairs, a thread or a subgroup each.
-#define FOR_EACH_ACTIVE_PAIR(n, count)                                                                                       \
-  by_subgroup = kPairsOfSubgroups;                                                                                     \
-  for (uint n = by_subgroup ? global_thread / THREADS * gl_NumSubgroups + gl_SubgroupID : global_thread, end = count; n < end;               \
+#define FOR_EACH_ACTIVE_PAIR(n, count) \
+  by_subgroup = kPairsOfSubgroups; \
+  for (uint n = by_subgroup ? global_thread / THREADS * gl_NumSubgroups + gl_SubgroupID : global_thread, end = count; \
+       n < end; \
        n += by_subgroup ? grid_stride / THREADS * gl_NumSubgroups : grid_stride)
 
-// A workgroup looks through its fraction of the pairs a few rounds at a time. Its threads share out those that remain after each question,
-// so that no thread waits for its neighbour's answer.
+// A workgroup looks through its fraction of the pairs a few rounds at a time. Its threads share out those that remain
+// after each question, so that no thread waits for its neighbour's answer.
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
 shared uint tested[kRounds * THREADS], active_found[kRounds * THREADS], tested_count, found_count, slot;
 void find_active_pairs() {
@@ -126,7 +128,8 @@ bool solve_lines(uint substep) {
   }
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    if ((!lines_in_a_group() || global_thread == thread) && on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
+    if ((!lines_in_a_group() || global_thread == thread) && on_chain(i))
+      end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
   GRID_BARRIER_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
   return true;

@@ -1,7 +1,7 @@
 // XPBD on whole grid lines at once. A chain is a line of one of four colours: 0 rows, 1 columns, 2 and 3 the diagonals,
-// wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are a
-// tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly.
-// LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are
+// a tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly. LANES
+// threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 
@@ -70,8 +70,8 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = exchanged[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
 }
 
-/// After log2(PARTS) rounds of cyclic reduction every PARTS-th row makes a system of its own: the thread's row goes to the
-/// subgroup that solves its system, and another comes.
+/// After log2(PARTS) rounds of cyclic reduction every PARTS-th row makes a system of its own: the thread's row goes to
+/// the subgroup that solves its system, and another comes.
 vec4 to_part(vec4 mine) {
   uint here = publish(mine);
   return exchanged[here + thread + (lane % PART * PARTS + lane / PART - lane) * BESIDE];
@@ -194,10 +194,11 @@ void link_equations(float smallest) {
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
     direction[k] = is ? e * per_l : vec3(0.0);
-    // Of chains between attached vertices. Strips: tension must not turn a link by more than a substep resolves, or it overshoots and
-    // throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times per second difference, so dlambda w / l
-    // is held below 1. In sheets diagonals hold a kink. An inextensible link torn to several times its length yields bit by bit.
-    // Implicit tension turns links by no more than they can turn, so that elastic links need none of it.
+    // Of chains between attached vertices. Strips: tension must not turn a link by more than a substep resolves, or it
+    // overshoots and throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times per
+    // second difference, so dlambda w / l is held below 1. In sheets diagonals hold a kink. An inextensible link torn
+    // to several times its length yields bit by bit. Implicit tension turns links by no more than they can turn, so
+    // that elastic links need none of it.
     float regularisation_ratio = smallest;
     if (kTension) regularisation_ratio = kElastic ? 0.0 : smallest;
     else if (smallest != 0.0 && kElastic && !kShears) regularisation_ratio = max(smallest, l / rest - 1.0);

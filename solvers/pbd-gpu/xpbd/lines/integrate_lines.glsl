@@ -1,6 +1,6 @@
-// Start of a substep for the thread's vertices: they fall, then tethers (Kim, Chentanez & Mueller 2012): no vertex is farther
-// from a pinned one than the cloth between them is long. `anchor(v, k)` gives where vertex v, which is pinned, is, for the
-// thread's vertex k.
+// Start of a substep for the thread's vertices: they fall, then tethers (Kim, Chentanez & Mueller 2012): no vertex is
+// farther from a pinned one than the cloth between them is long. `anchor(v, k)` gives where vertex v, which is pinned,
+// is, for the thread's vertex k.
 vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
 vec3 last_pos[K], last_vel[K];  // before the last substep, if kUsesBdf2
 
@@ -11,8 +11,8 @@ uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
 }
 
-/// Without shear stiffness the cloth reaches only along warp and weft. `first`, `last`: the pinned rectangle, whose longer
-/// side, but at least one cell, is the width of its support.
+/// Without shear stiffness the cloth reaches only along warp and weft. `first`, `last`: the pinned rectangle, whose
+/// longer side, but at least one cell, is the width of its support.
 float reach_of(uvec2 at, uvec2 to, uint first, uint last) {
   vec2 rest = vec2(p.rest_u, p.rest_v), across = abs(vec2(ivec2(at) - ivec2(to))) * rest;
   float r = kShears ? length(across) : across.x + across.y, reach = p.tether_stretch * r;

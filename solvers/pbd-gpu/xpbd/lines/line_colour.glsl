@@ -1,6 +1,6 @@
-// One colour of lines, its state in memory: the buffers x, v, rx, rv, lx, lv and regularisation. A frame with
-// contact (FUSED_FRAME) predicts nothing.
-// Compensation terms are of the first colour's chains, so threads that stay with them keep them from substep to substep.
+// One colour of lines, its state in memory: the buffers x, v, rx, rv, lx, lv and regularisation. A frame with contact
+// (FUSED_FRAME) predicts nothing. Compensation terms are of the first colour's chains, so threads that stay with them
+// keep them from substep to substep.
 void store_history(uint at[K]) {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;

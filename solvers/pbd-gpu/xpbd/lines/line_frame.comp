@@ -12,7 +12,8 @@ layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[];
 #ifdef CONTACT_FREE
 layout(std430, binding = BIND_FRAME_STATE) buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) writeonly buffer Diagnostics { ContactDiagnostics diagnostics; };
-layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // groups' after convex shapes'
+// Groups' after convex shapes'.
+layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };
 FUSED_FRAME_CONSTANTS(SPECIALIZE)
 const uint SELF = 0u;
 #endif
@@ -75,7 +76,8 @@ void take() {
     pos[k] = vec3(px[o], py[o], pz[o]);
     vel[k] = vec3(vx[o], vy[o], vz[o]);
     w[k] = on_chain(i) ? inverse_mass(at) : 0.0;
-    if (kCorrectsSplitting) shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
+    if (kCorrectsSplitting)
+      shift[k] = w[k] > 0.0 ? p.h * p.h * vec4(su[o], sv[o], filter_u[o], filter_v[o]) : vec4(0.0);
   }
 }
 
@@ -164,8 +166,8 @@ void main() {
       take();
       if (turn == 0u) integrate();
       if (kBends && colour < 2u) bend();
-      uint regularisation_ratio = colour == 0u ? REGULAR_0 : colour == 1u ? REGULAR_1 : colour == 2u ? REGULAR_2 : REGULAR_3;
-      stretch(chain < 32u && (regularisation_ratio >> chain & 1u) != 0u ? p.regularisation : 0.0);
+      uint regular = colour == 0u ? REGULAR_0 : colour == 1u ? REGULAR_1 : colour == 2u ? REGULAR_2 : REGULAR_3;
+      stretch(chain < 32u && (regular >> chain & 1u) != 0u ? p.regularisation : 0.0);
       if (turn + 1u == colours) limit_speed();
       give();
 #ifdef CONTACT_FREE

@@ -1,11 +1,12 @@
-// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, whose displacement of a substep
-// they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second order makes
-// of those of the last substeps. Links creep, without which that would feed oscillations.
+// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, whose displacement of
+// a substep they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second
+// order makes of those of the last substeps. Links creep, without which that would feed oscillations.
 layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep
 const float kMaxShift = 0.25;                      // of a cell
-const float kShiftFraction = 0.995;                      // fraction of shifts; with all, some flat sheets drift in a minute
+// Fraction of shifts; with all, some flat sheets drift in a minute.
+const float kShiftFraction = 0.995;
 vec4 shift[K];    // displacement along rows (x) and columns (y) [m], and the filter's first stage (z, w)
 float creep[K];  // of links: longer by it at the same tension [m]
 

@@ -1,12 +1,13 @@
 #version 450
-// One colour of chains of a cloth whose links are not all alike: a triangle mesh, a grid of uneven cells or stiffnesses. A chain is
-// a path of links of which each vertex of the cloth is on at most one in a colour; a thread holds a vertex and the link to the next
-// entry, one workgroup per block of whole chains. The links of a chain are a tridiagonal system in their multipliers (Macklin, Mueller &
-// Chentanez 2016, eq. 18, for all at once), solved by parallel cyclic reduction. The first colour of a substep has every vertex
-// and integrates what it loads. A mesh that bends has passes before the first colour: one that integrates, then the iterations
-// of its bending, one thread per vertex. With MEMBRANE triangles of constant strain take part in these, and there are no colours.
-// A dispatch is one pass, or with PERSISTENT any number of them: then all its workgroups run
-// at once, and wait for one another after each.
+// One colour of chains of a cloth whose links are not all alike: a triangle mesh, a grid of uneven cells or
+// stiffnesses. A chain is a path of links of which each vertex of the cloth is on at most one in a colour; a thread
+// holds a vertex and the link to the next entry, one workgroup per block of whole chains. The links of a chain are a
+// tridiagonal system in their multipliers (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once), solved by
+// parallel cyclic reduction. The first colour of a substep has every vertex and integrates what it loads. A mesh that
+// bends has passes before the first colour: one that integrates, then the iterations of its bending, one thread per
+// vertex. With MEMBRANE triangles of constant strain take part in these, and there are no colours. A dispatch is one
+// pass, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one another after
+// each.
 #include "common/common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass
@@ -20,7 +21,8 @@ layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEn
 layout(std430, binding = BIND_CHAIN_COLOURS) readonly buffer Ranges { ChainRange ranges[]; };
 layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
 layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
-layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };  // right sides, odd steps, even steps; positions with MEMBRANE
+// Right sides, odd steps, even steps; positions with MEMBRANE.
+layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "xpbd/time/substep.glsl"
 #include "common/grid_barrier.glsl"
@@ -51,8 +53,8 @@ void integrate(uint i) {
 #ifdef MEMBRANE
 void stretch(ChainEntry entry, uint rounds) {}  // triangles take the place of links
 #else
-// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read one,
-// others write the other.
+// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read
+// one, others write the other.
 shared vec4 exchanged[2u * THREADS];
 uint exchange_half = 0u;
 void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
@@ -68,8 +70,8 @@ const bool kTension = (FEATURES & LINES_TENSION) != 0u;
 vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
 float link_length;
 
-/// Solves the links of the chain where its vertices are now, which carry `pull` (tension over length) already. Returns the
-/// multipliers of the link before and of the thread's.
+/// Solves the links of the chain where its vertices are now, which carry `pull` (tension over length) already. Returns
+/// the multipliers of the link before and of the thread's.
 vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   vec4 none, next, below, above;
   exchange(vec4(pos, w), 1u, none, next);
@@ -78,8 +80,8 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
-  // As in grid_lines.glsl: what is pulled over-constrained between attached vertices yields, by what keeps it regular and its tension from
-  // turning links farther than a substep resolves.
+  // As in grid_lines.glsl: what is pulled over-constrained between attached vertices yields, by what keeps it regular
+  // and its tension from turning links farther than a substep resolves.
   float regularisation_ratio = entry.regularisation;
   if (kTension) regularisation_ratio = entry.compliance == 0.0 ? regularisation_ratio : 0.0;
   else if (regularisation_ratio != 0.0 && entry.rest > 0.0) {
@@ -105,8 +107,8 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   return vec2(below.z, row.z);
 }
 
-/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has a vertex more than
-/// links, so its system needs a round more.
+/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has a vertex more
+/// than links, so its system needs a round more.
 void turn(float pull, uint rounds) {
   vec4 below, above, right_below, right_above;
   exchange(vec4(pos, pull), 1u, below, above);
@@ -220,8 +222,8 @@ vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
 }
 #endif
 
-/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep, whose
-/// eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
+/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep,
+/// whose eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
 void bend(uint i, uint k) {
   uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
   vec4 here = x[i];
@@ -270,7 +272,8 @@ void main() {
     uint f = number < bends ? 0u : number - bends;
     ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
     if (PERSISTENT) range = ranges[f];
-    if (block < range.blocks) pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);
+    if (block < range.blocks)
+      pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);
   }
   if (PERSISTENT) leave_grid_barrier();
 }

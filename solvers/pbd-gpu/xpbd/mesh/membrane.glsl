@@ -1,4 +1,5 @@
-// Triangles of constant strain (xpbd/mesh/README.md): tensions in edges are linear in the elongations of a triangle's three edges.
+// Triangles of constant strain (xpbd/mesh/README.md): tensions in edges are linear in the elongations of a triangle's
+// three edges.
 layout(std430, binding = BIND_MEMBRANE_SLICES) readonly buffer MembraneSlices { BendingSlice membrane_slices[]; };
 layout(std430, binding = BIND_MEMBRANE_CORNERS) readonly buffer MembraneCorners { MembraneCorner corners[]; };
 
@@ -16,7 +17,8 @@ Sides sides_of(vec3 e0, vec3 e1, vec3 e2) {
 }
 
 vec3 tensions(MembraneCorner c, vec3 d) {
-  return vec3(c.along_0 * d.x + c.cross_01 * d.y + c.cross_20 * d.z, c.cross_01 * d.x + c.along_1 * d.y + c.cross_12 * d.z,
+  return vec3(c.along_0 * d.x + c.cross_01 * d.y + c.cross_20 * d.z,
+              c.cross_01 * d.x + c.along_1 * d.y + c.cross_12 * d.z,
               c.cross_20 * d.x + c.cross_12 * d.y + c.along_2 * d.z);
 }
 
@@ -32,8 +34,9 @@ vec3 membrane_force(MembraneCorner c, vec3 x, vec3 a, vec3 b) {
   return t.x * s.g0 - t.z * s.g2;
 }
 
-/// What small steps of its corners add to that force: of a positive semidefinite matrix, which leaves out what pushes edges
-/// aside, and is scaled down where the triangle is deformed so far that it would exceed the bound of the iteration.
+/// What small steps of its corners add to that force: of a positive semidefinite matrix, which leaves out what pushes
+/// edges aside, and is scaled down where the triangle is deformed so far that it would exceed the bound of the
+/// iteration.
 vec3 membrane_change(MembraneCorner c, vec3 x, vec3 a, vec3 b, vec3 of_x, vec3 of_a, vec3 of_b) {
   vec3 e0 = a - x, e1 = b - a, e2 = x - b;
   Sides s = sides_of(e0, e1, e2);
@@ -42,6 +45,7 @@ vec3 membrane_change(MembraneCorner c, vec3 x, vec3 a, vec3 b, vec3 of_x, vec3 o
                        c.cross_20 * dot(s.g2, s.g0));
   vec3 d0 = of_a - of_x, d2 = of_x - of_b, longer = vec3(dot(s.g0, d0), dot(s.g1, of_b - of_a), dot(s.g2, d2));
   vec3 t = tensions(c, longer) * min(1.0, c.max_trace / trace);
-  vec2 turn = clamp(vec2(pulls.x, pulls.z) * vec2(s.per_l.x, s.per_l.z), vec2(0.0), kMaxTurn * vec2(c.along_0, c.along_2));
+  vec2 turn =
+      clamp(vec2(pulls.x, pulls.z) * vec2(s.per_l.x, s.per_l.z), vec2(0.0), kMaxTurn * vec2(c.along_0, c.along_2));
   return t.x * s.g0 - t.z * s.g2 + turn.x * (d0 - longer.x * s.g0) - turn.y * (d2 - longer.z * s.g2);
 }

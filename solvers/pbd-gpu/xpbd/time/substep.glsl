@@ -11,10 +11,11 @@ void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
 
 const bool kUsesBdf2 = (FEATURES & LINES_BDF2) != 0u;
 
-/// v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second the increments fall
-/// below the last bit of x and v, and plain sums would freeze or drift. `rest_`: what the last sums could not hold.
-/// `last_`: before the last substep, and then before this one. A prediction adds a fraction of what the last substep changed
-/// (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels from substep to substep).
+/// v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second the
+/// increments fall below the last bit of x and v, and plain sums would freeze or drift. `rest_`: what the last sums
+/// could not hold. `last_`: before the last substep, and then before this one. A prediction adds a fraction of what the
+/// last substep changed (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels
+/// from substep to substep).
 void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
           inout vec3 last_position, inout vec3 last_velocity) {
   vec3 gain = p.gravity_h.xyz, sum, rest, history = vec3(0.0);

@@ -1,5 +1,5 @@
-// The box of everywhere that the cloth may go in a frame: first of a thread's vertices, then of a subgroup, a workgroup, all of
-// them, so that few threads wait for one another's sums.
+// The box of everywhere that the cloth may go in a frame: first of a thread's vertices, then of a subgroup, a
+// workgroup, all of them, so that few threads wait for one another's sums.
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 shared uint cloth_low[3], cloth_high[3];
 

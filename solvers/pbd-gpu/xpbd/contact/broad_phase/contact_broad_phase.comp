@@ -1,5 +1,6 @@
 #version 450
-// Candidate pairs, once per frame: counts the pairs of a primitive; FILL writes them, and the vertices that they touch. One thread per primitive.
+// Candidate pairs, once per frame: counts the pairs of a primitive; FILL writes them, and the vertices that they touch.
+// One thread per primitive.
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
 

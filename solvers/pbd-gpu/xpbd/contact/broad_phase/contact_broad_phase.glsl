@@ -1,5 +1,6 @@
-// Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds of its vertices. Pairs are
-// counted first, for the largest fraction of the bounds whose pairs fit the list, then written.
+// Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds
+// of its vertices. Pairs are counted first, for the largest fraction of the bounds whose pairs fit the list, then
+// written.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
@@ -30,8 +31,8 @@ bool aabb_overlaps(ShapeAabb b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
-// Lanes of a cluster, where there is one, look at boxes for the same primitive. Each looks at a few at a time: their loads do not wait for one
-// another. Control flow is subgroup-uniform.
+// Lanes of a cluster, where there is one, look at boxes for the same primitive. Each looks at a few at a time: their
+// loads do not wait for one another. Control flow is subgroup-uniform.
 #ifdef FUSED_FRAME
 #define LANES_PER_PRIMITIVE LANES_PER_VERTEX
 #define PRIMITIVE_LANE cluster_lane()
@@ -47,7 +48,8 @@ uint cluster_or(uint bits) { return bits; }
 #define ANY_IN_SUBGROUP(bits) ((bits) != 0u)
 #endif
 const uint kAabbUnroll = 4u, kAabbsPerStep = kAabbUnroll * LANES_PER_PRIMITIVE;
-/// A bit for each of the convex shapes from `first` on, and before `end`, whose box overlaps the primitive's; `own`: of those that this lane looked at.
+/// A bit for each of the convex shapes from `first` on, and before `end`, whose box overlaps the primitive's; `own`: of
+/// those that this lane looked at.
 uint overlapping_shapes(uint first, uint end, out uint own) {
   own = 0u;
   [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
@@ -81,18 +83,19 @@ uint overlapping_groups(inout uint bits, uint word, uint part) {
   }
   return cluster_or(overlapping);
 }
-// Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from there on; `own`: those of this lane.
-#define FOR_EACH_OVERLAPPING_SHAPES(BODY)                                                                              \
-  for (uint part = 0u; part < GROUPS_A_BIT; ++part)                                                       \
-    for (uint word = 0u; word < GROUP_WORDS; ++word)                                                     \
-      for (uint bits = NEARBY_GROUPS(word); bits != 0u;)                                                   \
+// Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from
+// there on; `own`: those of this lane.
+#define FOR_EACH_OVERLAPPING_SHAPES(BODY) \
+  for (uint part = 0u; part < GROUPS_A_BIT; ++part) \
+    for (uint word = 0u; word < GROUP_WORDS; ++word) \
+      for (uint bits = NEARBY_GROUPS(word); bits != 0u;) \
         for (uint groups = overlapping_groups(bits, word, part); ANY_IN_SUBGROUP(groups); groups &= groups - 1u) { \
           uint first = SHAPES_PER_GROUP * (GROUPS_A_BIT * (32u * word + uint(max(findLSB(groups), 0))) + part); \
-          uint last = groups != 0u ? min(first + SHAPES_PER_GROUP, SHAPES) : 0u;                           \
-          for (uint step = 0u; step < SHAPES_PER_GROUP; step += kAabbsPerStep) {                             \
-            uint q = first + step, own, overlapping = overlapping_shapes(q, last, own);                                  \
-            BODY                                                                                         \
-          }                                                                                              \
+          uint last = groups != 0u ? min(first + SHAPES_PER_GROUP, SHAPES) : 0u; \
+          for (uint step = 0u; step < SHAPES_PER_GROUP; step += kAabbsPerStep) { \
+            uint q = first + step, own, overlapping = overlapping_shapes(q, last, own); \
+            BODY \
+          } \
         }
 
 void write_pair(uint at, uint primitive, uint of_shape) {
@@ -121,7 +124,8 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
 /// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.
 void list_touched_vertices(uint i) {
   uint pairs_of = ranges[TRIANGLES + i].y;
-  for (uint f = vertex_triangles[i], end = vertex_triangles[i + 1u]; f < end; ++f) pairs_of += ranges[vertex_triangles[f] / 4u].y;
+  for (uint f = vertex_triangles[i], end = vertex_triangles[i + 1u]; f < end; ++f)
+    pairs_of += ranges[vertex_triangles[f] / 4u].y;
   touched[PAIR_COUNT(i)] = pairs_of;
   if (pairs_of == 0u) return;
   touched[atomicAdd(frame_state.touched_vertices, 1u)] = i;

@@ -1,6 +1,7 @@
 #version 450
-// Start of a frame, one workgroup per group of neighbouring convex shapes: where the points of those that move are at its start and end, their
-// boxes around their displacements, radii and margins, and the group's box. low.w: maximum displacement of any of their points.
+// Start of a frame, one workgroup per group of neighbouring convex shapes: where the points of those that move are at
+// its start and end, their boxes around their displacements, radii and margins, and the group's box. low.w: maximum
+// displacement of any of their points.
 #include "common/common.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 layout(std430, binding = BIND_POINT_SOURCES) readonly buffer Sources { PointSource sources[]; };

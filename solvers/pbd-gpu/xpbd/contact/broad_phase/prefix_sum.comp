@@ -1,6 +1,7 @@
 #version 450
-// Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs the list has place for, and where each primitive's pairs
-// begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are those of the list of self-contact pairs.
+// Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs the list has place for, and
+// where each primitive's pairs begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are
+// those of the list of self-contact pairs.
 #include "xpbd/contact/contact_buffers.glsl"
 const uint kThreads = 256u;
 const uint kBlock = 32u;
@@ -9,7 +10,8 @@ shared uvec4 block_sums[1024u / kBlock];
 
 void main() {
   uint t = gl_LocalInvocationIndex;
-  uint n = OF_SELF ? TRIANGLES : TRIANGLES + VERTICES, capacity = OF_SELF ? SELF_CAPACITY : CAPACITY, each = (n + kThreads - 1u) / kThreads;
+  uint n = OF_SELF ? TRIANGLES : TRIANGLES + VERTICES, capacity = OF_SELF ? SELF_CAPACITY : CAPACITY;
+  uint each = (n + kThreads - 1u) / kThreads;
   uint begin = min(t * each, n), end = min(begin + each, n);
   uvec4 sum = uvec4(0u);
   for (uint k = begin; k < end; ++k) sum += ranges[k];

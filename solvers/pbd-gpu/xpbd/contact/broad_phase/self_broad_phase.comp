@@ -1,7 +1,7 @@
 #version 450
 // Candidate pairs of triangles of the cloth without a common vertex whose boxes overlap, once per frame; each is stored
-// with both triangles. A box at a fraction of the motion bounds lies between those at rest and at the whole motion bounds.
-// One subgroup per triangle: counts its pairs at several fractions; FILL writes them.
+// with both triangles. A box at a fraction of the motion bounds lies between those at rest and at the whole motion
+// bounds. One subgroup per triangle: counts its pairs at several fractions; FILL writes them.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
 const float kRoundingFactor = 0.9999;  // so that rounding makes no bound too great
@@ -13,26 +13,28 @@ bool share_a_vertex(uvec4 a, uvec4 b) {
 
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
-  return all(lessThanEqual(low_at(a, fraction), high_at(b, fraction))) && all(lessThanEqual(low_at(b, fraction), high_at(a, fraction)));
+  return all(lessThanEqual(low_at(a, fraction), high_at(b, fraction))) &&
+         all(lessThanEqual(low_at(b, fraction), high_at(a, fraction)));
 }
 
 #include "xpbd/contact/lanes_per_triangle.glsl"
-// Triangles in groups that meet the box, a few at a time: `q` is this thread's, and `mine` says whether its box overlaps the other at the
-// share. Control flow is uniform among the lanes of a triangle.
-#define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY)                                                                                     \
-  for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) {                                             \
-    uint g = begin + triangle_lane();                                                                                                \
-    bool overlaps_group = triangle_lane() < lanes_per_triangle() && g * SHAPES_PER_GROUP < TRIANGLES;                                                \
-    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, self_aabbs[TRIANGLES + g], 1.0);                                \
-    for (uint groups = ballot_bits(overlaps_group); groups != 0u; groups &= groups - 1u) {                                             \
-      uint first = SHAPES_PER_GROUP * (begin + uint(findLSB(groups))), last = min(first + SHAPES_PER_GROUP, TRIANGLES);           \
-      for (uint part = first; part < last; part += lanes_per_triangle()) {                                                               \
-        uint q = part + triangle_lane();                                                                                             \
-        bool mine = triangle_lane() < lanes_per_triangle() && q < last;                                                                         \
-        if (mine) mine = aabbs_overlap(BOX, self_aabbs[q], SHARE);                                                    \
-        BODY                                                                                                                  \
-      }                                                                                                                       \
-    }                                                                                                                         \
+// Triangles in groups that meet the box, a few at a time: `q` is this thread's, and `mine` says whether its box
+// overlaps the other at the share. Control flow is uniform among the lanes of a triangle.
+#define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY) \
+  for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) { \
+    uint g = begin + triangle_lane(); \
+    bool overlaps_group = triangle_lane() < lanes_per_triangle() && g * SHAPES_PER_GROUP < TRIANGLES; \
+    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, self_aabbs[TRIANGLES + g], 1.0); \
+    for (uint groups = ballot_bits(overlaps_group); groups != 0u; groups &= groups - 1u) { \
+      uint first = SHAPES_PER_GROUP * (begin + uint(findLSB(groups))); \
+      uint last = min(first + SHAPES_PER_GROUP, TRIANGLES); \
+      for (uint part = first; part < last; part += lanes_per_triangle()) { \
+        uint q = part + triangle_lane(); \
+        bool mine = triangle_lane() < lanes_per_triangle() && q < last; \
+        if (mine) mine = aabbs_overlap(BOX, self_aabbs[q], SHARE); \
+        BODY \
+      } \
+    } \
   }
 
 /// Of two triangles from their boxes at the frame's start.

@@ -1,25 +1,29 @@
-// Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices are clamped to it.
+// Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices
+// are clamped to it.
 
-// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A vertex that would go
-// farther is held back, and the momentum of the cloth changes with nothing near.
-#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)  // lists of the cloth with itself have place for no more
+// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A
+// vertex that would go farther is held back, and the momentum of the cloth changes with nothing near. Lists of the
+// cloth with itself have place for no more.
+#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
 float max_displacement_of_shapes() {
   float max_shape_displacement = 0.0;
-  for (uint g = 0u; HAS_KINEMATIC != 0u && g < GROUPS; ++g) max_shape_displacement = max(max_shape_displacement, boxes[SHAPES + g].low.w);
+  for (uint g = 0u; HAS_KINEMATIC != 0u && g < GROUPS; ++g)
+    max_shape_displacement = max(max_shape_displacement, boxes[SHAPES + g].low.w);
   return max_shape_displacement;
 }
 
-/// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each frame that is active a
-/// collider: an impact strains it, and that grows with fewer.
+/// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each
+/// frame that is active a collider: an impact strains it, and that grows with fewer.
 bool is_slow() { return uintBitsToFloat(frame_state.max_displacement) <= 2.0 * p.bound_m; }
 
-/// Motion bound of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame, lists are short. Without a
-/// frame before, it is the maximum.
+/// Motion bound of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame,
+/// lists are short. Without a frame before, it is the maximum.
 float bound_at_rest() {
   const float kFraction = 0.2, kWays = 2.0;
-  float fall = length(p.gravity_h.xyz) * float(p.substeps) * p.frame_s, last = uintBitsToFloat(frame_state.max_displacement);
+  float fall = length(p.gravity_h.xyz) * float(p.substeps) * p.frame_s;
+  float last = uintBitsToFloat(frame_state.max_displacement);
   return last > 0.0 ? min(p.bound_m, kFraction * p.bound_m + (1.0 - kFraction) * fall + kWays * last) : p.bound_m;
 }
 
@@ -33,8 +37,8 @@ float pulled() {
   return largest;
 }
 
-/// Mean velocity of a few vertices of cloth that touches itself: what all of it does brings no two triangles together. Every velocity is
-/// right, for vertices keep to a motion bound around it.
+/// Mean velocity of a few vertices of cloth that touches itself: what all of it does brings no two triangles together.
+/// Every velocity is right, for vertices keep to a motion bound around it.
 vec3 drift() {
   vec3 all = vec3(0.0);
   for (uint k = 0u; SELF != 0u && k < 4u; ++k) all += 0.25 * v[(2u * k + 1u) * VERTICES / 8u].xyz;

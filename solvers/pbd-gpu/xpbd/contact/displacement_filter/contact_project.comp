@@ -8,5 +8,6 @@
 void main() {
   begin_substep(p.first_substep);
   project_all(item(), stride());
-  if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = frame_state.self_contact_pairs = 0u;  // for the next substep
+  // For the next substep.
+  if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = frame_state.self_contact_pairs = 0u;
 }

@@ -1,8 +1,9 @@
-// Last pass of a substep. Projects each vertex onto the intersection of the half-spaces given by the separating planes of its triangles:
-// the feasible point nearest to the predicted position, within the vertex's displacement limit.
-// Method: Hildreth's (1957) dual coordinate descent. If it does not converge to a feasible point, the vertex moves from a known feasible
-// point (its start, or its start carried along by a kinematic shape) towards the prediction until it reaches the first plane. If even the
-// start violates a plane, the least violating point is used and counted in diagnostics.infeasible_vertices.
+// Last pass of a substep. Projects each vertex onto the intersection of the half-spaces given by the separating planes
+// of its triangles: the feasible point nearest to the predicted position, within the vertex's displacement limit.
+// Method: Hildreth's (1957) dual coordinate descent. If it does not converge to a feasible point, the vertex moves from
+// a known feasible point (its start, or its start carried along by a kinematic shape) towards the prediction until it
+// reaches the first plane. If even the start violates a plane, the least violating point is used and counted in
+// diagnostics.infeasible_vertices.
 const uint kSweeps = 30u;
 const float kFeasibilityTolerance_m = 2e-6;  // that a vertex may lack before its planes, by rounding
 uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;
@@ -14,41 +15,41 @@ float half_space(PlaneShape s) {
 }
 
 // Every plane of the vertex: `n`, `s` and `k`, its pair.
-#define FOR_EACH_PLANE(BODY)                                                     \
-  for (uint f = first_vertex_triangle; f < end_vertex_triangle; f += vertex_triangle_step) {       \
-    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u;                                   \
-    FOR_EACH_PAIR_OF(ACTIVE_BITS, ranges[vertex_triangle / 4u],                                \
-      if ((pairs[k].z & PAIR_PLANE) == 0u) continue;                         \
-      vec4 plane = states[k].displacement_or_plane;                                            \
-      vec3 n = plane.xyz;                                                    \
-      float s = plane.w;                                                     \
-      BODY                                                                   \
-    )                                                                        \
+#define FOR_EACH_PLANE(BODY) \
+  for (uint f = first_vertex_triangle; f < end_vertex_triangle; f += vertex_triangle_step) { \
+    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u; \
+    FOR_EACH_PAIR_OF(ACTIVE_BITS, ranges[vertex_triangle / 4u], \
+      if ((pairs[k].z & PAIR_PLANE) == 0u) continue; \
+      vec4 plane = states[k].displacement_or_plane; \
+      vec3 n = plane.xyz; \
+      float s = plane.w; \
+      BODY \
+    ) \
   }
 
-// The same of the planes between its triangles and others of the cloth; `k`: the active pair. They are looked at a few at a time: their
-// loads do not wait for one another.
+// The same of the planes between its triangles and others of the cloth; `k`: the active pair. They are looked at a few
+// at a time: their loads do not wait for one another.
 const uint kSelfPlaneUnroll = 4u;
-#define FOR_EACH_SELF_PLANE(BODY)                                                \
-  for (uint f = first_vertex_triangle; SELF != 0u && f < end_vertex_triangle; f += vertex_triangle_step) {       \
-    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u;                                   \
-    uvec2 range = self_ranges[vertex_triangle / 4u].zw;                                  \
+#define FOR_EACH_SELF_PLANE(BODY) \
+  for (uint f = first_vertex_triangle; SELF != 0u && f < end_vertex_triangle; f += vertex_triangle_step) { \
+    uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u; \
+    uvec2 range = self_ranges[vertex_triangle / 4u].zw; \
     for (uint begin = range.x, end = begin + range.y; begin < end; begin += kSelfPlaneUnroll) { \
-      vec4 planes[kSelfPlaneUnroll];                                        \
-      bool has_plane[kSelfPlaneUnroll];                                         \
-      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) {             \
-        uint of = min(begin + m, end - 1u);                                  \
-        planes[m] = self_active[of].plane;                                     \
+      vec4 planes[kSelfPlaneUnroll]; \
+      bool has_plane[kSelfPlaneUnroll]; \
+      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) { \
+        uint of = min(begin + m, end - 1u); \
+        planes[m] = self_active[of].plane; \
         has_plane[m] = (self_active[of].marks & SELF_PLANE) != 0u && begin + m < end; \
-      }                                                                      \
-      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) {             \
-        if (!has_plane[m]) continue;                                             \
-        uint k = begin + m;                                                  \
-        vec3 n = planes[m].xyz;                                              \
-        float s = planes[m].w;                                               \
-        BODY                                                                 \
-      }                                                                      \
-    }                                                                        \
+      } \
+      [[unroll]] for (uint m = 0u; m < kSelfPlaneUnroll; ++m) { \
+        if (!has_plane[m]) continue; \
+        uint k = begin + m; \
+        vec3 n = planes[m].xyz; \
+        float s = planes[m].w; \
+        BODY \
+      } \
+    } \
   }
 
 #define FOR_EACH_PLANE_OF_ANY(BODY) FOR_EACH_PLANE(BODY) FOR_EACH_SELF_PLANE(BODY)
@@ -56,7 +57,8 @@ const uint kSelfPlaneUnroll = 4u;
 /// The least distance before any plane.
 float min_plane_distance(vec3 at) {
   float smallest = 1e30;
-  for (uint h = 0u; h < PLANES; ++h) smallest = min(smallest, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
+  for (uint h = 0u; h < PLANES; ++h)
+    smallest = min(smallest, dot(at, half_spaces[h].normal.xyz) - half_space(half_spaces[h]));
   FOR_EACH_PLANE_OF_ANY(smallest = min(smallest, dot(n, at) - s);)
   return smallest;
 }
@@ -132,7 +134,8 @@ vec3 back_from(vec3 to, float room) {
   }
   float part = 1.0;
   for (uint h = 0u; h < PLANES; ++h) {
-    float s = half_space(half_spaces[h]), from = dot(half_spaces[h].normal.xyz, free) - s, end = dot(half_spaces[h].normal.xyz, to) - s;
+    float s = half_space(half_spaces[h]);
+    float from = dot(half_spaces[h].normal.xyz, free) - s, end = dot(half_spaces[h].normal.xyz, to) - s;
     if (end < 0.0) part = min(part, from > 0.0 ? from / (from - end) : 0.0);
   }
   FOR_EACH_PLANE_OF_ANY(

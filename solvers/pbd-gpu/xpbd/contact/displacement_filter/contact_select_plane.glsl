@@ -1,5 +1,6 @@
-// Selects the plane of a pair: across the start's normal if the proposed end is on its side, otherwise across any direction that separates
-// both ends. Vertices move on straight lines, so a plane that separates a pair at both ends separates it in between.
+// Selects the plane of a pair: across the start's normal if the proposed end is on its side, otherwise across any
+// direction that separates both ends. Vertices move on straight lines, so a plane that separates a pair at both ends
+// separates it in between.
 const float kUnsure_m = 1e-6;  // distances that rounding decides
 vec3 starting[3], proposed[3];
 

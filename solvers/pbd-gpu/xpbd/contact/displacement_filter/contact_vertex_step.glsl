@@ -1,4 +1,5 @@
-// What contact does with a vertex at a substep's start (prediction) and after its constraints (clamp to the motion bound).
+// What contact does with a vertex at a substep's start (prediction) and after its constraints (clamp to the motion
+// bound).
 
 /// How far a vertex may go from its start: its proposed displacement, and what a collider may push it.
 float max_displacement(uint i, vec3 to) {
@@ -7,12 +8,14 @@ float max_displacement(uint i, vec3 to) {
 
 /// Before pairs are processed whether they are active. Thread `first` of `at_once` takes its share.
 void clear_active_bits(uint first, uint at_once) {
-  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once) active_bits[ACTIVE_BITS + k] = active_bits[CORRECTION_BITS + k] = 0u;
+  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
+    active_bits[ACTIVE_BITS + k] = active_bits[CORRECTION_BITS + k] = 0u;
 }
 
 /// The same of the corrections that contacts propose alone, once vertices have taken it.
 void clear_correction_bits(uint first, uint at_once) {
-  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once) active_bits[CORRECTION_BITS + k] = 0u;
+  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
+    active_bits[CORRECTION_BITS + k] = 0u;
 }
 
 /// Inverse mass of a vertex that has `in_lines` there. Hands hold and released between the two.
@@ -44,7 +47,7 @@ vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
 vec3 clamp_to_bounds(uint i, vec3 to, float w) {
   vec4 bound = motion_bounds[i];
   if (SELF != 0u) {
-    vec3 drift = (t_end * p.frame_s) * vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2]);
+    vec3 drift = (t_end * p.frame_s) * drift_velocity();
     to = clamp_to(i, to, w, bound.xyz + drift, bound.w * frame_state.self_bound_fraction);
   }
   return clamp_to(i, to, w, bound.xyz, (bound.w + drift_m()) * frame_state.bound_fraction);

@@ -1,8 +1,9 @@
-// Selects the active pairs of a substep: the candidate pairs that can come into contact before its end. Later passes process only these.
-// Tests, cheapest first: the stored lower bound on distance less the motion since (may_be_active); the gap along the last separating
-// normal, or between the centres (is_active); nearest points (contact_nearest_points.glsl).
-// An active pair is recorded twice: as a bit in active_bits, so that a vertex visits its pairs in the fixed order of the candidate list
-// (sums stay reproducible), and as an entry of a list in any order, over which threads are distributed.
+// Selects the active pairs of a substep: the candidate pairs that can come into contact before its end. Later passes
+// process only these. Tests, cheapest first: the stored lower bound on distance less the motion since (may_be_active);
+// the gap along the last separating normal, or between the centres (is_active); nearest points
+// (contact_nearest_points.glsl). An active pair is recorded twice: as a bit in active_bits, so that a vertex visits its
+// pairs in the fixed order of the candidate list (sums stay reproducible), and as an entry of a list in any order, over
+// which threads are distributed.
 
 float shape_displacement(uint k) { return p.substep_part * boxes[k].low.w; }
 float max_of(uvec4 e, bool of_ways) {
@@ -17,8 +18,8 @@ float max_of(uvec4 e, bool of_ways) {
 /// Most by which a pair may approach in this substep.
 float approach_of(uvec4 e, uint k) { return max_of(e, false) + shape_displacement(k); }
 
-/// Whether the bound of a pair's distance lets it be active in this substep, or whether it has been. First the bound loses the displacements of the
-/// last one.
+/// Whether the bound of a pair's distance lets it be active in this substep, or whether it has been. First the bound
+/// loses the displacements of the last one.
 bool may_be_active(uint k) {
   uvec4 pair = pairs[k];
   uvec4 e = primitives[pair.x];
@@ -31,8 +32,8 @@ bool may_be_active(uint k) {
   return bound <= approach_of(e, pair.y) || pair.z != 0u;
 }
 
-/// Whether it is: not if the gap along the last normal, or from middle to middle, is too wide. That is a bound like any other, and costs
-/// less than nearest points.
+/// Whether it is: not if the gap along the last normal, or from middle to middle, is too wide. That is a bound like any
+/// other, and costs less than nearest points.
 bool is_active(uint k) {
   uvec4 pair = pairs[k];
   if (pair.z != 0u) return true;

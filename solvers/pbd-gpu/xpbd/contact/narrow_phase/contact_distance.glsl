@@ -1,6 +1,6 @@
-// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex convex shape. Every distance that is used is
-// certified: the gap between the two along a direction, which is at most their distance whatever rounding did to the
-// direction, and equal to it for the best one. Coordinates are relative to a point near the primitive.
+// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex convex shape. Every distance that is
+// used is certified: the gap between the two along a direction, which is at most their distance whatever rounding did
+// to the direction, and equal to it for the best one. Coordinates are relative to a point near the primitive.
 vec3 cloth[3];     // the primitive's vertices
 uint corners;      // how many: 1 or 3
 vec3 shape_points[3];  // a convex shape of at most three points
@@ -20,15 +20,16 @@ vec3 point_at(uint j, float t) {
   return (t == 1.0 ? q.end.xyz : q.start.xyz + t * (q.end.xyz - q.start.xyz)) - around;
 }
 
-// Where convex shapes have many points and threads are many, a subgroup has an active pair for itself: its lanes share out the points, and all of
-// them compute the same. One of them writes.
+// Where convex shapes have many points and threads are many, a subgroup has an active pair for itself: its lanes share
+// out the points, and all of them compute the same. One of them writes.
 #ifdef FUSED_FRAME
 const bool kPairsOfSubgroups = MAX_POINTS > 3u;
 bool by_subgroup = false;  // what the threads do now
 bool writes_pair() { return !by_subgroup || gl_SubgroupInvocationID == 0u; }
 float highest_of_subgroup(vec3 n, float t) {
   float high = -1e30;
-  for (uint j = gl_SubgroupInvocationID; j < shape.count; j += gl_SubgroupSize) high = max(high, dot(n, point_at(j, t)));
+  for (uint j = gl_SubgroupInvocationID; j < shape.count; j += gl_SubgroupSize)
+    high = max(high, dot(n, point_at(j, t)));
   for (uint k = gl_SubgroupSize >> 1u; k > 0u; k >>= 1u) high = max(high, subgroupShuffleXor(high, k));
   return high;
 }
@@ -46,7 +47,8 @@ float highest_point(vec3 n, float t) {
   if (by_subgroup) return highest_of_subgroup(n, t);
   float high = -1e30;
   for (uint first = 0u; first < shape.count; first += kPointUnroll)
-    [[unroll]] for (uint k = 0u; k < kPointUnroll; ++k) high = max(high, dot(n, point_at(min(first + k, shape.count - 1u), t)));
+    [[unroll]] for (uint k = 0u; k < kPointUnroll; ++k)
+      high = max(high, dot(n, point_at(min(first + k, shape.count - 1u), t)));
   return high;
 }
 
@@ -67,7 +69,8 @@ void try_normal(inout Nearest best, vec3 n, float t) {
   best.n = n;
 }
 
-// ---- at most three points: features pair by pair, in closed form (Ericson 2005, "Real-Time Collision Detection", 5.1.5 and 5.1.9)
+// ---- at most three points: features pair by pair, in closed form (Ericson 2005, "Real-Time Collision Detection",
+// 5.1.5 and 5.1.9)
 
 struct Feature {
   float square;
@@ -85,7 +88,8 @@ void take(inout Feature best, vec3 on_cloth, vec3 on_shape, vec3 normal) {
 void edges(inout Feature best, uint i, uint j) {
   const uint next_i = (i + 1u) % 3u, next_j = (j + 1u) % 3u;
   bool one_i = corners == 1u, one_j = shape.count == 1u;
-  vec3 e = (one_i ? cloth[i] : cloth[next_i]) - cloth[i], f = (one_j ? shape_points[j] : shape_points[next_j]) - shape_points[j];
+  vec3 e = (one_i ? cloth[i] : cloth[next_i]) - cloth[i];
+  vec3 f = (one_j ? shape_points[j] : shape_points[next_j]) - shape_points[j];
   vec3 g = cloth[i] - shape_points[j];
   float ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), eg = dot(e, g), fg = dot(f, g), all = ee * ff - ef * ef;
   float s = all > 0.0 ? clamp((ef * fg - ff * eg) / all, 0.0, 1.0) : 0.0;
@@ -144,8 +148,8 @@ Nearest nearest_of_few(float begin, float end) {
   Feature f = nearest_feature();
   Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_shape, vec3(0.0), vec3(0.0));
   try_normal(r, f.apart, begin);
-  // The difference of the nearest points loses digits where they nearly touch or the convex shape is large: what rounds it by a
-  // rounding moves the convex shape's far corners. Across the features it does not.
+  // The difference of the nearest points loses digits where they nearly touch or the convex shape is large: what rounds
+  // it by a rounding moves the convex shape's far corners. Across the features it does not.
   try_normal(r, dot(f.normal, f.apart) < 0.0 ? -f.normal : f.normal, begin);
   // Above a face its edges are often as near, up to rounding.
   if (shape.count == 3u) {

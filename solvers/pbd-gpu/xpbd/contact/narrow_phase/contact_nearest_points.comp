@@ -1,5 +1,6 @@
 #version 450
-// Narrow phase: nearest points and the correction of each active pair. One thread per active pair, once or twice per substep.
+// Narrow phase: nearest points and the correction of each active pair. One thread per active pair, once or twice per
+// substep.
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/contact_correction.glsl"
@@ -8,5 +9,6 @@
 void main() {
   response_round = p.response_round;
   begin_substep(p.first_substep);
-  for (uint n = item(); n < frame_state.active_pair_count[min(response_round, 1u)]; n += stride()) process_pair(pairs[n].w);
+  for (uint n = item(); n < frame_state.active_pair_count[min(response_round, 1u)]; n += stride())
+    process_pair(pairs[n].w);
 }

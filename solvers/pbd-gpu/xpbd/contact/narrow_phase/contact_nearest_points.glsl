@@ -1,7 +1,7 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// A triangle that is static is its own plane where that separates the pair: no nearest points are needed, and no contact but the
-/// vertices'.
+/// A triangle that is static is its own plane where that separates the pair: no nearest points are needed, and no
+/// contact but the vertices'.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;
   load_shape(t_begin);
@@ -20,7 +20,9 @@ bool separated_by_face(uvec4 e, inout PairState s) {
     end = -end;
   }
   float gap = min(start.x, min(start.y, start.z));
-  if (!(gap >= max(kMinSeparation_m, kStaticMarginFactor * shape.margin) && min(end.x, min(end.y, end.z)) >= kMinSeparation_m)) return false;
+  if (!(gap >= max(kMinSeparation_m, kStaticMarginFactor * shape.margin) &&
+        min(end.x, min(end.y, end.z)) >= kMinSeparation_m))
+    return false;
   s.normal = vec4(n, gap);
   return true;
 }
@@ -39,8 +41,8 @@ uint find_contact(uvec4 e, inout PairState s) {
   }
   float gap = r.gap - shape.radius;
   s.normal = vec4(r.n, gap);
-  // From the cloth's point and the gap, not from the convex shape's point: on a large face that has lost digits, and the fraction of a
-  // substep's fall that they are would be missing from the normal force.
+  // From the cloth's point and the gap, not from the convex shape's point: on a large face that has lost digits, and
+  // the fraction of a substep's fall that they are would be missing from the normal force.
   vec3 on_cloth = r.on_cloth.x * cloth[0] + r.on_cloth.y * cloth[1] + r.on_cloth.z * cloth[2];
   s.weights = vec4(r.on_cloth, dot(r.n, on_cloth + r.displacement + around) - gap);
   s.displacement_or_plane = vec4(r.displacement, min(kept_margin(e, s.weights.xyz), gap));

@@ -1,5 +1,6 @@
 // Nearest points of a primitive and the hull of more than three points (Gilbert, Johnson & Keerthi 1988). A simplex of
-// differences is brought ever nearer to the origin. Its corners are indexed by constants alone, so that they stay in registers.
+// differences is brought ever nearer to the origin. Its corners are indexed by constants alone, so that they stay in
+// registers.
 struct Corner {
   vec3 at;     // cloth[a] - point b of the convex shape
   uint a, b;
@@ -39,7 +40,8 @@ vec3 on_face(vec3 a, vec3 b, vec3 c) {
 
 /// Of a tetrahedron: the nearest of the faces that the origin lies beyond. False if it lies inside.
 bool on_tetrahedron(out vec4 weights) {
-  const uvec4 kFaces[4] = uvec4[4](uvec4(0u, 1u, 2u, 3u), uvec4(0u, 2u, 3u, 1u), uvec4(0u, 3u, 1u, 2u), uvec4(1u, 3u, 2u, 0u));
+  const uvec4 kFaces[4] =
+      uvec4[4](uvec4(0u, 1u, 2u, 3u), uvec4(0u, 2u, 3u, 1u), uvec4(0u, 3u, 1u, 2u), uvec4(1u, 3u, 2u, 0u));
   const float kFlat = 1e-4;
   float best = 1e30;
   weights = vec4(0.0);
@@ -47,7 +49,8 @@ bool on_tetrahedron(out vec4 weights) {
     const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
-    // On the inner side. Of a flat tetrahedron every face is processed: rounding decides on which side its last corner lies.
+    // On the inner side. Of a flat tetrahedron every face is processed: rounding decides on which side its last corner
+    // lies.
     bool flat_one = abs(inner) <= kFlat * length(n) * length(simplex[f.w].at - a);
     if (!flat_one && origin * inner > 0.0) continue;
     vec3 l = on_face(a, b, c), q = l.x * a + l.y * b + l.z * c;
@@ -145,8 +148,8 @@ Corner support(vec3 v, float t) {
   return c;
 }
 
-/// Of three corners the direction across the features that they span: the difference of nearest points has lost digits, and a tilt
-/// of a thousandth is friction.
+/// Of three corners the direction across the features that they span: the difference of nearest points has lost digits,
+/// and a tilt of a thousandth is friction.
 void across_features(inout Nearest r, vec3 v, float t) {
   const float kSame_m = 1e-6;  // gaps that rounding cannot tell apart
   if (simplex_size != 3u) return;
@@ -170,7 +173,8 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
   for (uint k = 0u; k < kMax; ++k) {
     Corner c = support(v, begin);
     bool old = false;
-    [[unroll]] for (uint m = 0u; m < 4u; ++m) old = old || (m < simplex_size && simplex[m].a == c.a && simplex[m].b == c.b);
+    [[unroll]] for (uint m = 0u; m < 4u; ++m)
+      old = old || (m < simplex_size && simplex[m].a == c.a && simplex[m].b == c.b);
     float square = dot(v, v);
     if (k > 0u && (old || square - dot(v, c.at) <= kClose * square)) break;
     put(simplex_size++, c);

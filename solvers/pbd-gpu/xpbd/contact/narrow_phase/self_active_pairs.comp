@@ -1,6 +1,7 @@
 #version 450
-// Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's active pairs begin is in no
-// fixed order, and nothing depends on it; the pairs of one triangle are in the order of its list.
+// Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's
+// active pairs begin is in no fixed order, and nothing depends on it; the pairs of one triangle are in the order of its
+// list.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/lanes_per_triangle.glsl"
@@ -21,7 +22,8 @@ bool is_active_pair[kPairUnroll];
 /// The pairs from `first` on that are this thread's, and whether they are active.
 void test_pairs(uint first, uint end, vec4 own, bool lessens) {
   vec4 displacement[kPairUnroll];
-  [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) pair[n] = self_pairs[min(first + n * lanes_per_triangle() + triangle_lane(), end - 1u)];
+  [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n)
+    pair[n] = self_pairs[min(first + n * lanes_per_triangle() + triangle_lane(), end - 1u)];
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) displacement[n] = triangle_max_displacement[pair[n].other];
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) {
     uint k = first + n * lanes_per_triangle() + triangle_lane();

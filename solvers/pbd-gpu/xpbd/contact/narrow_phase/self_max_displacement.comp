@@ -1,6 +1,6 @@
 #version 450
-// Per triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this one. One thread per
-// triangle, once per substep.
+// Per triangle: the maximum displacement of its vertices in the last substep, and how far any of them may go in this
+// one. One thread per triangle, once per substep.
 #include "xpbd/contact/contact_buffers.glsl"
 void main() {
   for (uint t = item(); t < TRIANGLES; t += stride()) {

@@ -3,13 +3,14 @@
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/self_correction.glsl"
-// Nearest points of two triangles of the cloth at a substep's start. Both copies of a pair compute the same, the triangle of the lower
-// number first, so that their normals are opposite bit for bit.
+// Nearest points of two triangles of the cloth at a substep's start. Both copies of a pair compute the same, the
+// triangle of the lower number first, so that their normals are opposite bit for bit.
 vec3 first_at[3], second_at[3];
 
 bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
 
-/// A vertex and a triangle are the contact of one pair of the vertex' triangles: the first that has no vertex of the other.
+/// A vertex and a triangle are the contact of one pair of the vertex' triangles: the first that has no vertex of the
+/// other.
 bool owns(uint v, uint own, uvec4 other) {
   uint end = vertex_triangles[v + 1u];
   for (uint f = vertex_triangles[v]; f < end; ++f) {

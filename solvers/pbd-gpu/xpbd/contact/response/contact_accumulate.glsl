@@ -1,7 +1,7 @@
-// Accumulates corrections (Jacobi averaging): each vertex takes the mean of what its contacts propose, weighted by length. Before the
-// constraint solve corrections go into velocity and position, and the inverse mass of a vertex that kinematic shapes moved is reduced.
-// The sum has a fixed order, whatever the number of lanes that share it: kPartialSums partial sums, of the vertex's own pairs and of
-// every kPartialSums-th triangle, added one after another.
+// Accumulates corrections (Jacobi averaging): each vertex takes the mean of what its contacts propose, weighted by
+// length. Before the constraint solve corrections go into velocity and position, and the inverse mass of a vertex that
+// kinematic shapes moved is reduced. The sum has a fixed order, whatever the number of lanes that share it:
+// kPartialSums partial sums, of the vertex's own pairs and of every kPartialSums-th triangle, added one after another.
 const uint kPartialSums = 8u;
 bool any_pairs = true;  // that push the vertex
 vec3 sum, sum_velocity_part;
@@ -20,7 +20,8 @@ void from_half_spaces(vec4 at, vec3 start) {
   for (uint k = 0u; k < PLANES; ++k) {
     PlaneShape s = half_spaces[k];
     float before = dot(start, s.normal.xyz) - s.normal.w, gap = dot(at.xyz, s.normal.xyz) - s.normal.w;
-    Correction c = respond_along(s.normal.xyz, min(s.margin, before) - gap, recovery(s.margin - before, s.margin), at.xyz - start, s.friction);
+    Correction c = respond_along(s.normal.xyz, min(s.margin, before) - gap, recovery(s.margin - before, s.margin),
+                                 at.xyz - start, s.friction);
     if (c.velocity_part != vec3(0.0) || c.depenetration > 0.0) propose(c.velocity_part, c.depenetration * s.normal.xyz);
   }
 }
@@ -110,7 +111,8 @@ void accumulate(uint i, bool valid) {
   x[i] = vec4(x[i].xyz + by - velocity_part, at.w / (1.0 + held));
 }
 
-/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices that contact may move.
+/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices that contact may
+/// move.
 void accumulate_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   uint count = all_of_them ? VERTICES : frame_state.touched_vertices;

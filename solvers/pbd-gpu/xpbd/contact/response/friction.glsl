@@ -1,12 +1,15 @@
-// The response of every contact: with a half-space, a convex shape, or another layer (Macklin et al. 2016, XPBD's position-level contact
-// with zero compliance; Coulomb friction). A correction has a part that is velocity, and one along the normal that is none.
+// The response of every contact: with a half-space, a convex shape, or another layer (Macklin et al. 2016, XPBD's
+// position-level contact with zero compliance; Coulomb friction). A correction has a part that is velocity, and one
+// along the normal that is none.
 struct Correction {
   vec3 velocity_part;
   float depenetration;
 };
 
 /// By how much what is `lacking` [m] to a margin is let out in this round.
-float recovery(float lacking, float margin) { return response_round < 2u ? clamp(lacking, 0.0, kRecovered * margin) : 0.0; }
+float recovery(float lacking, float margin) {
+  return response_round < 2u ? clamp(lacking, 0.0, kRecovered * margin) : 0.0;
+}
 
 /// `push`: by how much the contact has come too active in this substep [m]; `slip`: its relative displacement.
 Correction respond_along(vec3 n, float correction, float recover, vec3 slip, float friction) {

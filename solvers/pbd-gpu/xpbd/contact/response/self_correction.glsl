@@ -24,7 +24,8 @@ void correct_contact(SelfContact s, uvec4 a, uvec4 b, bool own_is_a) {
   }
   if (!(mass > 0.0)) return;
   vec3 n = s.normal.xyz;
-  Correction r = respond_along(n, s.normal.w - dot(n, apart), recovery(THICKNESS_M - s.normal.w, THICKNESS_M), slip, SELF_FRICTION);
+  Correction r = respond_along(n, s.normal.w - dot(n, apart), recovery(THICKNESS_M - s.normal.w, THICKNESS_M), slip,
+                               SELF_FRICTION);
   for (uint c = 0u; c < 3u; ++c) {
     float share = own_is_a ? s.first[c] * w_a[c] : -s.second[c] * w_b[c];
     if (share != 0.0) propose_self(c, share / mass, r.velocity_part, r.depenetration, n);
@@ -32,7 +33,8 @@ void correct_contact(SelfContact s, uvec4 a, uvec4 b, bool own_is_a) {
 }
 
 void correct_self(uint k) {
-  uint own = self_active[k].own, other = self_active[k].other, contacts = self_active[k].marks & ~SELF_PLANE, at = self_active[k].link;
+  uint own = self_active[k].own, other = self_active[k].other;
+  uint contacts = self_active[k].marks & ~SELF_PLANE, at = self_active[k].link;
   if (contacts == 0u) return;
   for (uint c = 0u; c < 3u; ++c) own_correction[c] = SelfCorrection(vec4(0.0), vec4(0.0));
   uvec4 a = primitives[min(own, other)], b = primitives[max(own, other)];
