@@ -8,28 +8,6 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Collisions of `paper` as published: every particle against every sphere, box, capsule and triangle, on predicted
-/// positions, at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4.
-class PaperContact {
- public:
-  /// Adds one stage and kernel for each kind of collider in the scene. `mesh_depth_m` and `hand_depth_m`: greatest
-  /// distance behind a triangle at which a particle still counts as touching it.
-  PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m, float hand_depth_m);
-  /// Records the collisions of so many particles.
-  void record(std::uint32_t particles);
-
- private:
-  struct Pass {
-    const FrameKernel* kernel;
-    PaperContactConstants constants;
-  };
-  void add_shapes(const char* stage, const ShapeBuffer&, Feature, const char* kernel);
-  void add_meshes(const char* stage, const MeshBuffers&, Feature, float depth_m);
-
-  FrameBuilder& frame_;
-  std::vector<Pass> passes_;
-};
-
 FeatureSet with_friction(Feature kind, bool friction) {
   FeatureSet serves = {kind};
   if (friction) serves.add(Feature::Friction);
@@ -40,43 +18,6 @@ std::vector<std::uint32_t> with_friction(bool friction) {
   PaperSpecialization s;
   s.FRICTION = friction ? 1 : 0;
   return s.by_number();
-}
-
-PaperContact::PaperContact(FrameBuilder& frame, const ColliderBuffers& colliders, float mesh_depth_m,
-                           float hand_depth_m)
-    : frame_(frame) {
-  add_shapes("SatisfySphereCollisions", colliders.spheres, Feature::Sphere, "satisfy_sphere_collisions");
-  add_shapes("SatisfyCubeCollisions", colliders.boxes, Feature::Box, "satisfy_cube_collisions");
-  add_meshes("SatisfyMeshCollisions", colliders.static_meshes, Feature::StaticMesh, mesh_depth_m);
-  add_meshes("SatisfyHandMeshCollisions", colliders.kinematic_meshes, Feature::MovingMesh, hand_depth_m);
-  add_shapes("SatisfyCapsuleCollisions", colliders.capsules, Feature::Capsules, "satisfy_capsule_collisions");
-}
-
-void PaperContact::add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name) {
-  if (shapes.count == 0) return;
-  const int stage = frame_.add_stage(stage_name, with_friction(kind, shapes.friction));
-  const FrameKernel* kernel =
-      frame_.add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
-  passes_.push_back({kernel, {0, 0, shapes.count, 0, 0, 0}});
-}
-
-void PaperContact::add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
-  if (meshes.ranges.empty()) return;
-  const bool friction =
-      std::any_of(meshes.ranges.begin(), meshes.ranges.end(), [](const MeshRange& r) { return r.friction > 0; });
-  const int stage = frame_.add_stage(stage_name, with_friction(kind, friction));
-  const FrameKernel* kernel =
-      frame_.add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), with_friction(friction),
-                        kGroupSize, {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
-  for (const MeshRange& r : meshes.ranges)
-    passes_.push_back({kernel, {0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction}});
-}
-
-void PaperContact::record(std::uint32_t particles) {
-  for (Pass& pass : passes_) {
-    pass.constants.particles = particles;
-    frame_.dispatch(*pass.kernel, particles, pass.constants);
-  }
 }
 
 class Paper final : public GpuSolver {
@@ -141,6 +82,40 @@ class Paper final : public GpuSolver {
     add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
 
+  /// Collisions as published: every particle against every sphere, box, capsule and triangle, on predicted positions,
+  /// at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4. One stage and kernel for each
+  /// kind.
+  void build_contact() {
+    const ColliderBuffers& c = *colliders();
+    add_shapes("SatisfySphereCollisions", c.spheres, Feature::Sphere, "satisfy_sphere_collisions");
+    add_shapes("SatisfyCubeCollisions", c.boxes, Feature::Box, "satisfy_cube_collisions");
+    add_meshes("SatisfyMeshCollisions", c.static_meshes, Feature::StaticMesh, settings()["mesh_depth_m"].get<float>());
+    add_meshes("SatisfyHandMeshCollisions", c.kinematic_meshes, Feature::MovingMesh,
+               settings()["hand_depth_m"].get<float>());
+    add_shapes("SatisfyCapsuleCollisions", c.capsules, Feature::Capsules, "satisfy_capsule_collisions");
+  }
+
+  void add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name) {
+    if (shapes.count == 0) return;
+    const int stage = add_stage(stage_name, with_friction(kind, shapes.friction));
+    const FrameKernel* kernel = add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
+    contact_.emplace_back(kernel, PaperContactConstants{0, 0, shapes.count, 0, 0, 0});
+  }
+
+  /// `depth_m`: greatest distance behind a triangle at which a particle still counts as touching it.
+  void add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
+    if (meshes.ranges.empty()) return;
+    const bool friction =
+        std::any_of(meshes.ranges.begin(), meshes.ranges.end(), [](const MeshRange& r) { return r.friction > 0; });
+    const int stage = add_stage(stage_name, with_friction(kind, friction));
+    const FrameKernel* kernel =
+        add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), with_friction(friction), kGroupSize,
+                   {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
+    for (const MeshRange& r : meshes.ranges)
+      contact_.emplace_back(kernel,
+                            PaperContactConstants{0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction});
+  }
+
   void build_stages() {
     const FeatureSet needs = scene().needs;
     const FeatureSet pins = needs & FeatureSet{Feature::Pins};
@@ -155,9 +130,7 @@ class Paper final : public GpuSolver {
       hold_ = grips()->add_kernel(*x_);
       aim_ = grips()->add_kernel(*q_);
     }
-    if (colliders() != nullptr)
-      contact_ = std::make_unique<PaperContact>(frame(), *colliders(), settings()["mesh_depth_m"].get<float>(),
-                                                settings()["hand_depth_m"].get<float>());
+    if (colliders() != nullptr) build_contact();
     update_ = add(add_stage("UpdatePositions", {}), "update_positions");
     if (settings()["readback"] == "blocking") {
       stage_readback_ = add_stage("Readback", {});
@@ -197,7 +170,10 @@ class Paper final : public GpuSolver {
       dispatch(*project_, constraint_count_, c);
       dispatch(*average_, particles(), c);
     }
-    if (contact_) contact_->record(static_cast<std::uint32_t>(particles()));
+    for (auto& [kernel, constants] : contact_) {
+      constants.particles = c.particles;
+      dispatch(*kernel, particles(), constants);
+    }
     dispatch(*update_, particles(), c);
   }
 
@@ -207,7 +183,7 @@ class Paper final : public GpuSolver {
   const vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
   const FrameKernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
                     *update_ = nullptr, *hold_ = nullptr, *aim_ = nullptr;
-  std::unique_ptr<PaperContact> contact_;
+  std::vector<std::pair<const FrameKernel*, PaperContactConstants>> contact_;
 };
 
 }  // namespace

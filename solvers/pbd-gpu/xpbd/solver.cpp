@@ -235,6 +235,30 @@ class Xpbd final : public GpuSolver {
   const FrameKernel* move_grips_ = nullptr;
 };
 
+/// A member of the setting `tuning`: its values, the default first, and what it decides.
+struct Tuning {
+  const char* name;
+  std::vector<nlohmann::json> values;
+  const char* doc;
+};
+
+const std::vector<Tuning>& tunings() {
+  static const std::vector<Tuning> all = {
+      {"contact_frame", {"auto", "always", "never"}, "a frame with contact in one dispatch; auto: on GPUs"},
+      {"device_barrier",
+       {"auto", "always", "never"},
+       "workgroups of a dispatch wait for one another; auto: on discrete GPUs that run all of them at once"},
+      {"bdf2", {"auto", "always"}, "time_order 2; auto: where it is safe, always: in every scene without contact"},
+      {"tension", {"auto", "always", "never"}, "implicit tension; auto: where it pays, always: without contact"},
+      {"splitting_correction", {"auto", "always", "never"}, "of diagonals; auto: in sheets whose modulus needs it"},
+      {"membrane", {"auto", "never"}, "triangles of constant strain in elastic meshes; auto: without contact"},
+      {"second_solve", {"auto", "never"}, "chains are solved again between responses; auto: yes"},
+      {"vertices_a_thread", {0, 2, 4, 8, 16, 32}, "of a line; 0: by line and device"},
+      {"threads_a_group", {0, 32, 64, 128, 256, 512, 1024}, "of one colour; 0: by line and device"},
+      {"lines_beside", {0, 1, 2, 4}, "neighbouring lines whose threads alternate; 0: by line and device"}};
+  return all;
+}
+
 }  // namespace
 
 SolverInfo xpbd_info() {
@@ -259,33 +283,9 @@ SolverInfo xpbd_info() {
                     "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
                    {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
                    {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
-  info.tuning = {
-      {"contact_frame", "\"auto\"",
-       "with contact, a frame in one dispatch in one dispatch: auto (on GPUs), always, never"},
-      {"contact_groups", "0",
-       "with contact, least workgroups of a frame in one dispatch, which must all run at once; 0: 96 or those of the "
-       "lines"},
-      {"contact_pairs", "0", "with contact, pairs that the list has place for; 0: by the cloth's primitives"},
-      {"device_barrier", "\"auto\"",
-       "one dispatch of many workgroups that wait for one another: auto (discrete GPUs that run them all at once), "
-       "always, never"},
-      {"bdf2", "\"auto\"",
-       "where time_order 2 is on: auto (where it is safe), always (in every scene without contact)"},
-      {"tension", "\"auto\"",
-       "where links get implicit tension: auto (where it pays), always (in every scene without contact), never"},
-      {"splitting_correction", "\"auto\"",
-       "where diagonals are solved where columns and rows will put the vertices: auto (sheets whose modulus needs it), "
-       "always (in every elastic sheet without contact), never"},
-      {"membrane", "\"auto\"",
-       "where triangles of constant strain make an elastic mesh, instead of springs along its edges: auto (where "
-       "nothing is touched and 600 iterations per substep are enough), always, never"},
-      {"second_solve", "\"auto\"",
-       "with contact, whether chains are solved once more between the responses of a substep: auto (yes), never"},
-      {"vertices_a_thread", "0", "of a line: 2, 4, 8, 16 or 32; 0: by line and device"},
-      {"threads_a_group", "0", "of one colour's workgroups: 32 to 1024; 0: by line and device"},
-      {"lines_beside", "0",
-       "neighbouring lines whose threads take turns, so that memory is read by whole sectors: 1, 2 or 4; 0: by line "
-       "and device"}};
+  info.tuning = {{"contact_groups", "0", "least workgroups of a fused frame with contact; 0: 96 or those of the lines"},
+                 {"contact_pairs", "0", "pairs that the list has capacity for; 0: by the cloth's primitives"}};
+  for (const Tuning& t : tunings()) info.tuning.push_back({t.name, t.values.front().dump(), t.doc});
   return info;
 }
 
@@ -294,15 +294,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   require_one_of("xpbd", settings, "quality", {"fast", "default", "accurate"});
   require_between("xpbd", settings, "time_order", 1, 2);
   const nlohmann::json& tuning = settings[kTuning];
-  require_one_of("xpbd", tuning, "vertices_a_thread", {0, 2, 4, 8, 16, 32});
-  require_one_of("xpbd", tuning, "threads_a_group", {0, 32, 64, 128, 256, 512, 1024});
-  require_one_of("xpbd", tuning, "device_barrier", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "bdf2", {"auto", "always"});
-  require_one_of("xpbd", tuning, "tension", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "splitting_correction", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "membrane", {"auto", "always", "never"});
-  require_one_of("xpbd", tuning, "second_solve", {"auto", "never"});
-  require_one_of("xpbd", tuning, "contact_frame", {"auto", "always", "never"});
+  for (const Tuning& t : tunings()) require_one_of("xpbd", tuning, t.name, t.values);
   require_between("xpbd", tuning, "contact_groups", 0, 1024);
   require_between("xpbd", tuning, "contact_pairs", 0, 1 << 24);
   return std::make_unique<Xpbd>(xpbd_info(), settings, device);

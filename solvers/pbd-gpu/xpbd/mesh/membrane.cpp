@@ -108,7 +108,6 @@ FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& sett
     return {false, "a region of the cloth is inextensible"};
   if (wanted == "never") return {false, "setting tuning.membrane=never"};
   if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
-  if (wanted == "always") return {true, ""};
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps;
   const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
