@@ -1,5 +1,3 @@
-#include <numeric>
-
 #include "gpu_fixture.hpp"
 #include "vulkan/kernel.hpp"
 
@@ -32,29 +30,6 @@ TEST_F(Profiles, CutLimitsAndRefuseLargerWorkgroups) {
   make(256);
   EXPECT_THROW(make(512), Error);
   EXPECT_EQ(device->messages(), std::vector<std::string>{});
-}
-
-/// More than 64 dispatches a frame, whatever a frame of the solver takes by itself.
-TEST_F(Profiles, LongFramesAreSplitAndComeOutTheSame) {
-  const Scene s = with_pins(with_damping(with_bending(sheet(33, 7))));
-  const nlohmann::json settings = complete_settings(xpbd_info(), {{"substeps", 40}});
-  const auto whole = make_xpbd(settings, options()), split = make_xpbd(settings, {-1, true, "adreno-like"});
-  whole->load(s);
-  split->load(s);
-  const auto& one = whole->frame_program().submits();
-  const auto& several = split->frame_program().submits();
-  ASSERT_EQ(one.size(), 1u);
-  ASSERT_GT(one[0], 64u);
-  EXPECT_EQ(several.size(), (one[0] + 63) / 64);
-  for (std::uint32_t n : several) EXPECT_LE(n, 64u);
-  EXPECT_EQ(std::accumulate(several.begin(), several.end(), 0u), one[0]);
-  const ClothState a = after(*whole, s, 5), b = after(*split, s, 5);
-  EXPECT_EQ(a.position, b.position) << "bit for bit";
-  EXPECT_EQ(a.velocity, b.velocity);
-  if (device_->has_timestamps()) {
-    EXPECT_GT(split->last_cost().device_s, 0);
-  }
-  EXPECT_EQ(split->validation_messages(), 0);
 }
 
 }  // namespace

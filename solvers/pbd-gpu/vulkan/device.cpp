@@ -97,7 +97,7 @@ Made& made() {
 }  // namespace
 
 const Profile& find_profile(const std::string& name) {
-  static const Profile adreno = {"adreno-like", 32u << 10, 256, 64};
+  static const Profile adreno = {"adreno-like", 32u << 10, 256};
   if (name == adreno.name) return adreno;
   throw Error("device profile \"" + name + "\": expected " + adreno.name);
 }

@@ -35,18 +35,16 @@ class Maker {
   virtual VkResult create_device(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) = 0;
 };
 
-/// A class of devices that any device can emulate: its limits are reduced to these, larger workgroups are rejected, and
-/// a frame is split into submissions as short as on such a device.
+/// A class of devices that any device can emulate: its limits are reduced to these, and larger workgroups are rejected.
 struct Profile {
   std::string name;
   std::uint32_t shared_memory_B = 0;    ///< of a workgroup
   std::uint32_t group_invocations = 0;  ///< workgroups are one-dimensional and at most this wide
-  std::uint32_t dispatches_per_submit = 0;
 };
 
 /// "adreno-like": what is known of the Adreno 740 of a Quest 3, 32 KiB of shared memory (Mesa, freedreno_devices.py,
-/// cs_shared_mem_size). The limits of 256 threads per group and 64 dispatches per submission are our precaution. Throws
-/// Error naming it for any other name.
+/// cs_shared_mem_size). The limit of 256 threads per group is our precaution. Throws Error naming it for any other
+/// name.
 const Profile& find_profile(const std::string& name);
 
 /// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps, queue families,
@@ -78,7 +76,6 @@ class Device {
   /// Limits of the device, reduced to the profile's if there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const Profile* profile() const { return profile_; }  ///< null: the device as it is
-  std::uint32_t dispatches_per_submit() const { return profile_ != nullptr ? profile_->dispatches_per_submit : ~0u; }
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Lanes of a subgroup that compute shaders can shuffle values between; 0 where they cannot.
   std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }

@@ -33,9 +33,7 @@ Program::~Program() {
   for (const Copy& c : copies_) {
     vkDestroyQueryPool(device_->handle(), c.queries, nullptr);
     vkDestroyFence(device_->handle(), c.fence, nullptr);
-    if (!c.buffers.empty())
-      vkFreeCommandBuffers(device_->handle(), device_->command_pool(), static_cast<std::uint32_t>(c.buffers.size()),
-                           c.buffers.data());
+    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &c.commands);
   }
 }
 
@@ -85,20 +83,6 @@ void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
   if (query_count_ > 0) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries, query);
 }
 
-/// Starts the next submission's command buffer. Submissions to one queue run in order and barriers apply across them,
-/// so a split changes nothing else.
-void Program::begin(Copy& copy) {
-  if (submits_.size() == copy.buffers.size()) {
-    copy.buffers.push_back(make_commands(*device_));
-  }
-  commands_ = copy.buffers[submits_.size()];
-  submits_.push_back(0);
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
-  VkCommandBufferBeginInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
-}
-
 void Program::record(bool time_stages) {
   time_stages_ = time_stages;
   query_count_ = !device_->has_timestamps() ? 0 : time_stages ? static_cast<std::uint32_t>(steps_.size()) + 1 : 2;
@@ -114,18 +98,22 @@ void Program::record_copy(std::size_t k) {
   if (copies_.size() == k) {
     copies_.emplace_back();
     copies_.back().fence = make_fence(*device_);
+    copies_.back().commands = make_commands(*device_);
   }
   Copy& copy = copies_[k];
   vkDestroyQueryPool(device_->handle(), copy.queries, nullptr);
   copy.queries = VK_NULL_HANDLE;
   if (query_count_ > 0) copy.queries = make_timestamps(*device_, query_count_);
   recorded_.clear();
-  submits_.clear();
   record_steps(copy);
 }
 
 void Program::record_steps(Copy& copy) {
-  begin(copy);
+  commands_ = copy.commands;
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
   // Orders reads and writes of earlier submissions before those of this one. Host writes are visible to every
   // submission after them.
@@ -135,18 +123,12 @@ void Program::record_steps(Copy& copy) {
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];
-    if (s.kernel != nullptr && submits_.back() == device_->dispatches_per_submit()) {
-      end();
-      begin(copy);
-      bound = nullptr;
-    }
     barrier_if_needed(touched(s), since);
     if (s.kernel != nullptr) {
       if (bound != s.kernel) s.kernel->bind(commands_);
       bound = s.kernel;
       s.kernel->push(commands_, s.constants);
       vkCmdDispatch(commands_, s.groups.x, s.groups.y, 1);
-      ++submits_.back();
     } else {
       const VkBufferCopy region{0, 0, std::min(s.from->bytes(), s.to->bytes())};
       vkCmdCopyBuffer(commands_, s.from->handle(), s.to->handle(), 1, &region);
@@ -162,7 +144,7 @@ void Program::record_steps(Copy& copy) {
                        [](const Buffer* b) { return b->place() == Buffer::Place::Host; });
   });
   if (for_host) barrier(kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
-  end();
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
 void Program::wait(std::size_t k, double timeout_s) {
@@ -181,15 +163,11 @@ void Program::wait(std::size_t k, double timeout_s) {
 
 void Program::submit(std::size_t k) {
   Copy& copy = copies_.at(k);
-  for (std::size_t s = 0; s < submits_.size(); ++s) {
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &copy.buffers[s];
-    // The fence of the last submission covers all earlier ones too.
-    const bool last = s + 1 == submits_.size();
-    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? copy.fence : VK_NULL_HANDLE), "vkQueueSubmit");
-  }
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &copy.commands;
+  check(vkQueueSubmit(device_->queue(), 1, &submit, copy.fence), "vkQueueSubmit");
   copy.in_flight = true;
 }
 

@@ -42,9 +42,6 @@ class Program {
   /// Waits until a copy is no longer in flight. Throws as `run`.
   void wait(std::size_t copy, double timeout_s);
 
-  /// Dispatches of each submission; one submission a frame unless the profile's dispatches_per_submit splits it.
-  const std::vector<std::uint32_t>& submits() const { return submits_; }
-
   double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
   std::vector<double> stage_s(int stages) const;  ///< summed by stage; NaN unless recorded with time_stages
   int dispatches(int stage) const;
@@ -80,9 +77,9 @@ class Program {
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Unordered& since);
-  /// Objects that each submission of the program needs separately.
+  /// What each submission in flight needs of its own.
   struct Copy {
-    std::vector<VkCommandBuffer> buffers;  ///< one per submission, reused by later recordings
+    VkCommandBuffer commands = VK_NULL_HANDLE;  ///< reused by later recordings
     VkFence fence = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     bool in_flight = false;
@@ -90,15 +87,12 @@ class Program {
   void record_copy(std::size_t k);
   void record_steps(Copy&);
   void timestamp(VkQueryPool queries, std::uint32_t query);
-  void begin(Copy&);
-  void end() { check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer"); }
 
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
   std::vector<Copy> copies_;
   std::size_t recorded_copies_ = 0;  ///< this many of the first copies hold the last recording
-  std::vector<std::uint32_t> submits_;
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;
   std::vector<Recorded> recorded_;
