@@ -59,8 +59,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(5, uint, SELF, 0u) C(6, uint, SELF_CAPACITY, 0u) C(7, uint, ACTIVE_CAPACITY, 0u) C(8, uint, CONTACT_CAPACITY, 0u) \
   C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, LANES_PER_VERTEX, 1u) \
   C(12, bool, SECOND_SOLVE, false) C(13, bool, FILL, false) C(14, bool, OF_SELF, false)
-// The same, for the kernel of a frame in one dispatch, beside LINE_CONSTANTS. MARGIN_BITS: of the maximum margin, a
-// float.
+// The same, for the kernel of a frame in one dispatch, beside LINE_CONSTANTS. MARGIN_BITS: the maximum margin.
 #define FUSED_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
@@ -186,8 +185,8 @@ struct BendingSlice {
 };
 
 /// A triangle at one of its corners, from which edge 0 goes to `a`, 1 on to `b` and 2 back. Its energy is
-/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries lie as those of bending do; `a` is CHAIN_NO_VERTEX
-/// in padding.
+/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries lie as in bending; `a` of padding is
+/// CHAIN_NO_VERTEX.
 struct MembraneCorner {
   uint a, b;
   float rest_0, rest_1, rest_2;        // lengths [m]

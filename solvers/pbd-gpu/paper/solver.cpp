@@ -83,8 +83,7 @@ class Paper final : public GpuSolver {
   }
 
   /// Collisions as published: every particle against every sphere, box, capsule and triangle, on predicted positions,
-  /// at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4. One stage and kernel for each
-  /// kind.
+  /// at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4. A stage for each kind.
   void build_contact() {
     const ColliderBuffers& c = *colliders();
     add_shapes("SatisfySphereCollisions", c.spheres, Feature::Sphere, "satisfy_sphere_collisions");

@@ -43,8 +43,7 @@ struct Profile {
 };
 
 /// "adreno-like": what is known of the Adreno 740 of a Quest 3, 32 KiB of shared memory (Mesa, freedreno_devices.py,
-/// cs_shared_mem_size). The limit of 256 threads per group is our precaution. Throws Error naming it for any other
-/// name.
+/// cs_shared_mem_size). The limit of 256 threads per group is our precaution. Throws Error for any other name.
 const Profile& find_profile(const std::string& name);
 
 /// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps, queue families,

@@ -34,8 +34,7 @@ class Program {
   void run(double timeout_s);
 
   /// Repeats the last recording until there are `count` copies, so that as many can be in flight at once. Each copy has
-  /// its own commands, fence and queries. It begins with a barrier against everything before, so copies run in the
-  /// order of submission.
+  /// its own commands, fence and queries. It begins with a barrier against everything before, so copies run in order.
   void need_copies(std::size_t count);
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);

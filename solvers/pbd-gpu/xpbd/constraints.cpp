@@ -49,8 +49,7 @@ double spread_slack_m(const Scene& s, double width, double r) {
 }
 
 constexpr const char* kStartsStretched = "the cloth starts stretched";
-/// True if vertices a and b start within a tether's length. Else pins are too far apart for the cloth, or it starts
-/// stretched.
+/// True if vertices a and b start within a tether's length. Else pins are too far apart, or it starts stretched.
 bool starts_within(const Scene& s, const std::vector<double>& start, std::size_t a, std::size_t b, double length) {
   return norm(minus(vertex_at(start, a), vertex_at(start, b))) <= length + 1e-6 * s.cloth.width_m;
 }
@@ -127,8 +126,7 @@ double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// True if the mesh rests flat as it starts (all z alike) with a convex border: the shortest path through the cloth is
-/// then straight.
+/// True if the mesh rests flat as it starts (all z alike) with a convex border: shortest paths are then straight.
 bool is_convex_sheet(const ClothMesh& m) {
   if (!m.pattern_m.empty()) return false;
   double low = m.vertices[0][2], high = low, size = 0, area = 0;

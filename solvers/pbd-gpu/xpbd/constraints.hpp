@@ -18,8 +18,7 @@ namespace clothbench::pbd_gpu {
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 /// Least ratio of alpha to inverse mass in chains pulled over-constrained between attached vertices: with 0 their
-/// system is singular in single precision. Ten times as much visibly lengthens the cloth; with a tenth, links of some
-/// cloths blow up.
+/// system is singular in single precision. Ten times as much visibly lengthens cloth; with a tenth some links blow up.
 constexpr double kRegularisation = 1e-3;
 
 /// At least the maximum eigenvalue of M^-1 A, A's entries not negative and M the diagonal of masses: the maximum of
@@ -92,8 +91,8 @@ bool is_tethered(const Scene&, const nlohmann::json& settings);
 bool starts_crumpled(const Scene&);
 
 /// Moves every free vertex of a crumpled start by less than a thousandth of a cell a coordinate, the same in every run.
-/// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold within it. `x`
-/// [m], xyz.
+/// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold in it. `x`:
+/// [m].
 void break_symmetry(const Scene&, const std::vector<float>& inverse_mass, std::vector<double>& x);
 
 }  // namespace clothbench::pbd_gpu

@@ -42,8 +42,7 @@ Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
   return c;
 }
 
-/// True if speed is limited (LINES_LIMIT_SPEED). Moving colliders may drive the cloth at any speed, and so may springs
-/// that start stretched.
+/// True if speed is limited (LINES_LIMIT_SPEED). Moving colliders and stretched springs may drive cloth at any speed.
 inline bool limits_speed(const Scene& s, bool tethered) {
   const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
   return (tethered || starts_crumpled(s)) && !driven;

@@ -214,8 +214,7 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// A frame as long as several (a hitch) takes the substeps of several: a link turns no farther in a substep, and no
-  /// vertex is thrown.
+  /// A frame as long as several (a hitch) takes the substeps of several, so that a link turns no farther in a substep.
   int frames_in(double dt_s) const {
     const double frame = scene().time.dt();
     if (!(dt_s > rules::kLongFrame * frame)) return 1;

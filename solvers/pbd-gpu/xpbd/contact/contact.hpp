@@ -15,8 +15,8 @@ namespace clothbench::pbd_gpu {
 class XpbdContact {
  public:
   /// Adds buffers, and what kinematic convex shapes need. `particle`: of each vertex, the vertex that it is welded to
-  /// (or itself). `colliders`: null if the scene has none. `second_solve`: the constraints are solved once more between
-  /// the responses.
+  /// (or itself). `colliders`: null if the scene has none. `second_solve`: constraints are solved between responses
+  /// too.
   XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
               const std::vector<std::uint32_t>& particle, bool second_solve);
   /// Adds one kernel per pass, for record_list, record_before and record_after.
@@ -40,8 +40,7 @@ class XpbdContact {
   /// What went wrong since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
   void clear_diagnostics();
-  /// Maximum displacement of a vertex in the last frame [m]; infinite if it had no contact. Call before each
-  /// frame.
+  /// Maximum displacement of a vertex in the last frame [m]; infinite if it had no contact. Call it before a frame.
   double read_max_displacement_m(bool is_single_dispatch);
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 

@@ -1,7 +1,6 @@
 // What the kernels of contact share: what is known of primitives and convex shapes, and of the substep. Primitives are
 // the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a
-// pass has its counts as push constants, the kernel of a frame in one dispatch as specialization constants of the same
-// names.
+// pass has its counts as push constants, the fused frame as specialization constants of the same names.
 #ifndef FUSED_FRAME
 #include "common/common.glsl"
 layout(push_constant) uniform Push { ContactConstants p; };
@@ -16,13 +15,11 @@ CONTACT_CONSTANTS(SPECIALIZE)
 
 layout(std430, binding = BIND_SHAPES) readonly buffer ConvexShapeBuffer { ConvexShape shapes[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { ShapePoint points[]; };
-// Groups' after convex shapes'.
-layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };
+layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // shapes, then groups
 layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_spaces[]; };
 #define THICKNESS_M uintBitsToFloat(THICKNESS_BITS)
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
-// Vertices, number of them.
-layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 primitives[]; };
+layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 primitives[]; };  // vertices, w: how many
 
 // A kernel has those that it accesses; others are removed as it is compiled.
 #ifdef FUSED_FRAME
@@ -35,21 +32,18 @@ layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 motion_bounds[]; };
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
-// At the substep's start; w: farthest it may go.
-layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: farthest it may go
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
 // First entry a vertex; 4 triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
-// Of the first of them, w: pairs that are processed.
-layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };
+layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // w of the first ones: the active pairs
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) STATE buffer Diagnostics { ContactDiagnostics diagnostics; };
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };
 layout(std430, binding = BIND_SELF_AABBS) STATE buffer SelfAabbs { SelfAabb self_aabbs[]; };
-// z: first active pair, w: active pairs.
-layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };
+layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };  // zw: of active pairs
 layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
 layout(std430, binding = BIND_TRIANGLE_MAX_DISPLACEMENTS) STATE buffer TriangleMaxDisplacements {
   vec4 triangle_max_displacement[];
@@ -60,13 +54,11 @@ layout(std430, binding = BIND_SELF_CORRECTIONS) STATE buffer SelfCorrections { S
 layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
-// A cut divides the motion bound by two to the power of it: a greater motion bound, larger steps.
-#define CUT_BITS (GRIPS > 0u ? 2u : 1u)
+#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the motion bound by two to this power
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // fraction of the margin by which what is too near is let out a substep
 const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes
-// A push before the lines of so many margins doubles a vertex' mass in them.
-const float kImpactMassFactor = 0.25;
+const float kImpactMassFactor = 0.25;  // margins of a push before the solve that double a vertex' mass in it
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
@@ -91,8 +83,7 @@ const float kTiny = 1e-6;       // a weight below is none
 #define CORRECTED(i) (2u * VERTICES + (i))          // a contact proposes a correction in this round
 #define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
-// 0: before the lines, with the predicted positions; 1 and on: rounds of responses after them.
-uint response_round = 0u;
+uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
 // Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
 // without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
 // 0.7 % less with one response.

@@ -16,8 +16,7 @@ struct ShapePoint {
   vec4 start, end;
 };
 
-/// Of a convex shape, around its displacement through the frame, its radius and its margin; or of a group of convex
-/// shapes.
+/// Of a convex shape, around its displacement through the frame, its radius and its margin; or of a group of shapes.
 struct ShapeAabb {
   vec4 low;  // w: maximum displacement of any of their points in the frame
   vec4 high;

@@ -72,8 +72,7 @@ class Maker {
     }
   }
 
-  /// Its faces as triangles: their own planes part most of what lies on them, which the hull of the corners does not
-  /// tell.
+  /// Its faces as triangles: their planes separate most of what lies on them, which the hull of the corners does not.
   void add_box(const Collider& c, std::size_t k) {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const unsigned a = 1u << axis, b = 1u << (axis + 1) % 3, side = 1u << (axis + 2) % 3;

@@ -1,7 +1,6 @@
 // The list of a frame's pairs, by all workgroups of fused_frame.comp.
 #ifdef CONTACT_FREE
-// Whether the cloth may touch a convex shape if nothing but its own speed takes it there.
-const bool kTestsContactFree = true;
+const bool kTestsContactFree = true;  // whether the cloth's own speed may take it to a shape
 #else
 const bool kTestsContactFree = false;
 #endif

@@ -12,8 +12,7 @@ layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[];
 #ifdef CONTACT_FREE
 layout(std430, binding = BIND_FRAME_STATE) buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) writeonly buffer Diagnostics { ContactDiagnostics diagnostics; };
-// Groups' after convex shapes'.
-layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };
+layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // shapes, then groups
 FUSED_FRAME_CONSTANTS(SPECIALIZE)
 const uint SELF = 0u;
 #endif

@@ -54,8 +54,7 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     if (vertices != 0 && k != vertices) continue;
     LineShape s{std::bit_ceil((longest + k - 1) / k), k, 0};
     const bool fits_subgroup = s.lanes <= device.subgroup;
-    // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row of attached
-    // vertices.
+    // Whole subgroups, so that thread and lane numbers agree, and at least one thread for each row.
     const std::uint32_t whole = std::max(device.subgroup, 32u);
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B =

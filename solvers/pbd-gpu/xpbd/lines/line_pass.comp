@@ -1,8 +1,7 @@
 #version 450
 // Colours of lines of a cloth of any size, its state in memory. The first colour of a substep integrates what it loads,
 // the last limits what it stores; every colour has every vertex exactly once, so in place is in order. A dispatch is
-// one colour, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one another
-// after each.
+// one colour, or with PERSISTENT any number of them: then its workgroups run at once and wait for one another.
 #define SUBGROUPS
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
@@ -11,8 +10,7 @@ layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCom
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
 layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
 layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
-// One number per chain, colours in turn.
-layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
+layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // by chain
 #include "xpbd/lines/grid_lines.glsl"
 
 /// Pinned vertices are never written, so reading them here races with nothing.

@@ -5,8 +5,7 @@ layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep
 const float kMaxShift = 0.25;                      // of a cell
-// Fraction of shifts; with all, some flat sheets drift in a minute.
-const float kShiftFraction = 0.995;
+const float kShiftFraction = 0.995;  // of shifts; with all of them some flat sheets drift in a minute
 vec4 shift[K];    // displacement along rows (x) and columns (y) [m], and the filter's first stage (z, w)
 float creep[K];  // of links: longer by it at the same tension [m]
 

@@ -6,8 +6,7 @@
 // parallel cyclic reduction. The first colour of a substep has every vertex and integrates what it loads. A mesh that
 // bends has passes before the first colour: one that integrates, then the iterations of its bending, one thread per
 // vertex. With MEMBRANE triangles of constant strain take part in these, and there are no colours. A dispatch is one
-// pass, or with PERSISTENT any number of them: then all its workgroups run at once, and wait for one another after
-// each.
+// pass, or with PERSISTENT any number of them: then its workgroups run at once and wait for one another.
 #include "common/common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass

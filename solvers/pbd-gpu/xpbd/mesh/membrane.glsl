@@ -1,5 +1,4 @@
-// Triangles of constant strain (xpbd/mesh/README.md): tensions in edges are linear in the elongations of a triangle's
-// three edges.
+// Triangles of constant strain (xpbd/mesh/README.md): tensions in edges are linear in the elongations of all three.
 layout(std430, binding = BIND_MEMBRANE_SLICES) readonly buffer MembraneSlices { BendingSlice membrane_slices[]; };
 layout(std430, binding = BIND_MEMBRANE_CORNERS) readonly buffer MembraneCorners { MembraneCorner corners[]; };
 
@@ -35,8 +34,7 @@ vec3 membrane_force(MembraneCorner c, vec3 x, vec3 a, vec3 b) {
 }
 
 /// What small steps of its corners add to that force: of a positive semidefinite matrix, which leaves out what pushes
-/// edges aside, and is scaled down where the triangle is deformed so far that it would exceed the bound of the
-/// iteration.
+/// edges aside, and is scaled down where a deformed triangle would exceed the bound of the iteration.
 vec3 membrane_change(MembraneCorner c, vec3 x, vec3 a, vec3 b, vec3 of_x, vec3 of_a, vec3 of_b) {
   vec3 e0 = a - x, e1 = b - a, e2 = x - b;
   Sides s = sides_of(e0, e1, e2);

@@ -63,8 +63,7 @@ double reach_m(const Scene& s) {
 /// True if its lines share no links: nothing is left by one colour to another.
 bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
-/// True unless a stretch wave crosses more than a part of an elastic cloth in a substep. Inextensible cloth stores no
-/// energy in its links.
+/// True unless a wave crosses more than a part of an elastic cloth in a substep. Rigid links store no energy.
 bool resolves_waves(const Scene& scene, int substeps) {
   double largest = scene.material.membrane_stiffness_N_per_m.value_or(0), lightest = 1;
   for (const StiffnessRegion& r : scene.material.regions)

@@ -8,8 +8,7 @@
 namespace clothbench::pbd_gpu {
 
 /// One substep of `xpbd` (xpbd/time/README.md). Backward Euler: history weight 0 and implicit_h_s = h. BDF2 with
-/// variable steps: the prediction x + s (x - x_last) + implicit_h_s v, and the same for v; constraints are solved for
-/// implicit_h_s.
+/// variable steps: the prediction x + s (x - x_last) + h' v, and the same for v; constraints are solved for h'.
 struct TimeStep {
   double implicit_h_s;      ///< h' [s]
   double history_weight;    ///< fraction of the last substep's change that the prediction repeats

@@ -96,8 +96,7 @@ double links_of_longer_side(const Cloth& c) {
 
 namespace {
 
-/// By the rules of README, "Substeps"; `touches`: what touches the cloth in the frame needs its share; `fast`: for
-/// its speed too.
+/// By the page of this folder, "Substeps". `touches`: for what touches the cloth in the frame; `fast`: for its speed.
 int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const double links = links_of_longer_side(scene.cloth);

@@ -1,6 +1,5 @@
 // Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds
-// of its vertices. Pairs are counted first, for the largest fraction of the bounds whose pairs fit the list, then
-// written.
+// of its vertices. Pairs are counted first, for the largest fraction of the bounds whose pairs fit, then written.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);

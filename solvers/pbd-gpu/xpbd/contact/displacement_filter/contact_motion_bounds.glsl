@@ -1,5 +1,4 @@
-// Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices
-// are clamped to it.
+// Conservative bound of a vertex' motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
 // In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A
 // vertex that would go farther is held back, and the momentum of the cloth changes with nothing near. Lists of the

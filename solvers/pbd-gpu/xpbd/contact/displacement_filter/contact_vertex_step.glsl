@@ -1,5 +1,4 @@
-// What contact does with a vertex at a substep's start (prediction) and after its constraints (clamp to the motion
-// bound).
+// Vertices at a substep's start (prediction), and after its constraints (clamp to the motion bound).
 
 /// How far a vertex may go from its start: its proposed displacement, and what a collider may push it.
 float max_displacement(uint i, vec3 to) {

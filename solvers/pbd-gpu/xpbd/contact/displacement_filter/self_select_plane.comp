@@ -1,7 +1,6 @@
 #version 450
 // Plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within
-// the gap at the start, so that staying satisfies all planes of the cloth with itself at once. One thread per active
-// pair.
+// the gap at the start, so that staying satisfies all planes of the cloth with itself. One thread per active pair.
 #include "xpbd/contact/contact_buffers.glsl"
 void select_self_plane(uint k) {
   if ((self_active[k].marks & SELF_PLANE) == 0u) return;

@@ -69,8 +69,7 @@ void try_normal(inout Nearest best, vec3 n, float t) {
   best.n = n;
 }
 
-// ---- at most three points: features pair by pair, in closed form (Ericson 2005, "Real-Time Collision Detection",
-// 5.1.5 and 5.1.9)
+// ---- at most three points: features pair by pair, in closed form (Ericson 2005, 5.1.5 and 5.1.9)
 
 struct Feature {
   float square;

@@ -1,6 +1,5 @@
 #version 450
-// Narrow phase: nearest points and the correction of each active pair. One thread per active pair, once or twice per
-// substep.
+// Nearest points and the correction of each active pair, once or twice per substep. One thread per active pair.
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/contact_correction.glsl"

@@ -1,6 +1,5 @@
 // Nearest points of a primitive and the hull of more than three points (Gilbert, Johnson & Keerthi 1988). A simplex of
-// differences is brought ever nearer to the origin. Its corners are indexed by constants alone, so that they stay in
-// registers.
+// differences is brought ever nearer to the origin. Its corners are indexed by constants, to stay in registers.
 struct Corner {
   vec3 at;     // cloth[a] - point b of the convex shape
   uint a, b;
@@ -49,8 +48,7 @@ bool on_tetrahedron(out vec4 weights) {
     const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
-    // On the inner side. Of a flat tetrahedron every face is processed: rounding decides on which side its last corner
-    // lies.
+    // On the inner side. Of a flat tetrahedron every face is processed: rounding decides where its last corner lies.
     bool flat_one = abs(inner) <= kFlat * length(n) * length(simplex[f.w].at - a);
     if (!flat_one && origin * inner > 0.0) continue;
     vec3 l = on_face(a, b, c), q = l.x * a + l.y * b + l.z * c;

@@ -1,7 +1,6 @@
 #version 450
 // Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's
-// active pairs begin is in no fixed order, and nothing depends on it; the pairs of one triangle are in the order of its
-// list.
+// active pairs begin is in no fixed order, and nothing depends on it; the pairs of a triangle are in the list's order.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/lanes_per_triangle.glsl"

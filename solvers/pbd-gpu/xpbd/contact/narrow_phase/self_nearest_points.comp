@@ -9,8 +9,7 @@ vec3 first_at[3], second_at[3];
 
 bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
 
-/// A vertex and a triangle are the contact of one pair of the vertex' triangles: the first that has no vertex of the
-/// other.
+/// A vertex and a triangle are the contact of the first of the vertex' triangles that has no vertex of the other.
 bool owns(uint v, uint own, uvec4 other) {
   uint end = vertex_triangles[v + 1u];
   for (uint f = vertex_triangles[v]; f < end; ++f) {

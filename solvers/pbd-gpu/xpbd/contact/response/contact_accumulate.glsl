@@ -111,8 +111,7 @@ void accumulate(uint i, bool valid) {
   x[i] = vec4(x[i].xyz + by - velocity_part, at.w / (1.0 + held));
 }
 
-/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices that contact may
-/// move.
+/// Thread `first` of `at_once`, and its cluster, take their fraction of the vertices that contact may move.
 void accumulate_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   uint count = all_of_them ? VERTICES : frame_state.touched_vertices;

@@ -1,15 +1,13 @@
 // Correction of a contact with a convex shape: its nearest point is moved to the contact offset.
 #include "xpbd/contact/response/friction.glsl"
 
-/// Margin that the contact keeps. Edges and faces keep less from static shapes: flat cloth would be lifted off its
-/// vertices.
+/// Margin that the contact keeps. Edges and faces keep less from static shapes: flat cloth would rise off its vertices.
 float kept_margin(uvec4 e, vec3 weights) {
   bool inner = e.w == 3u && max(weights.x, max(weights.y, weights.z)) < 1.0 - kTiny;
   return shape.margin * (inner && shape.is_kinematic == 0u ? kStaticMarginFactor : 1.0);
 }
 
-/// Proposed correction of a contact over the inverse mass of its point; w: its part along the normal that is no
-/// velocity.
+/// Proposed correction of a contact over the inverse mass of its point; w: its part that is no velocity.
 vec4 contact_correction(uvec4 e, PairState s) {
   if (response_round == 0u && shape.is_kinematic == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;
