@@ -1,4 +1,6 @@
 // Counted bytes are closed forms where every vertex takes the same path, and counting changes no bit of a result.
+#include <map>
+
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 

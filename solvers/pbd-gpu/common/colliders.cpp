@@ -1,7 +1,5 @@
 #include "common/colliders.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "clothbench/error.hpp"

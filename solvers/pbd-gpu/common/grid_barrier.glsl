@@ -1,7 +1,7 @@
 // A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried
 // at loading (`p.passes` = 0), and waiting is bounded: a thread that waits in vain sets a flag for the host.
 layout(std430, binding = BIND_BARRIER) coherent volatile buffer BarrierCounter { uint arrived, left; };
-layout(std430, binding = BIND_TIMED_OUT) coherent volatile writeonly buffer TimedOut { uint timed_out; };  // on the host
+layout(std430, binding = BIND_TIMED_OUT) coherent volatile writeonly buffer TimedOut { uint timed_out; };
 shared bool all_arrived;
 
 /// Writes of all threads before the barrier are visible to all after it. False if a workgroup did not arrive within

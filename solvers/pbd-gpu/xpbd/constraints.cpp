@@ -1,7 +1,6 @@
 #include "xpbd/constraints.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>

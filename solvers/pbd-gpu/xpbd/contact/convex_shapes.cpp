@@ -1,7 +1,6 @@
 #include "xpbd/contact/convex_shapes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace clothbench::pbd_gpu {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"

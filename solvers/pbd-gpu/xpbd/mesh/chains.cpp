@@ -1,7 +1,6 @@
 #include "xpbd/mesh/chains.hpp"
 
 #include <bit>
-#include <cmath>
 
 #include "xpbd/constraints.hpp"
 #include "xpbd/grid_barrier.hpp"

@@ -1,6 +1,4 @@
 #pragma once
-#include <cstdint>
-#include <vector>
 
 #include "common/gpu_types.h"
 #include "xpbd/lines/line_layout.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
-#include <string>
 
 #include "clothbench/scene.hpp"
 #include "xpbd/lines/line_layout.hpp"
