@@ -1,8 +1,9 @@
 // Conservative bound of how far each vertex may move in the frame. The broad phase inflates boxes by it, and vertices are clamped to it.
 
-// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A vertex that would go
-// farther is held back, and the momentum of the cloth changes with nothing near.
-#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)  // lists of the cloth with itself have place for no more
+// In a frame a vertex may go several times as far as at its speed: a corner that whips, what hands released, or what an
+// impact stops while its motion bound drifts on. A vertex that would go farther is held back, and the momentum of the cloth changes with
+// nothing near.
+#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
 float max_displacement_of_shapes() {
