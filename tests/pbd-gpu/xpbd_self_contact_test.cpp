@@ -65,6 +65,32 @@ TEST_F(SelfContacts, WithoutThemTheFoldPassesItself) {
   EXPECT_GT(crossed, 0);
 }
 
+/// A sheet falls on its edge at 6 m/s, and the floor stops it within a frame. Only gravity may pull its centre of mass
+/// down.
+TEST_F(SelfContacts, AnImpactPullsNothingDown) {
+  const Scene s = load_scene(
+      "contact/self-crumple",
+      {"cloth.grid=[17,17]", "cloth.pose.center_m=[0,0.629943,0]", "cloth.pose.axis_u=[0.424615575132,0,0.90537374236]",
+       "cloth.start.noise_m=0.000536", "cloth.start.seed=483601464", "cloth.self_collision.thickness_m=0.002175",
+       "cloth.initial_velocity_m_per_s=[0,-3.83477,0]", "time.frame_rate_hz=90"});
+  const auto solver = make("xpbd", {{"quality", "accurate"}});
+  solver->load(s);
+  const std::vector<double> masses = vertex_masses(s);
+  const auto height_m = [&](const std::vector<double>& x) {
+    double moment = 0, mass = 0;
+    for (std::size_t v = 0; v < masses.size(); ++v) moment += masses[v] * x[3 * v + 1], mass += masses[v];
+    return moment / mass;
+  };
+  const double fall_m = 9.81 * s.time.dt() * s.time.dt();
+  double last_m = height_m(initial_positions(s)), step_m = s.cloth.initial_velocity_m_per_s[1] * s.time.dt();
+  for (int f = 0; f < 12; ++f) {
+    const double now_m = height_m(after_frame(*solver, s, f).position);
+    EXPECT_GT(now_m - last_m - step_m, -1.05 * fall_m) << "frame " << f;
+    step_m = now_m - last_m;
+    last_m = now_m;
+  }
+}
+
 TEST_F(SelfContacts, RepeatBitForBit) { expect_repeats(fold_on_floor(), 8); }
 
 long crossings(const Scene& s, const ClothState& state) {

@@ -54,7 +54,8 @@ layout(std430, binding = BIND_SELF_CORRECTIONS) STATE buffer SelfCorrections { S
 layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
-#define CUT_BITS (GRIPS > 0u ? 2u : 1u)  // a cut divides the motion bound by two to this power
+// A cut divides the motion bound by two to this power: larger bounds, larger steps.
+#define CUT_BITS (GRIPS > 0u || SELF > 0u ? 2u : 1u)
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // fraction of the margin by which what is too near is let out a substep
 const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes

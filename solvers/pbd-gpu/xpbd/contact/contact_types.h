@@ -42,7 +42,7 @@ struct PairState {
 #define PAIR_TESTED 1u   // near enough to be processed in this substep
 #define PAIR_NEAREST 2u  // has a contact at its nearest points
 #define PAIR_PLANE 4u    // has a plane
-#define PAIR_LEVELS 4u   // motion bounds tried: each half (with grips a quarter) of the one before
+#define PAIR_LEVELS 4u   // motion bounds tried: each half (with grips or self-contact a quarter) of the one before
 
 /// Of the frame, on the device.
 struct ContactFrameState {

@@ -1,9 +1,9 @@
 // Conservative bound of a vertex' motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
-// In a frame a vertex may go several times as far as at its speed: a corner that whips, or what hands released. A
-// vertex that would go farther is held back, and the momentum of the cloth changes with nothing near. Lists of the
-// cloth with itself have place for no more.
-#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : SELF > 0u ? 1.0 : 4.0)
+// In a frame a vertex may go several times as far as at its speed: a corner that whips, what hands released, or what
+// an impact stops while its motion bound drifts on. A vertex that would go farther is held back, and the momentum of
+// the cloth changes with nothing near.
+#define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
 float max_displacement_of_shapes() {
