@@ -63,18 +63,6 @@ struct Columns : std::vector<Column<Record>> {
     return *this;
   }
 
-  /// Adds the columns of a pivot: one per key, under `head(key)`, with the text `value(record, key)`; "–" if it is
-  /// empty.
-  template <class Keys, class Head, class Of>
-  Columns& across(const Keys& keys, Head head, Of value) {
-    for (const auto& key : keys)
-      this->push_back({"", std::invoke(head, key), [=](const Record& r) -> Value {
-                         const std::string text = value(r, key);
-                         return text.empty() ? Value() : Value(text);
-                       }});
-    return *this;
-  }
-
   /// `t` with a header and one row per record, for the console, Markdown and the page.
   template <class Records>
   Table table(Table t, const Records& records) const {

@@ -68,9 +68,8 @@ nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vec
           {"runs", std::move(figures)}};
 }
 
-/// A few runs at a glance, under the tables; many are what the tables are for.
-std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::path& out) {
-  constexpr std::size_t kFew = 24;
+/// `part`: no report was printed, so the runs follow in short.
+std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::path& out, bool part) {
   const VerdictCounts verdicts = count_verdicts(runs);
   const Ends ends(runs);
   std::string text = fmt::format("\n{} runs ok, {} unsupported, {} failed", ends.ok, ends.unsupported, ends.failed);
@@ -82,7 +81,7 @@ std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::p
   if (ends.over_budget > 0)
     text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
                         ends.over_budget);
-  return (runs.empty() || runs.size() > kFew ? "" : in_short_table(runs).console()) + text;
+  return (part ? in_short_table(RunTable(runs)).console() : "") + text;
 }
 
 }  // namespace
@@ -132,7 +131,7 @@ void execute_study(const RunPlan& plan, StudyManifest manifest, const RunFlags& 
   if (!console.json && !flags.part) print_console_report({out});
   console.print(
       [&] { return summary_of(result.faults, runs, out, flags.part ? nlohmann::json::array() : figures_of(runs)); },
-      [&] { return text_of(runs, out); });
+      [&] { return text_of(runs, out, flags.part); });
 }
 
 }  // namespace clothbench

@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
 #include "report/features.hpp"
+#include "runner/environment.hpp"
 #include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
@@ -120,9 +121,9 @@ nlohmann::json list_terms() {
   return rows;
 }
 
-std::vector<SolverFeatures> features() {
-  std::vector<SolverFeatures> out;
-  for (const SolverEntry* e : all_solvers()) out.push_back(declared_features(e->info));
+DeclaredFeatures features() {
+  DeclaredFeatures out;
+  for (const SolverEntry* e : all_solvers()) out.emplace_back(e->info.name, describe_features(e->info));
   return out;
 }
 

@@ -32,19 +32,6 @@ RunRecord read(const fs::path& path) {
   return c;
 }
 
-/// A folder that lost its study.json, or to which files were copied: every result file in it, by name.
-void collect_files(const fs::path& dir, std::vector<RunRecord>& runs) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(dir))
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor") files.push_back(entry.path());
-  if (files.empty())
-    throw Error(dir.string() +
-                ": neither study.json nor a result file is in it; expected a folder that `run` or `study` wrote, or "
-                "result files (.h5)");
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) runs.push_back(read(file));
-}
-
 void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   const std::size_t first = runs.size();
   const StudyManifest manifest = read_manifest(dir);
@@ -71,11 +58,7 @@ bool is_time(const std::string& name) {
 
 }  // namespace
 
-double jobs_of(const RunRecord& c) {
-  if (const double stored = summary_value(c, "jobs"); std::isfinite(stored)) return stored;
-  const nlohmann::json jobs = environment_of(c, "jobs");
-  return jobs.is_number() ? jobs.get<double>() : kMissing;
-}
+double jobs_of(const RunRecord& c) { return summary_value(c, "jobs"); }
 
 void withhold_times(std::vector<RunRecord>& runs) {
   for (RunRecord& c : runs) {
@@ -108,7 +91,7 @@ std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
   for (const fs::path& result : results) {
     if (!fs::exists(result)) throw Error(result.string() + ": no such file or folder");
     if (fs::is_directory(result))
-      fs::exists(result / "study.json") ? collect_folder(result, runs) : collect_files(result, runs);
+      collect_folder(result, runs);
     else
       runs.push_back(read(result));
   }

@@ -1,10 +1,9 @@
 #include "report/features.hpp"
 
 #include <algorithm>
-#include <optional>
 
-#include "base/columns.hpp"
 #include "base/words.hpp"
+#include "clothbench/feature.hpp"
 #include "report/run_table.hpp"
 
 namespace clothbench {
@@ -12,83 +11,51 @@ namespace {
 
 using nlohmann::json;
 
-std::optional<Feature> feature(const json& name) {
-  for (std::size_t k = 0; k < kFeatureCount; ++k)
-    if (name.is_string() && name.get<std::string>() == kFeatures[k].name) return static_cast<Feature>(k);
-  return std::nullopt;
+std::string words(std::string_view text) {
+  std::string name(text);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
-/// Leaves out names of features that this build does not know (of later versions).
-FeatureSet feature_set(const json& names) {
-  FeatureSet set;
-  if (names.is_array())
-    for (const json& name : names)
-      if (const auto f = feature(name)) set.add(*f);
-  return set;
-}
-
-std::string words(std::string_view name) {
-  std::string out(name);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
-void add_run(SolverFeatures& s, const RunRecord& c) {
-  const json declared = environment_of(c, "solver_features");
-  if (declared.is_object()) {
-    s.known = true;
-    s.supports |= feature_set(declared.value("supports", json()));
-    s.ignores |= feature_set(declared.value("ignores", json()));
-    for (const json& pair : declared.value("only_with", json::array())) {
-      if (!pair.is_array() || pair.size() != 2) continue;
-      const auto f = feature(pair[0]), beside = feature(pair[1]);
-      if (f && beside && !contains(s.only_with, std::pair{*f, *beside})) s.only_with.emplace_back(*f, *beside);
-    }
-  }
+std::string feature_text(const json& declared, std::string_view name) {
+  if (declared.is_null()) return "not built";
+  if (contains(declared.at("ignores"), name)) return "ignored";
+  if (!contains(declared.at("supports"), name)) return "no";
+  std::string text = "yes";
+  for (const json& pair : declared.at("only_with"))
+    if (pair.at(0) == name) text += " (only with " + words(pair.at(1).get<std::string>()) + ")";
+  return text;
 }
 
 }  // namespace
 
-std::vector<SolverFeatures> solver_features(const std::vector<RunRecord>& runs) {
-  std::vector<SolverFeatures> out;
-  for (const RunRecord& c : runs)
-    add_run(find_or_add(out, [&](const SolverFeatures& s) { return s.solver == c.header.solver; }, {c.header.solver}),
-            c);
+DeclaredFeatures declared_features(const std::vector<RunRecord>& runs) {
+  DeclaredFeatures out;
+  for (const RunRecord& c : runs) {
+    const std::string& solver = c.header.solver;
+    auto& [unused, features] = find_or_add(out, [&](auto& s) { return s.first == solver; }, {solver, json()});
+    if (features.is_null()) features = environment_of(c, "solver_features");
+  }
   return out;
 }
 
-SolverFeatures declared_features(const SolverInfo& info) {
-  return {info.name, true, info.supports, info.ignores, info.only_with};
+Table feature_table(const DeclaredFeatures& solvers) {
+  Table t{"Table 4: features",
+          "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+          {{"feature"}}};
+  for (const auto& [solver, unused] : solvers) t.rows[0].push_back(solver);
+  for (const FeatureRow& f : kFeatures) {
+    t.rows.push_back({words(f.name)});
+    for (const auto& [unused, declared] : solvers) t.rows.back().push_back(feature_text(declared, f.name));
+  }
+  return t;
 }
 
-std::string feature_text(const SolverFeatures& s, Feature f) {
-  if (!s.known) return "not built";
-  if (s.ignores.has(f)) return "ignored";
-  if (!s.supports.has(f)) return "no";
-  std::string text = "yes";
-  for (const auto& [what, beside] : s.only_with)
-    if (what == f) text += " (only with " + words(name_of(beside)) + ")";
-  return text;
-}
-
-Table feature_table(const std::vector<SolverFeatures>& solvers) {
-  return Columns<FeatureRow>{{"", "feature", [](auto& f) { return words(f.name); }}}
-      .across(solvers, &SolverFeatures::solver,
-              [&](const FeatureRow& f, const SolverFeatures& s) {
-                return feature_text(s, static_cast<Feature>(&f - kFeatures.data()));
-              })
-      .table({"Table 4: features",
-              "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
-              {}},
-             kFeatures);
-}
-
-json feature_json(const std::vector<SolverFeatures>& solvers) {
+json feature_json(const DeclaredFeatures& solvers) {
   json rows = json::array();
-  for (std::size_t k = 0; k < kFeatureCount; ++k) {
-    json row = {{"name", kFeatures[k].name}, {"doc", kFeatures[k].doc}, {"solvers", json::object()}};
-    for (const SolverFeatures& s : solvers) row["solvers"][s.solver] = feature_text(s, static_cast<Feature>(k));
-    rows.push_back(std::move(row));
+  for (const FeatureRow& f : kFeatures) {
+    rows.push_back({{"name", f.name}, {"doc", f.doc}, {"solvers", json::object()}});
+    for (const auto& [solver, declared] : solvers) rows.back()["solvers"][solver] = feature_text(declared, f.name);
   }
   return rows;
 }

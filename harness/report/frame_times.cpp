@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <random>
 #include <utility>
 
 #include "report/run_table.hpp"
@@ -13,20 +13,6 @@ namespace {
 constexpr std::size_t kResamples = 400, kBlock = 16, kMinBlocks = 8, kMinFrames = 6;
 constexpr double kWide = 0.2;
 constexpr double kMeasurable_s = 2e-5;  // CPU time of shorter frames is mostly that of reading the clock
-
-/// SplitMix64: the same numbers on every machine.
-class Random {
- public:
-  std::size_t below(std::size_t n) {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return static_cast<std::size_t>((z ^ (z >> 31)) % n);
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
 
 using Series = std::vector<double>;
 
@@ -59,17 +45,17 @@ class Bootstrap {
   /// 95 % intervals of the median time and of the median over trials of the rate [1/s].
   std::pair<Interval95, Interval95> intervals() const {
     if (pooled_.size() < kMinFrames) return {};
-    Random random;
+    std::mt19937_64 random;                        // the same numbers on every machine
     std::vector<std::size_t> weight(sum_.size());  // of the blocks
     Series medians, rates, drawn;
     for (std::size_t n = 0; n < kResamples; ++n) {
       std::fill(weight.begin(), weight.end(), 0);
       drawn.clear();
       for (std::size_t t = 0; t < trials_.size(); ++t) {
-        const auto [first, count] = trials_[random.below(trials_.size())];
+        const auto [first, count] = trials_[random() % trials_.size()];
         double sum = 0, frames = 0;
         for (std::size_t k = 0; k < count; ++k) {
-          const std::size_t block = first + random.below(count);
+          const std::size_t block = first + random() % count;
           ++weight[block];
           sum += sum_[block];
           frames += frames_[block];
@@ -152,8 +138,9 @@ RunTimes times_of(const RunRecord& c) {
   RunTimes out;
   out.wall = times_by(&TimedTrial::frame_wall_s, c);
   out.device = times_by(&TimedTrial::frame_device_s, c);
-  const double cpu_s = summary_value(c, "frame_cpu_median_s");
-  if (cpu_s > kMeasurable_s) out.threads = std::max(1.0, std::round(cpu_s / out.wall.at(0.5)));
+  out.cpu = times_by(&TimedTrial::frame_cpu_s, c);
+  out.rendered = times_by(&TimedTrial::frame_rendered_s, c);
+  if (out.cpu.at(0.5) > kMeasurable_s) out.threads = std::max(1.0, std::round(out.cpu.at(0.5) / out.wall.at(0.5)));
   if (const std::vector<bool> contact = frames_with_contact(c); !contact.empty()) {
     out.contact_wall = times_by(&TimedTrial::frame_wall_s, c, contact);
     out.contact_device = times_by(&TimedTrial::frame_device_s, c, contact);

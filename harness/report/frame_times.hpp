@@ -23,9 +23,9 @@ struct FrameTimes {
   bool uncertain() const;
 };
 
-/// All times of a run, once without and once with the frames in which nothing touches the cloth.
+/// All times of a run; `contact_…`: of the frames in which something touches the cloth.
 struct RunTimes {
-  FrameTimes wall, device, contact_wall, contact_device;
+  FrameTimes wall, device, contact_wall, contact_device, cpu, rendered;
   double threads = kMissing;  ///< CPU time over wall time of the median frame of a CPU solver, rounded
 };
 

@@ -14,9 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kDisplayHz = 72;
-constexpr double kAllowedOverhead = 0.01;  // of a displayed frame
-
 std::string text(const RunRecord& c, const char* key) {
   const json e = environment_of(c, key);
   return e.is_string() ? e.get<std::string>() : "";
@@ -27,8 +24,8 @@ bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) =
 /// The value of a run's environment as the heading shows it.
 std::string fact(const RunRecord& c, const std::string& key) {
   const std::string value = text(c, key.c_str());
-  if (key == "gpu") return gpu_of(c).empty() ? "" : value + (flag(c, "gpu_is_software") ? " (software)" : "");
-  if (key == "driver") return gpu_of(c).empty() ? "" : value;
+  if ((key == "gpu" || key == "driver") && text(c, "gpu") == "CPU") return "";
+  if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
   if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
   return key == "created" ? value.substr(0, 10) : value;
 }
@@ -45,24 +42,6 @@ std::set<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
                            std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
   }
   return out;
-}
-
-/// The ballistic solver's slowest run as a percentage of a 72 Hz frame, against the 1 % allowed; empty without one.
-std::string overhead_line(const std::vector<RunRecord>& runs) {
-  const RunRecord* most = nullptr;
-  double most_s = 0;
-  for (const RunRecord& c : runs) {
-    const double t = summary_value(c, "frame_wall_median_s");
-    if (!is_floor(c.header.solver) || c.outcome.status != "ok" || !(t > most_s)) continue;
-    most = &c;
-    most_s = t;
-  }
-  if (most == nullptr) return "";
-  const double share = most_s * kDisplayHz;
-  return fmt::format(
-      "Harness overhead: at most {:.2g} % of a 72 Hz frame (13.89 ms), {} the 1 % allowed. Measured: "
-      "{:.3g} µs per frame of {} with {}, whose particles only fall.",
-      100 * share, share < kAllowedOverhead ? "below" : "above", 1e6 * most_s, most->header.scene, most->header.solver);
 }
 
 }  // namespace
@@ -96,13 +75,11 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
 
 std::vector<std::string> warnings_of(const RunTable& table) {
   std::set<std::string> software, invalid;
-  std::size_t silent = 0;
   std::vector<const Row*> all;
   for (const Row& r : table.rows()) {
     const RunRecord& c = *r.run;
     all.push_back(&r);
-    silent += std::isfinite(r.value("frame_wall_median_s")) && !std::isfinite(jobs_of(c));
-    if (!gpu_of(c).empty() && flag(c, "gpu_is_software")) software.insert(text(c, "gpu"));
+    if (text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(text(c, "gpu"));
     if (const json s = environment_of(c, "device_samples"); s.is_object() && !s.value("valid", true))
       for (const json& reason : s.value("reasons", json::array())) invalid.insert(reason.get<std::string>());
   }
@@ -112,16 +89,12 @@ std::vector<std::string> warnings_of(const RunTable& table) {
         fmt::format("Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.", device));
   for (const std::string& reason : invalid) out.push_back(fmt::format("Not a valid measurement: {}.", reason));
   if (const std::string withheld = withheld_note(all); !withheld.empty()) out.push_back(withheld);
-  if (silent > 0)
-    out.push_back(fmt::format("{} of the timed runs {} not state whether other jobs ran beside {}.", silent,
-                              silent == 1 ? "does" : "do", silent == 1 ? "it" : "them"));
   return out;
 }
 
 std::vector<std::string> notes_of(const RunTable& table) {
   const std::set<std::string> plugins = plugin_lines(table.runs());
   std::vector<std::string> out(plugins.begin(), plugins.end());
-  if (const std::string line = overhead_line(table.runs()); !line.empty()) out.push_back(line);
   if (const VerdictCounts n = count_verdicts(table.runs()); n.runs > 0)
     out.push_back(n.text() + ", of those whose scene has acceptance criteria.");
   return out;

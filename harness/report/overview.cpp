@@ -1,4 +1,4 @@
-// The first screen: four tiles, and Table 3 with errors.
+// Four tiles of the first screen, and Table 3 with errors.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,41 +17,29 @@ constexpr double kFallLimit = 0.01;  // a greater error of free fall makes a rat
 constexpr double kBudget_ms = 1;     // of wall time per frame
 
 constexpr const char* kTable3Note =
-    "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; "
-    "interval, ratio, rank and error are for the largest mesh. An error of free fall above 1 % (!) "
-    "makes a rate meaningless. Published: Quest 3, with rendering, capped at 72. ";
-/// Runs that passed, or were stable, among those that are judged.
-struct Share {
-  std::size_t good = 0, all = 0;
-};
-
-Share share_of(const Group& g, Part part) {
-  Share out;
-  for (const Row* r : g) {
-    const bool stability = part == Part::Stability;
-    if (r->part != part || (stability ? grade_of(*r) < 0 : r->status() == "missing" || bounds_of(*r->run) == 0))
-      continue;
-    ++out.all;
-    out.good += stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass";
-  }
-  return out;
+    "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; all other columns are "
+    "for "
+    "the largest mesh. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges in "
+    "the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped at "
+    "72. ";
+/// Frames per second in at most four digits; larger values in thousands or millions.
+std::string rate_text(double v) {
+  if (!std::isfinite(v)) return "–";
+  if (v >= 999500) return significant(1e-6 * v, 3) + "M";
+  return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
 }
 
-bool is_fastest_class(const Row& r) {
-  return r.part == Part::Rates && r.largest && r.published < 0 && r.setting == "default" && r.sides != "double" &&
-         r.sides != "double-duplicated" && r.repeat == 1 && r.status() == "ok" && std::isfinite(r.value("fps_median"));
+/// A solver's run with the largest mesh; null if it did not end well.
+const Row* largest(const Group& g) {
+  const auto at = std::find_if(g.begin(), g.end(),
+                               [](const Row* r) { return r->largest && r->status() == "ok" && r->published < 0; });
+  return at == g.end() ? nullptr : *at;
 }
 
-bool within_budget(const Row& r) {
-  return r.part == Part::Truth && r.counts() && r.wall_ms_per_s() / r.frame_rate_hz() <= kBudget_ms;
-}
-
-/// The text of a solver's run with the largest mesh.
 ViewColumn at_largest(std::string head, std::function<std::string(const Row&)> text) {
   return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) {
-            for (const Row* r : g)
-              if (r->largest && r->status() == "ok" && r->published < 0) return text(*r);
-            return std::string();
+            const Row* r = largest(g);
+            return r == nullptr ? std::string() : text(*r);
           }};
 }
 
@@ -73,7 +61,7 @@ std::string peers(const Group& runs) {
 }
 
 View speed_and_error() {
-  View v{"overview", "Table 3: speed and error", std::string(kTable3Note) + kIntervalMethod, [](const Row& r) {
+  View v{"rates", "Table 3: speed and error", std::string(kTable3Note) + kIntervalMethod, [](const Row& r) {
            const bool other_setting = r.paper_table == 3 && r.setting != "default";
            return r.part == Part::Rates && !other_setting && !is_floor(r.solver);
          }};
@@ -89,11 +77,13 @@ View speed_and_error() {
     const bool plain = r.sides.empty() || r.sides == "single" || r.published >= 0;
     return plain ? r.label() : r.label() + ", " + r.sides;
   })};
-  v.across = resolution_across([](const Group& g) {
-    const Row& r = *g.front();
-    if (r.published >= 0) return fmt::format("{:g}", r.value("fps_at_72"));
-    return r.status() == "ok" ? rate_text(r.value("fps_median")) : std::string();
-  });
+  v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
+              [](const Group& g) {
+                const Row& r = *g.front();
+                if (r.published >= 0) return fmt::format("{:g}", r.value("fps_at_72"));
+                return r.status() == "ok" ? rate_text(r.value("fps_median")) : ending(r.run->outcome);
+              },
+              [](const Row& r) { return r.resolution.size(); }};
   v.columns = {at_largest("95 % interval", rate_interval),
                at_largest("× " + time_baseline(),
                           [](const Row& r) { return significant(r.baseline_s / r.value("frame_wall_median_s"), 3); }),
@@ -104,73 +94,78 @@ View speed_and_error() {
                             return std::isfinite(e) ? fmt::format("{:.1e}{}", e, e > kFallLimit ? " !" : "")
                                                     : std::string();
                           }),
+               at_largest("stretch, mean / maximum [%]",
+                          [](const Row& r) {
+                            return paired(100 * r.value("stretch_mean_last_second"),
+                                          100 * r.value("stretch_max_last_second"), " / ", 2);
+                          }),
                at_largest("trials", [](const Row& r) { return trials_column().text({&r}, {}); })};
+  for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));
   v.more = peers;
   v.timed = true;
   return v;
 }
 
-/// A solver's value in a tile; the value with the highest merit is shown.
+/// A solver's value in a tile; the value with the highest merit is shown large, others beside it.
 struct Entry {
   std::string solver;
   double merit;
-  Tile tile;            ///< without `others`
-  std::string shorter;  ///< as one of the others
+  std::string title, value, interval;
 };
 
-bool takes_part(const Row& r) { return !is_floor(r.solver) && !is_baseline(r.solver); }
-
-std::vector<Entry> rates(const RunTable& table) {
+/// The largest mesh of the first family that was timed.
+std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
-  std::string family;  // the first one that was timed
-  for (const Row& r : table.rows()) {
-    if (!takes_part(r) || !is_fastest_class(r) || (!family.empty() && r.family != family)) continue;
-    family = r.family;
-    const std::string interval = rate_interval(r);
-    const std::size_t trials = r.run->trials.size();
-    out.push_back(
-        {r.solver,
-         r.value("fps_median"),
-         {"Frames per second at " + r.resolution.label(), rate_text(r.value("fps_median")),
-          interval + fmt::format("{}{} trial{}", interval.empty() ? "" : ", ", trials, trials == 1 ? "" : "s"), ""},
-         rate_with_interval(r)});
-  }
-  return out;
-}
-
-std::vector<Entry> errors(const RunTable& table) {
-  std::vector<Entry> out;
-  std::string scene;  // the first one that ranks solvers
-  for (const Row& r : table.rows()) {
-    if (!takes_part(r) || !within_budget(r) || !r.truth->refused().empty() || (!scene.empty() && r.scene != scene))
+  std::string family;
+  for (const Row* r : rows) {
+    if (r->part != Part::Rates || !r->largest || r->sides.starts_with("double") || r->setting != "default" ||
+        r->repeat > 1 || r->status() != "ok" || !std::isfinite(r->value("fps_median")) ||
+        (!family.empty() && r->family != family))
       continue;
-    scene = r.scene;
-    const double floor = r.truth->rank_floor();
-    const bool at_floor = r.error() <= floor;
-    const std::string text = fmt::format("{}{:.2g} %", at_floor ? "≤ " : "", 100 * std::max(floor, r.error()));
-    out.push_back({r.solver,
-                   -r.error(),
-                   {"Smallest error within 1 ms per frame", text, r.scene + (at_floor ? ", at the floor" : ""), ""},
-                   text});
+    family = r->family;
+    const std::string interval = rate_interval(*r), trials = std::to_string(r->run->trials.size());
+    out.push_back({r->solver, r->value("fps_median"), "Frames per second at " + r->resolution.label(),
+                   rate_text(r->value("fps_median")),
+                   interval + (interval.empty() ? "" : ", ") + trials + (trials == "1" ? " trial" : " trials")});
   }
   return out;
 }
 
-std::vector<Entry> shares(const RunTable& table, Part part, const char* title) {
-  std::map<std::string, Group> solvers;
-  for (const Row& r : table.rows())
-    if (r.setting == "default" && takes_part(r)) solvers[r.solver].push_back(&r);
+/// The first scene that ranks solvers.
+std::vector<Entry> errors(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
-  for (const auto& [solver, runs] : solvers) {
-    const Share s = share_of(runs, part);
-    if (s.all == 0) continue;
-    const Interval i = wilson_95(s.good, s.all);
-    const auto all = static_cast<double>(s.all);
-    out.push_back(
-        {solver,
-         static_cast<double>(s.good) / all + 1e-9 * all,  // of equal shares, the one of more runs
-         {title, fmt::format("{} / {}", s.good, s.all), fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high), ""},
-         fmt::format("{}/{}", s.good, s.all)});
+  std::string scene;
+  for (const Row* r : rows) {
+    if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() ||
+        r->wall_ms_per_s() / r->frame_rate_hz() > kBudget_ms || (!scene.empty() && r->scene != scene))
+      continue;
+    scene = r->scene;
+    const double floor = r->truth->rank_floor();
+    const bool at_floor = r->error() <= floor;
+    out.push_back({r->solver, -r->error(), "Smallest error within 1 ms per frame",
+                   fmt::format("{}{:.2g} %", at_floor ? "≤ " : "", 100 * std::max(floor, r->error())),
+                   r->scene + (at_floor ? ", at the floor" : "")});
+  }
+  return out;
+}
+
+/// Runs that passed, or were stable, among those that are judged.
+std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const char* title) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> solvers;
+  for (const Row* r : rows) {
+    const bool stability = part == Part::Stability, judged = stability ? grade_of(*r) >= 0 : bounds_of(*r->run) > 0;
+    if (r->part != part || r->setting != "default" || r->status() == "missing" || !judged) continue;
+    auto& [good, all] = solvers[r->solver];
+    good += stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass";
+    ++all;
+  }
+  std::vector<Entry> out;
+  for (const auto& [solver, share] : solvers) {
+    const auto [good, all] = share;
+    const Interval i = wilson_95(good, all);
+    const auto runs = static_cast<double>(all);  // of equal shares, the one of more runs leads
+    out.push_back({solver, static_cast<double>(good) / runs + 1e-9 * runs, title, fmt::format("{}/{}", good, all),
+                   fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high)});
   }
   return out;
 }
@@ -181,18 +176,23 @@ std::vector<View> overview_views() { return {speed_and_error()}; }
 
 std::vector<Tile> tiles_of(const RunTable& table) {
   constexpr std::size_t kMostTiles = 4, kMostOthers = 3;
+  std::vector<const Row*> rows;
+  for (const Row& r : table.rows())
+    if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
   std::vector<Tile> out;
-  for (std::vector<Entry> entries :
-       {rates(table), errors(table), shares(table, Part::Generated, "Generated contact scenes passed"),
-        shares(table, Part::Contact, "Contact scenes passed"), shares(table, Part::Stability, "Hard cases stable")}) {
+  for (std::vector<Entry> entries : {shares(rows, Part::Generated, "Generated contact scenes passed"),
+                                     shares(rows, Part::Contact, "Contact scenes passed"), errors(rows), rates(rows),
+                                     shares(rows, Part::Stability, "Hard cases stable")}) {
     if (entries.empty() || out.size() == kMostTiles) continue;
     std::stable_sort(entries.begin(), entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
-    std::set<std::string> others;
-    Tile& tile = out.emplace_back(entries.front().tile);
-    tile.title += ", " + entries.front().solver;
-    for (const Entry& e : entries)
-      if (e.solver != entries.front().solver && others.size() < kMostOthers && others.insert(e.solver).second)
-        tile.others += (tile.others.empty() ? "" : " · ") + e.solver + " " + e.shorter;
+    const Entry& best = entries.front();
+    Texts others, solvers = {best.solver};
+    for (const Entry& e : entries) {
+      if (contains(solvers, e.solver) || others.size() == kMostOthers) continue;
+      solvers.push_back(e.solver);
+      others.push_back(fmt::format("{} {} ({})", e.solver, e.value, e.interval));
+    }
+    out.push_back({best.title + ", " + best.solver, best.value, best.interval, joined(others, " · ")});
   }
   return out;
 }

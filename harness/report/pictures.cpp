@@ -46,21 +46,6 @@ bool convert(const fs::path& folder) {
   return done;
 }
 
-/// The content of a file that the script left, which is then removed.
-std::string take(const fs::path& file) {
-  std::string text = content_of(file);
-  fs::remove(file);
-  return text;
-}
-
-/// Puts the figure for readers without JavaScript into the page.
-void add_first_figure(const fs::path& index, const std::string& svg) {
-  std::string page = content_of(index);
-  constexpr std::string_view kMark = "<!--clothbench:figure-->";
-  if (const std::size_t at = page.find(kMark); at != std::string::npos)
-    write_file_atomically(index, page.replace(at, kMark.size(), svg));
-}
-
 }  // namespace
 
 Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
@@ -75,8 +60,8 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
       runs(fmt::format("node {} {} {}", quoted(script), quoted(fs::absolute(out / "index.html")), quoted(folder)));
   fs::remove(script);
   if (!drawn) return without("Node 18 or later was not found, or failed (Debian: nodejs)");
-  const std::string markdown = take(folder / "figures.md");
-  add_first_figure(out / "index.html", take(folder / "hero.html"));
+  const std::string markdown = content_of(folder / "figures.md");
+  fs::remove(folder / "figures.md");
   return {convert(folder) ? "" : "PDF pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin).",
           markdown};
 }

@@ -27,12 +27,12 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
 
 /// The table of features is no view: its rows are features, not runs.
 ViewTable features_of(const RunTable& table) {
-  const auto solvers = solver_features(table.runs());
-  if (std::none_of(solvers.begin(), solvers.end(), [](const SolverFeatures& s) { return s.known; })) return {};
+  const DeclaredFeatures solvers = declared_features(table.runs());
+  if (std::all_of(solvers.begin(), solvers.end(), [](auto& s) { return s.second.is_null(); })) return {};
   ViewTable t{feature_table(solvers)};
   t.in_full = true;
   t.solvers = {""};
-  for (const SolverFeatures& s : solvers) t.solvers.push_back(s.solver);
+  for (const auto& [solver, unused] : solvers) t.solvers.push_back(solver);
   return t;
 }
 
@@ -115,7 +115,7 @@ void write_report(const std::vector<fs::path>& results, const fs::path& out) {
 }
 
 void print_console_report(const std::vector<fs::path>& results) {
-  constexpr std::size_t kShown = 2;
+  constexpr std::size_t kShown = 2, kFew = 24;
   const RunTable table(printable(results));
   const Page page = page_of(table, results);
   std::vector<std::string> head = page.warnings;
@@ -123,6 +123,8 @@ void print_console_report(const std::vector<fs::path>& results) {
   head.insert(head.end(), page.notes.begin(), page.notes.end());
   for (const std::string& line : head) fmt::print("{}", wrapped(line, 0, console_columns()));
   std::size_t shown = 0, rest = 0;
+  if (table.runs().size() <= kFew)
+    if (const Table t = in_short_table(table); !t.rows.empty() && ++shown > 0) fmt::print("{}", t.console());
   for (const PageSection& s : page.sections)
     for (const ViewTable& t : s.tables) {
       // Messages are sentences and are printed as lines, not columns; a failed run is never left out.

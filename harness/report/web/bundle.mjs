@@ -59,19 +59,10 @@ writeFileSync(join(out, 'template.html'), html);
 const stills = await bundled('stills.js', {format: 'cjs', target: ['node18'], external: ['node:*']});
 writeFileSync(join(out, 'figures.cjs'), stills.text);
 
-// Adjacent literals: short enough for every compiler.
 function literal(name, text) {
   const end = 'page_end_7d1f';
   if (text.includes(`)${end}"`)) throw new Error('the page holds the mark that ends its literal');
-  const bytes = Buffer.from(text, 'utf8');
-  const pieces = [];
-  for (let at = 0; at < bytes.length;) {
-    let to = Math.min(at + 15000, bytes.length);
-    while (to < bytes.length && (bytes[to] & 0xc0) === 0x80) --to;  // never inside a character
-    pieces.push(`R"${end}(${bytes.subarray(at, to).toString('utf8')})${end}"`);
-    at = to;
-  }
-  return `static const char ${name}[] =\n${pieces.join('\n')};`;
+  return `static const char ${name}[] = R"${end}(${text})${end}";`;
 }
 writeFileSync(join(out, 'template.cpp'), `#include "report/web/page.hpp"
 namespace clothbench {

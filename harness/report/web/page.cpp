@@ -49,14 +49,7 @@ void add_times(const Row& r, json& out) {
     if (!times->sorted.empty()) out[name] = times_json(*times);
 }
 
-/// The criteria of the scene that the run violates, with what was found.
-json violated(const Row& r) {
-  json out = json::array();
-  for (const BoundResult& b : bound_results(*r.run))
-    if (b.passed == 0) out.push_back({b.name, rounded(r.value(b.name))});
-  return out;
-}
-
+/// What figures show of a run or published value. Missing = null.
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
               {"scene", r.scene},
@@ -72,7 +65,7 @@ json figure_row(const Row& r) {
   add("plugin", engine_of(*r.run));
   add("message", r.run->outcome.message);
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
-  if (const json bad = violated(r); !bad.empty()) out["violated"] = bad;
+  for (const std::string& name : violated_bounds(*r.run)) out["violated"].push_back({name, rounded(r.value(name))});
   add_times(r, out);
   if (r.part == Part::Contact) out["speed"] = finite_or_null(r.value("imposed_speed_m_per_s"));
   if (r.part == Part::Generated) {
@@ -139,24 +132,28 @@ json table_json(const ViewTable& t, const RunTable& table) {
           {"solvers", solvers}};
 }
 
-std::string escaped(const std::string& text) {
+std::string replaced(const std::string& text, const std::map<char, const char*>& by) {
   std::string out;
+  out.reserve(text.size());
   for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+    if (const auto at = by.find(c); at != by.end())
+      out += at->second;
+    else
+      out += c;
   return out;
 }
 
+std::string escaped(const std::string& text) {
+  return replaced(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
+}
+
 std::string table_html(const Table& t) {
-  std::string out = "<table><caption>" + escaped(t.title) + "</caption>";
+  std::string out = "<table><caption>" + escaped(t.title) + "</caption><thead>";
   for (std::size_t k = 0; k < t.rows.size(); ++k) {
-    out += k == 0 ? "<thead><tr>" : "<tr>";
+    out += "<tr>";
     for (std::size_t c = 0; c < t.rows[k].size(); ++c) {
-      const char* tag = k == 0 || c == 0 ? "th" : "td";
-      out += fmt::format("<{}{}>{}</{}>", tag,
-                         k == 0   ? " scope=\"col\""
-                         : c == 0 ? " scope=\"row\""
-                                  : "",
-                         escaped(t.rows[k][c]), tag);
+      const std::string cell = k == 0 ? "th scope=\"col\"" : c == 0 ? "th scope=\"row\"" : "td";
+      out += fmt::format("<{}>{}</{}>", cell, escaped(t.rows[k][c]), cell.substr(0, 2));
     }
     out += k == 0 ? "</tr></thead><tbody>" : "</tr>";
   }
@@ -186,29 +183,15 @@ std::string head_html(const Page& page) {
 }
 
 /// Text inside a script element ends at "</script" or changes its meaning at "<!--": neither is left.
-std::string script_safe(const std::string& json_text) {
-  std::string out;
-  out.reserve(json_text.size());
-  for (const char c : json_text)
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  return out;
-}
+std::string script_safe(const std::string& json_text) { return replaced(json_text, {{'<', "\\u003c"}}); }
 
 }  // namespace
 
 json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
 
-json figure_rows(const RunTable& table) {
-  json out = json::array();
-  for (const Row& r : table.rows()) out.push_back(figure_row(r));
-  return out;
-}
-
 json page_document(const RunTable& table, const Page& page) {
-  json shown = json::array(), rows = figure_rows(table);
+  json shown = json::array(), rows = json::array();
+  for (const Row& r : table.rows()) rows.push_back(figure_row(r));
   json studies = studies_of(table, rows);
   for (const PageSection& s : page.sections) {
     json tables = json::array();

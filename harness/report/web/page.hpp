@@ -39,13 +39,9 @@ struct Page {
   Heading heading;
   std::vector<std::string> warnings;  ///< sentences about the whole report: a software device, invalid measurements
   std::vector<Tile> tiles;
-  std::vector<std::string> notes;  ///< on plugins, overhead, verdicts
+  std::vector<std::string> notes;  ///< on plugins, verdicts
   std::vector<PageSection> sections;
 };
-
-/// Data of all figures: one object per run or published value, with the summary values that figures show. Missing =
-/// null.
-nlohmann::json figure_rows(const RunTable&);
 
 /// Maximum size of packed motions and colliders in one page, as base64.
 inline constexpr std::size_t kMotionBudget_B = 13'000'000;
@@ -65,9 +61,8 @@ struct PackedMotion {
 /// Packs all frames of a replay; the result has no frames if the first is not finite.
 PackedMotion pack_motion(const Replay&);
 
-/// Motions of the runs, for the viewer. The document has `runs` (index into figure_rows, frames, index into `blobs`),
-/// `colliders` (by scene; arrays as words of 32 bits) and `left_out` (a number).
-/// `blobs`: base64 of zlib.
+/// Motions of the runs, for the viewer. The document has `runs` (index into the document's runs, frames, index into
+/// `blobs`), `colliders` (by scene; arrays as words of 32 bits) and `left_out` (a number). `blobs`: base64 of zlib.
 struct Motions {
   nlohmann::json document;
   std::vector<std::string> blobs;

@@ -109,7 +109,7 @@ function draw_axes(look, panel, x, y, box, first) {
       last = at + half;
     }
     const upright = wide && panel.x.values.some(v => wide < x.text(v).length * look.size * 0.56);
-    out += upright ? text(look, at + look.size / 3, bottom + 7, words, {anchor: 'end', rotate: -90, size: look.size - 1}) :
+    out += upright ? text(look, at + look.size / 3, bottom + 7, words, {anchor: 'end', rotate: -90, size: look.small}) :
                      text(look, at, bottom + look.size + 4, words, {anchor: 'middle'});
   }
   if (panel.x.title) out += text(look, right, bottom + 2 * look.size + 9, panel.x.title, {anchor: 'end', colour: 'var(--ink)'});
@@ -188,7 +188,7 @@ function draw_mark(look, m, x, y, index, box) {
   const along = m.along === 'x' ? (p, q) => `M${px(x.at(p))} ${px(b)}H${px(x.at(q))}` : (p, q) => `M${px(a)} ${px(y.at(p))}V${px(y.at(q))}`;
   if (m.high > m.low) out += line(along(m.low, m.high), colour, ` stroke-width="${1.6 * look.unit}"`);
   if (m.thick) out += line(along(...m.thick), colour, ` stroke-width="${7 * look.unit}" stroke-opacity="0.35"`);
-  if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.size - 1});
+  if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.small});
   return out + (m.kind === 'none' ? '' : symbol(look, solver, a, b, m.open, hit));
 }
 

@@ -12,6 +12,9 @@ export function element(tag, attributes = {}, ...children) {
   return e;
 }
 
+export const button = (words, label, clicked, more = {}) =>
+    element('button', {type: 'button', 'aria-label': label, onclick: clicked, ...more}, words);
+
 export function select(label, options, value, changed) {
   const list = element(
       'select', {onchange: () => changed(list.value)},
@@ -20,7 +23,7 @@ export function select(label, options, value, changed) {
 }
 
 export function download(name, type, content) {
-  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], {type}));
+  const url = URL.createObjectURL(new Blob([content], {type}));
   const link = element('a', {href: url, download: name});
   document.body.append(link);
   link.click();

@@ -1,8 +1,9 @@
 // The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by chart.js. An entry:
 //   {id, section, title(state), caption, choices?, rows(state), chart(rows, state, width), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `chart` makes panels of those that the filter of solvers leaves. `columns`: fields of a row, for the table and the
-// CSV. `stills`: pictures beside the report, [{file, state}]. `hero`: may be the figure of the first screen.
+// solver; `chart` makes panels of those that the filter of solvers leaves. `columns`: fields of a row, for the table behind it.
+// `stills`: pictures beside the report, [{file, state}]; by default one, named by the id. `hero`: may be the figure of the first
+// screen, for which the first one is taken.
 import {number, unique} from './chart.js';
 
 const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
@@ -209,31 +210,11 @@ function frame_times(doc) {
     tip: r =>
         [`${r.label}, ${r.scene}`, `p50 ${ms(r.p50_s)} (95 %: ${ms(r.low_s)} to ${ms(r.high_s)})`,
          `p95 ${ms(r.p95_s)}, p99 ${ms(r.p99_s)}, worst ${ms(r.worst_s)}`, `${r.trials} trials, ${r.trust}`],
-    columns: ['scene', 'label', 'p50_s', 'low_s', 'high_s', 'p95_s', 'p99_s', 'worst_s', 'trials'],
-    stills: [{file: 'frame-times', state: {}}]
+    columns: ['scene', 'label', 'p50_s', 'low_s', 'high_s', 'p95_s', 'p99_s', 'worst_s', 'trials']
   };
 }
 
 // Contact and stability ------------------------------------------------------
-
-/// A cell per pair of `x` and `y`, both fields of the rows; in wide windows many rows become columns.
-function heat_map(rows, x, y, tones, width, cell) {
-  const across = unique(rows.map(r => r[x])), down = unique(rows.map(r => r[y])), turned = width >= 740 && down.length >= 12;
-  const axes = [{type: 'band', values: across}, {type: 'band', values: down, text: v => v.length > 30 ? `${v.slice(0, 29)}…` : v}];
-  if (turned) axes.reverse();
-  return {
-    row: turned ? 24 : 18,
-    tones,
-    panels: [{
-      x: axes[0],
-      y: axes[1],
-      marks: rows.map(r => {
-        const [tone, glyph] = cell(r);
-        return {kind: 'cell', x: turned ? r[y] : r[x], y: turned ? r[x] : r[y], tone, glyph, row: r};
-      })
-    }]
-  };
-}
 
 const kVerdicts = {
   pass: ['pass', '✓'],
@@ -256,13 +237,20 @@ function verdicts(doc) {
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Select a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), row: r})),
-    chart: (rows, s, width) => heat_map(
-        rows, 'label', 'scene',
-        [['pass', 'pass'], ['fail', 'fail'], ['ignored', 'ignored: no contact simulated'], ['none', 'unsupported, or not measured']], width,
-        tone_of),
+    chart: (rows, s, width) => {
+      const [across, down] = ['label', 'scene'].map(field => unique(rows.map(r => r[field])));
+      const turned = width >= 740 && down.length >= 12;  // in wide windows many scenes become columns
+      const axes = [{type: 'band', values: across}, {type: 'band', values: down, text: v => v.length > 30 ? `${v.slice(0, 29)}…` : v}];
+      const [x, y] = turned ? axes.reverse() : axes;
+      const cell = r => ({kind: 'cell', x: turned ? r.scene : r.label, y: turned ? r.label : r.scene, tone: tone_of(r)[0], glyph: tone_of(r)[1], row: r});
+      return {
+        row: turned ? 24 : 18,
+        tones: [['pass', 'pass'], ['fail', 'fail'], ['ignored', 'ignored: no contact simulated'], ['none', 'unsupported, or not measured']],
+        panels: [{x, y, marks: rows.map(cell)}]
+      };
+    },
     tip: r => [`${r.label}, ${r.scene}: ${r.verdict}`, ...why(r), ...(r.message ? [r.message] : [])],
-    columns: ['scene', 'label', 'verdict', 'criteria'],
-    stills: [{file: 'verdicts', state: {}}]
+    columns: ['scene', 'label', 'verdict', 'criteria']
   };
 }
 
@@ -288,8 +276,7 @@ function failure_speed(doc) {
       }]
     }),
     tip: r => [`${r.label}, ${r.scene}`, `${number(r.speed)} m/s: ${r.verdict}`, ...why(r)],
-    columns: ['scene', 'label', 'speed', 'verdict'],
-    stills: [{file: 'failure-speed', state: {}}]
+    columns: ['scene', 'label', 'speed', 'verdict']
   };
 }
 
@@ -300,82 +287,59 @@ export function wilson(passed, all) {
   return [Math.max(0, middle - half), Math.min(1, middle + half)];
 }
 
-/// One row for each label and value of `field`, with `count(runs)`; `first`: a value that stands for all runs.
-function tally(runs, field, count, first = []) {
-  return unique(runs.map(r => r.label)).flatMap(label => [...first, ...unique(runs.map(r => r[field])).sort()].flatMap(value => {
-    const mine = runs.filter(r => r.label === label && (first.includes(value) || r[field] === value));
-    return mine.length ? [{solver: mine[0].solver, label, [field]: value, ...count(mine)}] : [];
-  }));
-}
-
-function forest(doc) {
-  const all = judged(doc, 'generated').filter(r => r.status !== 'missing');
-  if (!all.length) return null;
-  const rows = tally(all, 'kind', mine => {
-    const scenes = mine.length, passed = mine.filter(r => r.verdict === 'pass').length, [low, high] = wilson(passed, scenes);
-    return {scenes, passed, low, high, unsupported: mine.filter(r => r.status === 'unsupported').length};
-  }, ['all']);
-  return {
-    id: 'forest',
-    section: 'contact',
+/// The share of good runs by solver and value of `field`, with its interval; `more`: what the figure adds.
+function shares(runs, field, is_good, more) {
+  const row = (label, value, mine) => {
+    const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
+    return {solver: mine[0].solver, study: mine[0].study, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high};
+  };
+  const rows = unique(runs.map(r => r.label)).flatMap(label => {
+    const mine = runs.filter(r => r.label === label), values = unique(mine.map(r => r[field])).sort();
+    return [row(label, 'all', mine), ...values.map(value => row(label, value, mine.filter(r => r[field] === value)))];
+  });
+  return rows.length && {
     hero: true,
-    title: () => 'Pass rate by kind of generated scene',
-    caption:
-        'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.',
     rows: () => rows,
     chart: (given, s, width) => ({
+      row: 18,
       right: 16,
-      columns: width < 560 ? 2 : 6,
+      columns: Math.max(2, Math.min(6, Math.floor(width / 125))),
       panels: unique(given.map(r => r.label)).map(label => {
-        const mine = given.filter(r => r.label === label), along = 'x';
+        const mine = given.filter(r => r.label === label);
         return {
           title: label,
           solver: mine[0].solver,
           x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => `${100 * t} %`, title: ''},
-          y: {type: 'band', values: unique(rows.map(r => r.kind))},
+          y: {type: 'band', values: unique(rows.map(r => r[field]))},
           marks: mine.map(
-              r => r.unsupported === r.scenes ? {kind: 'none', x: 0.02, y: r.kind, note: 'unsupported', row: r} :
-                                                {kind: 'point', x: r.passed / r.scenes, y: r.kind, low: r.low, high: r.high, along, row: r})
+              r => r.unsupported === r.runs ? {kind: 'none', x: 0.02, y: r[field], note: 'unsupported', row: r} :
+                                              {kind: 'point', x: r.good / r.runs, y: r[field], low: r.low, high: r.high, along: 'x', row: r})
         };
       })
     }),
-    tip: r => [`${r.label}, ${r.kind}`, `${r.passed} of ${r.scenes} passed (95 %: ${percent(r.low)} to ${percent(r.high)})`],
-    columns: ['label', 'kind', 'passed', 'scenes', 'unsupported', 'low', 'high'],
-    stills: [{file: 'forest', state: {}}]
+    tip: r => [`${r.label}, ${r[field]}`, `${r.good} of ${r.runs} (95 %: ${percent(r.low)} to ${percent(r.high)})`],
+    columns: ['label', field, 'good', 'runs', 'unsupported', 'low', 'high'],
+    ...more
   };
 }
 
-function stability(doc) {
-  const all = doc.runs.filter(r => r.part === 'stability' && (r.grade >= 0 || r.status === 'unsupported'));
-  const rows = tally(all, 'case', mine => {
-    const [stable, degraded, failed] = [0, 1, 2].map(k => mine.filter(r => r.grade === k).length);
-    return {stable, degraded, failed, runs: stable + degraded + failed, row: mine.find(r => r.grade > 0) ?? mine[0]};
-  });
-  return rows.length && {
-    id: 'stability',
-    section: 'stability',
-    hero: true,
-    title: () => 'Stable runs by case',
-    caption:
-        'Stable runs of all runs of a case. A run is degraded if only its strain is beyond the load, and failed with any other failure class.',
-    rows: () => rows,
-    chart: given => heat_map(
-        given, 'label', 'case',
-        [['pass', 'all stable'], ['part', 'some stable or degraded'], ['fail', 'none stable'], ['none', 'unsupported']], 0,
-        r => !r.runs ? ['none', '–'] :
-                       [r.stable === r.runs        ? 'pass' :
-                            r.stable + r.degraded ? 'part' :
-                                                     'fail',
-                        `${r.stable}/${r.runs}`]),
-    tip: r => [`${r.label}, ${r.case}`, `${r.stable} stable, ${r.degraded} degraded, ${r.failed} failed`],
-    columns: ['label', 'case', 'stable', 'degraded', 'failed'],
-    stills: [{file: 'stability-cases', state: {}}]
-  };
-}
+const forest = doc => shares(judged(doc, 'generated').filter(r => r.status !== 'missing'), 'kind', r => r.verdict === 'pass', {
+  id: 'forest',
+  section: 'contact',
+  title: () => 'Pass rate by kind of generated scene',
+  caption: 'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
+});
+
+const stability = doc => shares(doc.runs.filter(r => r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported')), 'case', r => r.grade === 0, {
+  id: 'stability',
+  section: 'stability',
+  title: () => 'Stable runs by case',
+  caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson).'
+});
 
 /// All figures that the document has runs for.
 export const make_figures = doc =>
-    [error_time, rates, frame_times, verdicts, failure_speed, forest, stability].map(make => make(doc)).filter(Boolean);
+    [error_time, verdicts, forest, failure_speed, rates, stability, frame_times].map(make => make(doc)).filter(Boolean);
 
 /// The choices of a figure with their defaults, where `given` has none that fits.
 export function settled(figure, given) {

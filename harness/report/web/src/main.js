@@ -1,6 +1,6 @@
 // Builds the page from its document: figures and tables by section, the filter of solvers, contents, theme and motions.
 import {symbol, unique} from './chart.js';
-import {element, say} from './dom.js';
+import {button, element, say} from './dom.js';
 import {make_figures} from './figures.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
@@ -27,43 +27,33 @@ function chips(doc, look) {
   const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b)),
         plugins = new Set(doc.runs.filter(r => r.plugin).map(r => r.solver));
   $('chips').append(...solvers.map(s => {
-    const chip = element('button', {
-      type: 'button',
-      'aria-pressed': String(shown(s)),
-      onclick: () => {
-        toggle_solver(s);
-        chip.setAttribute('aria-pressed', String(shown(s)));
-        say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
-      }
-    });
+    const chip = button('', null, () => {
+      toggle_solver(s);
+      chip.setAttribute('aria-pressed', String(shown(s)));
+      say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
+    }, {'aria-pressed': String(shown(s))});
     chip.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(look), s, 0, 0)}</svg>`;
     chip.append(s + (plugins.has(s) ? '†' : ''));
     return chip;
   }));
 }
 
-/// The first figure and the first table stand side by side on the first screen.
-function first_screen(doc, look, figures) {
-  const hero = figures.find(f => f.hero), overview = doc.sections.find(s => s.id === 'overview'), tables = overview?.tables ?? [];
-  $('hero').replaceChildren(...(hero ? [figure_block(doc, look, hero)] : []));
-  $('first-table').replaceChildren(...tables.slice(0, 1).map(t => table_block(doc, look, t)));
-  $('overview').append(...tables.slice(1).map(t => table_block(doc, look, t)));
-  return hero;
-}
-
+/// The first figure and the first table stand side by side on the first screen; each other one in its section.
 function sections(doc, look) {
-  const figures = make_figures(doc), hero = first_screen(doc, look, figures), links = [['overview', 'Overview']];
-  for (const s of doc.sections.filter(s => s.id !== 'overview')) {
-    const method = kMethod.includes(s.id), blocks = [
+  const figures = make_figures(doc), hero = figures.find(f => f.hero), [lead, ...rest] = doc.sections.flatMap(s => s.tables),
+        links = [['overview', 'Overview']];
+  $('hero').replaceChildren(hero ? figure_block(doc, look, hero) : '');
+  $('first-table').replaceChildren(lead ? table_block(doc, look, lead) : '');
+  for (const s of doc.sections) {
+    const blocks = [
       ...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)),
-      ...s.tables.map(t => table_block(doc, look, t))
+      ...s.tables.filter(t => rest.includes(t)).map(t => table_block(doc, look, t))
     ];
-    if (method)
+    if (kMethod.includes(s.id)) {
       $('method-tables').append(...blocks);
-    else {
-      $('sections')
-          .append(
-              element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, element('h2', {id: `${s.id}-title`}, s.title), blocks));
+    } else if (blocks.length) {
+      const title = element('h2', {id: `${s.id}-title`}, s.title);
+      $('sections').append(element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, title, blocks));
       links.push([s.id, s.title]);
     }
   }
@@ -130,7 +120,7 @@ function start_navigation() {
 function start() {
   const doc = JSON.parse($('clothbench-data').textContent), anchor = load_state();
   const look = looks(unique(doc.runs.map(r => r.solver)), doc.solvers);
-  document.head.append(element('style', {}, style_of(look)));
+  document.head.append(element('style', {}, style_of(look), `@page{@top-left{content:${JSON.stringify(doc.title)}}}`));
   document.documentElement.classList.add('js');
   window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
   start_theme();

@@ -109,7 +109,7 @@ export class Panel {
 
   dispose() {
     this.scene.traverse(o => o.geometry?.dispose());
-    this.lit.map.dispose();
+    this.lit.map?.dispose();
     for (const m of [this.lit, this.unlit, this.solid]) m.dispose();
   }
 }

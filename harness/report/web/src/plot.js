@@ -1,10 +1,10 @@
 // The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
 // its values and downloads as a picture.
 import {draw, draw_on_paper, paper_widths} from './chart.js';
-import {download, element, file_name, say, select} from './dom.js';
+import {button, download, element, file_name, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
 import {page_look, paper_look, set_value, shown, state} from './state.js';
-import {copy_command, near_window, ShownTable} from './tables.js';
+import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
 const figures = [];
@@ -34,20 +34,11 @@ class Figure {
     this.choices = entry.choices ?? [];
     this.controls = this.choices.map(c => select(c.label, [], '', v => this.choose(c.label, v)));
     this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
+    this.again = element('span', {});
     this.block = element(
-        'figure', {id: entry.id},
-        element(
-            'div', {class: 'head'},
-            element(
-                'h3', {}, this.heading,
-                element('a', {class: 'anchor', href: `#${entry.id}`, 'aria-label': `Link to figure ${entry.id}`}, '#')),
-            ...this.controls),
-        this.plot, element('figcaption', {}, entry.caption), this.remark,
-        element(
-            'div', {class: 'bar small'}, this.details,
-            ...['SVG', 'PNG'].map(
-                kind => element(
-                    'button', {type: 'button', 'aria-label': `${entry.id}: download as ${kind}`, onclick: () => this.save(kind)}, kind))));
+        'figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
+        element('figcaption', {}, entry.caption), this.remark,
+        element('div', {class: 'bar small'}, this.details, button('SVG', `${entry.id}: download as SVG`, () => this.save())));
     this.listen();
     figures.push(this);
   }
@@ -111,6 +102,7 @@ class Figure {
     this.state = this.settle();
     const rows = this.rows = entry.rows(this.state).filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
     this.heading.textContent = entry.title(this.state);
+    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows.map(r => r.row ?? r)) ?? '');
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;
     if (!rows.length) {
@@ -139,16 +131,10 @@ class Figure {
     this.values.replaceChildren(values.block);
   }
 
-  async save(kind) {
+  save() {
     if (!this.drawn) this.redraw();
-    const name = file_name(this.entry.title(this.state));
-    const {svg, width, height} = draw_on_paper(this.entry, this.rows, this.state, paper_look(this.look), paper_widths['-wide']);
-    if (kind === 'SVG') return download(`${name}.svg`, 'image/svg+xml', svg);
-    const image = new Image(), canvas = Object.assign(document.createElement('canvas'), {width: 4 * width, height: 4 * height});
-    image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
-    await image.decode();
-    canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
-    canvas.toBlob(blob => download(`${name}.png`, 'image/png', blob));
+    const {svg} = draw_on_paper(this.entry, this.rows, this.state, paper_look(this.look), paper_widths['-wide']);
+    download(`${file_name(this.entry.title(this.state))}.svg`, 'image/svg+xml', svg);
   }
 }
 

@@ -3,8 +3,6 @@ export const state = {
   off: new Set(),
   values: {}
 };
-const listeners = [];
-export const on_change = listener => listeners.push(listener);
 
 export function load_state() {
   const [anchor, query = ''] = location.hash.slice(1).split('?'), given = new URLSearchParams(query);
@@ -28,8 +26,7 @@ export function set_value(name, value) {
 export function toggle_solver(solver) {
   state.off.has(solver) ? state.off.delete(solver) : state.off.add(solver);
   save_state();
-  listeners.forEach(l => l());
-  dispatchEvent(new Event('solvers'));  // the viewer is a program of its own
+  dispatchEvent(new Event('solvers'));
 }
 
 export const shown = solver => !solver || !state.off.has(solver);
@@ -51,6 +48,7 @@ export const page_look = (all, narrow) => ({
   colour: s => s in all ? `var(--s${Object.keys(all).indexOf(s)})` : 'var(--soft)',
   symbol: s => all[s]?.symbol ?? 'circle',
   size: narrow ? 11 : 12,
+  small: 11,
   unit: 1,
   stroke: 2,
   symbol_scale: 1,
@@ -59,14 +57,15 @@ export const page_look = (all, narrow) => ({
 
 const kPaper = {
   ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
-  pass: '#8fcab6', part: '#f3d48b', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
-  'on-pass': '#000000', 'on-part': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
+  pass: '#8fcab6', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
+  'on-pass': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
 };
 
 /// Black on white; sizes are in points, since a picture is as wide as a column of text. `paper`: values of the variables.
 export const paper_look = all => ({
   ...page_look(all),
   size: 7.5,
+  small: 7,
   unit: 0.625,  // points for a pixel of the page
   stroke: 1.1,
   symbol_scale: 0.55,

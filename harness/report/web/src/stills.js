@@ -1,9 +1,9 @@
 // Draws the figures of a report in Node; bundle.mjs makes figures.cjs of this file.
 //   node figures.cjs REPORT/index.html OUT
-// writes OUT/<figure>.svg (84 mm wide) and OUT/<figure>-wide.svg (174 mm), OUT/figures.md, which shows the wide ones from the
-// folder above, and OUT/hero.html, the figure of the first screen for readers without JavaScript. Reads the data that the page
-// embeds.
-import {readFileSync, writeFileSync} from 'node:fs';
+// writes OUT/<figure>.svg (84 mm wide) and OUT/<figure>-wide.svg (174 mm), and OUT/figures.md, which shows the wide ones from the
+// folder above. Reads the data that the page embeds, and puts the figure of the first screen into the page, for readers without
+// JavaScript.
+import {readFileSync, renameSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';
 
 import {draw_on_paper, paper_widths, unique} from './chart.js';
@@ -13,11 +13,11 @@ import {looks, paper_look} from './state.js';
 const plain = text => text.replace(/\s+/g, ' ').replace(/[<[\]]/g, c => ({'<': '&lt;', '[': '(', ']': ')'}[c]));
 
 function main(from, out) {
-  const doc = JSON.parse(readFileSync(from, 'utf8').match(/<script type="application\/json" id="clothbench-data">([^]*?)<\/script>/)[1]);
+  const page = readFileSync(from, 'utf8'), doc = JSON.parse(page.match(/<script type="application\/json" id="clothbench-data">([^]*?)<\/script>/)[1]);
   const look = paper_look(looks(unique(doc.runs.map(r => r.solver)), doc.solvers));
   let markdown = '', hero = '';
   for (const figure of make_figures(doc))
-    for (const still of figure.stills) {
+    for (const still of figure.stills ?? [{file: figure.id, state: {}}]) {
       const state = settled(figure, still.state);
       if (Object.entries(still.state).some(([label, value]) => state[label] !== value)) continue;  // no run has this value
       const rows = figure.rows(state), title = plain(figure.title(state));
@@ -27,7 +27,8 @@ function main(from, out) {
       markdown += `![${title}](${basename(out)}/${still.file}-wide.svg)\n\n${title}. ${plain(figure.caption)}\n\n`;
     }
   writeFileSync(join(out, 'figures.md'), markdown);
-  writeFileSync(join(out, 'hero.html'), hero);
+  writeFileSync(`${from}.tmp`, page.replace('<!--clothbench:figure-->', () => hero));
+  renameSync(`${from}.tmp`, from);
 }
 
 const [from, out] = process.argv.slice(2);

@@ -1,14 +1,11 @@
 // Tables: sorted by a click on a head, folded at 15 rows, filtered by solver, each with an anchor and the command of a row.
 import {symbol} from './chart.js';
-import {download, element, file_name, say} from './dom.js';
+import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
-import {on_change, page_look, set_value, shown, state} from './state.js';
-
-const csv_field = text => /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-const to_csv = rows => rows.map(row => row.map(csv_field).join(',') + '\n').join('');
+import {page_look, set_value, shown, state} from './state.js';
 
 const kFolded = 15;
-const kBad = /^(fail\b|diverged|not_finite|timed_out|device_lost|crashed|error\b)/;
+const kBad = /^(fail\b|diverged|not_finite|timed_out|device_lost|crashed|error\b)| !$/;
 const kDim = /^(unsupported|missing|ignored|not measured|not ranked|–)/;
 const kGood = /^pass\b/;
 const kScale = {
@@ -33,58 +30,31 @@ export function copy_command(command) {
   setTimeout(() => note.remove(), 6000);
 }
 
+/// A button that copies the commands of the studies that the runs come from; null if none is known.
+export function reproduce(doc, title, runs) {
+  const commands = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => doc.studies[s].command).filter(Boolean);
+  const all = commands.join('\n'), label = `Reproduce ${title}: copy the command`;
+  return commands.length ? button('reproduce', label, () => copy_command(all), {class: 'quiet', title: all}) : null;
+}
+
+/// A head with an anchor; `more`: controls beside it.
+export const block_head = (id, name, what, more) =>
+    element('div', {class: 'head'}, element('h3', {}, name, element('a', {class: 'anchor', href: `#${id}`, 'aria-label': `Link to ${what}`}, '#')), more);
+
 export class ShownTable {
   constructor(doc, look, table, id) {
     Object.assign(this, {doc, look, table, id, open: false});
-    const [head, ...body] = table.rows;
-    this.numeric = head.map(
-        (_, k) => body.filter(r => !Number.isNaN(value_of(r[k])) || r[k] === '–').length * 2 >= body.length &&
-            body.some(r => !Number.isNaN(value_of(r[k]))));
+    const [head, ...body] = table.rows, number = r => k => !Number.isNaN(value_of(r[k]));
+    this.numeric = head.map((_, k) => body.some(r => number(r)(k)) && body.filter(r => number(r)(k) || r[k] === '–').length * 2 >= body.length);
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`});
-    this.more = element(
-        'button', {
-          type: 'button',
-          class: 'more',
-          onclick: () => {
-            this.open = !this.open;
-            this.fill();
-          }
-        },
-        'Show all rows');
+    this.more = button('Show all rows', null, () => {
+      this.open = !this.open;
+      this.fill();
+    }, {class: 'more'});
     this.block = element(
-        'div', {class: 'table', id: this.id},
-        element(
-            'div', {class: 'head'},
-            element(
-                'h3', {}, table.title, element('a', {class: 'anchor', href: `#${this.id}`, 'aria-label': `Link to ${table.title}`}, '#')),
-            this.reproduce()),
-        this.place,
-        element(
-            'div', {class: 'bar small'}, this.more,
-            element(
-                'button', {
-                  type: 'button',
-                  'aria-label': `${table.title}: download as CSV`,
-                  onclick: () => download(`${file_name(table.title)}.csv`, 'text/csv', to_csv(table.rows))
-                },
-                'CSV')),
-        table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : '');
-  }
-
-  /// The commands of the studies that the table's runs come from.
-  reproduce() {
-    const studies = [...new Set(this.table.runs.map(k => this.doc.runs[k]?.study).filter(s => s !== undefined))];
-    const commands = studies.map(s => this.doc.studies[s].command).filter(Boolean);
-    return commands.length ? element(
-                                 'button', {
-                                   type: 'button',
-                                   class: 'quiet',
-                                   title: commands.join('\n'),
-                                   'aria-label': `Reproduce ${this.table.title}: copy the command`,
-                                   onclick: () => copy_command(commands.join('\n'))
-                                 },
-                                 'reproduce') :
-                             null;
+        'div', {class: 'table', id}, block_head(id, table.title, table.title, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))),
+        this.place, element('div', {class: 'bar small'}, this.more),
+        table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
   }
 
   sorted() {
@@ -104,69 +74,42 @@ export class ShownTable {
 
   head_cell(h, k) {
     const on = this.sort.k === k, next = on ? (this.sort.down ? 'up' : 'down') : this.numeric[k] ? 'down' : 'up';
+    const sort = () => {
+      set_value(`${this.id}.sort`, `${k}.${next}`);
+      this.fill();
+      this.place.querySelectorAll('thead button')[this.columns.indexOf(k)]?.focus();
+    };
+    const arrow = on ? element('span', {'aria-hidden': 'true'}, this.sort.down ? ' ↓' : ' ↑') : null;
     return element(
-        'th', {scope: 'col', class: this.numeric[k] ? 'n' : null, 'aria-sort': on ? (this.sort.down ? 'descending' : 'ascending') : null},
-        element(
-            'button', {
-              type: 'button',
-              onclick: () => {
-                set_value(`${this.id}.sort`, `${k}.${next}`);
-                this.fill();
-                this.place.querySelectorAll('thead button')[this.columns.indexOf(k)]?.focus();
-              }
-            },
-            h || ' ', on ? element('span', {'aria-hidden': 'true'}, this.sort.down ? ' ↓' : ' ↑') : null));
+        'th', {scope: 'col', class: this.numeric[k] && 'n', 'aria-sort': on && (this.sort.down ? 'descending' : 'ascending')},
+        button([h || ' ', arrow], null, sort));
   }
 
   cell(text, k, run) {
-    const icon = k === this.table.solver_column && run && !run.published ?
-        `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>` :
-        '';
-    const tone = kBad.test(text) || / !$/.test(text) ? 'bad' : kGood.test(text) ? 'good' : kDim.test(text) ? 'dim' : '';
-    const c = element(k === 0 ? 'th' : 'td', {
-      scope: k === 0 ? 'row' : null,
-      class:
-          [this.numeric[k]      ? 'n' :
-               text.length > 60 ? 'long' :
-                                  '',
-           tone]
-              .filter(Boolean)
-              .join(' ') ||
-          null
-    });
-    c.innerHTML = icon;
+    const tone = kBad.test(text) ? 'bad' : kGood.test(text) ? 'good' : kDim.test(text) ? 'dim' : '';
+    const shape = this.numeric[k] ? 'n' : text.length > 60 ? 'long' : '';
+    const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null});
+    if (k === this.table.solver_column && run && !run.published)
+      c.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>`;
     c.append(text);
     return c;
   }
 
+  /// The button that copies the command of a row.
+  again({cells, run}) {
+    const command = run && !run.published ? command_of(this.doc, run) : null, label = `Copy the command of ${cells.slice(0, 3).join(', ')}`;
+    return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, run.file].filter(Boolean).join('\n')}) : null;
+  }
+
   fill() {
-    const rows = this.sorted(), {table} = this, [head] = table.rows;
+    const rows = this.sorted(), {table} = this, [head] = table.rows, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
     this.columns = head.map((_, k) => k).filter(k => shown(table.solvers[k]));
-    const commands = rows.map(r => r.run && !r.run.published ? command_of(this.doc, r.run) : null), any = commands.some(Boolean);
-    const shown_rows = this.open ? rows : rows.slice(0, kFolded);
-    this.place.replaceChildren(element(
-        'table', {},
-        element(
-            'thead', {},
-            element('tr', {}, this.columns.map(k => this.head_cell(head[k], k)), any ? element('th', {scope: 'col'}, 'run again') : null)),
-        element(
-            'tbody', {},
-            shown_rows.map(
-                (r, n) => element(
-                    'tr', {class: r.run?.published ? 'published' : null}, this.columns.map(k => this.cell(r.cells[k], k, r.run)),
-                    any ? element(
-                              'td', {},
-                              commands[n] ? element(
-                                                'button', {
-                                                  type: 'button',
-                                                  class: 'quiet',
-                                                  title: `${commands[n]}${r.run.file ? `\n${r.run.file}` : ''}`,
-                                                  'aria-label': `Copy the command of ${r.cells.slice(0, 3).join(', ')}`,
-                                                  onclick: () => copy_command(commands[n])
-                                                },
-                                                'copy') :
-                                                                                       '') :
-                                                                                       null)))));
+    const titles = [this.columns.map(k => this.head_cell(head[k], k)), any ? element('th', {scope: 'col'}, 'run again') : null];
+    const body = (this.open ? rows : rows.slice(0, kFolded)).map(({cells, run}, n) => {
+      const last = any ? element('td', {}, buttons[n] ?? '') : null;
+      return element('tr', {class: run?.published && 'published'}, this.columns.map(k => this.cell(cells[k], k, run)), last);
+    });
+    this.place.replaceChildren(element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body)));
     this.more.hidden = rows.length <= kFolded;
     this.more.textContent = this.open ? `Show ${kFolded} rows` : `Show all ${rows.length} rows`;
     this.filled = true;
@@ -189,7 +132,7 @@ export function near_window(list, made, make) {
       entries => list.filter(t => !made(t) && entries.some(e => e.isIntersecting && e.target === t.block)).forEach(make),
       {rootMargin: '500px'});
   list.forEach(t => near.observe(t.block));
-  on_change(() => list.filter(made).forEach(make));
+  addEventListener('solvers', () => list.filter(made).forEach(make));
   addEventListener('beforeprint', () => list.filter(t => !made(t)).forEach(make));
 }
 

@@ -1,12 +1,12 @@
 // The motions of one scene, side by side and in step: one panel per solver, further settings if there is room.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
 
-import {number} from './chart.js';
-import {element, say, select} from './dom.js';
+import {number, unique} from './chart.js';
+import {button, element, say, select} from './dom.js';
 import {crossing_css, Panel, ramp_css} from './panel.js';
 
-const kFirst = ['push', 'stretch', 'sweep', 'drop'];  // scenes that show a difference at once
 const kColours = ['checks', 'strain', 'penetration'];
 const kStrains = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1], kDepth_m = 5e-3;  // ends of the ramp
 const small = v => v > 0 && v < 1e-3 ? '<0.001' : number(v);
@@ -22,15 +22,12 @@ class Viewer {
     for (const m of motions.runs) m.row = rows[m.run];
     Object.assign(this, {root, motions, rows, panels: [], time: 0, end: 0, playing: false, colouring: 'checks', most: 1, last: 0, stale: true});
     this.build();
-    try {
-      this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true, preserveDrawingBuffer: true});
-    } catch (error) {
-      this.root.replaceChildren(element(
-          'p', {class: 'warning'}, 'Motions need WebGL, which this browser lacks or has disabled. The rest of the page is complete.'));
-      this.broken = String(error);
-      return;
-    }
-    this.renderer.setScissorTest(true);
+    const context = this.canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
+    if (context)
+      this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context});
+    else
+      this.root.prepend(element('p', {class: 'warning'}, 'This browser has no WebGL: motions are drawn slowly, coloured by the direction of the surface.'));
+    this.renderer?.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
     this.controls = new OrbitControls(this.camera, this.canvas);
     const redraw = () => this.stale = true;
@@ -38,11 +35,15 @@ class Viewer {
     addEventListener('theme', redraw);
     addEventListener('solvers', () => this.show_scene(this.scene));
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    this.renderer.setAnimationLoop(now => this.tick(now));
+    const loop = now => {
+      this.tick(now);
+      requestAnimationFrame(loop);
+    };
+    requestAnimationFrame(loop);
   }
 
   build() {
-    const scenes = [...new Set(this.motions.runs.map(m => m.row.scene))], options = list => list.map(s => ({value: s, text: s}));
+    const scenes = unique(this.motions.runs.map(m => m.row.scene)), options = list => list.map(s => ({value: s, text: s}));
     this.canvas = element('canvas', {
       role: 'img',
       tabindex: '0',
@@ -51,7 +52,7 @@ class Viewer {
     });
     this.overlay = element('div', {class: 'panels'});
     this.stage = element('div', {id: 'stage'}, this.canvas, this.overlay);
-    this.play_button = element('button', {type: 'button', onclick: () => this.play(!this.playing)}, '▶ Play');
+    this.play_button = button('▶ Play', null, () => this.play(!this.playing));
     this.scrub = element('input', {
       id: 'scrub',
       type: 'range',
@@ -68,18 +69,7 @@ class Viewer {
             'div', {class: 'bar'}, this.scene_list,
             select('Colour', options(kColours), 'checks', v => this.colour(v)), this.legend),
         this.stage, this.absent = element('p', {class: 'note'}), element('div', {class: 'bar'}, this.play_button, this.scrub, this.clock),
-        element(
-            'details', {}, element('summary', {}, 'Thinning and colours'), this.notes = element('ul', {class: 'note'}),
-            element(
-                'p', {class: 'note'},
-                'Positions come from the result files, rounded to fit this page and interpolated linearly between the frames kept. ' +
-                    'Strain: maximum |length / length in the first frame − 1| of the edges at a vertex; on a grid, of those along rows and ' +
-                    'columns. Penetration: depth in planes, spheres, boxes and capsules at vertices and at the middles of edges and ' +
-                    'triangles, without the margin; for meshes, vertices with an edge that crosses the surface. The numbers under a motion ' +
-                    'and in the tables are computed from the full positions.'),
-            this.motions.left_out ?
-                element('p', {class: 'note'}, `${this.motions.left_out} motions were left out, for lack of room or because they are not finite.`) :
-                null));
+        this.notes = element('ul', {class: 'note'}));
     this.canvas.addEventListener('keydown', e => this.key(e));
   }
 
@@ -101,11 +91,13 @@ class Viewer {
     this.scene_list.querySelector('select').value = scene;
     const off = window.clothbench.state.off, here = this.motions.runs.filter(m => m.row.scene === scene);
     await this.set(here.filter(m => !off.has(m.row.solver)));
-    const without = this.rows.filter(r => r.scene === scene && !here.some(m => m.row.solver === r.solver));
-    this.absent.textContent = [...new Map(without.map(r => [r.solver, r])).values()]
-                                  .map(r => `${r.solver}: ${r.status === 'ok' ? 'its motion is not in this page' : r.status}`)
-                                  .join('; ');
+    const absent = unique(this.rows.filter(r => !r.published).map(r => r.solver)).filter(s => !here.some(m => m.row.solver === s));
+    this.absent.textContent = absent.map(s => `${s}: ${this.why_absent(this.rows.find(r => r.scene === scene && r.solver === s))}`).join('; ');
     say(`${scene}: ${this.panels.length} motions`);
+  }
+
+  why_absent(row) {
+    return !row ? 'not run' : row.status === 'ok' ? 'its motion is not in this page' : row.status;
   }
 
   async set(entries) {
@@ -131,9 +123,12 @@ class Viewer {
     this.overlay.style.grid = `repeat(${this.rows_of_panels}, 1fr) / repeat(${this.columns}, 1fr)`;
     this.overlay.replaceChildren(...this.panels.map(p => {
       p.readout = element('output', {});
-      return element('div', {class: 'panel'}, element('b', {}, p.motion.entry.row.label), p.readout);
+      p.place = element('div', {class: 'panel'}, element('b', {}, p.motion.entry.row.label), p.readout);
+      return p.place;
     }));
-    this.notes.replaceChildren(...this.panels.map(p => element('li', {}, `${p.motion.entry.row.label}: ${p.motion.thinning()}.`)));
+    const {left_out} = this.motions, notes = this.panels.map(p => `${p.motion.entry.row.label}: ${p.motion.thinning()}.`);
+    if (left_out) notes.push(`${left_out} motions were left out, for lack of room or because they are not finite.`);
+    this.notes.replaceChildren(...notes.map(n => element('li', {}, n)));
     this.colour(this.colouring);
     this.resize();
     this.look();
@@ -143,8 +138,8 @@ class Viewer {
     const width = this.stage.clientWidth || 800, tile = width / (this.columns ?? 1);
     const height = Math.round(Math.min(tile * (this.columns > 1 ? 1.05 : 0.6), 460)) * (this.rows_of_panels ?? 1);
     this.stage.style.height = `${height}px`;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
-    this.renderer.setSize(width, height, false);
+    this.renderer?.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
+    this.renderer?.setSize(width, height, false);
     this.stale = true;
   }
 
@@ -216,11 +211,24 @@ class Viewer {
       const shown = p.show(this.time, this.colouring, this.most);
       p.scene.background = new THREE.Color(is_dark() ? 0x1a2028 : 0xf2f4f6);
       p.readout.textContent = this.readout(p, shown);
+      if (!this.renderer) return this.draw_svg(p, width, height);
       const x = (k % this.columns) * width, y = this.stage.clientHeight - (Math.floor(k / this.columns) + 1) * height;
       this.renderer.setViewport(x, y, width, height);
       this.renderer.setScissor(x, y, width, height);
       this.renderer.render(p.scene, this.camera);
     });
+  }
+
+  /// The same picture without WebGL.
+  draw_svg(p, width, height) {
+    if (!p.svg) {
+      p.svg = new SVGRenderer();
+      p.lit = new THREE.MeshNormalMaterial({side: THREE.DoubleSide});  // its lights leave one side of a cloth dark
+      for (const c of p.colliders) c.object.traverse(o => o.material &&= new THREE.MeshBasicMaterial({color: p.solid.color}));
+    }
+    p.svg.setSize(width, height);
+    p.svg.render(p.scene, this.camera);
+    p.place.prepend(p.svg.domElement);
   }
 
   readout({motion}, shown) {
@@ -234,11 +242,9 @@ class Viewer {
 }
 
 window.clothbench_viewer = (root, motions, rows) => {
-  const viewer = new Viewer(root, motions, rows);
-  if (!viewer.broken) {
-    const touching = motions.runs.filter(m => motions.colliders[m.colliders].length);
-    const first = kFirst.map(word => touching.find(m => m.row.scene.includes(word))).find(Boolean) ?? touching[0] ?? motions.runs[0];
-    viewer.ready = viewer.show_scene(first.row.scene);
-  }
+  const viewer = new Viewer(root, motions, rows), is_drawn = m => m.row.part === 'generated';
+  const touching = motions.runs.filter(m => motions.colliders[m.colliders].length).sort((a, b) => is_drawn(a) - is_drawn(b));
+  const first = window.clothbench.document.solvers.leading_scenes.map(word => touching.find(m => m.row.scene.includes(word))).find(Boolean);
+  viewer.ready = viewer.show_scene((first ?? touching[0] ?? motions.runs[0]).row.scene);
   return viewer;
 };

@@ -1,0 +1,99 @@
+// The figures of a report without a browser: what they count and leave out, sizes on paper, and colours and symbols of
+// solvers (harness/report/solvers.json), which are told apart with every common colour blindness.
+//   node figures.mjs ROOT
+import assert from 'node:assert';
+import {readFileSync} from 'node:fs';
+import {join} from 'node:path';
+
+const report = join(process.argv[2], 'harness/report'), roles = JSON.parse(readFileSync(join(report, 'solvers.json'), 'utf8'));
+const {draw_on_paper, number, paper_widths} = await import(join(report, 'web/src/chart.js'));
+const {make_figures, settled} = await import(join(report, 'web/src/figures.js'));
+const {looks, paper_look} = await import(join(report, 'web/src/state.js'));
+
+// What is no number never stands in a text.
+assert.deepEqual([NaN, Infinity, null, undefined, 0, 12.345, 4.5e-7].map(v => number(v)), ['–', '–', '–', '–', '0', '12.3', '4.5·10⁻⁷']);
+
+/// Many scenes, solvers and settings of every kind.
+const solvers = Object.keys(roles.look), runs = [];
+for (const [n, solver] of solvers.entries()) {
+  const common = {solver, label: solver, setting: 'default', status: 'ok', wall: [1e-3, 9e-4, 1.1e-3, 2e-3, 3e-3, 0.1], trials: 3, trust: 'alone'};
+  for (let k = 0; k < 60; ++k) runs.push({...common, part: 'contact', scene: `scene-with-a-long-name-${k}`, verdict: k % 3 ? 'pass' : 'fail'});
+  for (const [speed, verdict] of [[0.5, 'pass'], [2, 'fail'], [8, 'not measured']]) runs.push({...common, part: 'contact', scene: `sweep-${String(speed).replace('.', 'p')}mps`, speed, verdict});
+  for (let k = 0; k < 9; ++k) runs.push({...common, part: 'generated', kind: `kind-${k}`, verdict: k < n ? 'pass' : k === 8 ? 'unsupported' : 'fail', status: k === 8 ? 'unsupported' : 'ok'});
+  for (let k = 0; k < 26; ++k) runs.push({...common, part: 'stability', case: `S${k} some case`, grade: k % 3, verdict: 'pass'});
+  for (let k = 1; k < 9; ++k) {
+    const times = {wall_ms_per_s: 10 ** k, error: 10 ** -k, space_error: 1e-4, reference_uncertainty: 1e-9};
+    runs.push({...common, ...times, part: 'accuracy', scene: 'swing', setting: `substeps=${k}`, label: `${solver} substeps=${k}`, ranking: 'RMS error', refused: '', not_ranked: ''});
+    runs.push({...common, part: 'rates', family: 'fall', paper_table: 3, width: 2 ** k, resolution: `${2 ** k}²`, fps_median: 1e5 / 2 ** k, fps_low: 9e4 / 2 ** k, fps_high: 1.1e5 / 2 ** k, free_fall_error: 1e-6});
+  }
+}
+const doc = {runs, solvers: roles, studies: []}, figures = Object.fromEntries(make_figures(doc).map(f => [f.id, f])), rows = id => figures[id].rows(settled(figures[id], {}));
+assert.deepEqual(Object.keys(figures), ['error-time', 'verdicts', 'forest', 'failure-speed', 'rates', 'stability', 'frame-times']);
+// A verdict that was not measured is no failure, and nothing unsupported passed.
+assert.deepEqual([...new Set(rows('failure-speed').map(r => r.speed))], [0.5, 2]);
+const all = rows('forest').find(r => r.kind === 'all' && r.solver === solvers[3]);
+assert.deepEqual([all.good, all.runs, all.unsupported, Math.round(100 * all.low), Math.round(100 * all.high)], [3, 9, 1, 12, 65]);
+const stable = rows('stability').find(r => r.case === 'all');
+assert.deepEqual([stable.good, stable.runs], [9, 26]);
+
+// On paper: one or two columns of text wide, at most 110 mm tall, with letters of 7 to 8 points.
+const kPoint = 25.4 / 72, look = paper_look(looks(solvers, roles));
+for (const figure of Object.values(figures))
+  for (const width of Object.values(paper_widths)) {
+    const state = settled(figure, {}), {svg} = draw_on_paper(figure, figure.rows(state), state, look, width);
+    const [, wide, tall] = svg.match(/width="([\d.]+)pt" height="([\d.]+)pt"/).map(Number), sizes = [...svg.matchAll(/font-size="([\d.]+)"/g)].map(m => Number(m[1]));
+    assert.ok([84, 174].includes(Math.round(wide * kPoint)) && tall * kPoint < 110.5, `${figure.id}: ${wide * kPoint} x ${tall * kPoint} mm`);
+    assert.ok(sizes.every(s => s >= 7 && s <= 8), `${figure.id}: letters of ${[...new Set(sizes)]} points`);
+    assert.ok(!/NaN|undefined|var\(/.test(svg), `${figure.id}: ${svg.match(/.{80}(NaN|undefined|var\().{40}/)?.[0]}`);
+  }
+
+const kLeastDistance = 15, kLeastContrast = 3;  // CIEDE2000; WCAG 2 for graphics
+const kBack = {light: '#ffffff', dark: '#12161c'};
+// Machado, Oliveira and Fernandes (2009), severity 1.
+const kVision = {
+  normal: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  protanopia: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+  deuteranopia: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+  tritanopia: [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]]
+};
+const times = (m, v) => m.map(row => row.reduce((sum, x, k) => sum + x * v[k], 0));
+const linear = hex => [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16) / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+
+function lab(rgb) {
+  const xyz = times([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.072175], [0.0193339, 0.119192, 0.9503041]], rgb.map(c => Math.min(Math.max(c, 0), 1)));
+  const [x, y, z] = [xyz[0] / 0.95047, xyz[1], xyz[2] / 1.08883].map(t => t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116);
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+/// CIEDE2000 (Sharma, Wu and Dalal 2005).
+function distance([l1, a1, b1], [l2, a2, b2]) {
+  const rad = Math.PI / 180, mean_c = (Math.hypot(a1, b1) + Math.hypot(a2, b2)) / 2, g = 0.5 * (1 - Math.sqrt(mean_c ** 7 / (mean_c ** 7 + 25 ** 7)));
+  const [p1, p2] = [(1 + g) * a1, (1 + g) * a2], [c1, c2] = [Math.hypot(p1, b1), Math.hypot(p2, b2)];
+  const hue = (a, b) => (Math.atan2(b, a) / rad + 360) % 360, [h1, h2] = [hue(p1, b1), hue(p2, b2)];
+  const dh = c1 * c2 === 0 ? 0 : ((h2 - h1 + 540) % 360) - 180, dH = 2 * Math.sqrt(c1 * c2) * Math.sin(dh / 2 * rad);
+  const l = (l1 + l2) / 2, c = (c1 + c2) / 2, h = c1 * c2 === 0 ? h1 + h2 : (h1 + dh / 2 + 360) % 360;
+  const t = 1 - 0.17 * Math.cos((h - 30) * rad) + 0.24 * Math.cos(2 * h * rad) + 0.32 * Math.cos((3 * h + 6) * rad) - 0.2 * Math.cos((4 * h - 63) * rad);
+  const sl = 1 + 0.015 * (l - 50) ** 2 / Math.sqrt(20 + (l - 50) ** 2), sc = 1 + 0.045 * c, sh = 1 + 0.015 * c * t;
+  const turn = -2 * Math.sqrt(c ** 7 / (c ** 7 + 25 ** 7)) * Math.sin(60 * Math.exp(-(((h - 275) / 25) ** 2)) * rad);
+  const [x, y, z] = [(l2 - l1) / sl, (c2 - c1) / sc, dH / sh];
+  return Math.sqrt(x * x + y * y + z * z + turn * y * z);
+}
+assert.ok(Math.abs(distance([50, 2.6772, -79.7751], [50, 0, -82.7485]) - 2.0425) < 1e-3, 'a published pair of the formula');
+
+const names = Object.keys(roles.look), luminance = hex => times([[0.2126, 0.7152, 0.0722]], linear(hex))[0];
+let least = Infinity;
+for (const [at, theme] of [[1, 'light'], [2, 'dark']]) {
+  for (const [k, a] of names.entries()) {
+    const [low, high] = [luminance(roles.look[a][at]), luminance(kBack[theme])].sort((x, y) => x - y);
+    assert.ok((high + 0.05) / (low + 0.05) >= kLeastContrast, `${theme}: contrast of ${a}`);
+    for (const b of names.slice(k + 1))
+      for (const [vision, matrix] of Object.entries(kVision)) {
+        const apart = distance(...[a, b].map(n => lab(times(matrix, linear(roles.look[n][at])))));
+        least = Math.min(least, apart);
+        assert.ok(apart >= kLeastDistance, `${theme}, ${vision}: ${a} and ${b} are ${apart.toFixed(1)} apart`);
+      }
+  }
+}
+const symbols = [...Object.values(roles.look), ...roles.spare].map(l => l[0]);
+assert.equal(new Set(symbols).size, symbols.length, 'each solver has a symbol of its own');
+console.log(`${names.length} solvers, at least ${least.toFixed(1)} apart`);
