@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(realpath -m "${1:-build/arm64-root}")
-packages=(libstdc++6 libvulkan1 libvulkan-dev mesa-vulkan-drivers libbullet-dev libfmt-dev)
+packages=(libstdc++6 libvulkan1 libvulkan-dev mesa-vulkan-drivers libbullet-dev libfmt-dev libopenxr-loader1)
 stamp="$root/.complete"
 wanted=$(printf '%s\n' "${packages[@]}")
 if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ]; then

@@ -225,7 +225,7 @@ def arguments():
     p.add_argument("--clothbench", default=os.path.join(ROOT, "build/release/clothbench"), help="the program that imports the results")
     actions = p.add_subparsers(dest="action", required=True)
     actions.add_parser("install", help="install the app").add_argument("file")
-    actions.add_parser("push", help="copy scenes, or args.txt with the command, to the app's folder").add_argument("file", nargs="+")
+    actions.add_parser("push", help="copy scenes to the app's folder").add_argument("file", nargs="+")
     actions.add_parser("logs", help="print the app's log until Ctrl-C")
     actions.add_parser("restore", help="reset clock levels, refresh rate and proximity sensor to the headset's own")
     for name, what in (("run", "run one command, sample the headset, fetch and import the results"), ("pull", "fetch and import all results on the headset")):
@@ -233,8 +233,8 @@ def arguments():
         action.add_argument("--out", default=f"results/runs/quest-{stamp}", help="folder for what is fetched (default results/runs/quest-<UTC>)")
     action = actions.choices["run"]
     action.add_argument("command", help="command of clothbench: 'study table3'")
-    action.add_argument("--cpu-level", type=int, default=4, choices=range(6), help="default %(default)s; passthrough allows 3")
-    action.add_argument("--gpu-level", type=int, default=4, choices=range(6), help="default %(default)s; passthrough allows 2")
+    action.add_argument("--cpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
+    action.add_argument("--gpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
     action.add_argument("--refresh-hz", type=float, default=72)
     action.add_argument("--settle-s", type=float, default=3, help="seconds after the app's start in which clocks may change (default %(default)s)")
     action.add_argument("--timeout-s", type=float, default=4 * 3600)
@@ -255,7 +255,7 @@ def main():
             "run": lambda: run(adb, a),
         }[a.action]() or 0
     except KeyboardInterrupt:
-        print("quest_run: interrupted. The app keeps every finished trial: the same command continues", file=sys.stderr)
+        print("quest_run: interrupted. The app keeps every finished trial: its log prints the command that continues", file=sys.stderr)
         return 130
     except Problem as e:
         print(f"quest_run: {e}", file=sys.stderr)

@@ -2,9 +2,8 @@
 #
 # Header-only packages are the build machine's own, linked one by one into a folder, because its whole include folder
 # would bring in the wrong C library. Compiled ones belong to the target: Vulkan to the NDK or to CMAKE_FIND_ROOT_PATH,
-# Bullet to CLOTHBENCH_BULLET_SOURCE or CMAKE_FIND_ROOT_PATH. HDF5 and Google Benchmark are not used on a device.
+# Bullet to CMAKE_FIND_ROOT_PATH. HDF5 and Google Benchmark are not used on a device.
 set(CLOTHBENCH_HEADERS /usr/include CACHE PATH "Where the header-only packages lie (CLI, boost, eigen3, fmt, nlohmann, openxr, spirv, valijson, tiny_gltf.h, tiny_obj_loader.h)")
-set(CLOTHBENCH_BULLET_SOURCE "" CACHE PATH "Bullet's source tree, built with the solver; empty: look for libraries")
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 set(staged ${CMAKE_BINARY_DIR}/headers)
@@ -53,9 +52,4 @@ set(CLOTHBENCH_TINYGLTF_INCLUDE ${staged} CACHE PATH "" FORCE)
 if(EXISTS ${CLOTHBENCH_HEADERS}/openxr/openxr_platform.h)
   clothbench_header_link(openxr)
   set(CLOTHBENCH_OPENXR_INCLUDE ${staged} CACHE PATH "" FORCE)
-endif()
-
-if(ANDROID AND NOT CLOTHBENCH_BULLET_SOURCE AND CLOTHBENCH_WITH_BULLET_BASELINE)
-  message(STATUS "bullet-baseline is left out: give Bullet's source tree with -DCLOTHBENCH_BULLET_SOURCE=…")
-  set(CLOTHBENCH_WITH_BULLET_BASELINE OFF)
 endif()

@@ -1,5 +1,5 @@
 // The activity as Android calls it: own ANativeActivity callbacks around a Session. Everything that can
-// be tested without Android lies in session, packed_assets and stdout_tap.
+// be tested without Android lies in session and packed_assets.
 #include <android/asset_manager.h>
 #include <android/input.h>
 #include <android/log.h>
@@ -9,15 +9,16 @@
 #include <jni.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <mutex>
+#include <thread>
 
 #include "android/packed_assets.hpp"
 #include "android/session.hpp"
-#include "android/stdout_tap.hpp"
 #include "base/plugin_environment.hpp"
 #include "cli/command_line.hpp"
+#include "clothbench/error.hpp"
 #ifdef CLOTHBENCH_WITH_XR
 #include "xr/instance.hpp"
 #endif
@@ -29,37 +30,33 @@ constexpr const char* kTag = "clothbench";
 
 void to_log(const std::string& line) { __android_log_write(ANDROID_LOG_INFO, kTag, line.c_str()); }
 
-StdoutTap& tap() {
-  static StdoutTap the_tap(to_log);
-  return the_tap;
+/// Sends stdout and stderr of the process to the log, line by line and until the process ends, because Android discards
+/// them.
+void send_output_to_log() {
+  static const bool once = [] {
+    int ends[2];
+    if (pipe(ends) != 0 || dup2(ends[1], STDOUT_FILENO) < 0 || dup2(ends[1], STDERR_FILENO) < 0)
+      throw Error("stdout cannot be sent to the log", ExitCode::CheckFailed);
+    close(ends[1]);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    std::thread([from = fdopen(ends[0], "r")] {
+      std::string line;
+      for (int c = std::fgetc(from); c != EOF; c = std::fgetc(from)) {
+        if (c != '\n') line += static_cast<char>(c);
+        if (c != '\n' || line.empty()) continue;
+        to_log(line);
+        line.clear();
+      }
+    }).detach();
+    return true;
+  }();
+  (void)once;
 }
 
-/// The activity behind a session; null once destroyed.
-class ActivitySystem final : public System {
- public:
-  explicit ActivitySystem(ANativeActivity* activity) : activity_(activity) {}
-  void log(const std::string& line) override { to_log(line); }
-  void flush() override { tap().flush(); }
-  void finish() override {
-    const std::lock_guard lock(mutex_);
-    if (activity_ != nullptr) ANativeActivity_finish(activity_);
-  }
-  void forget() {
-    const std::lock_guard lock(mutex_);
-    activity_ = nullptr;
-  }
+/// Through stdout, so that it comes after everything printed before.
+void print_line(const std::string& line) { std::printf("%s\n", line.c_str()); }
 
- private:
-  std::mutex mutex_;
-  ANativeActivity* activity_;
-};
-
-struct Instance {
-  std::shared_ptr<ActivitySystem> system;
-  std::unique_ptr<Session> session;
-};
-
-Instance* instance_of(ANativeActivity* a) { return static_cast<Instance*>(a->instance); }
+Session& session_of(ANativeActivity* a) { return *static_cast<Session*>(a->instance); }
 
 /// getIntent().getStringExtra(name); empty if there is none.
 std::string intent_extra(ANativeActivity* a, const char* name) {
@@ -117,7 +114,7 @@ int drain_input(int, int, void* queue) {
 
 /// The command line; of a live session the runtime asks for the activity, which the session's thread outlives for a
 /// moment.
-Command command_of([[maybe_unused]] ANativeActivity* a) {
+std::function<int(const std::vector<std::string>&)> command_of([[maybe_unused]] ANativeActivity* a) {
 #ifdef CLOTHBENCH_WITH_XR
   const xr::AndroidContext context{a->vm, a->env->NewGlobalRef(a->clazz)};
   return [context](const std::vector<std::string>& words) {
@@ -130,13 +127,10 @@ Command command_of([[maybe_unused]] ANativeActivity* a) {
 }
 
 void set_callbacks(ANativeActivityCallbacks& c) {
-  c.onPause = [](ANativeActivity* a) { instance_of(a)->session->pause(); };
-  c.onResume = [](ANativeActivity* a) { instance_of(a)->session->resume(); };
+  c.onPause = [](ANativeActivity* a) { session_of(a).pause(); };
+  c.onResume = [](ANativeActivity* a) { session_of(a).resume(); };
   c.onDestroy = [](ANativeActivity* a) {
-    Instance* instance = instance_of(a);
-    instance->system->forget();
-    instance->session->destroy();
-    delete instance;
+    delete &session_of(a);
     a->instance = nullptr;
   };
   c.onInputQueueCreated = [](ANativeActivity*, AInputQueue* queue) {
@@ -150,23 +144,22 @@ void set_callbacks(ANativeActivityCallbacks& c) {
 
 extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(ANativeActivity* activity, void*,
                                                                                 size_t) {
-  using namespace clothbench;
   using namespace clothbench::android;
   const char* external = activity->externalDataPath;
-  const std::string files = external != nullptr && *external != '\0' ? external : activity->internalDataPath;
-  auto* instance = new Instance;
-  instance->system = std::make_shared<ActivitySystem>(activity);
-  activity->instance = instance;
-  Command command = command_of(activity);
+  Activity a;
+  a.files = external != nullptr && *external != '\0' ? external : activity->internalDataPath;
+  a.arguments = intent_extra(activity, "args");
+  a.log = print_line;
+  a.finish = [activity] { ANativeActivity_finish(activity); };
+  a.command = command_of(activity);
   try {
-    tap();
-    prepare(activity, files);
+    send_output_to_log();
+    prepare(activity, a.files);
   } catch (const std::exception& e) {
     to_log(std::string("error: ") + e.what());
-    command = [](const std::vector<std::string>&) { return 1; };
+    a.command = [](const std::vector<std::string>&) { return 1; };
   }
   ANativeActivity_setWindowFlags(activity, AWINDOW_FLAG_KEEP_SCREEN_ON, 0);
-  instance->session =
-      std::make_unique<Session>(Launch{files, intent_extra(activity, "args")}, instance->system, command);
+  activity->instance = new Session(a);
   set_callbacks(*activity->callbacks);
 }

@@ -1,18 +1,16 @@
 #include "android/session.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <condition_variable>
 #include <iomanip>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "base/files.hpp"
 #include "clothbench/error.hpp"
-#include "results/store.hpp"
 #include "runner/environment.hpp"
 #include "runner/interrupt.hpp"
 
@@ -20,7 +18,6 @@ namespace clothbench::android {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 /// Locked by the session that runs: the log and the interrupt are the process's.
 std::mutex& running_session() {
@@ -36,21 +33,16 @@ std::string option_value(const std::vector<std::string>& words, const std::strin
   return "";
 }
 
-bool writes_results(const std::vector<std::string>& words) {
-  return !words.empty() && (words[0] == "study" || words[0] == "run" || words[0] == "xr");
-}
+bool writes_results(const std::string& command) { return command == "study" || command == "run" || command == "xr"; }
 
-/// "runs/<study or command>-<UTC>", the first of its kind that is not there yet.
+/// "runs/<study or command>-<UTC>".
 fs::path fresh_folder(const fs::path& files, const std::vector<std::string>& words) {
   std::string name = words[0] == "study" && words.size() > 1 ? fs::path(words[1]).stem().string() : words[0];
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '-';
   std::string stamp = utc_now();
-  stamp.erase(std::remove_if(stamp.begin(), stamp.end(), [](char c) { return c == '-' || c == ':'; }), stamp.end());
-  const fs::path first = files / "runs" / (name + "-" + stamp);
-  fs::path folder = first;
-  for (int k = 2; fs::exists(folder); ++k) folder = first.string() + fmt::format("-{}", k);
-  return folder;
+  std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
+  return files / "runs" / (name + "-" + stamp);
 }
 
 }  // namespace
@@ -63,55 +55,29 @@ std::vector<std::string> split_words(const std::string& line) {
 }
 
 struct Session::Shared {
-  Launch launch;
-  std::shared_ptr<System> system;
-  Command command;
+  Activity activity;
   std::mutex mutex;
   std::condition_variable changed;
   bool running = false;  ///< it is this session's turn
   bool paused = false, destroyed = false, ended = false;
 
-  /// The intent's extra, else the first line of args.txt that is neither empty nor a comment, else the default.
-  std::string line() const {
-    std::istringstream given(launch.extra + "\n" + content_of(launch.files / "args.txt"));
-    for (std::string l; std::getline(given, l);) {
-      const auto first = l.find_first_not_of(" \t\r");
-      if (first != std::string::npos && l[first] != '#')
-        return l.substr(first, l.find_last_not_of(" \t\r") - first + 1);
-    }
-    return "study table3";
-  }
-
   /// Runs the command; true if it passed. `where` receives the folder of its results.
   bool run(fs::path& where) {
-    const std::string text = line();
-    std::vector<std::string> words = split_words(text);
+    std::vector<std::string> words = split_words(activity.arguments);
+    if (words.empty()) words = {"study", "table3"};
     if (words[0] == "clothbench") words.erase(words.begin());
-    const fs::path note = launch.files / "session.json";
-    std::string happens = "running " + text;
-    if (writes_results(words)) {
-      const json before = json::parse(content_of(note), nullptr, false);
-      // A live session cannot be continued: the user was elsewhere.
-      const bool again = words[0] != "xr" && before.is_object() && before.value("line", json()) == text &&
-                         before.value("out", json()).is_string();
+    if (writes_results(words.at(0))) {
       const std::string given = option_value(words, "--out");
-      const fs::path out = again           ? fs::path(before["out"].get<std::string>())
-                           : given.empty() ? fresh_folder(launch.files, words)
-                                           : fs::path(given);
-      if (given.empty()) words.insert(words.end(), {"--out", out.string()});
-      if (again) words.push_back("--resume");
-      happens = fmt::format("{} {}: results in {}", again ? "continuing" : "running", text, out.string());
-      write_file_atomically(note, json{{"line", text}, {"out", out.string()}}.dump(1) + "\n");
-      where = out;
+      where = given.empty() ? fresh_folder(activity.files, words) : fs::path(given);
+      if (given.empty()) words.insert(words.end(), {"--out", where.string()});
     }
-    system->log(happens);
-    const int code = command(words);
-    if (code == static_cast<int>(ExitCode::Interrupted)) {
-      system->log("interrupted; a start with the same arguments continues it");
-      return false;
-    }
-    fs::remove(note);
-    if (code != 0) system->log(fmt::format("{}: exit code {}", text, code));
+    const std::string text = fmt::format("{}", fmt::join(words, " "));
+    activity.log("running " + text);
+    const int code = activity.command(words);
+    if (code == static_cast<int>(ExitCode::Interrupted))
+      activity.log(fmt::format("interrupted; {} --resume continues it", text));
+    else if (code != 0)
+      activity.log(fmt::format("{}: exit code {}", text, code));
     return code == 0;
   }
 
@@ -127,27 +93,24 @@ struct Session::Shared {
       running = true;
     }
     bool pass = false;
-    fs::path where = launch.files;
+    fs::path where = activity.files;
     try {
       pass = starts && run(where);
     } catch (const std::exception& e) {
-      system->log(std::string("error: ") + e.what());
+      activity.log(std::string("error: ") + e.what());
     }
-    system->flush();
-    system->log(fmt::format("RESULT {} {}", pass ? "PASS" : "FAIL", where.string()));
     const std::lock_guard lock(mutex);
+    activity.log(fmt::format("RESULT {} {}", pass ? "PASS" : "FAIL", where.string()));
     hold_runs(false);
     running = false;
     ended = true;
-    if (!destroyed) system->finish();
+    if (!destroyed) activity.finish();
     changed.notify_all();
   }
 };
 
-Session::Session(Launch launch, std::shared_ptr<System> system, Command command) : shared_(std::make_shared<Shared>()) {
-  shared_->launch = std::move(launch);
-  shared_->system = std::move(system);
-  shared_->command = std::move(command);
+Session::Session(Activity activity) : shared_(std::make_shared<Shared>()) {
+  shared_->activity = std::move(activity);
   std::thread([shared = shared_] { shared->work(); }).detach();
 }
 
@@ -157,7 +120,7 @@ void Session::pause() {
   const std::lock_guard lock(shared_->mutex);
   shared_->paused = true;
   if (shared_->running && !shared_->destroyed) hold_runs(true);
-  if (!shared_->ended) shared_->system->log("paused: the run holds between frames");
+  if (!shared_->ended) shared_->activity.log("paused: the run holds between frames");
 }
 
 void Session::resume() {

@@ -7,43 +7,31 @@
 
 namespace clothbench::android {
 
-/// Services that a session needs from the operating system. Called from the session's thread.
-class System {
- public:
-  virtual ~System() = default;
-  /// Writes one line to the device's log; works until the end of the process.
-  virtual void log(const std::string& line) = 0;
-  /// Waits until everything printed so far is in the log.
-  virtual void flush() = 0;
+/// What a session needs from its activity; called from the session's thread.
+struct Activity {
+  std::filesystem::path files;  ///< folder of the results
+  std::string arguments;        ///< command line; empty: study table3
+  /// Writes one line to the device's log, after everything printed before; works until the end of the process.
+  std::function<void(const std::string& line)> log;
   /// Asks the system to end the activity. Not called after `Session::destroy`.
-  virtual void finish() = 0;
+  std::function<void()> finish;
+  /// Runs one command, such as {"study", "table3"}; the exit code of `clothbench`.
+  std::function<int(const std::vector<std::string>& words)> command;
 };
-
-/// Start arguments of an activity.
-struct Launch {
-  std::filesystem::path files;  ///< folder of results and args.txt
-  std::string extra;            ///< the intent's string extra "args"; empty = none
-};
-
-/// Runs one command, such as {"study", "table3"}; the exit code of `clothbench`.
-using Command = std::function<int(const std::vector<std::string>& words)>;
 
 /// Splits a command line at blanks, except within words in double quotes.
 std::vector<std::string> split_words(const std::string& line);
 
-/// Life cycle of an activity, independent of the operating system. The command of the intent extra, else of
-/// `<files>/args.txt`, else `study table3`, runs in a separate thread:
+/// Life cycle of an activity, independent of the operating system. Its command runs in a separate thread:
 ///   - `study`, `run` and `xr` without --out write to `<files>/runs/<name>-<UTC>`;
-///   - `<files>/session.json` stores the command and its folder while it runs. A start with the same command continues
-///     one that was killed or destroyed (it does not repeat finished trials);
-///   - a paused run waits between frames; a destroyed run stops after its frame and keeps all finished trials;
+///   - a paused run waits between frames; a destroyed run stops after its frame and keeps all finished trials, and the
+///     log names the command that continues it;
 ///   - the last line logged is "RESULT PASS <path>" if the command exited with 0, else "RESULT FAIL <path>"; the path
-///   is
-///     the folder of its results (or `files`).
+///     is the folder of its results (or `files`).
 /// Member functions may be called in any order and from any thread. A second session of a process waits for the first.
 class Session {
  public:
-  Session(Launch launch, std::shared_ptr<System> system, Command command);
+  explicit Session(Activity activity);
   ~Session();  ///< destroy()
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -98,15 +98,6 @@ AssetSource locate_assets(bool require) {
   return source;
 }
 
-ProceduralAssets::ProceduralAssets() {
-  if (const char* set = std::getenv(kAssetFolder.variable)) before_ = set;
-  ::setenv(kAssetFolder.variable, "procedural", 1);
-}
-
-ProceduralAssets::~ProceduralAssets() {
-  before_ ? ::setenv(kAssetFolder.variable, before_->c_str(), 1) : ::unsetenv(kAssetFolder.variable);
-}
-
 Room open_room(const AssetSource& source, const std::string& name) {
   if (lower_case(name).ends_with(".json")) return load_room(name);
   if (!contains(kRoomNames, name))

@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,18 +25,6 @@ inline constexpr std::array<std::string_view, 5> kRoomNames = {"living_room", "m
 /// tree, and clothbench/assets/node_modules below $XDG_DATA_HOME (~/.local/share), where scripts/fetch-assets.sh puts
 /// them. Throws Error if `require` and none are found, or if $CLOTHBENCH_ASSETS names a folder without assets.
 AssetSource locate_assets(bool require);
-
-/// While it lives, this process and its children find no fetched rooms and hands.
-class ProceduralAssets {
- public:
-  ProceduralAssets();
-  ~ProceduralAssets();
-  ProceduralAssets(const ProceduralAssets&) = delete;
-  ProceduralAssets& operator=(const ProceduralAssets&) = delete;
-
- private:
-  std::optional<std::string> before_;
-};
 
 /// Opens one of kRoomNames, or a capture by its path (ends in .json). A procedural source has one room for every name.
 Room open_room(const AssetSource&, const std::string& name);

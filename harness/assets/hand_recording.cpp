@@ -61,14 +61,6 @@ void check_all(const Items& items, const JsonAt& at, const char* expected) {
     if (!good(items[k])) at.fail(fmt::format("number {}: expected {}", k, expected));
 }
 
-float mixed(float a, float b, double t) {
-  return static_cast<float>((1 - t) * static_cast<double>(a) + t * static_cast<double>(b));
-}
-
-std::array<float, 3> mixed(const std::array<float, 3>& a, const std::array<float, 3>& b, double t) {
-  return {mixed(a[0], b[0], t), mixed(a[1], b[1], t), mixed(a[2], b[2], t)};
-}
-
 Eigen::Quaterniond quaternion(const RecordedJoint& j) {
   const auto& q = j.orientation;
   return Eigen::Quaterniond(static_cast<double>(q[3]), static_cast<double>(q[0]), static_cast<double>(q[1]),
@@ -80,17 +72,6 @@ Vector vector(const std::array<float, 3>& p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-RecordedJoint mixed(const RecordedJoint& a, const RecordedJoint& b, double t) {
-  const Eigen::Quaterniond q = quaternion(a).slerp(t, quaternion(b));
-  return {mixed(a.position_m, b.position_m, t),
-          {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), static_cast<float>(q.w())},
-          mixed(a.radius_m, b.radius_m, t)};
-}
-
-RecordedCapsule mixed(const RecordedCapsule& a, const RecordedCapsule& b, double t) {
-  return {mixed(a.a_m, b.a_m, t), mixed(a.b_m, b.b_m, t), mixed(a.radius_m, b.radius_m, t)};
-}
-
 }  // namespace
 
 bool usable(const RecordedHand& hand) {
@@ -98,19 +79,13 @@ bool usable(const RecordedHand& hand) {
          std::all_of(hand.capsules.begin(), hand.capsules.end(), [](const RecordedCapsule& c) { return good(c); });
 }
 
-RecordedHand HandRecording::at(double time_s) const {
-  if (!std::isfinite(time_s)) throw Error("hand recording: argument time_s: expected a finite time");
+const RecordedHand& HandRecording::at(double time_s) const {
   constexpr double kSame = 1e-6;  // of a frame: times are whole frames up to rounding
   const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
-  const auto nearest = static_cast<std::size_t>(std::lround(frame));
-  if (std::abs(frame - static_cast<double>(nearest)) <= kSame) return frames[nearest];
-  const auto before = static_cast<std::size_t>(frame);
-  const RecordedHand &a = frames[before], &b = frames[before + 1];
-  const double t = frame - static_cast<double>(before);
-  RecordedHand out;
-  for (std::size_t k = 0; k < out.joints.size(); ++k) out.joints[k] = mixed(a.joints[k], b.joints[k], t);
-  for (std::size_t k = 0; k < out.capsules.size(); ++k) out.capsules[k] = mixed(a.capsules[k], b.capsules[k], t);
-  return out;
+  if (!(std::abs(frame - std::round(frame)) <= kSame))
+    throw Error(fmt::format("hand recording: no frame at {:g} s; expected the scene to run at the recording's {:g} Hz",
+                            time_s, frame_rate_hz));
+  return frames[static_cast<std::size_t>(std::lround(frame))];
 }
 
 bool is_hand_recording(const nlohmann::json& track) { return track.is_object() && track.contains("recording"); }

@@ -42,9 +42,8 @@ struct HandRecording {
   bool has_capsules = false;
   std::vector<RecordedHand> frames;  ///< at 0, 1, 2, ... frames
 
-  /// The hand at `time_s`. Between two frames positions and radii are interpolated linearly, orientations by slerp. It
-  /// is constant before the first frame and after the last.
-  RecordedHand at(double time_s) const;
+  /// The hand at `time_s`; constant before the first frame and after the last. Throws Error between two frames.
+  const RecordedHand& at(double time_s) const;
 };
 
 /// Whether the JSON is a recording: an object with "recording" where a hand track has "keys":

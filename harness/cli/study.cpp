@@ -85,8 +85,7 @@ void run_study(StudyArguments& a, Console& console) {
   const StudyLength length = a.quick ? StudyLength::Quick : StudyLength::Full;
   if (a.procedural && a.require_assets)
     throw Error("--procedural and --require-assets exclude each other; leave one out");
-  const std::optional<assets::ProceduralAssets> stand_ins =
-      a.procedural ? std::optional<assets::ProceduralAssets>(std::in_place) : std::nullopt;
+  if (a.procedural) setenv("CLOTHBENCH_ASSETS", "procedural", 1);  // for worker processes too
   Study study =
       load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
   check_options(study, a);

@@ -6,11 +6,10 @@ namespace clothbench {
 namespace {
 
 struct XrArguments {
-  std::string scene, solver, out, runtime;
+  std::string scene, solver, out;
   std::vector<std::string> set;
   int frames = 0;
   double rate = 72, timeout = 120;
-  bool opaque = false;
   DeviceFlags device;
 };
 
@@ -31,12 +30,9 @@ void add_xr(CLI::App& app, Console& console) {
   cmd->add_option("--rate", a.rate, "Requested refresh rate of the display [Hz]")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  cmd->add_flag("--no-passthrough", a.opaque, "White background instead of the camera picture");
   cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cmd->add_option("--runtime", a.runtime,
-                  "Library or manifest of a runtime, loaded without the system's OpenXR loader");
   cmd->add_option("--out", a.out,
                   "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
@@ -50,10 +46,8 @@ void add_xr(CLI::App& app, Console& console) {
     o.settings = complete_settings(o.entry->info, overrides.solver);
     o.setting = overrides.label();
     o.device = a.device.options;
-    o.runtime = a.runtime;
     o.rate_hz = a.rate;
     o.frames = a.frames;
-    o.passthrough = !a.opaque;
     o.timeout_s = a.timeout;
     o.out = a.out.empty() ? default_folder("xr") : std::filesystem::path(a.out);
     if (!console.json) o.tell = [](const std::string& text) { fmt::print("{}\n", text); };

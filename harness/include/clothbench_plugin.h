@@ -23,7 +23,6 @@ extern "C" {
 #endif
 
 #define CLOTHBENCH_PLUGIN_VERSION 1u
-#define CLOTHBENCH_NONE 0xFFFFFFFFu /* no vertex, no triangle */
 
 #if defined(__GNUC__)
 #define CLOTHBENCH_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -81,10 +80,11 @@ enum {
  * a x b, along an edge of length a: Y (9/8 b/a - 3/8 a/b), but at least Y b / (10 a), half of that on the border; both
  * diagonals: 3/16 Y (a^2 + b^2) / (a b). On square cells these are 3/4 Y, 3/8 Y on the border, 3/8 Y on diagonals.
  * Without shear edges, and on a mesh, an edge has Y across / along (Van Gelder 1998, "Approximate Simulation of Elastic
- * Membranes by Triangulated Spring Meshes"). ClothbenchScene gives these constants of the edges too. */
+ * Membranes by Triangulated Spring Meshes"). */
 typedef struct ClothbenchEdge {
   uint32_t a, b;
   double rest_m, membrane_stiffness_N_per_m, along_m, across_m;
+  double spring_N_per_m; /* that spring constant; infinity where inextensible, 0 of skip edges */
 } ClothbenchEdge;
 
 enum {
@@ -147,17 +147,6 @@ typedef struct ClothbenchScene {
   /* 3 a vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent, folded
    * or scattered (position_m). Lengths of edges are those of this shape. */
   const double* rest_position_m;
-  /* 2 a vertex: pattern coordinates of a grid along its rows and columns, from 0 to width_m and to height_m. NULL for a
-   * mesh, which has no pattern: its rest positions take that place. */
-  const double* pattern_m;
-  /* 3 a triangle: the triangle across the edge from its vertex k to its vertex (k + 1) % 3; CLOTHBENCH_NONE at the
-   * border. No edge has more than two triangles. */
-  const uint32_t* triangle_neighbours;
-  /* Scenes state no Poisson's ratio. That of the sheet of springs above, which clothbench's solver `reference` has:
-   * 1/3, and 0 for a grid without shear, whose rows and columns are strips. */
-  double poisson_ratio;
-  /* Spring constants [N/m], see ClothbenchEdge: one per structural and per shear edge; infinity where inextensible. */
-  const double *structural_spring_N_per_m, *shear_spring_N_per_m;
 } ClothbenchScene;
 
 /* One displayed frame. Its data hold at the frame's end; between frames positions change linearly. */
@@ -168,10 +157,7 @@ typedef struct ClothbenchFrame {
   const double* grip_position_m; /* one per grip */
   const uint8_t* grip_held;      /* one per grip: 0 from its release on */
 
-  /* The same at the end of the frame before, or at the scene's start. NULL where the above are NULL. */
-  const ClothbenchPose* poses_before;
-  const double* grip_position_before_m;
-  const uint8_t* grip_held_before;
+  const ClothbenchPose* poses_before; /* at the end of the frame before, or at the scene's start */
   /* One per collider, one per grip: 1 if it teleports in this frame, so that it has no velocity and may be put at its
    * new place at once. Both NULL if nothing does. Marked is what moves in this frame by more than half the distance of
    * the scene's jump. */
@@ -194,13 +180,6 @@ typedef struct ClothbenchDevice {
   int32_t is_software;             /* 1: a CPU that stands in for a GPU: its times say nothing of one */
   const char* properties_json;     /* a JSON object of all that the API reports, or NULL */
 } ClothbenchDevice;
-
-/* Memory that a scene takes. */
-typedef struct ClothbenchBuffer {
-  const char* name;
-  uint64_t size_B;
-  int32_t device_local; /* 1: memory of the device; 0: of the host */
-} ClothbenchBuffer;
 
 /* A setting of the solver: `--set solver.<name>=VALUE`. */
 typedef struct ClothbenchSetting {
@@ -236,21 +215,20 @@ typedef struct ClothbenchPlugin {
    * Returns NULL on failure, with the reason in `why`. */
   void* (*create)(const double* settings, const ClothbenchScene*, const char** why);
   void (*destroy)(void*);
-  /* Continues from these positions and velocities: the scene's initial ones or those that `read_state` gave. Returns 0
-   * and changes nothing if they are not the whole state of the solver. May be NULL if there is a `reset`. */
-  int32_t (*restart)(void*, const double* position_m, const double* velocity_m_per_s);
+  /* Continues from the scene's start (index -1), which it restores bit for bit, or from a state that `read_state` gave.
+   * Returns 0 and changes nothing if positions and velocities are not the whole state of the solver then. */
+  int32_t (*restart)(void*, const ClothbenchRestart*);
   /* Computes one frame, complete on return. This call is timed. */
   int32_t (*step)(void*, const ClothbenchFrame*);
   void (*read_state)(void*, double* position_m, double* velocity_m_per_s);
   const ClothbenchStage* (*stages)(void*, uint32_t* count);
 
-  /* The rest may be NULL. */
-  void (*reset)(void*); /* restores the initial state, bit for bit; NULL: `restart` is called instead */
-  /* Vertical displacement [m], downwards negative, of a body in free fall with the solver's integrator; NULL: the exact
+  /* The rest may be NULL.
+   *
+   * Vertical displacement [m], downwards negative, of a body in free fall with the solver's integrator; NULL: the exact
    * solution. */
   double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s,
                         double damping_per_s, int32_t frames);
-  const char* (*device)(void*); /* its name; NULL: the CPU */
   /* Device time [s] of the last frame, from the begin of its first work on the device to the end of its last, NAN if
    * not known. Not NULL: the solver runs on a GPU. */
   double (*device_s)(void*);
@@ -262,24 +240,8 @@ typedef struct ClothbenchPlugin {
   /* Why the solver cannot run this scene at these settings, beyond what `supports` says, as in "unsupported, because
    * …"; NULL if it can. Called before `create`; a reason gives a row `unsupported` and no error. */
   const char* (*unsupported)(const double* settings, const ClothbenchScene*);
-  /* As `restart`, which is then not called, with the moment of the scene. A solver may accept a state of a scene whose
-   * grips and colliders move. `reset` goes before it: where both are there, only `reset` restores the start. */
-  int32_t (*restart_at)(void*, const ClothbenchRestart*);
 
-  /* Of solvers on a GPU. */
-  void (*device_info)(void*, ClothbenchDevice*); /* takes the place of `device` */
-  const ClothbenchBuffer* (*buffers)(void*, uint32_t* count);
-  /* Device time [s] of every stage in the last frame, in the order of `stages`; NAN if not known. Needs a setting
-   * `stage_times`, a whole number with default 0: times are asked for only from a second solver that is created with
-   * the value 1, after the timed frames, since timestamps between stages slow a frame. Needs `device_s` too. */
-  void (*stage_device_s)(void*, double* seconds);
-  /* Frames without waiting for each. `frames_in_flight`: how many of this scene may be begun and not complete, at
-   * least 1. `submit` begins a frame as `step` does, and returns as soon as no more are in flight; it has copied all
-   * that it needs of the frame. `finish` waits for all of them. The final state equals that of `step` bit for bit. All
-   * three or none. */
-  int32_t (*frames_in_flight)(void*);
-  int32_t (*submit)(void*, const ClothbenchFrame*);
-  int32_t (*finish)(void*);
+  void (*device_info)(void*, ClothbenchDevice*); /* NULL: the CPU */
 
   /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
    * published results of the same engine. NULL: none. */

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "clothbench/record.hpp"
-#include "metrics/contact/touch.hpp"
+#include "metrics/contact/surface.hpp"
 #include "metrics/metric.hpp"
 
 namespace clothbench {
@@ -17,16 +17,10 @@ constexpr double kTouchMargin = 0.1;  // of the margin
 using contact::Nearest;
 using contact::Point;
 
-/// The triangles of a collider at one instant.
-struct Triangles {
-  Triangles(const Collider& c, const ColliderPose& pose)
-      : surface(kind_of(c).surface(c, pose, {})), near({surface.positions, surface.triangles}) {}
-  Triangles(const Triangles&) = delete;
-  Triangles& operator=(const Triangles&) = delete;
-
-  ColliderSurface surface;
-  contact::NearSurface near;
-};
+std::unique_ptr<contact::TriangleTree> tree_of(const Collider& c, const ColliderPose& pose) {
+  const ColliderSurface surface = kind_of(c).surface(c, pose, {});
+  return std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{surface.positions, surface.triangles});
+}
 
 }  // namespace
 
@@ -39,7 +33,7 @@ struct ColliderTouch::Watch {
       const double margin = k < held_at_m.size() && std::isfinite(held_at_m[k]) ? held_at_m[k] : c.margin_m;
       reach_m.push_back(margin + std::max(tolerance, kTouchMargin * margin));
       const bool flat = kind_of(c).surface != nullptr && !kind_of(c).half_space;
-      still.push_back(flat && !c.moves() ? std::make_unique<Triangles>(c, ColliderPose{}) : nullptr);
+      still.push_back(flat && !c.moves() ? tree_of(c, {}) : nullptr);
       touched.emplace_back(vertices, 0);
     }
     const std::vector<double> rest = initial_positions(s);
@@ -55,7 +49,7 @@ struct ColliderTouch::Watch {
 
   /// Nearest point of collider k for every vertex within reach. `moved`: its triangles, if it is a mesh that moves.
   std::vector<std::optional<Nearest>> near(std::size_t k, int frame, const std::vector<double>& x,
-                                           const Triangles* moved) const {
+                                           const contact::TriangleTree* moved) const {
     const Collider& c = scene.colliders[k];
     std::vector<std::optional<Nearest>> out(vertices);
     const auto each = [&](auto find) {
@@ -68,17 +62,19 @@ struct ColliderTouch::Watch {
     if (ClosedForm::has(c)) {
       each(ClosedForm(c, pose(k, frame), was));
     } else if (moved == nullptr) {
-      each([&](const Point<3>& p) { return still[k]->near(p, reach_m[k]); });
+      each([&](const Point<3>& p) { return contact::nearest(p, *still[k], reach_m[k]); });
     } else {
-      const std::vector<double> last = kind_of(c).surface(c, was, {}).positions;
-      each([&](const Point<3>& p) { return moved->near(p, reach_m[k], last); });
+      const ColliderSurface last = kind_of(c).surface(c, was, {});
+      const contact::TriangleMeshView before{last.positions, last.triangles};
+      each([&](const Point<3>& p) { return contact::nearest(p, *moved, reach_m[k], &before); });
     }
     return out;
   }
 
   /// Triangles none of whose vertices touches collider k, but an edge or the face does. A half-space has none.
   template <class Mark>
-  void touch_between(std::size_t k, int frame, const std::vector<double>& x, const Triangles* moved, Mark mark) const {
+  void touch_between(std::size_t k, int frame, const std::vector<double>& x, const contact::TriangleTree* moved,
+                     Mark mark) const {
     const Collider& c = scene.colliders[k];
     const ColliderKind& kind = kind_of(c);
     if (kind.half_space) return;
@@ -93,13 +89,13 @@ struct ColliderTouch::Watch {
       const Point<3> out = margin + Point<3>::Constant(s.radius_m);
       all.extend(boxes.emplace_back(box.min() - out, box.max() + out));
     }
-    const contact::NearSurface* surface = still[k] ? &still[k]->near : moved ? &moved->near : nullptr;
+    const contact::TriangleTree* surface = still[k] ? still[k].get() : moved;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto& [p, q, r] = triangles[t];
       if (touched[k][p] || touched[k][q] || touched[k][r]) continue;
       const contact::Simplex<3> face = cloth.triangle(t);
       const contact::Box box = contact::Box(face[0]).extend(face[1]).extend(face[2]);
-      bool touches = capsules.empty() && surface != nullptr && surface->within(face, reach_m[k]);
+      bool touches = capsules.empty() && surface != nullptr && contact::within(face, *surface, reach_m[k]);
       if (!capsules.empty() && box.intersects(all))
         for (std::size_t i = 0; i < capsules.size() && !touches; ++i)
           touches = box.intersects(boxes[i]) && contact::within(face, capsules[i], reach_m[k]);
@@ -110,10 +106,11 @@ struct ColliderTouch::Watch {
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::size_t vertices;
-  std::vector<double> area;                       ///< of the triangles, at rest
-  std::vector<double> reach_m;                    ///< one per collider: up to this distance cloth touches it
-  std::vector<std::vector<char>> touched;         ///< (collider, vertex), at the last frame
-  std::vector<std::unique_ptr<Triangles>> still;  ///< only for static colliders that have triangles and an end
+  std::vector<double> area;                ///< of the triangles, at rest
+  std::vector<double> reach_m;             ///< one per collider: up to this distance cloth touches it
+  std::vector<std::vector<char>> touched;  ///< (collider, vertex), at the last frame
+  std::vector<std::unique_ptr<contact::TriangleTree>>
+      still;  ///< only for static colliders that have triangles and an end
 };
 
 ColliderTouch::ColliderTouch(const Scene& scene, const std::vector<double>& held_at_m)
@@ -131,7 +128,7 @@ SceneTouch ColliderTouch::probe(int frame, const std::vector<double>& x) {
   for (std::size_t k = 0; k < w.scene.colliders.size(); ++k) {
     const Collider& c = w.scene.colliders[k];
     const bool moves = !ClosedForm::has(c) && c.moves();
-    const auto moved = moves ? std::make_unique<Triangles>(c, w.pose(k, frame)) : nullptr;
+    const auto moved = moves ? tree_of(c, w.pose(k, frame)) : nullptr;
     const std::vector<std::optional<Nearest>> found = w.near(k, frame, x, moved.get());
     for (std::size_t v = 0; v < found.size(); ++v) {
       if (found[v] && w.touched[k][v] != 0 && !before_.empty()) {

@@ -112,9 +112,6 @@ bool is_of_machine(const std::string& summary_name);
 /// Names of the series of series.csv, in its order.
 std::vector<std::string> series_columns();
 
-/// One scalar per stage of a run's plan, named after the stage.
-std::map<std::string, double> stage_scalars(const RunView&);
-
 /// All scalars present in the run's summary whose names begin with `start`.
 std::map<std::string, double> scalars_of(const RunView&, const std::string& start = "");
 

@@ -14,8 +14,8 @@ constexpr double kFieldOfView = 28;  // degrees of the picture's height: little 
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-void look(Camera& c, View view) {
-  const double azimuth = radians(view == View::Front ? 0 : 30), elevation = radians(view == View::Front ? 0 : 24);
+/// Towards -z, from these angles to the right and up.
+void look(Camera& c, double azimuth, double elevation) {
   c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
   c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   c.up = cross(c.back, c.right);
@@ -70,21 +70,14 @@ Mat4 Camera::projection() const {
   return m;
 }
 
-std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
-  const Vec3 d = minus(p, c.eye_m);
-  const double depth = -dot(d, c.back);
-  if (!(depth > 0)) return std::nullopt;
-  return std::array<double, 2>{0.5 + 0.5 * dot(d, c.right) / depth / c.tan_half_width,
-                               0.5 - 0.5 * dot(d, c.up) / depth / c.tan_half_height};
-}
-
-Camera frame(View view, std::span<const double> points, double aspect, double margin) {
+Camera frame(std::span<const double> points, double aspect) {
+  constexpr double kMargin = 0.04;
   if (points.size() < 3) throw Error("camera: expected at least one point to view");
   Camera c;
-  look(c, view);
+  look(c, radians(30), radians(24));
   c.tan_half_height = std::tan(radians(kFieldOfView / 2));
   c.tan_half_width = c.tan_half_height * aspect;
-  const double within = 1 - 2 * margin;
+  const double within = 1 - 2 * kMargin;
   const Stand x = stand(points, c.right, c.back, within * c.tan_half_width);
   const Stand y = stand(points, c.up, c.back, within * c.tan_half_height);
   double distance = std::max(x.distance, y.distance), nearest = -INFINITY, furthest = INFINITY;
@@ -107,7 +100,7 @@ std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_
   std::array<Camera, 2> both;
   for (std::size_t k = 0; k < 2; ++k) {
     Camera& c = both[k];
-    look(c, View::Front);
+    look(c, 0, 0);
     c.eye_m = {middle_m[0] + (k == 0 ? -0.5 : 0.5) * kApart_m, middle_m[1], middle_m[2] + distance_m};
     c.tan_half_width = std::tan(radians(kWidth / 2));
     c.tan_half_height = std::tan(radians(kHeight / 2));

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <optional>
 #include <span>
 
 #include "clothbench/collider.hpp"
@@ -10,8 +9,6 @@ namespace clothbench::render {
 /// 4 x 4, column-major, as in shaders.
 using Mat4 = std::array<double, 16>;
 Mat4 operator*(const Mat4& a, const Mat4& b);
-
-enum class View { Front, Corner };
 
 /// A pinhole camera. World: right-handed, +y up.
 struct Camera {
@@ -25,13 +22,10 @@ struct Camera {
   Mat4 projection() const;
 };
 
-/// Position of a point in the picture: 0..1 from left and from top; empty if it is behind the camera.
-std::optional<std::array<double, 2>> seen_at(const Camera&, const Vec3& point_m);
-
-/// The nearest camera of a view that sees all of `points` (xyz interleaved [m], finite), with `margin` of the picture's
-/// width and height free on every side. Front looks along -z. Corner looks from the front, 30 degrees to the right and
-/// 24 up. `aspect`: width over height. Throws Error without points.
-Camera frame(View, std::span<const double> points, double aspect, double margin = 0.04);
+/// The nearest camera that sees all of `points` (xyz interleaved [m], finite), with 4 % of the picture's width and
+/// height free on every side. It looks from the front, 30 degrees to the right and 24 up. `aspect`: width over height.
+/// Throws Error without points.
+Camera frame(std::span<const double> points, double aspect);
 
 /// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
 /// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.

@@ -68,7 +68,7 @@ void Offscreen::draw(SceneRenderer& renderer, std::span<const Camera> cameras) {
   drawn_by_ = &renderer;
   std::vector<Drawing> drawings;
   for (std::size_t k = 0; k < cameras.size(); ++k)
-    drawings.push_back({images_[k]->handle(), 0, extent_, cameras[k].view(renderer.origin()), cameras[k].projection()});
+    drawings.push_back({images_[k]->handle(), extent_, cameras[k].view(renderer.origin()), cameras[k].projection()});
   submit([&] { renderer.record(commands_, drawings); });
 }
 
@@ -137,11 +137,7 @@ class StereoDrawer : public FrameDrawer {
     } else {
       upload_ = true;
     }
-    // Free cloth falls out of sight, so the eyes follow it, on the device.
-    if (scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty()) {
-      const auto v = static_cast<std::uint32_t>((scene.cloth.rows / 2) * scene.cloth.columns + scene.cloth.columns / 2);
-      renderer_.follow(v, vertex_at(start, v));
-    }
+    falls_ = scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty();
     renderer_.set_surfaces(surfaces(scene, 0, near_));
   }
 
@@ -151,7 +147,14 @@ class StereoDrawer : public FrameDrawer {
       renderer_.write_positions(state_.position);
     }
     if (!scene_.motion.empty()) renderer_.set_surfaces(surfaces(scene_, frame, near_));
-    images_.draw(renderer_, cameras_);
+    std::array<Camera, 2> cameras = cameras_;
+    if (falls_) {  // free cloth falls out of sight, so the eyes fall with it
+      const double t = scene_.time.at(frame);
+      for (Camera& c : cameras)
+        c.eye_m = plus(c.eye_m, plus(scaled(t, scene_.cloth.initial_velocity_m_per_s),
+                                     scaled(0.5 * t * t, scene_.gravity_m_per_s2)));
+    }
+    images_.draw(renderer_, cameras);
   }
 
  private:
@@ -160,7 +163,7 @@ class StereoDrawer : public FrameDrawer {
   ClothState state_;
   Bounds near_;
   std::array<Camera, 2> cameras_;
-  bool upload_ = false;
+  bool upload_ = false, falls_ = false;
   SceneRenderer renderer_;
   Offscreen images_;
 };

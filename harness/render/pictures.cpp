@@ -25,22 +25,6 @@ bool is_run(const fs::path& p) {
   return p.extension() == ".h5" || p.extension() == ".cbor" || p.extension() == ".part";
 }
 
-/// Result files of a folder whose names have `wanted` in them. Throws Error if that is ambiguous.
-std::vector<fs::path> runs_in(const fs::path& folder, const std::string& wanted) {
-  std::vector<fs::path> all, found;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (is_run(entry.path())) all.push_back(entry.path());
-  std::sort(all.begin(), all.end());
-  for (const fs::path& p : all)
-    if (p.stem().string().find(wanted) != std::string::npos) found.push_back(p);
-  if (!found.empty() && (!wanted.empty() || found.size() == 1)) return found;
-  std::string names;
-  for (const fs::path& p : all) names += "\n  " + p.stem().string();
-  if (all.empty()) throw Error(folder.string() + ": no result files (.h5, .cbor, .part) in it");
-  if (found.empty()) throw Error(folder.string() + ": no run has \"" + wanted + "\" in its name; there are" + names);
-  throw Error(folder.string() + ": " + std::to_string(all.size()) + " runs; choose one with --run TEXT:" + names);
-}
-
 double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 
 std::uint32_t middle_vertex(const Cloth& c) {
@@ -102,25 +86,14 @@ std::vector<double> Motion::at(std::size_t frame) const {
 }
 
 Motion stored_motion(const fs::path& path) {
+  if (!is_run(path))
+    throw Error(path.string() + ": expected a result file (.h5, .cbor, .part); `clothbench run` makes them");
   const RunRecord record = read_run_summary(path);
   StoredMotion stored = read_motion(path);
-  return {std::move(stored.scene), run_name(record.header), record.outcome.status == "ok" ? "" : record.outcome.status,
-          std::move(stored.time_s), std::move(stored.position)};
-}
-
-std::vector<Motion> motions_of(const fs::path& path, const std::string& wanted) {
-  if (!fs::is_directory(path) && !is_run(path))
-    throw Error(path.string() +
-                ": expected a result file (.h5, .cbor, .part) or a folder of them; `clothbench run` "
-                "makes them");
-  std::vector<Motion> out;
-  for (const fs::path& p : fs::is_directory(path) ? runs_in(path, wanted) : std::vector{path})
-    out.push_back(stored_motion(p));
-  for (const Motion& m : out)
-    if (m.frames() == 0)
-      throw Error(path.string() + ": " + m.name + " has no trajectory" +
-                  (m.outcome.empty() ? "" : " (" + m.outcome + ")"));
-  return out;
+  Motion m{std::move(stored.scene), run_name(record.header), std::move(stored.time_s), std::move(stored.position)};
+  if (m.frames() == 0)
+    throw Error(fmt::format("{}: {} has no trajectory ({})", path.string(), m.name, record.outcome.status));
+  return m;
 }
 
 Framing framing_of(const Motion& m) {
@@ -144,30 +117,19 @@ Framing framing_of(const Motion& m) {
   if (is_free(m.scene))
     for (const std::size_t k : frames)
       f.follows = f.follows || largest(minus(vertex_at(m.at(k), middle), vertex_at(start, middle))) > size;
-  const auto add = [&](const Vec3& p) { f.points.insert(f.points.end(), p.begin(), p.end()); };
   for (const std::size_t k : frames) {
     const std::vector<double> x = m.at(k);
     const Vec3 moved = f.follows ? minus(vertex_at(x, middle), vertex_at(start, middle)) : Vec3{};
     for (std::size_t v = 0; v < cloth.vertex_count(); ++v)
-      if (const Vec3 p = minus(vertex_at(x, v), moved); zone.holds(p)) {
-        add(p);
-        seen.add(p);
-      }
+      if (const Vec3 p = minus(vertex_at(x, v), moved); zone.holds(p)) seen.add(p);
   }
-  if (seen.empty()) {
-    seen = place;
-    add(place.low);
-    add(place.high);
-  }
+  if (seen.empty()) seen = place;
   f.near = seen;
   f.near.grow(kDrawnBeside * size);
   f.origin_m = scaled(0.5, plus(seen.low, seen.high));
-  Bounds beside = seen;
-  beside.grow(kSeenBeside * size);
-  if (m.scene.motion.empty()) frames.resize(1);  // static colliders are the same in every frame
-  for (const std::size_t k : frames)
-    for (const Vec3& p : surfaces(m.scene, static_cast<int>(k), f.near).position_m)
-      if (beside.holds(p)) add(p);
+  if (!m.scene.colliders.empty()) seen.grow(kSeenBeside * size);
+  for (unsigned corner = 0; corner < 8; ++corner)
+    for (std::size_t k = 0; k < 3; ++k) f.points.push_back((corner >> k & 1u) != 0 ? seen.high[k] : seen.low[k]);
   return f;
 }
 
@@ -185,8 +147,7 @@ Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
   Offscreen images(device, {static_cast<std::uint32_t>(shots.width), static_cast<std::uint32_t>(shots.height)}, 1);
   renderer.set_cloth(m.scene.cloth, framing.origin_m);
   const std::uint32_t middle = middle_vertex(m.scene.cloth);
-  if (framing.follows) renderer.follow(middle, vertex_at(m.at(0), middle));
-  const Camera camera = frame(View::Corner, framing.points, static_cast<double>(shots.width) / shots.height);
+  const Camera camera = frame(framing.points, static_cast<double>(shots.width) / shots.height);
   std::unique_ptr<Movie> movie;
   if (moves) try {
       const auto step = static_cast<double>(shots.frames[1] - shots.frames[0]);
@@ -201,7 +162,12 @@ Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
     if (progress) progress(m.name, k, shots.frames.size());
     renderer.write_positions(m.at(f));
     if (k == 0 || !m.scene.motion.empty()) renderer.set_surfaces(surfaces(m.scene, static_cast<int>(f), framing.near));
-    images.draw(renderer, std::span(&camera, 1));
+    Camera here = camera;
+    if (framing.follows) {
+      const Vec3 moved = minus(vertex_at(m.at(f), middle), vertex_at(m.at(0), middle));
+      if (std::isfinite(dot(moved, moved))) here.eye_m = plus(camera.eye_m, moved);
+    }
+    images.draw(renderer, std::span(&here, 1));
     const Picture picture = images.read(0);
     taken.pictures.push_back(shots.out / fmt::format("{}__{:06d}.png", m.name, f));
     write_png(taken.pictures.back(), picture);

@@ -11,8 +11,7 @@ namespace clothbench::render {
 /// Input of pictures: the trajectory of a cloth, and the colliders that it touches.
 struct Motion {
   Scene scene;
-  std::string name;     ///< of the run, for file names
-  std::string outcome;  ///< how the run ended, "" if well
+  std::string name;  ///< of the run, for file names
   std::vector<double> time_s;
   std::vector<float> position;  ///< (frame, vertex, xyz) [m]
 
@@ -21,19 +20,15 @@ struct Motion {
   std::vector<double> at(std::size_t frame) const;
 };
 
-/// Reads a result file. No frames if it has no trajectory. Throws Error naming the file and what is wrong with it.
+/// Reads a result file. Throws Error naming the file and what is wrong with it; also if it has no trajectory.
 Motion stored_motion(const std::filesystem::path&);
 
-/// The motions that a result file or a folder of them holds; from a folder, only motions with `wanted` in their names.
-/// Throws Error if a folder leaves it open which are meant, and for a motion without frames.
-std::vector<Motion> motions_of(const std::filesystem::path&, const std::string& wanted);
-
-/// Content of all pictures of a motion, from one camera: the cloth of all frames, without vertices that are not finite
-/// or are further from the initial bounds than the cloth's size, and colliders within an eighth of that size.
+/// Content of all pictures of a motion, from one camera: a box around the cloth of all frames, without vertices that
+/// are not finite or are further from the initial bounds than the cloth's size.
 struct Framing {
   Bounds near;                 ///< of the cloth, with a margin; colliders beyond are cut off
   Vec3 origin_m{};             ///< centre of the cloth's bounds
-  std::vector<double> points;  ///< points that must be in the picture, xyz interleaved [m]
+  std::vector<double> points;  ///< corners of the box that must be in the picture, xyz interleaved [m]
   bool follows = false;        ///< the camera follows the cloth's middle vertex: free cloth
 };
 Framing framing_of(const Motion&);

@@ -252,7 +252,7 @@ void Pipelines::use(VkCommandBuffer commands, bool cloth, const void* constants,
   vkCmdPushConstants(commands, layout_, kBoth, 0, bytes, constants);
 }
 
-VkImageView make_view(VkDevice device, VkImage image, VkFormat format, std::uint32_t layer) {
+VkImageView make_view(VkDevice device, VkImage image, VkFormat format) {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image;
@@ -260,7 +260,7 @@ VkImageView make_view(VkDevice device, VkImage image, VkFormat format, std::uint
   info.format = format;
   const bool depth = format == Pipelines::kDepthFormat;
   info.subresourceRange = {
-      static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, layer, 1};
+      static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0, 1};
   VkImageView view = VK_NULL_HANDLE;
   check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
   return view;
@@ -303,7 +303,7 @@ void Image::create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits sam
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, 0);
   check(vkAllocateMemory(device_->handle(), &memory, nullptr, &memory_), "vkAllocateMemory");
   check(vkBindImageMemory(device_->handle(), image_, memory_, 0), "vkBindImageMemory");
-  view_ = make_view(device_->handle(), image_, format, 0);
+  view_ = make_view(device_->handle(), image_, format);
 }
 
 Image::~Image() { release(); }
@@ -335,19 +335,16 @@ void Targets::release(const Held& h) const {
 }
 
 void Targets::forget(VkImage image) {
-  for (auto it = held_.begin(); it != held_.end();)
-    if (std::get<0>(it->first) == image) {
-      release(it->second);
-      it = held_.erase(it);
-    } else {
-      ++it;
-    }
+  const auto found = held_.find(image);
+  if (found == held_.end()) return;
+  release(found->second);
+  held_.erase(found);
 }
 
-VkFramebuffer Targets::framebuffer(VkImage image, std::uint32_t layer) {
-  Held& h = held_[{image, layer}];
+VkFramebuffer Targets::framebuffer(VkImage image) {
+  Held& h = held_[image];
   if (h.framebuffer != VK_NULL_HANDLE) return h.framebuffer;
-  if (h.view == VK_NULL_HANDLE) h.view = make_view(device_->handle(), image, format_, layer);
+  if (h.view == VK_NULL_HANDLE) h.view = make_view(device_->handle(), image, format_);
   const std::array views = {colour_.view(), depth_.view(), h.view};
   VkFramebufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;

@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <tuple>
 
 #include "vulkan/buffer.hpp"
 
@@ -64,8 +63,8 @@ class Image {
   VkImageView view_ = VK_NULL_HANDLE;
 };
 
-/// A view of one layer of a colour image, or of its depth.
-VkImageView make_view(VkDevice, VkImage, VkFormat, std::uint32_t layer);
+/// A view of a colour image, or of its depth.
+VkImageView make_view(VkDevice, VkImage, VkFormat);
 
 /// Render targets for pictures of one size: multisampled colour and depth, and a framebuffer for each target image.
 class Targets {
@@ -76,7 +75,7 @@ class Targets {
   Targets(const Targets&) = delete;
   Targets& operator=(const Targets&) = delete;
   VkExtent2D extent() const { return extent_; }
-  VkFramebuffer framebuffer(VkImage image, std::uint32_t layer);
+  VkFramebuffer framebuffer(VkImage image);
   void forget(VkImage image);
 
  private:
@@ -91,7 +90,7 @@ class Targets {
   VkFormat format_;
   VkExtent2D extent_;
   Image colour_, depth_;
-  std::map<std::tuple<VkImage, std::uint32_t>, Held> held_;
+  std::map<VkImage, Held> held_;
 };
 
 }  // namespace clothbench::render

@@ -10,11 +10,8 @@ using vec4 = std::array<float, 4>;
 struct Drawn {
   vec4 to_clip[4];  // columns of projection * view, in metres from the picture's origin
   vec4 eye;         // xyz: of the viewer, from the same origin [m]
-  vec4 sheet;       // of a grid: columns and rows of vertices, squares of the checker along u and v; of a mesh: its
-                    // triangles, 0, its vertices, 0
+  vec4 sheet;       // xy: triangles and vertices of the cloth
   vec4 origin;      // xyz: added to the cloth's positions [m]
-  vec4
-      follow;  // xyz: where vertex w of the cloth began [m]; the picture goes with it. w < 0: the picture does not move
 };
 
 // Look of a collider's vertex.
@@ -23,6 +20,6 @@ struct Drawn {
 #define LOOK_MARK 2  // a small dark sphere: an attached vertex
 
 #ifdef __cplusplus
-static_assert(sizeof(Drawn) == 128);
+static_assert(sizeof(Drawn) == 112);
 }  // namespace clothbench::render
 #endif

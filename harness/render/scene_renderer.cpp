@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "clothbench/vector.hpp"
 
@@ -16,17 +15,14 @@ namespace {
 constexpr auto kSampleBit = VK_SAMPLE_COUNT_4_BIT;
 static_assert(static_cast<int>(kSampleBit) == SceneRenderer::kSamples);
 
-/// The device takes the first queue family that computes; on every GPU we know of it draws too.
+/// The device's queue computes; on every GPU we know of it draws too.
 std::shared_ptr<vulkan::Device> drawing(std::shared_ptr<vulkan::Device> device) {
-  const DeviceInfo info = device->info();
-  const nlohmann::json families = nlohmann::json::parse(info.properties_json).at("queue_families");
-  for (const auto& f : families) {
-    const auto flags = f.at("flags").get<std::uint32_t>();
-    if ((flags & VK_QUEUE_COMPUTE_BIT) == 0) continue;
-    if ((flags & VK_QUEUE_GRAPHICS_BIT) != 0) return device;
-    break;
-  }
-  throw Error(info.name + ": its first queue that computes does not draw", ExitCode::NoDevice);
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device->physical(), &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device->physical(), &count, families.data());
+  if ((families.at(device->queue_family()).queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return device;
+  throw Error(device->info().name + ": its first queue that computes does not draw", ExitCode::NoDevice);
 }
 
 vec4 as_vec4(const Vec3& v, double w) {
@@ -54,23 +50,55 @@ std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
   return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
 }
 
-/// Mesh data that cloth.vert reads. `per_m`: squares of the checker per metre.
-std::vector<std::uint32_t> mesh_words(const ClothMesh& m, double per_m) {
-  std::vector<std::uint32_t> words, first(m.vertices.size() + 1, 0);
-  const auto axes = longest_axes(m);
-  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+constexpr double kSquares = 8, kMostSquares = 64;  // of the checker, along the shorter side and along the longer
+
+/// Place of a corner on the checker, in squares.
+class Checker {
+ public:
+  explicit Checker(const Cloth& cloth) : cloth_(cloth), axes_{0, 1} {
+    shorter_m_ = std::min(cloth.width_m, cloth.height_m);
+    if (cloth.mesh && cloth.mesh->pattern_m.empty()) axes_ = longest_axes(*cloth.mesh);
+  }
+
+  std::array<double, 2> at(std::size_t triangle, std::size_t corner, std::uint32_t v) const {
+    if (!cloth_.mesh) {
+      const auto columns = static_cast<std::uint32_t>(cloth_.columns);
+      return {squares(cloth_.width_m) * (v % columns) / (columns - 1),
+              squares(cloth_.height_m) * (v / columns) / (cloth_.rows - 1)};
+    }
+    const ClothMesh& m = *cloth_.mesh;
+    std::array<double, 2> at_m = {m.vertices[v][axes_[0]], m.vertices[v][axes_[1]]};
+    if (!m.pattern_m.empty()) at_m = m.pattern_m[triangle][corner];
+    const double per_m = shorter_m_ > 0 ? kSquares / shorter_m_ : 1;
+    return {at_m[0] * per_m, at_m[1] * per_m};
+  }
+
+ private:
+  double squares(double side_m) const {
+    return shorter_m_ > 0 ? std::clamp(std::round(kSquares * side_m / shorter_m_), 1.0, kMostSquares) : kSquares;
+  }
+
+  const Cloth& cloth_;
+  std::array<std::size_t, 2> axes_;
+  double shorter_m_;
+};
+
+/// Triangles, checker and fans of the vertices as cloth.vert reads them.
+std::vector<std::uint32_t> mesh_words(const Cloth& cloth) {
+  const auto triangles = clothbench::triangles(cloth);
+  const Checker checker(cloth);
+  std::vector<std::uint32_t> words, first(cloth.vertex_count() + 1, 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = m.triangles[t][c];
-      std::array<double, 2> at = {m.vertices[v][axes[0]], m.vertices[v][axes[1]]};
-      if (!m.pattern_m.empty()) at = m.pattern_m[t][c];
+      const std::uint32_t v = triangles[t][c];
       words.push_back(v);
-      for (const double x : at) words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(x * per_m)));
+      for (const double x : checker.at(t, c, v)) words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(x)));
       ++first[v + 1];
     }
   for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
-  std::vector<std::uint32_t> lists(3 * m.triangles.size()), next = first;
-  for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
-    for (const std::uint32_t v : m.triangles[t]) lists[next[v]++] = t;
+  std::vector<std::uint32_t> lists(3 * triangles.size()), next = first;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (const std::uint32_t v : triangles[t]) lists[next[v]++] = t;
   words.insert(words.end(), first.begin(), first.end());
   words.insert(words.end(), lists.begin(), lists.end());
   return words;
@@ -97,32 +125,18 @@ void SceneRenderer::set_cloth(const Cloth& cloth, const Vec3& origin_m) {
   if (!cloth.mesh && (cloth.columns < 2 || cloth.rows < 2))
     throw Error(
         fmt::format("the cloth's grid is {} x {}: expected at least 2 x 2 vertices", cloth.columns, cloth.rows));
-  columns_ = cloth.columns;
-  rows_ = cloth.rows;
   origin_m_ = origin_m;
-  constexpr double kSquares = 8, kMostSquares = 64;  // along the shorter side, along the longer
-  const double shorter = std::min(cloth.width_m, cloth.height_m);
-  const auto squares = [&](double side) {
-    return static_cast<float>(shorter > 0 ? std::clamp(std::round(kSquares * side / shorter), 1.0, kMostSquares)
-                                          : kSquares);
-  };
-  squares_u_ = squares(cloth.width_m);
-  squares_v_ = squares(cloth.height_m);
-  mesh_triangles_ = 0;
-  mesh_.reset();
-  if (cloth.mesh) {
-    const std::vector<std::uint32_t> words = mesh_words(*cloth.mesh, shorter > 0 ? kSquares / shorter : 1);
-    mesh_ = filled("mesh to draw", words.data(), words.size() * sizeof(std::uint32_t));
-    mesh_triangles_ = static_cast<std::uint32_t>(cloth.mesh->triangles.size());
-  }
+  const std::vector<std::uint32_t> words = mesh_words(cloth);
+  mesh_ = filled("mesh to draw", words.data(), words.size() * sizeof(std::uint32_t));
+  vertices_of_cloth_ = cloth.vertex_count();
+  triangles_of_cloth_ = clothbench::triangles(cloth).size();
   own_positions_.reset();
   positions_ = nullptr;
-  follow_vertex_ = -1;
   bound_ = false;
 }
 
 void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m) {
-  const std::size_t bytes = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) * sizeof(vec4);
+  const std::size_t bytes = vertices_of_cloth_ * sizeof(vec4);
   if (buffer.bytes() < bytes)
     throw Error(
         fmt::format("buffer \"{}\" of {} B: expected one vec4 per vertex, {} B", buffer.name(), buffer.bytes(), bytes));
@@ -132,7 +146,7 @@ void SceneRenderer::use_positions(const vulkan::Buffer& buffer, const Vec3& buff
 }
 
 void SceneRenderer::write_positions(std::span<const double> x) {
-  const std::size_t vertices = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+  const std::size_t vertices = vertices_of_cloth_;
   if (x.size() != 3 * vertices)
     throw Error(fmt::format("{} coordinates: expected {}, xyz of each vertex", x.size(), 3 * vertices));
   if (!own_positions_) own_positions_ = filled("positions to draw", nullptr, vertices * sizeof(vec4));
@@ -144,11 +158,6 @@ void SceneRenderer::write_positions(std::span<const double> x) {
   if (positions_ != own_positions_.get()) bound_ = false;
   positions_ = own_positions_.get();
   buffer_origin_m_ = origin_m_;
-}
-
-void SceneRenderer::follow(std::uint32_t vertex, const Vec3& start_m) {
-  follow_vertex_ = static_cast<int>(vertex);
-  follow_start_m_ = start_m;
 }
 
 void SceneRenderer::set_surfaces(const Surfaces& s) {
@@ -174,7 +183,7 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
 void SceneRenderer::bind_buffers() {
   if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
   if (bound_) return;
-  pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_ ? mesh_.get() : positions_});
+  pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_.get()});
   bound_ = true;
 }
 
@@ -184,10 +193,8 @@ Drawn SceneRenderer::constants(const Drawing& drawing) const {
   for (std::size_t c = 0; c < 4; ++c)
     for (std::size_t r = 0; r < 4; ++r) d.to_clip[c][r] = static_cast<float>(to_clip[4 * c + r]);
   d.eye = as_vec4(eye_of(drawing.view), 0);
-  d.sheet = {static_cast<float>(columns_), static_cast<float>(rows_), squares_u_, squares_v_};
-  if (mesh_triangles_ > 0) d.sheet = {static_cast<float>(mesh_triangles_), 0, static_cast<float>(columns_), 0};
+  d.sheet = {static_cast<float>(triangles_of_cloth_), static_cast<float>(vertices_of_cloth_), 0, 0};
   d.origin = as_vec4(minus(buffer_origin_m_, origin_m_), 0);
-  d.follow = as_vec4(minus(follow_start_m_, buffer_origin_m_), follow_vertex_);
   return d;
 }
 
@@ -208,12 +215,12 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
       targets_->extent().height != drawing.extent.height)
     targets_ = std::make_unique<Targets>(device_, pipelines_.pass(), format_, kSampleBit, drawing.extent);
   std::array<VkClearValue, 3> clear{};
-  clear[0].color = {{background_[0], background_[1], background_[2], background_[3]}};
+  clear[0].color = {{1, 1, 1, 1}};
   clear[1].depthStencil = {1, 0};
   VkRenderPassBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
   begin.renderPass = pipelines_.pass();
-  begin.framebuffer = targets_->framebuffer(drawing.image, drawing.layer);
+  begin.framebuffer = targets_->framebuffer(drawing.image);
   begin.renderArea = {{0, 0}, drawing.extent};
   begin.clearValueCount = static_cast<std::uint32_t>(clear.size());
   begin.pClearValues = clear.data();
@@ -224,9 +231,7 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
   vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
   const Drawn d = constants(drawing);
   pipelines_.use(commands, true, &d, sizeof d);
-  const std::uint32_t corners =
-      mesh_triangles_ > 0 ? 3 * mesh_triangles_ : static_cast<std::uint32_t>(6 * (columns_ - 1) * (rows_ - 1));
-  vkCmdDraw(commands, corners, 1, 0, 0);
+  vkCmdDraw(commands, static_cast<std::uint32_t>(3 * triangles_of_cloth_), 1, 0, 0);
   if (corner_count_ > 0) {
     pipelines_.use(commands, false, &d, sizeof d);
     vkCmdDraw(commands, corner_count_, 1, 0, 0);

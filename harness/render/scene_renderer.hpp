@@ -17,7 +17,6 @@ namespace clothbench::render {
 /// as OpenXR requires for images of a swapchain.
 struct Drawing {
   VkImage image = VK_NULL_HANDLE;
-  std::uint32_t layer = 0;
   VkExtent2D extent{};
   Mat4 view{},
       projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
@@ -49,12 +48,8 @@ class SceneRenderer {
   /// Draws these positions, xyz interleaved [m], one per vertex (otherwise Error). Any may be NaN: its triangles are
   /// left out.
   void write_positions(std::span<const double> position_m);
-  /// The camera follows a vertex that started at `start_m`.
-  void follow(std::uint32_t vertex, const Vec3& start_m);
 
   void set_surfaces(const Surfaces&);
-  /// Background colour, linear RGBA; default white. Alpha 0 shows the passthrough image of a headset.
-  void set_background(const vec4& rgba) { background_ = rgba; }
 
   /// Records the pictures in order, after a barrier for data that earlier commands on the queue write.
   void record(VkCommandBuffer, std::span<const Drawing>);
@@ -71,12 +66,8 @@ class SceneRenderer {
   VkFormat format_;
   Pipelines pipelines_;
   std::unique_ptr<Targets> targets_;  ///< of the last picture's size
-  int columns_ = 0, rows_ = 0;        ///< of a mesh: vertices and 1
-  std::uint32_t mesh_triangles_ = 0;  ///< 0: a grid
-  float squares_u_ = 0, squares_v_ = 0;
-  Vec3 origin_m_{}, buffer_origin_m_{}, follow_start_m_{};
-  int follow_vertex_ = -1;
-  vec4 background_{1, 1, 1, 1};
+  std::size_t vertices_of_cloth_ = 0, triangles_of_cloth_ = 0;
+  Vec3 origin_m_{}, buffer_origin_m_{};
   bool bound_ = false;
   std::unique_ptr<vulkan::Buffer> own_positions_, vertices_, corners_, mesh_;
   const vulkan::Buffer* positions_ = nullptr;

@@ -347,7 +347,6 @@ void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
 std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, const RunRecord& record) {
   const RunView run(*spec.scene, record, plan, spec.entry->info.on_gpu);
   std::map<std::string, double> s = scalars_of(run);
-  s.merge(stage_scalars(run));
   for (const auto& [name, value] : spec.scene_values) s[name] = value;
   return s;
 }

@@ -12,7 +12,7 @@ namespace {
 
 ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   if (m.recording) {
-    const assets::RecordedHand now = m.recording->at(time_s);
+    const assets::RecordedHand& now = m.recording->at(time_s);
     return as_mesh ? mesh_pose(*m.hand, assets::pose_of(now).joints, m.offset_m)
                    : capsules_pose(*m.recording, now, m.offset_m);
   }

@@ -5,9 +5,8 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 
-#include "base/json_text.hpp"
+#include "clothbench/error.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -19,24 +18,8 @@ AndroidContext& context() {
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
 /// Beside XR_KHR_vulkan_enable2, which there must be.
-constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME,
-                                 XR_FB_PASSTHROUGH_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
                                  XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME};
-
-/// Never closed: Vulkan objects that a runtime helped to make outlive its instance.
-void* open_library(const std::string& path) { return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL); }
-
-/// The library a runtime's manifest names, relative to the manifest where it is no mere file name.
-std::string library_of(const std::string& runtime) {
-  if (!runtime.ends_with(".json")) return runtime;
-  const nlohmann::json manifest = parse_json(read_text(runtime), runtime);
-  const nlohmann::json library =
-      manifest.value("runtime", nlohmann::json::object()).value("library_path", nlohmann::json());
-  if (!library.is_string()) throw Error(runtime + ": /runtime/library_path: expected a runtime's library");
-  const std::filesystem::path path = library.get<std::string>();
-  if (path.is_absolute() || !path.has_parent_path()) return path;
-  return std::filesystem::path(runtime).parent_path() / path;
-}
 
 /// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our requests and its own.
 class RuntimeMaker : public vulkan::Maker {
@@ -81,8 +64,8 @@ class RuntimeMaker : public vulkan::Maker {
 
 void set_android_context(const AndroidContext& c) { context() = c; }
 
-Instance::Instance(const std::string& runtime) {
-  load(runtime);
+Instance::Instance() {
+  load();
   create();
   try {
     find_system();
@@ -100,35 +83,19 @@ PFN_xrVoidFunction Instance::address(const char* name) const {
   return found;
 }
 
-void Instance::load(const std::string& runtime) {
-  if (!runtime.empty()) {
-    const std::string path = library_of(runtime);
-    void* library = open_library(path);
-    if (library == nullptr) throw Error(fmt::format("OpenXR runtime {}: {}", path, dlerror()), ExitCode::NoDevice);
-    const auto negotiate = reinterpret_cast<NegotiateRuntime>(dlsym(library, "xrNegotiateLoaderRuntimeInterface"));
-    if (negotiate == nullptr)
-      throw Error(path + ": expected an OpenXR runtime: it has no function xrNegotiateLoaderRuntimeInterface",
-                  ExitCode::NoDevice);
-    const NegotiateLoaderInfo ours;
-    NegotiateRuntimeRequest theirs;
-    if (XR_FAILED(negotiate(&ours, &theirs)) || theirs.get_instance_proc_addr == nullptr)
-      throw Error(path + ": expected an OpenXR runtime with loader interface 1", ExitCode::NoDevice);
-    get_ = theirs.get_instance_proc_addr;
-    return;
-  }
+void Instance::load() {
   void* loader = nullptr;
   for (const char* name : {"libopenxr_loader.so.1", "libopenxr_loader.so"})
-    if (loader == nullptr) loader = open_library(name);
+    if (loader == nullptr) loader = dlopen(name, RTLD_NOW | RTLD_LOCAL);
   if (loader == nullptr)
-    throw Error("no OpenXR loader, libopenxr_loader.so.1 (Debian: libopenxr-loader1); or name a runtime with --runtime",
-                ExitCode::NoDevice);
+    throw Error("no OpenXR loader, libopenxr_loader.so.1 (Debian: libopenxr-loader1)", ExitCode::NoDevice);
   get_ = reinterpret_cast<PFN_xrGetInstanceProcAddr>(dlsym(loader, "xrGetInstanceProcAddr"));
   if (get_ == nullptr) throw Error("the OpenXR loader has no xrGetInstanceProcAddr", ExitCode::NoDevice);
   if (context().vm == nullptr) return;
   const AndroidInfo info{kTypeLoaderInitAndroid, nullptr, context().vm, context().activity};
   using InitializeLoader = XrResult(XRAPI_PTR*)(const void*);
-  const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");
-  if (initialize == nullptr || XR_FAILED(initialize(&info)))
+  const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");  // only on Android
+  if (initialize != nullptr && XR_FAILED(initialize(&info)))
     throw Error("the OpenXR loader does not accept an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
 }
 
@@ -137,8 +104,7 @@ void Instance::create() {
   const auto create = function<PFN_xrCreateInstance>("xrCreateInstance");
   std::uint32_t count = 0;
   if (enumerate == nullptr || create == nullptr || XR_FAILED(enumerate(nullptr, 0, &count, nullptr)))
-    throw Error("no OpenXR runtime is active; start one, set XR_RUNTIME_JSON, or name one with --runtime",
-                ExitCode::NoDevice);
+    throw Error("no OpenXR runtime is active; start one, or set XR_RUNTIME_JSON", ExitCode::NoDevice);
   std::vector<XrExtensionProperties> properties(count, blank<XrExtensionProperties>(XR_TYPE_EXTENSION_PROPERTIES));
   if (XR_FAILED(enumerate(nullptr, count, &count, properties.data())))
     throw Error("xrEnumerateInstanceExtensionProperties failed", ExitCode::NoDevice);

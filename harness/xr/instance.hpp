@@ -36,10 +36,9 @@ void set_android_context(const AndroidContext&);
 /// An OpenXR runtime, its head-mounted system, and those extensions we use that it has.
 class Instance {
  public:
-  /// `runtime`: the library or the manifest (.json) of a runtime, opened without a loader; empty: the runtime that the
-  /// system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice if there is no loader,
-  /// no runtime, no headset, or no XR_KHR_vulkan_enable2.
-  explicit Instance(const std::string& runtime);
+  /// The runtime that the system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice
+  /// if there is no loader, no runtime, no headset, or no XR_KHR_vulkan_enable2.
+  Instance();
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
@@ -65,7 +64,7 @@ class Instance {
 
  private:
   PFN_xrVoidFunction address(const char* name) const;
-  void load(const std::string& runtime);
+  void load();
   void create();
   void find_system();
 

@@ -41,11 +41,9 @@ class Loop {
        std::shared_ptr<vulkan::Device> device)
       : o_(options), live_(live), session_(session), device_(device), painter_(device, session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
-    const bool through = session.passthrough() != std::string_view("none");
-    painter_.renderer().set_background(through ? render::vec4{0, 0, 0, 0} : render::vec4{1, 1, 1, 1});
     show_at_rest();
-    tell(fmt::format("{} on {}; {} x {} pixels an eye; passthrough: {}", xr.system_name(), xr.runtime_name(),
-                     session.extent().width, session.extent().height, session.passthrough()));
+    tell(fmt::format("{} on {}; {} x {} pixels an eye", xr.system_name(), xr.runtime_name(), session.extent().width,
+                     session.extent().height));
   }
 
   LoopResult run() {
@@ -258,8 +256,6 @@ class Loop {
                     {"rate_hz", live_.scene().time.frame_rate_hz},
                     {"eye_width", session_.extent().width},
                     {"eye_height", session_.extent().height},
-                    {"passthrough", session_.passthrough()},
-                    {"performance_level", session_.performance_level()},
                     {"hands", !hands_                  ? "scripted"
                               : hands_->has_capsules() ? "live, capsules of the runtime"
                                                        : "live, joints and radii"}};
@@ -336,11 +332,11 @@ class Loop {
 }  // namespace
 
 LoopResult run_loop(const LoopOptions& options) {
-  const Instance xr(options.runtime);
+  const Instance xr;
   const ResultFolder held(options.out, {}, "clothbench xr");
   LiveScene live(options.scenario, options.overrides, options.out / "scenario", xr.tracks_hands());
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
-  Session session(xr, device, {options.rate_hz, live.place_m(), options.passthrough});
+  Session session(xr, device, {options.rate_hz, live.place_m()});
   return Loop(options, xr, live, session, device).run();
 }
 

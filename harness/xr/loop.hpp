@@ -19,11 +19,9 @@ struct LoopOptions {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;  ///< complete
   std::string setting = "default";
-  DeviceOptions device;  ///< its index is ignored: the runtime chooses the device
-  std::string runtime;   ///< argument of Instance
-  double rate_hz = 72;   ///< requested refresh rate of the display
-  int frames = 0;        ///< 0: the scene's length
-  bool passthrough = true;
+  DeviceOptions device;    ///< its index is ignored: the runtime chooses the device
+  double rate_hz = 72;     ///< requested refresh rate of the display
+  int frames = 0;          ///< 0: the scene's length
   double timeout_s = 120;  ///< for hands to be tracked
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< receives messages for the user; may be empty

@@ -6,9 +6,6 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
-#include <cstddef>
-#include <cstdint>
-
 /// Declarations of the OpenXR 1.1 specification that the oldest supported headers (1.0.20) lack or restrict to Android.
 /// Numbers and layouts are the specification's; names are ours, to avoid clashes with newer headers.
 namespace clothbench::xr {
@@ -30,23 +27,5 @@ struct AndroidInfo {
   void* vm;
   void* activity;  ///< for the loader: a Context; an activity is one
 };
-
-/// Entry into a runtime's library without a loader (chapter "Loader Design", runtime negotiation).
-struct NegotiateLoaderInfo {
-  int struct_type = 1;
-  std::uint32_t struct_version = 1;
-  std::size_t struct_size = sizeof(NegotiateLoaderInfo);
-  std::uint32_t min_interface = 1, max_interface = 1;
-  XrVersion min_api = XR_MAKE_VERSION(1, 0, 0), max_api = XR_MAKE_VERSION(1, 0x3ff, 0xfff);
-};
-struct NegotiateRuntimeRequest {
-  int struct_type = 3;
-  std::uint32_t struct_version = 1;
-  std::size_t struct_size = sizeof(NegotiateRuntimeRequest);
-  std::uint32_t interface_version = 0;
-  XrVersion api_version = 0;
-  PFN_xrGetInstanceProcAddr get_instance_proc_addr = nullptr;
-};
-using NegotiateRuntime = XrResult(XRAPI_PTR*)(const NegotiateLoaderInfo*, NegotiateRuntimeRequest*);
 
 }  // namespace clothbench::xr

@@ -119,7 +119,7 @@ void Painter::record(std::uint32_t left, std::uint32_t right, const std::vector<
   const std::array<std::uint32_t, 2> index = {left, right};
   std::vector<render::Drawing> drawings;
   for (std::size_t k = 0; k < 2; ++k)
-    drawings.push_back({session_.eyes()[k].images.at(index[k]), 0, session_.extent(),
+    drawings.push_back({session_.eyes()[k].images.at(index[k]), session_.extent(),
                         view_of(views[k].pose, renderer_.origin()), projection_of(views[k].fov, kNear_m, kFar_m)});
   renderer_.record(commands_, drawings);
   if (queries_ != VK_NULL_HANDLE) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);

@@ -20,7 +20,7 @@ Session::Session(const Instance& xr, std::shared_ptr<vulkan::Device> device, con
     create_session();
     create_space(options.origin_m);
     create_eyes();
-    choose_blend_mode(options.passthrough);
+    choose_blend_mode();
   } catch (...) {  // no destructor runs then
     release();
     throw;
@@ -31,8 +31,6 @@ Session::~Session() { release(); }
 
 void Session::release() {
   vkDeviceWaitIdle(device_->handle());
-  if (layer_ != XR_NULL_HANDLE) xr_.function<PFN_xrDestroyPassthroughLayerFB>("xrDestroyPassthroughLayerFB")(layer_);
-  if (passthrough_ != XR_NULL_HANDLE) xr_.function<PFN_xrDestroyPassthroughFB>("xrDestroyPassthroughFB")(passthrough_);
   for (Eye& eye : eyes_)
     if (eye.swapchain != XR_NULL_HANDLE) xr_.xr().xrDestroySwapchain(eye.swapchain);
   if (space_ != XR_NULL_HANDLE) xr_.xr().xrDestroySpace(space_);
@@ -101,40 +99,17 @@ void Session::create_eyes() {
   }
 }
 
-void Session::choose_blend_mode(bool passthrough) {
+/// The user sees nothing but the scene, if the headset can do that.
+void Session::choose_blend_mode() {
   std::uint32_t count = 0;
   xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
             "xrEnumerateEnvironmentBlendModes");
   std::vector<XrEnvironmentBlendMode> modes(count);
   xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, count, &count, modes.data()),
             "xrEnumerateEnvironmentBlendModes");
-  const auto offers = [&](XrEnvironmentBlendMode m) { return std::find(modes.begin(), modes.end(), m) != modes.end(); };
   if (modes.empty()) throw Error("OpenXR: the runtime has no environment blend mode", ExitCode::NoDevice);
-  blend_ = offers(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
-  if (!passthrough) return;
-  if (xr_.has(XR_FB_PASSTHROUGH_EXTENSION_NAME)) {
-    start_passthrough();
-  } else if (offers(XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND)) {
-    blend_ = XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
-    passthrough_name_ = "alpha blend";
-  }
-}
-
-void Session::start_passthrough() {
-  auto info = blank<XrPassthroughCreateInfoFB>(XR_TYPE_PASSTHROUGH_CREATE_INFO_FB);
-  info.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
-  // A headset without cameras has the extension too, and reports here that it cannot be used.
-  if (XR_FAILED(xr_.function<PFN_xrCreatePassthroughFB>("xrCreatePassthroughFB")(session_, &info, &passthrough_))) {
-    passthrough_ = XR_NULL_HANDLE;
-    return;
-  }
-  auto layer = blank<XrPassthroughLayerCreateInfoFB>(XR_TYPE_PASSTHROUGH_LAYER_CREATE_INFO_FB);
-  layer.passthrough = passthrough_;
-  layer.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
-  layer.purpose = XR_PASSTHROUGH_LAYER_PURPOSE_RECONSTRUCTION_FB;
-  xr_.check(xr_.function<PFN_xrCreatePassthroughLayerFB>("xrCreatePassthroughLayerFB")(session_, &layer, &layer_),
-            "xrCreatePassthroughLayerFB");
-  passthrough_name_ = "XR_FB_passthrough";
+  const bool opaque = std::find(modes.begin(), modes.end(), XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end();
+  blend_ = opaque ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
 }
 
 void Session::request_rate(double rate_hz) const {
@@ -157,15 +132,6 @@ double Session::refresh_rate_hz() const {
   return static_cast<double>(rate);
 }
 
-void Session::request_performance() {
-  if (!xr_.has(XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME)) return;
-  const auto set = xr_.function<PFN_xrPerfSettingsSetPerformanceLevelEXT>("xrPerfSettingsSetPerformanceLevelEXT");
-  bool all = true;
-  for (const auto domain : {XR_PERF_SETTINGS_DOMAIN_CPU_EXT, XR_PERF_SETTINGS_DOMAIN_GPU_EXT})
-    all = XR_SUCCEEDED(set(session_, domain, XR_PERF_SETTINGS_LEVEL_SUSTAINED_HIGH_EXT)) && all;
-  if (all) performance_ = "sustained high";
-}
-
 bool Session::pump() {
   for (;;) {
     auto event = blank<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
@@ -186,7 +152,6 @@ void Session::change(XrSessionState state) {
     xr_.check(xr_.xr().xrBeginSession(session_, &info), "xrBeginSession");
     running_ = true;
     request_rate(rate_hz_);
-    request_performance();
   } else if (state == XR_SESSION_STATE_STOPPING) {
     running_ = false;
     xr_.check(xr_.xr().xrEndSession(session_), "xrEndSession");
@@ -229,13 +194,8 @@ std::vector<XrView> Session::views(XrTime time) const {
 }
 
 void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& views) {
-  auto camera = blank<XrCompositionLayerPassthroughFB>(XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB);
-  camera.flags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
-  camera.layerHandle = layer_;
   std::array<XrCompositionLayerProjectionView, 2> shown{};
   auto projection = blank<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
-  std::vector<const XrCompositionLayerBaseHeader*> layers;
-  if (layer_ != XR_NULL_HANDLE) layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&camera));
   if (!views.empty()) {
     for (std::size_t k = 0; k < shown.size(); ++k) {
       shown[k] = blank<XrCompositionLayerProjectionView>(XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
@@ -245,18 +205,16 @@ void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& vi
       shown[k].subImage.imageRect.extent = {static_cast<std::int32_t>(extent_.width),
                                             static_cast<std::int32_t>(extent_.height)};
     }
-    if (passthrough_name_ != std::string_view("none"))
-      projection.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
     projection.space = space_;
     projection.viewCount = static_cast<std::uint32_t>(shown.size());
     projection.views = shown.data();
-    layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
   }
+  const auto* layer = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection);
   auto info = blank<XrFrameEndInfo>(XR_TYPE_FRAME_END_INFO);
   info.displayTime = frame.predictedDisplayTime;
   info.environmentBlendMode = blend_;
-  info.layerCount = static_cast<std::uint32_t>(layers.size());
-  info.layers = layers.data();
+  info.layerCount = views.empty() ? 0 : 1;
+  info.layers = &layer;
   xr_.check(xr_.xr().xrEndFrame(session_, &info), "xrEndFrame");
 }
 

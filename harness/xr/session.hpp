@@ -11,7 +11,6 @@ namespace clothbench::xr {
 struct SessionOptions {
   double rate_hz = 72;  ///< requested refresh rate of the display, if the runtime allows it
   Vec3 origin_m{};      ///< the scene's origin in LOCAL space, which begins at the head
-  bool passthrough = true;
 };
 
 /// Images of one eye.
@@ -50,18 +49,13 @@ class Session {
   double refresh_rate_hz() const;  ///< current rate of the display; 0 if unknown
   /// The same; by the runtime's prediction, which is in whole ns, if unknown.
   double frame_rate_hz(const XrFrameState&) const;
-  /// "XR_FB_passthrough", "alpha blend" or "none".
-  const char* passthrough() const { return passthrough_name_; }
-  const char* performance_level() const { return performance_; }  ///< "sustained high" or "none"
 
  private:
   void create_session();
   void create_space(const Vec3& origin_m);
   void create_eyes();
-  void choose_blend_mode(bool passthrough);
-  void start_passthrough();
+  void choose_blend_mode();
   void request_rate(double rate_hz) const;
-  void request_performance();
   void change(XrSessionState);
   void release();
 
@@ -75,9 +69,6 @@ class Session {
   VkExtent2D extent_{};
   std::array<Eye, 2> eyes_;
   XrEnvironmentBlendMode blend_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
-  XrPassthroughFB passthrough_ = XR_NULL_HANDLE;
-  XrPassthroughLayerFB layer_ = XR_NULL_HANDLE;
-  const char *passthrough_name_ = "none", *performance_ = "none";
 };
 
 }  // namespace clothbench::xr

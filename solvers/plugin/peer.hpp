@@ -66,11 +66,11 @@ inline std::vector<Spring> springs(const ClothbenchScene& s) {
   std::vector<Spring> out;
   for (std::uint32_t k = 0; k < s.structural_count; ++k) {
     const ClothbenchEdge& e = s.structural_edges[k];
-    out.push_back({e.a, e.b, e.rest_m, s.structural_spring_N_per_m[k], Kind::Structural});
+    out.push_back({e.a, e.b, e.rest_m, e.spring_N_per_m, Kind::Structural});
   }
   for (std::uint32_t k = 0; k < s.shear_count; ++k) {
     const ClothbenchEdge& e = s.shear_edges[k];
-    out.push_back({e.a, e.b, e.rest_m, s.shear_spring_N_per_m[k], Kind::Shear});
+    out.push_back({e.a, e.b, e.rest_m, e.spring_N_per_m, Kind::Shear});
   }
   for (std::uint32_t k = 0; needs(s, CLOTHBENCH_BEND) && k < s.skip_count; ++k) {
     const ClothbenchEdge& e = s.skip_edges[k];
@@ -193,12 +193,9 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
     *count = 1;
     return &static_cast<Solver*>(self)->stage;
   };
-  p.reset = [](void* self) {
+  p.restart = [](void* self, const ClothbenchRestart* at) -> std::int32_t {
     auto* solver = static_cast<Solver*>(self);
-    solver->restart(start_of(solver->scene));
-  };
-  p.restart_at = [](void* self, const ClothbenchRestart* at) -> std::int32_t {
-    static_cast<Solver*>(self)->restart(*at);
+    solver->restart(at->index < 0 ? start_of(solver->scene) : *at);
     return 1;
   };
   p.contact_margin_m = [](void* self, std::uint32_t collider) {

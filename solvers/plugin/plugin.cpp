@@ -31,8 +31,6 @@ using Entrance = const ClothbenchPlugin* (*)();
 #include "clothbench/feature_table.hpp"
 #undef FEATURE
 
-constexpr char kStageTimes[] = "stage_times";
-
 struct Loaded {
   std::string path;
   SolverEntry entry;
@@ -80,19 +78,6 @@ void check_settings(const std::string& path, const ClothbenchPlugin& c) {
   }
 }
 
-/// Functions that work only together.
-void check_groups(const std::string& path, const ClothbenchPlugin& c) {
-  const int in_flight = (c.frames_in_flight != nullptr) + (c.submit != nullptr) + (c.finish != nullptr);
-  if (in_flight % 3 != 0) refuse(path, "frames_in_flight, submit, finish: expected all three or none");
-  if (c.stage_device_s == nullptr) return;
-  if (c.device_s == nullptr) refuse(path, "stage_device_s: expected device_s too");
-  const auto* end = c.settings + c.setting_count;
-  if (std::none_of(c.settings, end, [](const ClothbenchSetting& s) {
-        return std::string(s.name) == kStageTimes && s.integer != 0 && s.default_value == 0;
-      }))
-    refuse(path, fmt::format("stage_device_s: expected a setting {}, a whole number with default 0", kStageTimes));
-}
-
 void check_description(const std::string& path, const ClothbenchPlugin& c) {
   const std::string name = c.name != nullptr ? c.name : "";
   if (name.empty() ||
@@ -111,17 +96,15 @@ void check_description(const std::string& path, const ClothbenchPlugin& c) {
   if ((c.supports & c.ignores) != 0) refuse(path, "supports, ignores: expected each feature in one of them only");
   if (c.engine != nullptr && *c.engine == '\0') refuse(path, "engine: expected a text or NULL");
   if (c.time_order < 1) refuse(path, "time_order: expected 1 or more");
-  for (const auto& [what, there] :
-       {std::pair{"create", c.create != nullptr},
-        {"destroy", c.destroy != nullptr},
-        {"restart, restart_at or reset", c.restart != nullptr || c.restart_at != nullptr || c.reset != nullptr},
-        {"step", c.step != nullptr},
-        {"read_state", c.read_state != nullptr},
-        {"stages", c.stages != nullptr},
-        {"settings", c.settings != nullptr || c.setting_count == 0}})
+  for (const auto& [what, there] : {std::pair{"create", c.create != nullptr},
+                                    {"destroy", c.destroy != nullptr},
+                                    {"restart", c.restart != nullptr},
+                                    {"step", c.step != nullptr},
+                                    {"read_state", c.read_state != nullptr},
+                                    {"stages", c.stages != nullptr},
+                                    {"settings", c.settings != nullptr || c.setting_count == 0}})
     if (!there) refuse(path, fmt::format("{}: missing", what));
   check_settings(path, c);
-  check_groups(path, c);
 }
 
 const ClothbenchPlugin& checked(const std::string& path, const ClothbenchPlugin* c) {

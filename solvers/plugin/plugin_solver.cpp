@@ -53,30 +53,16 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
     self_ = c_.create(settings_.data(), view_->scene(), &why);
     if (self_ == nullptr) fault("create", why != nullptr ? why : "the plugin made no solver and gave no reason");
     device_ = described_device();
-    in_flight_ = c_.frames_in_flight != nullptr ? c_.frames_in_flight(self_) : 1;
-    if (in_flight_ < 1) fault("frames_in_flight", fmt::format("expected 1 or more; found {}", in_flight_));
     plan_ = described_plan();
   }
 
   void reset() override {
-    if (c_.reset != nullptr) return c_.reset(self_);
     const std::size_t n = 3 * std::size_t{view_->scene()->vertex_count};
     const double *x = view_->scene()->position_m, *v = view_->scene()->velocity_m_per_s;
-    if (c_.restart_at != nullptr ? !restart_at({{x, x + n}, {v, v + n}}, {-1, 0, 0, nullptr})
-                                 : c_.restart(self_, x, v) == 0)
-      fault("restart", "the plugin refuses the scene's start and has no reset");
+    if (!restart_at({{x, x + n}, {v, v + n}}, {-1, 0, 0, nullptr}))
+      fault("restart", "the plugin refuses the scene's start");
   }
   StepStatus step(const FrameInput& in) override { return status_of(c_.step(self_, view_->frame(in))); }
-
-  int frames_in_flight() const override { return in_flight_; }
-  StepStatus run_frames(const std::vector<FrameInput>& frames) override {
-    if (in_flight_ == 1) return ClothSolver::run_frames(frames);
-    StepStatus status = StepStatus::Ok;
-    for (std::size_t k = 0; k < frames.size() && status == StepStatus::Ok; ++k)
-      status = status_of(c_.submit(self_, view_->frame(frames[k])));
-    const StepStatus end = status_of(c_.finish(self_));
-    return status != StepStatus::Ok ? status : end;
-  }
 
   void read_state(ClothState& out) const override {
     out.position.resize(3 * std::size_t{view_->scene()->vertex_count});
@@ -84,23 +70,19 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
     c_.read_state(self_, out.position.data(), out.velocity.data());
   }
 
-  bool restart(const ClothState& s) override {
-    return c_.restart != nullptr && c_.restart(self_, s.position.data(), s.velocity.data()) != 0;
-  }
   bool restart_at(const ClothState& s, const FrameInput& last) override {
-    if (c_.restart_at == nullptr) return restart(s);
-    return c_.restart_at(self_, view_->restart(s, last)) != 0;
+    return c_.restart(self_, view_->restart(s, last)) != 0;
   }
 
   FrameCost last_cost() const override {
     FrameCost cost;
-    cost.device_s = c_.device_s != nullptr ? time_of("device_s", c_.device_s(self_)) : kMissing;
+    cost.device_s = c_.device_s != nullptr ? c_.device_s(self_) : kMissing;
+    if (cost.device_s < 0 || std::isinf(cost.device_s))
+      fault("device_s", fmt::format("expected a time of 0 s or more, or NAN; found {}", cost.device_s));
     cost.stage_device_s.assign(plan_.stages.size(), kMissing);
-    if (times_stages()) c_.stage_device_s(self_, cost.stage_device_s.data());
-    for (std::size_t k = 0; k < plan_.stages.size(); ++k) {
-      time_of("stage_device_s", cost.stage_device_s[k]);
-      cost.stage_read_B.push_back(plan_.stages[k].read_B);
-      cost.stage_write_B.push_back(plan_.stages[k].write_B);
+    for (const StagePlan& s : plan_.stages) {
+      cost.stage_read_B.push_back(s.read_B);
+      cost.stage_write_B.push_back(s.write_B);
     }
     return cost;
   }
@@ -117,25 +99,8 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
     throw SolverError(fmt::format("{}: {}: {}", info_.folder, function, what));
   }
 
-  double time_of(const char* function, double seconds) const {
-    if (seconds < 0 || std::isinf(seconds))
-      fault(function, fmt::format("expected a time of 0 s or more, or NAN; found {}", seconds));
-    return seconds;
-  }
-
-  /// Only the solver made for them is asked for times of stages.
-  bool times_stages() const {
-    if (c_.stage_device_s == nullptr) return false;
-    for (std::uint32_t k = 0; k < c_.setting_count; ++k)
-      if (std::string(c_.settings[k].name) == "stage_times") return settings_[k] != 0;
-    return false;
-  }
-
   DeviceInfo described_device() const {
-    if (c_.device_info == nullptr) {
-      const char* name = c_.device != nullptr ? c_.device(self_) : nullptr;
-      return {name != nullptr ? name : "CPU", "", "plugin", false, "{}"};
-    }
+    if (c_.device_info == nullptr) return {"CPU", "", "plugin", false, "{}"};
     ClothbenchDevice d{};
     c_.device_info(self_, &d);
     for (const auto& [what, text] : {std::pair{"name", d.name}, {"driver", d.driver}, {"api", d.api}})
@@ -157,13 +122,6 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
     }
     for (std::uint32_t k = 0; c_.contact_margin_m != nullptr && k < view_->scene()->collider_count; ++k)
       out.contact_margins_m.push_back(c_.contact_margin_m(self_, k));
-    count = 0;
-    const ClothbenchBuffer* buffers = c_.buffers != nullptr ? c_.buffers(self_, &count) : nullptr;
-    if (buffers == nullptr && count > 0) fault("buffers", fmt::format("expected {} buffers; found NULL", count));
-    for (std::uint32_t k = 0; k < count; ++k) {
-      if (buffers[k].name == nullptr) fault("buffers", fmt::format("buffer {}: expected a name", k));
-      out.buffers.push_back({buffers[k].name, buffers[k].size_B, buffers[k].device_local != 0});
-    }
     return out;
   }
 
@@ -173,7 +131,6 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
   std::optional<SceneView> view_;
   void* self_ = nullptr;  ///< there once a scene is loaded, as is what follows
   DeviceInfo device_ = {"CPU", "", "plugin", false, "{}"};
-  int in_flight_ = 1;
   Plan plan_;
 };
 

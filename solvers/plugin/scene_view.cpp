@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "clothbench_plugin.h"
@@ -27,6 +26,25 @@ void copy(double (&to)[N], const From& from) {
   std::copy(std::begin(from), std::end(from), to);
 }
 
+/// In the cloth's frame, the middle of a grid at 0.
+Vec3 local_rest(const Cloth& c, std::size_t v) {
+  if (c.mesh) return c.mesh->vertices[v];
+  const int i = static_cast<int>(v) % c.columns, j = static_cast<int>(v) / c.columns;
+  return {c.line_u_m(i) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
+}
+
+/// The cloth at rest in world coordinates, 3 numbers per vertex.
+std::vector<double> rest_positions(const Cloth& c) {
+  const Vec3 &u = c.axis_u, &v = c.axis_v;
+  const Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  std::vector<double> out;
+  for (std::size_t k = 0; k < c.vertex_count(); ++k) {
+    const Vec3 at = local_rest(c, k);
+    for (std::size_t d = 0; d < 3; ++d) out.push_back(c.center_m[d] + at[0] * u[d] + at[1] * v[d] + at[2] * n[d]);
+  }
+  return out;
+}
+
 /// Whether one of the points, x y z each, moved by more than `distance_m`.
 bool moved(const double* before, const double* now, std::size_t points, double distance_m) {
   for (const double *a = before, *b = now; points > 0; --points, a += 3, b += 3)
@@ -37,13 +55,16 @@ bool moved(const double* before, const double* now, std::size_t points, double d
 }  // namespace
 
 SceneView::SceneView(const Scene& s)
-    : scene_(s), position_(initial_positions(s)), velocity_(initial_velocities(s)), mass_(vertex_masses(s)) {
+    : scene_(s),
+      position_(initial_positions(s)),
+      velocity_(initial_velocities(s)),
+      mass_(vertex_masses(s)),
+      rest_(rest_positions(s.cloth)) {
   for (const auto& t : clothbench::triangles(s.cloth)) triangles_.insert(triangles_.end(), t.begin(), t.end());
   add_edges(EdgeKind::Structural, structural_);
   if (s.needs.has(Feature::Shear)) add_edges(EdgeKind::Shear, shear_);
   if (s.needs.has(Feature::Bend)) add_edges(EdgeKind::SkipOne, skip_);
   add_colliders();
-  add_rest_shape();
   ClothbenchScene& v = view_;
   s.needs.for_each([&](Feature f) { v.needs |= 1u << static_cast<unsigned>(f); });
   v.columns = static_cast<std::uint32_t>(s.cloth.columns);
@@ -73,6 +94,7 @@ SceneView::SceneView(const Scene& s)
   show(s.grips.vertices, v.grips, v.grip_count);
   show(colliders_, v.colliders, v.collider_count);
   v.poses = start_.poses.data();
+  v.rest_position_m = rest_.data();
   v.self_thickness_m = s.cloth.self_collision.thickness_m;
   v.self_friction = s.cloth.self_collision.friction;
 }
@@ -86,9 +108,15 @@ void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {
     const Edge& e = all[k];
     const EdgeCell cell = skip ? skip_cell(scene_.cloth, e) : edge_cell(scene_.cloth, e);
     if (kind == EdgeKind::Shear) stiffnesses[k] = membrane_stiffness(scene_, e);
-    const double stiffness = stiffnesses[k].value_or(std::numeric_limits<double>::infinity());
+    constexpr double kInextensible = std::numeric_limits<double>::infinity();
+    const double stiffness = stiffnesses[k].value_or(kInextensible);
+    double spring = 0;
+    if (!skip) {
+      const auto Y = membrane_stiffness(scene_, e);
+      spring = Y ? spring_N_per_m(scene_, e, *Y) : kInextensible;
+    }
     const double share = kind != EdgeKind::Shear && on_border(scene_.cloth, e) ? 0.5 : 1;
-    out.push_back({e.a, e.b, e.rest_m, stiffness, cell.along_m, share * cell.across_m});
+    out.push_back({e.a, e.b, e.rest_m, stiffness, cell.along_m, share * cell.across_m, spring});
   }
 }
 
@@ -116,16 +144,6 @@ void SceneView::add_colliders() {
   pose(scene_.motion.empty() ? nullptr : &scene_.motion.front(), start_);
 }
 
-void SceneView::add_rest_shape() {
-  const RestShape& r = rest_.emplace(scene_);
-  view_.rest_position_m = r.position_m.data();
-  view_.pattern_m = r.pattern_m.empty() ? nullptr : r.pattern_m.data();
-  view_.triangle_neighbours = r.neighbours.data();
-  view_.poisson_ratio = r.poisson_ratio;
-  view_.structural_spring_N_per_m = r.structural_N_per_m.data();
-  view_.shear_spring_N_per_m = r.shear_N_per_m.data();
-}
-
 void SceneView::pose(const FrameMotion* motion, Posed& out) const {
   out.poses.resize(colliders_.size());
   out.vertices.resize(colliders_.size());
@@ -148,13 +166,6 @@ const SceneView::Posed& SceneView::pose_before(const FrameInput& in) {
   return before_;
 }
 
-void SceneView::show_before(const FrameInput& in) {
-  const FrameMotion* before = in.index > 0 ? scene_.motion_after(in.index - 1) : &scene_.motion.front();
-  if (before->grip_position_m.empty()) return;
-  frame_.grip_position_before_m = before->grip_position_m.front().data();
-  frame_.grip_held_before = before->grip_held.data();
-}
-
 void SceneView::mark_teleports(const FrameInput& in) {
   double least_m = std::numeric_limits<double>::infinity();
   for (const Jump& j : scene_.jumps)
@@ -169,8 +180,9 @@ void SceneView::mark_teleports(const FrameInput& in) {
       any = any || moved(a.capsules + 7 * c, b.capsules + 7 * c, 2, least_m);
     if (any || moved(a.vertices_m, b.vertices_m, colliders_[k].vertex_count, least_m)) collider_teleports_[k] = 1;
   }
-  for (std::size_t g = 0; g < grip_teleports_.size() && frame_.grip_position_before_m != nullptr; ++g)
-    grip_teleports_[g] = moved(frame_.grip_position_before_m + 3 * g, frame_.grip_position_m + 3 * g, 1, least_m);
+  const FrameMotion* before = in.index > 0 ? scene_.motion_after(in.index - 1) : &scene_.motion.front();
+  for (std::size_t g = 0; g < grip_teleports_.size() && !before->grip_position_m.empty(); ++g)
+    grip_teleports_[g] = moved(before->grip_position_m[g].data(), frame_.grip_position_m + 3 * g, 1, least_m);
   frame_.collider_teleports = collider_teleports_.data();
   frame_.grip_teleports = grip_teleports_.data();
 }
@@ -184,7 +196,6 @@ const ClothbenchFrame* SceneView::frame(const FrameInput& in) {
   frame_.poses_before = start_.poses.data();
   if (in.motion == nullptr) return &frame_;
   frame_.poses_before = pose_before(in).poses.data();
-  show_before(in);
   pose(in.motion, now_);
   posed_ = in.index;
   frame_.poses = now_.poses.data();
@@ -208,57 +219,6 @@ const ClothbenchRestart* SceneView::restart(const ClothState& state, const Frame
   restart_.grip_position_m = motion->grip_position_m.front().data();
   restart_.grip_held = motion->grip_held.data();
   return &restart_;
-}
-
-namespace {
-
-/// Spring constants [N/m] in the sheet that clothbench_plugin.h describes at ClothbenchEdge.
-std::vector<double> springs_of(const Scene& s, EdgeKind kind) {
-  std::vector<double> out;
-  for (const Edge& e : edges(s.cloth, kind)) {
-    const auto Y = membrane_stiffness(s, e);
-    out.push_back(Y ? spring_N_per_m(s, e, *Y) : std::numeric_limits<double>::infinity());
-  }
-  return out;
-}
-
-std::vector<std::uint32_t> neighbours_of(const Cloth& cloth) {
-  const auto all = triangles(cloth);
-  std::vector<std::uint32_t> out(3 * all.size(), CLOTHBENCH_NONE);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first;  // side number of the first triangle there
-  for (std::size_t side = 0; side < out.size(); ++side) {
-    const auto& t = all[side / 3];
-    const auto [at, is_new] = first.try_emplace(std::minmax(t[side % 3], t[(side + 1) % 3]), side);
-    if (is_new) continue;
-    out[side] = static_cast<std::uint32_t>(at->second / 3);
-    out[at->second] = static_cast<std::uint32_t>(side / 3);
-  }
-  return out;
-}
-
-/// In the cloth's frame, the middle of a grid at 0.
-Vec3 local_rest(const Cloth& c, std::size_t v) {
-  if (c.mesh) return c.mesh->vertices[v];
-  const int i = static_cast<int>(v) % c.columns, j = static_cast<int>(v) / c.columns;
-  return {c.line_u_m(i) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
-}
-
-}  // namespace
-
-RestShape::RestShape(const Scene& s)
-    : neighbours(neighbours_of(s.cloth)),
-      structural_N_per_m(springs_of(s, EdgeKind::Structural)),
-      poisson_ratio(s.cloth.mesh || s.needs.has(Feature::Shear) ? 1.0 / 3 : 0) {
-  if (s.needs.has(Feature::Shear)) shear_N_per_m = springs_of(s, EdgeKind::Shear);
-  const Cloth& c = s.cloth;
-  const Vec3 &u = c.axis_u, &v = c.axis_v;
-  const Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  for (std::size_t k = 0; k < c.vertex_count(); ++k) {
-    const Vec3 at = local_rest(c, k);
-    for (std::size_t d = 0; d < 3; ++d)
-      position_m.push_back(c.center_m[d] + at[0] * u[d] + at[1] * v[d] + at[2] * n[d]);
-    if (!c.mesh) pattern_m.insert(pattern_m.end(), {at[0] + c.width_m / 2, at[1] + c.height_m / 2});
-  }
 }
 
 }  // namespace clothbench::plugin

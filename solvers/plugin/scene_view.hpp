@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "clothbench/scene.hpp"
@@ -8,16 +7,6 @@
 #include "clothbench_plugin.h"
 
 namespace clothbench::plugin {
-
-/// The cloth at rest, as the C interface shows it: see ClothbenchScene for layout and units.
-struct RestShape {
-  explicit RestShape(const Scene&);
-  std::vector<double> position_m;         ///< (vertices, 3)
-  std::vector<double> pattern_m;          ///< (vertices, 2); empty for a mesh
-  std::vector<std::uint32_t> neighbours;  ///< (triangles, 3)
-  std::vector<double> structural_N_per_m, shear_N_per_m;
-  double poisson_ratio = 0;
-};
 
 /// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
 class SceneView {
@@ -41,20 +30,17 @@ class SceneView {
 
   void add_colliders();
   void add_edges(EdgeKind, std::vector<ClothbenchEdge>&);
-  void add_rest_shape();
   void pose(const FrameMotion*, Posed&) const;
   const Posed& pose_before(const FrameInput&);
-  void show_before(const FrameInput&);
   void mark_teleports(const FrameInput&);
 
   const Scene& scene_;
   ClothbenchScene view_{};
   ClothbenchFrame frame_{};
   ClothbenchRestart restart_{};
-  std::vector<double> position_, velocity_, mass_;
+  std::vector<double> position_, velocity_, mass_, rest_;
   std::vector<std::uint32_t> triangles_;
   std::vector<ClothbenchEdge> structural_, shear_, skip_;
-  std::optional<RestShape> rest_;
   std::vector<ClothbenchCollider> colliders_;
   Posed start_, now_, before_;
   int posed_ = -1;  ///< index of the frame that `now_` is the end of; -1: none

@@ -1,6 +1,5 @@
 #include "model.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -184,25 +183,6 @@ void Model::add_gradient(const Vector& x, double scale, int first_row, Triplets&
       if (b >= 0) out.emplace_back(row, b + k, n[k]);
     }
   }
-}
-
-double Model::energy(const Vector& x, const Vector& v) const {
-  double e = 0;
-  for (std::size_t i = 0; i < mass_.size(); ++i) {
-    const auto k = static_cast<std::uint32_t>(i);
-    e += mass_[i] * (0.5 * at(v, k).squaredNorm() - gravity_.dot(at(x, k)));
-  }
-  const Vector C = constraints(x);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const Eigen::Vector3d d = C.segment<3>(static_cast<Eigen::Index>(3 * t));
-    e += 0.5 * d.dot(triangles_[t].inverse() * d);
-  }
-  for (std::size_t s = 0; triangles_.empty() && s < springs_.size(); ++s)
-    if (springs_[s].compliance > 0)
-      e += 0.5 * C[static_cast<Eigen::Index>(s)] * C[static_cast<Eigen::Index>(s)] / springs_[s].compliance;
-  for (const BendLine& l : lines_) e += 0.5 * l.stiffness * (at(x, l.a) - 2 * at(x, l.b) + at(x, l.c)).squaredNorm();
-  for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t j, double k) { e += 0.5 * k * at(x, i).dot(at(x, j)); });
-  return e;
 }
 
 double Model::highest_bending_frequency() const {

@@ -60,8 +60,6 @@ class Model {
   /// Appends G(x) * scale at rows `first_row`...; columns of held vertices left out.
   void add_gradient(const Vector& x, double scale, int first_row, Triplets& out) const;
 
-  /// Kinetic, gravitational and elastic energy [J]; elastic is 0 for springs without compliance.
-  double energy(const Vector& x, const Vector& v) const;
   /// Highest frequency [1/s] of the bending forces, for the explicit integrator's limit.
   double highest_bending_frequency() const;
 

@@ -1,16 +1,14 @@
-// The life of the activity with a fake system around it: arguments, order of life-cycle calls, resuming, RESULT line.
+// The life of the activity with a fake system around it: arguments, order of life-cycle calls, RESULT line.
 #include "android/session.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
@@ -22,15 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-class FakeSystem final : public System {
+class FakeSystem {
  public:
-  void log(const std::string& line) override {
+  void log(const std::string& line) {
     const std::lock_guard lock(mutex_);
     lines_.push_back(line);
     changed_.notify_all();
   }
-  void flush() override { ++flushes; }
-  void finish() override {
+  void finish() {
     const std::lock_guard lock(mutex_);
     ++finishes_;
     changed_.notify_all();
@@ -55,7 +52,6 @@ class FakeSystem final : public System {
     const std::lock_guard lock(mutex_);
     return finishes_;
   }
-  std::atomic<int> flushes{0};
 
  private:
   std::string result_line() const {
@@ -81,27 +77,18 @@ struct Commands {
   std::vector<std::vector<std::string>> calls;
   std::function<int(const std::vector<std::string>&)> body = [](const auto&) { return 0; };
 
-  static Command of(const std::shared_ptr<Commands>& self) {
-    return [self](const std::vector<std::string>& words) {
-      {
-        const std::lock_guard lock(self->mutex);
-        self->calls.push_back(words);
-      }
-      // As a run does, so that the next one's folder is another.
-      if (const std::string out = value_after(words, "--out"); out.rfind(fs::temp_directory_path().string(), 0) == 0)
-        fs::create_directories(out);
-      return self->body(words);
-    };
+  int run(const std::vector<std::string>& words) {
+    {
+      const std::lock_guard lock(mutex);
+      calls.push_back(words);
+    }
+    return body(words);
   }
   std::vector<std::vector<std::string>> all() {
     const std::lock_guard lock(mutex);
     return calls;
   }
 };
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 /// Stands in for a run: frames of 1 ms until interrupted.
 int frames(int count) {
@@ -128,7 +115,10 @@ class SessionTest : public ::testing::Test {
   }
   /// An activity that lives until it is destroyed, or the test ends.
   Session* start(const std::string& extra) {
-    sessions_.push_back(std::make_unique<Session>(Launch{files_, extra}, system_, Commands::of(commands_)));
+    sessions_.push_back(std::make_unique<Session>(
+        Activity{files_, extra, [system = system_](const std::string& line) { system->log(line); },
+                 [system = system_] { system->finish(); },
+                 [commands = commands_](const std::vector<std::string>& words) { return commands->run(words); }}));
     return sessions_.back().get();
   }
   /// Another activity of the same or a later process: a log of its own.
@@ -149,20 +139,12 @@ TEST(Words, AreSplitAtBlanksOutsideQuotes) {
   EXPECT_EQ(split_words("   "), Words{});
 }
 
-TEST_F(SessionTest, TheExtraComesBeforeTheFileAndTheFileBeforeTheDefault) {
-  std::ofstream(files_ / "args.txt") << "# what to run\n\n list solvers \r\n";
-  start("list metrics");
-  ASSERT_TRUE(system_->wait_for_result());
+TEST_F(SessionTest, WithoutArgumentsItIsTable3) {
   start("");
-  while (commands_->all().size() < 2) std::this_thread::sleep_for(1ms);
-  fs::remove(files_ / "args.txt");
-  start("")->resume();
-  while (commands_->all().size() < 3) std::this_thread::sleep_for(1ms);
-  const auto calls = commands_->all();
-  EXPECT_EQ(calls[0], (std::vector<std::string>{"list", "metrics"}));
-  EXPECT_EQ(calls[1], (std::vector<std::string>{"list", "solvers"}));
-  EXPECT_EQ(calls[2][0], "study");
-  EXPECT_EQ(calls[2][1], "table3");
+  ASSERT_TRUE(system_->wait_for_result());
+  const auto words = commands_->all().at(0);
+  EXPECT_EQ(words.at(0), "study");
+  EXPECT_EQ(words.at(1), "table3");
 }
 
 TEST_F(SessionTest, TheLastLineIsTheResultAndThenTheActivityEnds) {
@@ -172,7 +154,6 @@ TEST_F(SessionTest, TheLastLineIsTheResultAndThenTheActivityEnds) {
   EXPECT_EQ(commands_->all()[0][0], "run") << "the program's own name may stand before";
   EXPECT_EQ(fs::path(out).parent_path(), files_ / "runs");
   EXPECT_EQ(system_->last(), "RESULT PASS " + out);
-  EXPECT_EQ(system_->flushes, 1) << "what the run printed comes before the result";
   EXPECT_EQ(system_->finishes(), 1);
   session->pause();
   EXPECT_EQ(system_->last(), "RESULT PASS " + out) << "nothing is logged after it";
@@ -200,7 +181,7 @@ TEST_F(SessionTest, WhatIsWrongBeforeTheRunIsAResultToo) {
   files_ = files_.parent_path();
 }
 
-TEST_F(SessionTest, DestroyedItStopsAndTheSameStartGoesOn) {
+TEST_F(SessionTest, DestroyedItStopsAndSaysHowToGoOn) {
   commands_->body = [](const auto&) { return frames(5000); };
   Session* session = start("study table3");
   while (commands_->all().empty()) std::this_thread::sleep_for(1ms);
@@ -208,44 +189,8 @@ TEST_F(SessionTest, DestroyedItStopsAndTheSameStartGoesOn) {
   EXPECT_EQ(system_->last().rfind("RESULT FAIL ", 0), 0u) << system_->last();
   EXPECT_EQ(system_->finishes(), 0) << "a destroyed activity is not asked to end";
   const std::string out = value_after(commands_->all().at(0), "--out");
-  EXPECT_FALSE(contains(commands_->all()[0], "--resume"));
-
-  renew();
-  commands_->body = [](const auto&) { return frames(3); };
-  session = start("study table3");
-  ASSERT_TRUE(system_->wait_for_finish());
-  EXPECT_EQ(value_after(commands_->all().at(1), "--out"), out) << "the same folder";
-  EXPECT_TRUE(contains(commands_->all()[1], "--resume"));
-  EXPECT_EQ(system_->last(), "RESULT PASS " + out);
-
-  renew();
-  session = start("study table3");
-  ASSERT_TRUE(system_->wait_for_finish());
-  EXPECT_NE(value_after(commands_->all().at(2), "--out"), out) << "an ended run is not gone on with";
-  EXPECT_FALSE(contains(commands_->all()[2], "--resume"));
-}
-
-TEST_F(SessionTest, OtherArgumentsBeginAnew) {
-  commands_->body = [](const auto&) { return frames(5000); };
-  Session* session = start("study table3 --trials 2");
-  while (commands_->all().empty()) std::this_thread::sleep_for(1ms);
-  session->destroy();
-  renew();
-  commands_->body = [](const auto&) { return 0; };
-  session = start("study table3");
-  ASSERT_TRUE(system_->wait_for_finish());
-  EXPECT_FALSE(contains(commands_->all().at(1), "--resume"));
-}
-
-TEST_F(SessionTest, ADamagedNoteBeginsAnew) {
-  for (const char* text : {"", "{", "[]", R"({"line":3})", R"({"line":"study b"})", R"({"line":"study b","out":1})"}) {
-    std::ofstream(files_ / "session.json") << text;
-    renew();
-    start("study b");
-    ASSERT_TRUE(system_->wait_for_finish()) << text;
-    EXPECT_EQ(system_->last().rfind("RESULT PASS", 0), 0u) << text << system_->last();
-    EXPECT_FALSE(contains(commands_->all().back(), "--resume")) << text;
-  }
+  const auto lines = system_->lines();
+  EXPECT_NE(lines.at(lines.size() - 2).find("study table3 --out " + out + " --resume"), std::string::npos);
 }
 
 TEST_F(SessionTest, TheGivenFolderIsKept) {
@@ -290,7 +235,6 @@ TEST_F(SessionTest, AnyOrderOfCallsEndsInOneResult) {
   std::mt19937 random(3);
   for (int life = 0; life < 60; ++life) {
     renew();
-    fs::remove(files_ / "session.json");
     commands_->body = [](const auto&) { return frames(12); };
     Session* session = start("study table3");
     bool destroyed = false;

@@ -60,12 +60,15 @@ TEST(ProceduralHand, PinchMeetsAndMetacarpalsMakeAPalm) {
 }
 
 TEST(Assets, ProceduralOnRequest) {
-  const ProceduralAssets procedural;
+  const char* set = std::getenv("CLOTHBENCH_ASSETS");
+  const std::optional<std::string> before = set != nullptr ? std::optional<std::string>(set) : std::nullopt;
+  setenv("CLOTHBENCH_ASSETS", "procedural", 1);
   const AssetSource source = locate_assets(false);
   EXPECT_STREQ(source.kind(), "procedural");
   EXPECT_NE(error_of([] { locate_assets(true); }).find("required"), std::string::npos);
   setenv("CLOTHBENCH_ASSETS", "/nonexistent", 1);
   EXPECT_NE(error_of([] { locate_assets(false); }).find("/nonexistent"), std::string::npos);
+  before ? setenv("CLOTHBENCH_ASSETS", before->c_str(), 1) : unsetenv("CLOTHBENCH_ASSETS");
 }
 
 TEST(Assets, VersionsAreNamed) {

@@ -1,5 +1,4 @@
 #include "clothbench/error.hpp"
-#include "runner/solver_run.hpp"
 #include "sheets.hpp"
 
 namespace clothbench {
@@ -21,20 +20,6 @@ TEST_P(Bullet, SaysWhatItCannotDo) {
   EXPECT_TRUE(
       unsupported(info, kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::MovingPins})
           .empty());
-}
-
-TEST_P(Bullet, PaysForNoColliderThatIsNotThere) {
-  const auto solver = make_solver(GetParam());
-  const Scene alone = sheet(5, 4);
-  solver->load(alone);
-  EXPECT_EQ(solver->plan().stages.size(), 1U);
-  EXPECT_EQ(check_stages(alone, solver->info(), solver->plan()), "");
-
-  const Scene touching = with_collider(sheet(5, 4), floor_below(-0.5));
-  solver->load(touching);
-  EXPECT_EQ(solver->plan().stages.size(), 2U);
-  EXPECT_EQ(check_stages(touching, solver->info(), solver->plan()), "");
-  EXPECT_EQ(solver->last_cost().stage_device_s.size(), 2U);
 }
 
 TEST_P(Bullet, SaysWhatMarginItKeepsInsteadOfTheScenes) {

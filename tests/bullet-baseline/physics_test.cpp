@@ -109,24 +109,6 @@ TEST(BulletDeformable, ImplicitStepsHangLikeExplicitOnes) {
   EXPECT_LT(vertex(x.position, 76)[1], -0.5);
 }
 
-TEST_P(Bullet, StartsAgainBitForBit) {
-  Collider ball;
-  ball.shape = Collider::Shape::Sphere;
-  ball.center_m = {0, -0.2, 0};
-  ball.radius_m = 0.15;
-  Scene s = with_collider(with_damping(with_bending(sheet(17, 13, 0.6, 0.5))), ball);
-  s.pins.vertices = {0};
-  s.needs.add(Feature::Pins);
-  const auto solver = make_solver(GetParam());
-  const ClothState first = after(*solver, s, 40);
-  solver->reset();
-  const ClothState again = run(*solver, s, 0, 40);
-  EXPECT_EQ(first.position, again.position);
-  EXPECT_EQ(first.velocity, again.velocity);
-  const ClothState elsewhere = after(*make_solver(GetParam()), s, 40);
-  EXPECT_EQ(first.position, elsewhere.position);
-}
-
 INSTANTIATE_TEST_SUITE_P(Both, Bullet, ::testing::Values("bullet-soft", "bullet-deformable"),
                          [](const auto& i) { return i.param == "bullet-soft" ? "soft" : "deformable"; });
 

@@ -10,10 +10,7 @@ EXPECTED = {
     "fastest.py": ["gravity", "ballistic", " ms  ["],
     "accuracy.py": ["gravity", "free_fall_error"],
     "stages.py": ["sample__none", "'First': '100.0 us'", "'Second': '200.0 us'"],
-    "motion.py": ["gravity__ballistic__default: t = 1.00 s"],
     "over_time.py": [],
-    "where.py": ["gravity__ballistic__default: ", "Release"],
-    "failures.py": ["sample__none__readback=blocking: diverged (F0) a message"],
 }
 
 with tempfile.TemporaryDirectory() as home:

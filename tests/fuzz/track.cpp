@@ -1,4 +1,4 @@
-// Hand tracks: text to keys, and those at another speed; recordings, and the hand between two frames.
+// Hand tracks: text to keys, and those at another speed; recordings, and their first hand.
 #include "assets/hand_recording.hpp"
 #include "assets/hand_track.hpp"
 #include "fuzz.hpp"
@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   reads_or_refuses([&] {
     const assets::HandRecording recording = assets::parse_hand_recording(text, "track.json");
-    assets::capsules(recording, recording.at(0.01));
+    assets::capsules(recording, recording.at(0));
   });
   reads_or_refuses([&] {
     const assets::HandTrack track = assets::parse_hand_track(text, "track.json");

@@ -96,25 +96,6 @@ class Tree(unittest.TestCase):
         subprocess.run(["node", script, out + "-report/index.html", again], check=True)
         self.assertEqual((again / "fig4.svg").read_text(encoding="utf-8"), picture, "the program draws what the file beside it draws")
 
-    def test_without_node_the_tables_are_whole(self):
-        out = self.out()
-        self.command("run", "paper/gravity", "--solver", "ballistic", *SMALL, "--out", out)
-        text = self.command("report", out, "-o", out + "-report", PATH="/nowhere")
-        self.assertIn("Figures were left out: ", text)
-        report = pathlib.Path(out + "-report", "report.md").read_text(encoding="utf-8")
-        self.assertEqual(report.count("Figures were left out: "), 1)
-        self.assertIn("ballistic", report)
-
-    def test_the_example_plugin_builds_against_it(self):
-        example = self.tree / "share" / "doc" / "clothbench" / "examples" / "plugin"
-        build = self.home / "plugin"
-        for words in (["-S", example, "-B", build, f"-DCMAKE_PREFIX_PATH={self.tree}"], ["--build", build]):
-            subprocess.run([CMAKE, *words], check=True, stdout=subprocess.DEVNULL)
-        cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
-        self.assertRegex(cache, r"clothbench_DIR:PATH=" + re.escape(str(self.tree)))
-        out = self.out()
-        self.command("run", "paper/gravity", "--solver", f"plugin:{build}/example_plugin.so", *SMALL, "--out", out)
-
     def test_only_a_fitting_version_is_found(self):
         version = re.search(r"clothbench (\d+)\.(\d+)", self.command("--version"))
         major, minor = version.group(1), version.group(2)

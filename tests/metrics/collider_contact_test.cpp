@@ -17,21 +17,6 @@ SceneContact at_height(const Scene& scene, double y) {
   return ColliderContact(scene).probe(0, x);
 }
 
-TEST(ColliderContact, APlaneIsAHalfSpace) {
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]"});
-  const SceneContact above = at_height(scene, 0.001), below = at_height(scene, -0.02);
-  EXPECT_EQ(above.depth_m, 0);
-  EXPECT_NEAR(below.depth_m, 0.02, 1e-15);
-  EXPECT_EQ(below.length_m, 0) << "nothing crosses the surface";
-
-  // Tilted about x by y = z/10: cut along z = 0, the half z < 0 behind.
-  std::vector<double> x = initial_positions(scene);
-  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] = 0.1 * (x[k + 2] + 0.01);
-  const SceneContact tilted = ColliderContact(scene).probe(0, x);
-  EXPECT_NEAR(tilted.length_m, 0.6, 1e-12);
-  EXPECT_NEAR(tilted.depth_m, 0.029, 1e-12);
-}
-
 TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
   // A 0.6 m sheet, level, 1 cm under the top of a box of 0.3 m; then the box turned about the vertical.
   for (const char* turn :
@@ -78,18 +63,6 @@ TEST(ColliderContact, SeveralCollidersAddUp) {
   const SceneContact both = at_height(two, 0.09);
   EXPECT_NEAR(both.length_m, left.length_m + right.length_m, 1e-12);
   EXPECT_EQ(both.depth_m, right.depth_m);
-}
-
-TEST(ColliderContact, NotFiniteIsNaN) {
-  for (const char* name : {"contact/open-sheet", "contact/plane", "contact/sphere"}) {
-    const Scene scene = load_scene(name, {"cloth.grid=[9,9]"});
-    std::vector<double> x = initial_positions(scene);
-    ColliderContact contact(scene);
-    x[7] = std::nan("");
-    const SceneContact s = contact.probe(0, x);
-    EXPECT_TRUE(std::isnan(s.length_m) && std::isnan(s.depth_m)) << name;
-    EXPECT_EQ(contact.probe(1, initial_positions(scene)).length_m, 0) << name;
-  }
 }
 
 }  // namespace

@@ -22,9 +22,10 @@ static void chatter(void) {
 __attribute__((constructor)) static void chatter_when_loaded(void) { chatter(); }
 __attribute__((destructor)) static void chatter_when_unloaded(void) { chatter(); }
 
-static void reset(void* self) {
+static int32_t restart(void* self, const ClothbenchRestart* at) {
   Solver* s = self;
   memcpy(s->x, s->scene->position_m, 3 * s->scene->vertex_count * sizeof(double));
+  return at->index < 0;
 }
 
 static void* create(const double* settings, const ClothbenchScene* scene, const char** why) {
@@ -38,7 +39,7 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
 #ifdef FAULT_LATE
   s->stage.serves = scene->needs;
 #endif
-  return reset(s), s;
+  return restart(s, &(ClothbenchRestart){.index = -1}), s;
 }
 
 /* As a solver whose grips come loose after 12 frames. */
@@ -105,7 +106,7 @@ const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
   static ClothbenchPlugin plugin = {
       CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 20) - 1, 1, 0, NULL,
-      create, free, NULL, step, read_state, stages, reset, free_fall, NULL, NULL, contact_margin};
+      create, free, restart, step, read_state, stages, free_fall, NULL, contact_margin};
 #ifdef FAULT_VERSION
   plugin.version = 99;
 #endif

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "clothbench/error.hpp"
+#include "sheets.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -30,51 +31,49 @@ std::vector<double> cloud(unsigned seed, const Vec3& middle) {
 
 TEST(Camera, SeesEverythingAndFillsThePictureOneWay) {
   for (unsigned seed = 0; seed < 20; ++seed)
-    for (const View view : {View::Front, View::Corner})
-      for (const double aspect : {0.5, 1.0, 16.0 / 9}) {
-        const Vec3 middle = {100.0 * seed, 5, -3};
-        const std::vector<double> points = cloud(seed, middle);
-        const Camera c = frame(view, points, aspect, 0.05);
-        double low[2] = {1, 1}, high[2] = {0, 0};
-        for (std::size_t k = 0; k < points.size(); k += 3) {
-          const Vec3 p = {points[k], points[k + 1], points[k + 2]};
-          const auto at = seen_at(c, p);
-          ASSERT_TRUE(at.has_value());
-          const auto q = clip(c, middle, p);
-          EXPECT_GE(q[2], 0);
-          EXPECT_LE(q[2], q[3]);
-          for (std::size_t a = 0; a < 2; ++a) {
-            EXPECT_NEAR(0.5 + 0.5 * q[a] / q[3], (*at)[a], 1e-9) << "matrices and seen_at agree";
-            low[a] = std::min(low[a], (*at)[a]);
-            high[a] = std::max(high[a], (*at)[a]);
-          }
-        }
+    for (const double aspect : {0.5, 1.0, 16.0 / 9}) {
+      const Vec3 middle = {100.0 * seed, 5, -3};
+      const std::vector<double> points = cloud(seed, middle);
+      const Camera c = frame(points, aspect);
+      double low[2] = {1, 1}, high[2] = {0, 0};
+      for (std::size_t k = 0; k < points.size(); k += 3) {
+        const Vec3 p = {points[k], points[k + 1], points[k + 2]};
+        const auto at = seen_at(c, p);
+        ASSERT_TRUE(at.has_value());
+        const auto q = clip(c, middle, p);
+        EXPECT_GE(q[2], 0);
+        EXPECT_LE(q[2], q[3]);
         for (std::size_t a = 0; a < 2; ++a) {
-          EXPECT_GE(low[a], 0.05 - 1e-9);
-          EXPECT_LE(high[a], 0.95 + 1e-9);
+          EXPECT_NEAR(0.5 + 0.5 * q[a] / q[3], (*at)[a], 1e-9) << "the matrices agree with the tangents";
+          low[a] = std::min(low[a], (*at)[a]);
+          high[a] = std::max(high[a], (*at)[a]);
         }
-        EXPECT_NEAR(std::max(high[0] - low[0], high[1] - low[1]), 0.9, 1e-6) << "no nearer camera sees all";
       }
+      for (std::size_t a = 0; a < 2; ++a) {
+        EXPECT_GE(low[a], 0.04 - 1e-9);
+        EXPECT_LE(high[a], 0.96 + 1e-9);
+      }
+      EXPECT_NEAR(std::max(high[0] - low[0], high[1] - low[1]), 0.92, 1e-6) << "no nearer camera sees all";
+    }
 }
 
-TEST(Camera, ViewsLookWhereTheySay) {
+TEST(Camera, LooksFromTheRightAndAbove) {
   const std::vector<double> square = {-1, 0, -1, 1, 0, -1, -1, 0, 1, 1, 0, 1, 0, 1, 0};
-  const Camera front = frame(View::Front, square, 1), corner = frame(View::Corner, square, 1);
-  EXPECT_GT((*seen_at(front, {1, 0, 0}))[0], (*seen_at(front, {0, 0, 0}))[0]) << "+x to the right";
-  EXPECT_LT((*seen_at(front, {0, 1, 0}))[1], (*seen_at(front, {0, 0, 0}))[1]) << "+y up";
-  EXPECT_TRUE(corner.eye_m[0] > 0 && corner.eye_m[1] > 0 && corner.eye_m[2] > 0);
+  const Camera c = frame(square, 1);
+  EXPECT_GT((*seen_at(c, {1, 0, 0}))[0], (*seen_at(c, {0, 0, 0}))[0]) << "+x to the right";
+  EXPECT_LT((*seen_at(c, {0, 1, 0}))[1], (*seen_at(c, {0, 0, 0}))[1]) << "+y up";
+  EXPECT_TRUE(c.eye_m[0] > 0 && c.eye_m[1] > 0 && c.eye_m[2] > 0);
 }
 
 TEST(Camera, FramesAPointAndASheetSeenEdgeOn) {
   const std::vector<double> point = {1, 2, 3}, edge_on = {-1, 0, 0, 1, 0, 0, 0, 0, 0};
-  for (const auto& points : {point, edge_on})
-    for (const View view : {View::Front, View::Corner}) {
-      const Camera c = frame(view, points, 1.5);
-      for (const double x : c.projection()) EXPECT_TRUE(std::isfinite(x));
-      for (std::size_t k = 0; k < points.size(); k += 3)
-        EXPECT_TRUE(seen_at(c, {points[k], points[k + 1], points[k + 2]}).has_value());
-    }
-  EXPECT_THROW(frame(View::Front, {}, 1), Error);
+  for (const auto& points : {point, edge_on}) {
+    const Camera c = frame(points, 1.5);
+    for (const double x : c.projection()) EXPECT_TRUE(std::isfinite(x));
+    for (std::size_t k = 0; k < points.size(); k += 3)
+      EXPECT_TRUE(seen_at(c, {points[k], points[k + 1], points[k + 2]}).has_value());
+  }
+  EXPECT_THROW(frame({}, 1), Error);
 }
 
 TEST(Camera, EyesAreApartAndParallel) {

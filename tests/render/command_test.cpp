@@ -48,18 +48,6 @@ TEST_F(RenderCommand, WritesPicturesOfAFile) {
   EXPECT_TRUE(reported["movies"].empty());
 }
 
-TEST_F(RenderCommand, PicksRunsOfAFolder) {
-  EXPECT_EQ(command("render " + runs() + " --run sphere-drop__xpbd --frames 1 --size 160x120 -o " + out()).code, 0);
-  EXPECT_TRUE(fs::exists(out() + "/sphere-drop__xpbd__default__000001.png"));
-  const Answer which = command("render " + runs());
-  EXPECT_EQ(which.code, 2);
-  EXPECT_NE(which.text.find("--run"), std::string::npos);
-  EXPECT_NE(which.text.find("sphere-drop__ballistic__default"), std::string::npos);
-  const Answer none = command("render " + runs() + " --run nothing");
-  EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.text.find("\"nothing\""), std::string::npos);
-}
-
 TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
   const fs::path empty = folder_->path / "empty";
   fs::create_directories(empty);
@@ -82,7 +70,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
                                                                   {text.string(), "text.h5"},
                                                                   {runs() + "/none.h5", "none.h5"},
                                                                   {"paper/gravity", "expected a result file"},
-                                                                  {empty.string(), "no result files"},
+                                                                  {empty.string(), "expected a result file"},
                                                                   {file + " --device 99", "device"}};
   for (const auto& [arguments, reported] : wrong) {
     const Answer a = command("render " + arguments + " -o " + out());

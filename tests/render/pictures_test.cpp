@@ -131,9 +131,9 @@ TEST(Pictures, FramesTheClothNotWhatFlewAway) {
   const Folder folder("frame");
   const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, folder.path);
   Motion m = s.read;
-  const Camera before = frame(View::Corner, framing_of(m).points, 1);
+  const Camera before = frame(framing_of(m).points, 1);
   m.position[3 * m.scene.cloth.vertex_count() + 1] = -1e4f;  // one vertex of frame 1
-  const Camera after = frame(View::Corner, framing_of(m).points, 1);
+  const Camera after = frame(framing_of(m).points, 1);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(before.eye_m[k], after.eye_m[k], 0.2);
 }
 

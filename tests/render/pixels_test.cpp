@@ -42,7 +42,7 @@ class Pixels : public ::testing::Test {
   std::shared_ptr<vulkan::Device> device_ = vulkan::Device::get({-1, true});
   SceneRenderer renderer_{device_, Offscreen::kFormat};
   Offscreen images_{device_, {kSize, kSize}, 1};
-  Camera camera_ = frame(View::Front, std::vector<double>{-1, -1, 0, 1, 1, 0, 0, 0, 0.5}, 1);
+  Camera camera_ = front_camera();
 };
 
 Collider ball(const Vec3& center, double radius) {
@@ -212,17 +212,6 @@ TEST_F(Pixels, WhatIsNotFiniteIsLeftOut) {
   EXPECT_TRUE(of(lost).triangles.empty());
 }
 
-TEST_F(Pixels, FollowsAVertex) {
-  const Cloth cloth = upright(3, 3);
-  std::vector<double> x = positions_of(cloth);
-  const Picture still = draw(cloth, x);
-  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] -= 50;
-  renderer_.write_positions(x);
-  EXPECT_TRUE(white(pixel(shoot(), {0.06, 0.06, 0})));
-  renderer_.follow(4, {0, 0, 0});
-  EXPECT_EQ(shoot().rgb, still.rgb);
-}
-
 TEST_F(Pixels, SaysWhatDoesNotFit) {
   EXPECT_THROW(shoot(), Error) << "nothing to draw yet";
   renderer_.set_cloth(upright(3, 3), {0, 0, 0});
@@ -233,7 +222,7 @@ TEST_F(Pixels, SaysWhatDoesNotFit) {
 }
 
 TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
-  // As a headset's loop would: its image, its matrices, its command buffer; a layer of an array is one eye.
+  // As a headset's loop would: its image, its matrices, its command buffer.
   const Cloth cloth = upright(9, 9);
   const Picture expected = draw(cloth, positions_of(cloth));
   const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,
@@ -245,7 +234,7 @@ TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
   VkCommandBufferBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   ASSERT_EQ(vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
-  const Drawing d{image.handle(), 0, {kSize, kSize}, camera_.view({0, 0, 0}), camera_.projection()};
+  const Drawing d{image.handle(), {kSize, kSize}, camera_.view({0, 0, 0}), camera_.projection()};
   renderer_.record(commands, std::span(&d, 1));
   ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
   VkSubmitInfo submit{};

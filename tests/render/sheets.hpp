@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "clothbench/error.hpp"
 #include "clothbench/scene.hpp"
+#include "clothbench/vector.hpp"
 #include "render/offscreen.hpp"
 
 namespace clothbench::render {
@@ -28,6 +30,28 @@ inline std::vector<double> positions_of(const Cloth& cloth) {
   Scene s;
   s.cloth = cloth;
   return initial_positions(s);
+}
+
+/// A camera in front of the origin that looks along -z and sees a square of 2 m there.
+inline Camera front_camera() {
+  Camera c;
+  c.eye_m = {0, 0, 5};
+  c.right = {1, 0, 0};
+  c.up = {0, 1, 0};
+  c.back = {0, 0, 1};
+  c.tan_half_width = c.tan_half_height = 0.22;
+  c.near_m = 1;
+  c.far_m = 20;
+  return c;
+}
+
+/// Position of a point in the picture: 0..1 from left and from top; empty if it is behind the camera.
+inline std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
+  const Vec3 d = minus(p, c.eye_m);
+  const double depth = -dot(d, c.back);
+  if (!(depth > 0)) return std::nullopt;
+  return std::array<double, 2>{0.5 + 0.5 * dot(d, c.right) / depth / c.tan_half_width,
+                               0.5 - 0.5 * dot(d, c.up) / depth / c.tan_half_height};
 }
 
 /// Throws Error naming the file unless it is a whole PNG.

@@ -96,7 +96,7 @@ TEST(Stereo, TheSolversBufferLooksAsItsState) {
     solver->read_state(state);
     SceneRenderer renderer(device, Offscreen::kFormat);
     Offscreen images(device, {96, 96}, 1);
-    const Camera camera = frame(View::Corner, state.position, 1);
+    const Camera camera = frame(state.position, 1);
     renderer.set_cloth(scene.cloth, scene.cloth.center_m);
     renderer.write_positions(state.position);
     images.draw(renderer, std::span(&camera, 1));

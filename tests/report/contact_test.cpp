@@ -30,7 +30,6 @@ RunRecord desk_run(const std::string& solver, const std::string& setting, const 
   c.summary["contact_length_max_m"] = 0.0123;
   c.summary["contact_length_settled_m"] = 0;
   c.summary["depth_max_m"] = 3e-6;
-  c.summary["stage_device_median_s.Mesh"] = 0.002;
   c.summary["expect.crossings_max"] = 1;
   c.summary["expect.outcome"] = 1;
   c.header.vertices = 2;

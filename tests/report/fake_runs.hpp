@@ -30,7 +30,6 @@ inline RunRecord fake_run(const std::string& solver, int n, const std::string& s
                           {"build_type", "Release"},
                           {"created", "2026-01-01T00:00:00Z"}};
   c.summary = {{"fps_median", 1 / frame_s},
-               {"fps_spread", 0.031},
                {"fps_at_72", 1 / frame_s < 72 ? 1 / frame_s : 72},
                {"frame_wall_median_s", frame_s},
                {"frame_device_median_s", on_gpu ? 0.9 * frame_s : kMissing},

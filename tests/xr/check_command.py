@@ -29,12 +29,12 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
     top = pathlib.Path(top)
     text = run("xr", "paper/capsule-sweep", "--frames", 30, "--set", "cloth.grid=[12,12]", "--validate", "--out", top / "live",
                CLOTHBENCH_NULL_XR="clock=virtual,stalls=20:0.02")
-    assert "null headset on clothbench null runtime 1.0.0" in text and "XR_FB_passthrough" in text, text
+    assert "null headset on clothbench null runtime 1.0.0" in text, text
     assert "slowest 36.0" in text and "late frames        3.4 %" in text, text
     file = top / "live" / "capsule-sweep-live__xpbd__default.h5"
     with h5py.File(file) as f:
         xr = f["xr"]
-        assert xr.attrs["rate_hz"] == 72 and xr.attrs["performance_level"] == "sustained high", dict(xr.attrs)
+        assert xr.attrs["rate_hz"] == 72, dict(xr.attrs)
         assert f["timing/frame_wall_s"].shape == (1, 30) and (f["timing/frame_wall_s"][:] > 0).all()
         assert sorted(set(xr["periods"][1:])) == [1, 2], xr["periods"][:]
         assert xr["frame_s"].dims[0][0].name == "/xr/frame" and xr["frame_s"].attrs["units"] == "s"
@@ -48,10 +48,10 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
     assert (replayed == live.astype(numpy.float32)).all(), abs(replayed - live).max()
     print("ok: a session, its file, its replay")
 
-    told = json.loads(run("--json", "xr", "paper/capsule-sweep", "--frames", 5, "--set", "cloth.grid=[8,8]", "--runtime", manifest,
-                          "--out", top / "direct", CLOTHBENCH_NULL_XR="clock=virtual", XR_RUNTIME_JSON="/nowhere"))
+    told = json.loads(run("--json", "xr", "paper/capsule-sweep", "--frames", 5, "--set", "cloth.grid=[8,8]", "--out", top / "json",
+                          CLOTHBENCH_NULL_XR="clock=virtual"))
     assert told["summary"]["xr_frames"] == 5 and told["status"] == "ok", told
     text = run("xr", "paper/capsule-sweep", "--out", top / "none", code=3, XR_RUNTIME_JSON="/nowhere")
     assert "OpenXR" in text, text
     text = run("xr", "paper/capsule-sweep", "--frames", 9000, code=2)
-    print("ok: without a loader's runtime, without any")
+    print("ok: as JSON, without a runtime")

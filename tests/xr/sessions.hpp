@@ -13,12 +13,13 @@
 
 namespace clothbench::xr {
 
-/// Sessions on the null runtime, entered directly, in a folder that goes with the test.
+/// Sessions on the null runtime in a folder that goes with the test.
 class Sessions : public ::testing::Test {
  protected:
   Sessions() : folder_(std::filesystem::temp_directory_path() / ("clothbench-xr-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     setenv("CLOTHBENCH_ASSETS", "procedural", 1);  // the same everywhere
+    setenv("XR_RUNTIME_JSON", CLOTHBENCH_NULL_RUNTIME, 1);
   }
   ~Sessions() override {
     std::error_code ec;
@@ -31,7 +32,6 @@ class Sessions : public ::testing::Test {
     o.overrides = {"cloth.grid=[12,12]"};
     o.entry = &find_solver("xpbd");
     o.settings = complete_settings(o.entry->info, nlohmann::json::object());
-    o.runtime = CLOTHBENCH_NULL_RUNTIME;
     o.frames = frames;
     o.timeout_s = 20;
     o.out = folder_ / "out";

@@ -6,7 +6,7 @@
 
 #include "clothbench/record.hpp"
 #include "metrics/contact/contour.hpp"
-#include "metrics/contact/touch.hpp"
+#include "metrics/contact/surface.hpp"
 #include "metrics/contact/tunnel.hpp"
 
 namespace clothbench::contact {

@@ -23,9 +23,10 @@ Point<3> point_of_crossing(const Point<3>& p, const Point<3>& q, const Simplex<3
   return p + share * (q - p);
 }
 
-double length_of_intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
-  const auto cut = intersection(cloth, object);
-  return cut ? ((*cut)[1] - (*cut)[0]).norm() : 0;
+void add_pair(Contour& to, const Simplex<3>& cloth, const Simplex<3>& object) {
+  if (!CGAL::do_intersect(to_cgal(cloth), to_cgal(object))) return;
+  ++to.pairs;
+  if (const auto cut = intersection(cloth, object)) to.length_m += ((*cut)[1] - (*cut)[0]).norm();
 }
 
 }  // namespace
@@ -53,43 +54,22 @@ Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
     const Simplex<3> triangle = cloth.triangle(t);
     const Box box = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
     if (!box.intersects(object.tree().box()) || is_degenerate(triangle)) continue;
-    const Kernel::Triangle_3 exact = to_cgal(triangle);
-    object.tree().for_each_overlapping(box, [&](int other) {
-      const Simplex<3>& facet = object.triangles()[other];
-      if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
-      ++result.pairs;
-      result.length_m += length_of_intersection(triangle, facet);
-    });
+    object.tree().for_each_overlapping(box, [&](int other) { add_pair(result, triangle, object.triangles()[other]); });
   }
   return result;
 }
 
 Contour self_contour(const TriangleMeshView& cloth) {
-  std::vector<Box> boxes;
-  std::vector<std::uint32_t> numbers;
-  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
-    const Simplex<3> v = cloth.triangle(t);
-    if (is_degenerate(v)) continue;
-    boxes.push_back(Box(v[0]).extend(v[1]).extend(v[2]));
-    numbers.push_back(static_cast<std::uint32_t>(t));
-  }
-  const BoxTree tree(std::move(boxes));
+  const TriangleTree mesh(cloth);
   Contour result;
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const auto& corners = cloth.triangles[numbers[k]];
-    const Simplex<3> triangle = cloth.triangle(numbers[k]);
-    const Kernel::Triangle_3 exact = to_cgal(triangle);
-    tree.for_each_overlapping(tree.item_boxes()[k], [&](int other) {
+  for (std::size_t k = 0; k < mesh.triangles().size(); ++k) {
+    const auto& corners = cloth.triangles[mesh.numbers()[k]];
+    mesh.tree().for_each_overlapping(mesh.tree().item_boxes()[k], [&](int other) {
       const auto o = static_cast<std::size_t>(other);
-      const auto& others = cloth.triangles[numbers[o]];
+      const auto& others = cloth.triangles[mesh.numbers()[o]];
       const bool adjacent =
           std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
-      // Each pair once.
-      if (o <= k || adjacent) return;
-      const Simplex<3> facet = cloth.triangle(numbers[o]);
-      if (!CGAL::do_intersect(exact, to_cgal(facet))) return;
-      ++result.pairs;
-      result.length_m += length_of_intersection(triangle, facet);
+      if (o > k && !adjacent) add_pair(result, mesh.triangles()[k], mesh.triangles()[o]);  // each pair once
     });
   }
   return result;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/contact/touch.hpp"
-
 namespace clothbench::contact {
 namespace {
 
@@ -58,42 +56,70 @@ Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle) {
   return {va / all, vb / all, vc / all};
 }
 
-NearSurface::NearSurface(const TriangleMeshView& now) : mesh_(now) {
-  std::vector<Box> boxes;
-  for (std::size_t t = 0; t < now.triangles.size(); ++t) {
-    const Simplex<3> corner = now.triangle(t);
-    if (is_degenerate(corner)) continue;
-    source_.push_back(t);
-    Box box(corner[0]);
-    boxes.push_back(box.extend(corner[1]).extend(corner[2]));
-  }
-  tree_ = BoxTree(std::move(boxes));
-}
-
-std::optional<Nearest> NearSurface::operator()(const Point<3>& p, double bound_m,
-                                               std::span<const double> before) const {
+std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
+                               const TriangleMeshView* before) {
   double bound = bound_m * bound_m;
-  const int found = tree_.nearest(
-      p, bound, [&](int t) { return squared_distance(p, mesh_.triangle(source_[static_cast<std::size_t>(t)])); });
+  const int found = mesh.tree().nearest(
+      p, bound, [&](int t) { return squared_distance(p, mesh.triangles()[static_cast<std::size_t>(t)]); });
   if (found < 0) return std::nullopt;
-  const std::size_t t = source_[static_cast<std::size_t>(found)];
-  const Simplex<3> corner = mesh_.triangle(t);
+  const Simplex<3>& corner = mesh.triangles()[static_cast<std::size_t>(found)];
   const Point<3> w = nearest_weights(p, corner), at = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2];
   Nearest out{std::sqrt(bound), direction(p - at), Point<3>::Zero()};
-  if (before.empty()) return out;
-  const Simplex<3> was = TriangleMeshView{before, mesh_.triangles}.triangle(t);
+  if (before == nullptr) return out;
+  const Simplex<3> was = before->triangle(mesh.numbers()[static_cast<std::size_t>(found)]);
   out.carried_m = at - (w[0] * was[0] + w[1] * was[1] + w[2] * was[2]);
   return out;
 }
 
-bool NearSurface::within(const Simplex<3>& triangle, double reach_m) const {
+bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m) {
   const Box tight = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
   const Point<3> out = Point<3>::Constant(reach_m);
   bool found = false;
-  tree_.for_each_overlapping(Box(tight.min() - out, tight.max() + out), [&](int t) {
-    found = found || contact::within(triangle, mesh_.triangle(source_[static_cast<std::size_t>(t)]), reach_m);
+  mesh.tree().for_each_overlapping(Box(tight.min() - out, tight.max() + out), [&](int t) {
+    found = found || within(triangle, mesh.triangles()[static_cast<std::size_t>(t)], reach_m);
   });
   return found;
+}
+
+double squared_distance(const Point<3>& a, const Point<3>& b, const Point<3>& c, const Point<3>& d) {
+  const Point<3> u = b - a, v = d - c, w = a - c;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const auto unit = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  const double parallel = uu * vv - uv * uv;
+  double s = parallel > 0 ? unit((uv * vw - uw * vv) / parallel) : 0, t = vv > 0 ? (uv * s + vw) / vv : 0;
+  if (!(t >= 0 && t <= 1)) {
+    t = unit(t);
+    s = uu > 0 ? unit((uv * t - uw) / uu) : 0;
+  } else if (!(vv > 0)) {
+    s = uu > 0 ? unit(-uw / uu) : 0;
+  }
+  const double inner = (w + s * u - t * v).squaredNorm();
+  // Where the segments are nearly parallel, s is rounding noise; then a pair with an end of a segment is nearest.
+  const auto from = [&](const Point<3>& p, const Point<3>& start, const Point<3>& way, double squared) {
+    const double share = squared > 0 ? unit(way.dot(p - start) / squared) : 0;
+    return (p - start - share * way).squaredNorm();
+  };
+  return std::min({inner, from(a, c, v, vv), from(b, c, v, vv), from(c, a, u, uu), from(d, a, u, uu)});
+}
+
+double squared_distance(const Point<3>& a, const Point<3>& b, const Simplex<3>& v) {
+  if (crossing<3>(a, b, v) != 0) return 0;
+  return std::min({squared_distance(a, v), squared_distance(b, v), squared_distance(a, b, v[0], v[1]),
+                   squared_distance(a, b, v[1], v[2]), squared_distance(a, b, v[2], v[0])});
+}
+
+bool within(const Simplex<3>& triangle, const Capsule& c, double reach_m) {
+  const double most = c.radius_m + reach_m;
+  return squared_distance(c.a, c.b, triangle) <= most * most;
+}
+
+bool within(const Simplex<3>& triangle, const Simplex<3>& other, double reach_m) {
+  const double most = reach_m * reach_m;
+  for (int i = 0; i < 3; ++i)
+    if (squared_distance(triangle[i], triangle[(i + 1) % 3], other) <= most ||
+        squared_distance(other[i], other[(i + 1) % 3], triangle) <= most)
+      return true;
+  return false;
 }
 
 }  // namespace clothbench::contact

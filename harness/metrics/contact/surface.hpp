@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "metrics/contact/capsules.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
@@ -19,26 +18,28 @@ struct Nearest {
 /// turn but do not spin about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
-/// A triangle mesh for nearest-point queries within a bound. The views' arrays must outlive it.
-class NearSurface {
- public:
-  explicit NearSurface(const TriangleMeshView& now);
+/// The nearest point of a mesh within `bound_m`, if there is one. `before`: the mesh at the previous frame; null if it
+/// is static.
+std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
+                               const TriangleMeshView* before = nullptr);
 
-  /// The nearest point within `bound_m`, if there is one. `before`: positions at the previous frame; empty if the mesh
-  /// is static.
-  std::optional<Nearest> operator()(const Point<3>& p, double bound_m, std::span<const double> before = {}) const;
-
-  /// Whether a triangle has a point at most `reach_m` from the mesh.
-  bool within(const Simplex<3>& triangle, double reach_m) const;
-
- private:
-  TriangleMeshView mesh_;
-  std::vector<std::size_t> source_;  ///< indices in the mesh of the triangles with area
-  BoxTree tree_;
-};
+/// Whether a triangle has a point at most `reach_m` from a mesh.
+bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m);
 
 /// Corner weights of the point of a triangle with area that is nearest to p; they are never negative and sum to 1
 /// (Ericson, Real-Time Collision Detection, 5.1.5).
 Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle);
+
+/// Squared distance [m2] between the segments a-b and c-d (Ericson, Real-Time Collision Detection, 5.1.9).
+double squared_distance(const Point<3>& a, const Point<3>& b, const Point<3>& c, const Point<3>& d);
+
+/// Squared distance [m2] between the segment a-b and a triangle: 0 if they cross.
+double squared_distance(const Point<3>& a, const Point<3>& b, const Simplex<3>& triangle);
+
+/// Whether a triangle has a point at most `reach_m` from the surface of a capsule, or inside the capsule.
+bool within(const Simplex<3>& triangle, const Capsule&, double reach_m);
+
+/// Whether two triangles have points at most `reach_m` apart.
+bool within(const Simplex<3>& triangle, const Simplex<3>& other, double reach_m);
 
 }  // namespace clothbench::contact

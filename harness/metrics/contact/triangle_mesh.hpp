@@ -60,7 +60,6 @@ class BoxTree {
   const Box& box() const { return box_; }
   const std::vector<Box>& item_boxes() const { return boxes_; }
   using Hierarchy = Eigen::KdBVH<double, 3, int>;
-  const Hierarchy& hierarchy() const { return hierarchy_; }
 
  private:
   std::vector<Box> boxes_;
@@ -75,6 +74,8 @@ class TriangleTree {
   explicit TriangleTree(const TriangleMeshView&);
 
   const std::vector<Simplex<3>>& triangles() const { return triangles_; }
+  /// Their numbers in the mesh.
+  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
   const BoxTree& tree() const { return tree_; }
 
   /// Distance [m] from p to the nearest triangle; infinite if there is none.
@@ -82,6 +83,7 @@ class TriangleTree {
 
  private:
   std::vector<Simplex<3>> triangles_;
+  std::vector<std::uint32_t> numbers_;
   BoxTree tree_;
 };
 

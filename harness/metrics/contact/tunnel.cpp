@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "metrics/contact/touch.hpp"
+#include "metrics/contact/surface.hpp"
 
 namespace clothbench::contact {
 namespace {

@@ -47,12 +47,6 @@ Values rates(const RunView& r) {
   });
 }
 
-double half_range(const RunView& r) {
-  const Values fps = rates(r);
-  if (fps.empty()) return kMissing;
-  return (*std::max_element(fps.begin(), fps.end()) - *std::min_element(fps.begin(), fps.end())) / 2 / median(fps);
-}
-
 double capped_rate(const TimedTrial& t) {
   double cap = 0;
   for (double w : t.frame_wall_s) cap += std::min(kDisplayHz, 1 / w);
@@ -113,8 +107,6 @@ double dispatches(const RunView& r) {
   return r.on_gpu ? sum : kMissing;
 }
 
-constexpr const char* kStage = "stage_device_median_s.";
-
 bool timed(const RunView& r) { return r.run != nullptr; }
 bool on_host(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_cpu_s).empty(); }
 bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
@@ -147,7 +139,7 @@ void add_readings(std::vector<Scalar>& scalars) {
       {"sampled_*", own({}, "readings of the device during the trials by another program", nullptr, "1")},
   };
   scalars.insert(scalars.end(), readings.begin(), readings.end());
-  static const std::set<std::string> kFacts = {"jobs", "trials", "fps_spread", "bandwidth_window_s"};
+  static const std::set<std::string> kFacts = {"jobs", "trials", "bandwidth_window_s"};
   for (Scalar& s : scalars) {
     if (s.name.starts_with("fps_")) s.better = Better::More;
     if (kFacts.contains(s.name) || s.name.ends_with('*') || s.name.starts_with("bandwidth_"))
@@ -161,18 +153,6 @@ void add_readings(std::vector<Scalar>& scalars) {
 
 }  // namespace
 
-std::map<std::string, double> stage_scalars(const RunView& r) {
-  std::map<std::string, double> out;
-  const std::size_t stages = r.plan->stages.size();
-  for (std::size_t k = 0; k < stages; ++k) {
-    Values t;
-    for (const TimedTrial& trial : r.run->trials)
-      for (std::size_t f = 0; f < trial.frame_wall_s.size(); ++f) t.push_back(trial.stage_device_s[f * stages + k]);
-    out[kStage + r.plan->stages[k].name] = median(t);
-  }
-  return out;
-}
-
 MetricGroup timing_metrics() {
   using T = TimedTrial;
   using B = Bandwidth;
@@ -184,8 +164,6 @@ MetricGroup timing_metrics() {
                [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
       reported("fps_median", "s-1", "frames per second, median of the trials",
                [](const RunView& r) { return median(rates(r)); }),
-      reported("fps_spread", "1", "half the range of the trials' frames per second, divided by their median",
-               half_range),
       reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
                [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
       median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s),
@@ -211,8 +189,6 @@ MetricGroup timing_metrics() {
                }),
       reported("device_memory_B", "B", "buffers in device-local memory", device_memory),
       reported("dispatches", "1", "dispatches per frame", dispatches),
-      {kStage + std::string("*"),
-       own({}, "GPU time of a stage, median, from a second run of the frames", nullptr, "s")},
       reported("load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
   };
   add_readings(g.scalars);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "metrics/contact/touch.hpp"
+#include "metrics/contact/surface.hpp"
 #include "metrics/motion_check/body_state.hpp"
 
 namespace clothbench::motion_check {

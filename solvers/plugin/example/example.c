@@ -23,10 +23,10 @@ static const ClothbenchStage* stages(void* self, uint32_t* count) {
   return *count = (uint32_t)((Solver*)self)->stage_count, ((Solver*)self)->stages;
 }
 
-static int32_t restart(void* self, const double* position, const double* velocity) {
+static int32_t restart(void* self, const ClothbenchRestart* at) {
   Solver* s = self;
-  memcpy(s->x, position, 3 * s->scene->vertex_count * sizeof(double));
-  memcpy(s->v, velocity, 3 * s->scene->vertex_count * sizeof(double));
+  memcpy(s->x, at->position_m, 3 * s->scene->vertex_count * sizeof(double));
+  memcpy(s->v, at->velocity_m_per_s, 3 * s->scene->vertex_count * sizeof(double));
   return 1;
 }
 
@@ -42,7 +42,8 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
   if (!s) return *why = "out of memory", NULL;
   s->substeps = (int)settings[0], s->scene = scene;
   s->x = s->memory, s->v = s->x + 3 * n, s->before = s->v + 3 * n, s->weight = s->before + 3 * n;
-  restart(s, scene->position_m, scene->velocity_m_per_s);
+  const ClothbenchRestart start = {.index = -1, .position_m = scene->position_m, .velocity_m_per_s = scene->velocity_m_per_s};
+  restart(s, &start);
   for (uint32_t k = 0; k < n; ++k) s->weight[k] = 1 / scene->mass_kg[k];
   for (uint32_t k = 0; k < scene->pin_count; ++k) s->weight[scene->pins[k]] = 0;
   add_stage(s, "integrate", CLOTHBENCH_DAMPING | CLOTHBENCH_PINS, 1);

@@ -132,16 +132,10 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
     return r.fault("xrEndFrame: another display time", XR_ERROR_TIME_INVALID);
   for (std::uint32_t k = 0; k < info->layerCount; ++k) {
     const XrCompositionLayerBaseHeader* layer = info->layers[k];
-    if (layer->type == XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB) {
-      if (k != 0 || !r.passthrough)
-        return r.fault("xrEndFrame: a passthrough layer out of place", XR_ERROR_LAYER_INVALID);
-      ++r.passthrough_frames;
-    } else if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
-      const XrResult result = judge_projection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer));
-      if (XR_FAILED(result)) return result;
-    } else {
+    if (layer->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION)
       return r.fault("xrEndFrame: a layer of another kind", XR_ERROR_LAYER_INVALID);
-    }
+    const XrResult result = judge_projection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer));
+    if (XR_FAILED(result)) return result;
   }
   r.end_ns = r.now_ns();
   return XR_SUCCESS;
@@ -178,28 +172,6 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
   return XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB;
 }
 
-XrResult XRAPI_CALL set_level(XrSession, XrPerfSettingsDomainEXT domain, XrPerfSettingsLevelEXT level) {
-  runtime()->levels.insert((domain == XR_PERF_SETTINGS_DOMAIN_CPU_EXT ? "CPU " : "GPU ") +
-                           std::to_string(static_cast<int>(level)));
-  return XR_SUCCESS;
-}
-
-XrResult XRAPI_CALL create_passthrough(XrSession, const XrPassthroughCreateInfoFB*, XrPassthroughFB* out) {
-  *out = handle<XrPassthroughFB>(3);
-  return XR_SUCCESS;
-}
-XrResult XRAPI_CALL create_passthrough_layer(XrSession, const XrPassthroughLayerCreateInfoFB*,
-                                             XrPassthroughLayerFB* out) {
-  runtime()->passthrough = true;
-  *out = handle<XrPassthroughLayerFB>(4);
-  return XR_SUCCESS;
-}
-XrResult XRAPI_CALL destroy_passthrough(XrPassthroughFB) { return XR_SUCCESS; }
-XrResult XRAPI_CALL destroy_passthrough_layer(XrPassthroughLayerFB) {
-  runtime()->passthrough = false;
-  return XR_SUCCESS;
-}
-
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
@@ -216,11 +188,6 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrLocateViews", locate_views)
   NULL_XR("xrGetDisplayRefreshRateFB", get_rate)
   NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
-  NULL_XR("xrPerfSettingsSetPerformanceLevelEXT", set_level)
-  NULL_XR("xrCreatePassthroughFB", create_passthrough)
-  NULL_XR("xrDestroyPassthroughFB", destroy_passthrough)
-  NULL_XR("xrCreatePassthroughLayerFB", create_passthrough_layer)
-  NULL_XR("xrDestroyPassthroughLayerFB", destroy_passthrough_layer)
   return nullptr;
 }
 

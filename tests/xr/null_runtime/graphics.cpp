@@ -80,7 +80,8 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
     image.extent = {info->width, info->height, 1};
     image.mipLevels = image.arrayLayers = 1;
     image.samples = VK_SAMPLE_COUNT_1_BIT;
-    image.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    image.tiling = VK_IMAGE_TILING_LINEAR;  // `look` reads it on the host
+    image.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     VkImage handle_of_image = VK_NULL_HANDLE;
     if (vkCreateImage(r.device, &image, nullptr, &handle_of_image) != VK_SUCCESS) return XR_ERROR_OUT_OF_MEMORY;
     VkMemoryRequirements needs{};
@@ -88,7 +89,11 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
     VkMemoryAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     allocate.allocationSize = needs.size;
-    while ((needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u) == 0) ++allocate.memoryTypeIndex;
+    constexpr VkMemoryPropertyFlags kMapped =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    while ((needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u) == 0 ||
+           (types.memoryTypes[allocate.memoryTypeIndex].propertyFlags & kMapped) != kMapped)
+      ++allocate.memoryTypeIndex;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     if (vkAllocateMemory(r.device, &allocate, nullptr, &memory) != VK_SUCCESS) return XR_ERROR_OUT_OF_MEMORY;
     vkBindImageMemory(r.device, handle_of_image, memory, 0);
@@ -145,100 +150,24 @@ XrResult XRAPI_CALL release_image(XrSwapchain s, const XrSwapchainImageReleaseIn
   return XR_SUCCESS;
 }
 
-/// A buffer that the host reads, and a way to fill it.
-struct Reader {
-  VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  VkCommandPool pool = VK_NULL_HANDLE;
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-};
-
-Reader reader(const Runtime& r, VkDeviceSize bytes) {
-  Reader out;
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  vkCreateBuffer(r.device, &info, nullptr, &out.buffer);
-  VkMemoryRequirements needs{};
-  vkGetBufferMemoryRequirements(r.device, out.buffer, &needs);
-  VkPhysicalDeviceMemoryProperties types{};
-  vkGetPhysicalDeviceMemoryProperties(r.physical, &types);
-  VkMemoryAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  allocate.allocationSize = needs.size;
-  constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  while ((needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u) == 0 ||
-         (types.memoryTypes[allocate.memoryTypeIndex].propertyFlags & kMapped) != kMapped)
-    ++allocate.memoryTypeIndex;
-  vkAllocateMemory(r.device, &allocate, nullptr, &out.memory);
-  vkBindBufferMemory(r.device, out.buffer, out.memory, 0);
-  VkCommandPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool.queueFamilyIndex = r.family;
-  vkCreateCommandPool(r.device, &pool, nullptr, &out.pool);
-  VkCommandBufferAllocateInfo commands{};
-  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  commands.commandPool = out.pool;
-  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  commands.commandBufferCount = 1;
-  vkAllocateCommandBuffers(r.device, &commands, &out.commands);
-  return out;
-}
-
-void copy(const Runtime& r, const Reader& to, VkImage image, VkExtent2D extent) {
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  vkBeginCommandBuffer(to.commands, &begin);
-  VkImageMemoryBarrier b{};
-  b.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-  b.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-  b.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-  b.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;  // as the application has to leave it
-  b.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  b.image = image;
-  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
-                       nullptr, 0, nullptr, 1, &b);
-  VkBufferImageCopy region{};
-  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  region.imageExtent = {extent.width, extent.height, 1};
-  vkCmdCopyImageToBuffer(to.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.buffer, 1, &region);
-  VkMemoryBarrier host{};
-  host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-  host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-  vkCmdPipelineBarrier(to.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &host, 0, nullptr,
-                       0, nullptr);
-  vkEndCommandBuffer(to.commands);
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &to.commands;
-  vkQueueSubmit(r.queue, 1, &submit, VK_NULL_HANDLE);
-  vkQueueWaitIdle(r.queue);
-}
-
 }  // namespace
 
 double drawn_share(Runtime& r, const Swapchain& c) {
-  const std::size_t pixels = static_cast<std::size_t>(c.extent.width) * c.extent.height;
-  const Reader to = reader(r, 4 * pixels);
-  copy(r, to, c.images.at(c.released), c.extent);
+  vkQueueWaitIdle(r.queue);
+  const VkImageSubresource colour{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0};
+  VkSubresourceLayout rows{};
+  vkGetImageSubresourceLayout(r.device, c.images.at(c.released), &colour, &rows);
   void* mapped = nullptr;
-  vkMapMemory(r.device, to.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
-  const auto* rgba = static_cast<const std::uint8_t*>(mapped);
+  vkMapMemory(r.device, c.memory.at(c.released), 0, VK_WHOLE_SIZE, 0, &mapped);
   std::size_t drawn = 0;
-  for (std::size_t p = 0; p < pixels; ++p) {
-    const std::uint8_t* c4 = rgba + 4 * p;
-    const bool white = c4[0] == 255 && c4[1] == 255 && c4[2] == 255;
-    drawn += !white && c4[3] != 0 ? 1 : 0;
-  }
-  vkDestroyBuffer(r.device, to.buffer, nullptr);
-  vkFreeMemory(r.device, to.memory, nullptr);
-  vkDestroyCommandPool(r.device, to.pool, nullptr);
-  return static_cast<double>(drawn) / static_cast<double>(pixels);
+  for (std::uint32_t row = 0; row < c.extent.height; ++row)
+    for (std::uint32_t column = 0; column < c.extent.width; ++column) {
+      const auto* p = static_cast<const std::uint8_t*>(mapped) + rows.offset + row * rows.rowPitch + 4 * column;
+      const bool white = p[0] == 255 && p[1] == 255 && p[2] == 255;
+      drawn += !white && p[3] != 0 ? 1 : 0;
+    }
+  vkUnmapMemory(r.device, c.memory.at(c.released));
+  return static_cast<double>(drawn) / (static_cast<double>(c.extent.width) * c.extent.height);
 }
 
 void destroy(Runtime& r, Swapchain& c) {

@@ -7,6 +7,23 @@
 #include <sstream>
 
 namespace null_xr {
+/// What a loader and a runtime tell each other (chapter "Loader Design", runtime negotiation).
+struct NegotiateLoaderInfo {
+  int struct_type = 1;
+  std::uint32_t struct_version = 1;
+  std::size_t struct_size = sizeof(NegotiateLoaderInfo);
+  std::uint32_t min_interface = 1, max_interface = 1;
+  XrVersion min_api = XR_MAKE_VERSION(1, 0, 0), max_api = XR_MAKE_VERSION(1, 0x3ff, 0xfff);
+};
+struct NegotiateRuntimeRequest {
+  int struct_type = 3;
+  std::uint32_t struct_version = 1;
+  std::size_t struct_size = sizeof(NegotiateRuntimeRequest);
+  std::uint32_t interface_version = 0;
+  XrVersion api_version = 0;
+  PFN_xrGetInstanceProcAddr get_instance_proc_addr = nullptr;
+};
+
 namespace {
 
 namespace cb = clothbench::xr;
@@ -19,11 +36,11 @@ std::unique_ptr<Runtime>& held() {
 struct Offer {
   const char *extension, *key;
 };
-constexpr Offer kOffers[] = {
-    {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},       {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
-    {XR_EXT_PERFORMANCE_SETTINGS_EXTENSION_NAME, "levels"}, {XR_FB_PASSTHROUGH_EXTENSION_NAME, "passthrough"},
-    {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},         {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
-    {"XR_KHR_android_create_instance", "android"}};
+constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
+                             {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
+                             {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},
+                             {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
+                             {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
                                          XrExtensionProperties* out) {
@@ -70,14 +87,8 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
   if (r.trackers != 0) r.faults.push_back("hand trackers are left");
   const auto log = r.options.find("log");
   if (log != r.options.end()) {
-    const nlohmann::json j = {{"frames", r.ended},
-                              {"rate_hz", r.rate_hz},
-                              {"levels", r.levels},
-                              {"passthrough_frames", r.passthrough_frames},
-                              {"projection_frames", r.projection_frames},
-                              {"drawn", r.drawn},
-                              {"android", r.android},
-                              {"faults", r.faults}};
+    const nlohmann::json j = {{"frames", r.ended}, {"rate_hz", r.rate_hz}, {"projection_frames", r.projection_frames},
+                              {"drawn", r.drawn},  {"android", r.android}, {"faults", r.faults}};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }
   set_runtime(nullptr);
@@ -188,7 +199,7 @@ Pose from_xr(const XrPosef& p) {
 }  // namespace null_xr
 
 extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(
-    const clothbench::xr::NegotiateLoaderInfo* loader, clothbench::xr::NegotiateRuntimeRequest* request) {
+    const null_xr::NegotiateLoaderInfo* loader, null_xr::NegotiateRuntimeRequest* request) {
   if (loader->min_interface > 1 || loader->max_interface < 1) return XR_ERROR_INITIALIZATION_FAILED;
   request->interface_version = 1;
   request->api_version = XR_MAKE_VERSION(1, 0, 20);

@@ -15,7 +15,7 @@
 /// call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
 ///   clock=virtual  time counts only frames; otherwise the clock of the machine
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
-///   hands|capsules|passthrough|rate=0   leaves an extension out
+///   hands|capsules|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
 ///   blind=1        asks for no pictures, which take lavapipe most of the time
 ///   quit=30        the user takes the headset off at that frame
@@ -64,10 +64,9 @@ struct Runtime {
   double seconds(XrTime t) const { return static_cast<double>(t - begin_ns) * 1e-9; }
 
   // What was asked for.
-  std::set<std::string> levels;
-  int passthrough_frames = 0, projection_frames = 0;
+  int projection_frames = 0;
   std::array<double, 2> drawn{-1, -1};
-  bool passthrough = false, android = false;
+  bool android = false;
 
   std::map<std::uint64_t, Pose> spaces;  ///< in LOCAL
   std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;
