@@ -4,7 +4,7 @@
 # Debian package, and that package installed in a second bare Debian 13.
 #   scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the
 #                                                                                     bare system and downloads
-# --prepare: only make the system and install the compiler; it waits for the network and the disk more than it computes.
+# --prepare: only make the system and install packages; it waits for the network and the disk more than it computes.
 # --keep: go on with the system of the last call, at today's HEAD.
 # --suite bookworm: the same on a bare Debian 12, with its own compiler and without Monado, which it does not have; FOLDER: build/bookworm.
 # Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
@@ -104,7 +104,7 @@ newcomer() { in_chroot "$folder/build" "$1"; }
 
 set_up() {
   newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates clang
-            git config --global --add safe.directory "*"'
+            git config --global --add safe.directory "*"; scripts/bootstrap.sh --short'
 }
 # Words are split on purpose: arguments of cmake.
 compiler='export CLOTHBENCH_CMAKE="-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOTHBENCH_WERROR=ON"'
@@ -125,7 +125,7 @@ installed() {
 }
 
 stage bare 3 bare
-stage set-up 2 set_up
+stage set-up 4 set_up
 [ -z "$prepare" ] || exit 0
 stage --show run.sh 12 newcomer "$compiler; scripts/run.sh --quick"
 stage package 2 package

@@ -63,7 +63,7 @@ TEST_F(Out, OfOtherCommandsThatCannotBeMadeExitsTwo) {
 TEST_F(Out, OfTwoCommandsAtOnceTheSecondIsRefused) {
   const std::string out = (dir_ / "out").string();
   Answer first;
-  std::thread slow([&] { first = run(out, "--set time.duration_s=60 --set cloth.grid=[48,48]"); });
+  std::thread slow([&] { first = run(out, "--set time.duration_s=20 --set cloth.grid=[32,32]"); });
   for (int k = 0; k < 2000 && !fs::exists(fs::path(out) / ".lock"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   const Answer second = run(out);
