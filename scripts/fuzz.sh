@@ -9,13 +9,13 @@ seconds=${1:-10}
 readers=(scene obj gltf room hand track part hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
 cmake --preset sanitize -DCMAKE_UNITY_BUILD=ON >build/configure-sanitize.log 2>&1 || { tail -30 build/configure-sanitize.log; exit 1; }
-cmake --build --preset sanitize -j "$JOBS" --target "${readers[@]/#/fuzz_}" >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
+cmake --build --preset sanitize -j "$JOBS" --target fuzz >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
 
 fuzz() {
   local reader=$1 found=build/fuzz/found/$1 log=build/fuzz/$1.log dictionary=()
   mkdir -p "$found"
   [ -f "tests/fuzz/$reader.dict" ] && dictionary=(-dict="tests/fuzz/$reader.dict")
-  if ! build/sanitize/fuzz_"$reader" -seed="${SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+  if ! READER=$reader build/sanitize/fuzz -seed="${SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="build/fuzz/$reader-" "${dictionary[@]}" "$found" "tests/fuzz/corpus/$reader" >"$log" 2>&1; then
     grep -E "ERROR|SUMMARY|runtime error|terminate|what\(\)" "$log" | head -5
     echo "fuzz: $reader: a finding (build/fuzz/$reader-*; $log)" >&2

@@ -31,12 +31,12 @@ TEST(RoomText, LeftOutFieldsAreZero) {
   EXPECT_EQ(room.tables[0].box.min(), Vector(0, 0, -0.75));
 }
 
-struct Bad {
+struct BadRoom {
   const char *name, *from;
   std::string to;
   const char *where, *says;
 };
-class BadRooms : public testing::TestWithParam<Bad> {};
+class BadRooms : public testing::TestWithParam<BadRoom> {};
 
 TEST_P(BadRooms, SayWhere) {
   std::string text = room_text();
@@ -54,41 +54,42 @@ const float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::num
 
 INSTANTIATE_TEST_SUITE_P(
     Table, BadRooms,
-    testing::Values(
-        Bad{"not_a_scene", "\"scene\"", "\"anchor\"", "/type", "scene"},
-        Bad{"version", "\"version\": 1", "\"version\": 2", "/version", "1 is understood"},
-        Bad{"no_version", "\"version\": 1, ", "", "/", "\"version\" is missing"},
-        Bad{"no_mesh", "triangleMesh_META", "triangleMesh", "/spatialEntities",
-            "expected an entity with triangleMesh_META"},
-        Bad{"cut_base64", kVertices.c_str(), kVertices + "AA", "/spatialEntities/1/triangleMesh_META/vertices",
-            "multiple of 4"},
-        Bad{"alphabet", kVertices.c_str(), kVertices + "AA*A", "/spatialEntities/1/triangleMesh_META/vertices",
-            "alphabet"},
-        Bad{"half_vertex", kVertices.c_str(),
-            kVertices + base64_of(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9}).substr(0, 4),
-            "/triangleMesh_META/vertices", "multiple of 12"},
-        Bad{"nan", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, kNan, 0}),
-            "/triangleMesh_META/vertices", "vertex 0 is not finite"},
-        Bad{"infinite", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, 0, kInfinite}),
-            "/triangleMesh_META/vertices", "not finite"},
-        Bad{"index", kIndices.c_str(), kIndices + base64_of(std::vector<std::uint32_t>{0, 1, 4}),
-            "/triangleMesh_META/indices", "names vertex 4, but there are 4"},
-        Bad{"index_huge", kIndices.c_str(), kIndices + base64_of(std::vector<std::uint32_t>{0xffffffffu, 1, 2}),
-            "/triangleMesh_META/indices", "4294967295"},
-        Bad{"vertices_number", kVertices.c_str(), "\"vertices\": 3, \"v\": \"", "/triangleMesh_META/vertices",
-            "expected a string"},
-        Bad{"no_indices", kIndices.c_str(), "\"index\": \"", "/spatialEntities/1/triangleMesh_META",
-            "\"indices\" is missing"},
-        Bad{"no_place", "\"locatable_META\": {\"position\"", "\"located\": {\"position\"", "/spatialEntities/1",
-            "locatable_META"},
-        Bad{"quaternion", "\"w\": 1", "\"w\": 3", "/spatialEntities/1/locatable_META/orientation", "unit quaternion"},
-        Bad{"flat_table", "\"depth\": 0.75", "\"depth\": -0.75", "/spatialEntities/0/bounded3D_META/extent",
-            "more than 0"},
-        Bad{"word", "\"z\": -0.75", "\"z\": \"NaN\"", "/spatialEntities/0/bounded3D_META/offset/z",
-            "expected a number"},
-        Bad{"not_json", "{\"type\"", "{type", "line 1", "not valid JSON"},
-        Bad{"list", "\"spatialEntities\": [", "\"spatialEntities\": {}, \"x\": [", "/spatialEntities",
-            "expected an array"}),
+    testing::Values(BadRoom{"not_a_scene", "\"scene\"", "\"anchor\"", "/type", "scene"},
+                    BadRoom{"version", "\"version\": 1", "\"version\": 2", "/version", "1 is understood"},
+                    BadRoom{"no_version", "\"version\": 1, ", "", "/", "\"version\" is missing"},
+                    BadRoom{"no_mesh", "triangleMesh_META", "triangleMesh", "/spatialEntities",
+                            "expected an entity with triangleMesh_META"},
+                    BadRoom{"cut_base64", kVertices.c_str(), kVertices + "AA",
+                            "/spatialEntities/1/triangleMesh_META/vertices", "multiple of 4"},
+                    BadRoom{"alphabet", kVertices.c_str(), kVertices + "AA*A",
+                            "/spatialEntities/1/triangleMesh_META/vertices", "alphabet"},
+                    BadRoom{"half_vertex", kVertices.c_str(),
+                            kVertices + base64_of(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9}).substr(0, 4),
+                            "/triangleMesh_META/vertices", "multiple of 12"},
+                    BadRoom{"nan", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, kNan, 0}),
+                            "/triangleMesh_META/vertices", "vertex 0 is not finite"},
+                    BadRoom{"infinite", kVertices.c_str(), kVertices + base64_of(std::vector<float>{0, 0, kInfinite}),
+                            "/triangleMesh_META/vertices", "not finite"},
+                    BadRoom{"index", kIndices.c_str(), kIndices + base64_of(std::vector<std::uint32_t>{0, 1, 4}),
+                            "/triangleMesh_META/indices", "names vertex 4, but there are 4"},
+                    BadRoom{"index_huge", kIndices.c_str(),
+                            kIndices + base64_of(std::vector<std::uint32_t>{0xffffffffu, 1, 2}),
+                            "/triangleMesh_META/indices", "4294967295"},
+                    BadRoom{"vertices_number", kVertices.c_str(), "\"vertices\": 3, \"v\": \"",
+                            "/triangleMesh_META/vertices", "expected a string"},
+                    BadRoom{"no_indices", kIndices.c_str(), "\"index\": \"", "/spatialEntities/1/triangleMesh_META",
+                            "\"indices\" is missing"},
+                    BadRoom{"no_place", "\"locatable_META\": {\"position\"", "\"located\": {\"position\"",
+                            "/spatialEntities/1", "locatable_META"},
+                    BadRoom{"quaternion", "\"w\": 1", "\"w\": 3", "/spatialEntities/1/locatable_META/orientation",
+                            "unit quaternion"},
+                    BadRoom{"flat_table", "\"depth\": 0.75", "\"depth\": -0.75",
+                            "/spatialEntities/0/bounded3D_META/extent", "more than 0"},
+                    BadRoom{"word", "\"z\": -0.75", "\"z\": \"NaN\"", "/spatialEntities/0/bounded3D_META/offset/z",
+                            "expected a number"},
+                    BadRoom{"not_json", "{\"type\"", "{type", "line 1", "not valid JSON"},
+                    BadRoom{"list", "\"spatialEntities\": [", "\"spatialEntities\": {}, \"x\": [", "/spatialEntities",
+                            "expected an array"}),
     [](const auto& p) { return p.param.name; });
 
 TEST(RoomText, MissingFileAndFolder) {

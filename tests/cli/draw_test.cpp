@@ -14,12 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using testing_command::Answer;
-
-/// `before`: assignments of the environment.
-Answer command(const std::string& arguments, const std::string& before = "") {
-  return testing_command::command(arguments, testing_command::Streams::Both, before);
-}
+using testing_command::Answer, testing_command::command, testing_command::Streams;
 
 class DrawnStudy : public WithFolder {
  protected:
@@ -78,12 +73,13 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
       {"study contact --seed 1 --count 1 --procedural --trials 3", "--trials"},
   };
   for (const auto& c : cases) {
-    const Answer a = command(c.arguments, c.environment);
+    const Answer a = command(c.arguments, Streams::Both, c.environment);
     EXPECT_EQ(a.code, 2) << c.arguments << "\n" << a.text;
     EXPECT_NE(a.text.find(c.expected), std::string::npos) << c.arguments << "\n" << a.text;
   }
   // Where nothing has been fetched, the message names what fetches it.
-  const Answer a = command("study contact --seed 1 --count 1 --solver ballistic", "CLOTHBENCH_ASSETS=" + dir_.string());
+  const Answer a = command("study contact --seed 1 --count 1 --solver ballistic", Streams::Both,
+                           "CLOTHBENCH_ASSETS=" + dir_.string());
   EXPECT_EQ(a.code, 2);
   EXPECT_NE(a.text.find("scripts/fetch-assets.sh"), std::string::npos) << a.text;
 }

@@ -8,8 +8,6 @@
 namespace clothbench::contact {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// By solid angles (van Oosterom & Strackee 1983, eq. 8): another method than crossings of a ray.
 double winding_number(const Point<3>& p, const TriangleTree& mesh) {
   double sum = 0;
@@ -18,7 +16,7 @@ double winding_number(const Point<3>& p, const TriangleTree& mesh) {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return sum / (4 * kPi);
+  return sum / (4 * std::numbers::pi);
 }
 
 TEST(Inside, AgreesWithSolidAngles) {

@@ -12,6 +12,16 @@
 
 namespace clothbench {
 
+// One input for each reader.
+void fuzz_scene(const std::uint8_t* data, std::size_t size);
+void fuzz_obj(const std::uint8_t* data, std::size_t size);
+void fuzz_gltf(const std::uint8_t* data, std::size_t size);
+void fuzz_room(const std::uint8_t* data, std::size_t size);
+void fuzz_hand(const std::uint8_t* data, std::size_t size);
+void fuzz_track(const std::uint8_t* data, std::size_t size);
+void fuzz_part(const std::uint8_t* data, std::size_t size);
+void fuzz_hdf5(const std::uint8_t* data, std::size_t size);
+
 /// What a reader may do with any input: take it, or throw Error with a message. Everything else ends the program.
 template <class Read>
 void reads_or_refuses(Read read) {

@@ -3,9 +3,7 @@
 #include "fuzz.hpp"
 #include "scenario/cloth_mesh.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_gltf(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   reads_or_refuses([&] { cloth_mesh(assets::parse_gltf(bytes, "mesh.gltf"), "mesh.gltf"); });
-  return 0;
 }

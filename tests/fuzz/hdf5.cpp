@@ -175,8 +175,7 @@ void change(hid_t file, Bytes& b) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_hdf5(const std::uint8_t* data, std::size_t size) {
   const Sample& s = sample();
   const MemoryFile memory(s.bytes.data(), s.bytes.size());
   Bytes bytes(data, size);
@@ -185,5 +184,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int k = 0; k < 8 && bytes.any(); ++k) change(file, bytes);
   H5Fclose(file);
   for (const std::size_t stride : {0, 1, 2}) reads_or_refuses([&] { read_hdf5(memory.path(), stride); });
-  return 0;
 }

@@ -2,8 +2,6 @@
 #include "fuzz.hpp"
 #include "scenario/cloth_mesh.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_obj(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses([&] { parse_obj(std::string(reinterpret_cast<const char*>(data), size), "mesh.obj"); });
-  return 0;
 }

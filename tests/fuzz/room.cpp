@@ -3,9 +3,7 @@
 
 #include "fuzz.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_room(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses(
       [&] { assets::parse_room(std::string(reinterpret_cast<const char*>(data), size), "room.json", "room"); });
-  return 0;
 }

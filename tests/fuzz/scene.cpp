@@ -1,14 +1,9 @@
 // Scenario files: text to completed scene.
-#include <cstdlib>
-
 #include "base/json_text.hpp"
 #include "fuzz.hpp"
 #include "scenario/load.hpp"
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) { return setenv("CLOTHBENCH_ASSETS", "procedural", 1); }
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_scene(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses([&] {
     const nlohmann::json j = parse_json(std::string(reinterpret_cast<const char*>(data), size), "scene.json");
     // What a file may ask for is bounded by the schema, and slow near its bounds; the reader is looked for faults with
@@ -22,5 +17,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       return;
     scene_from_json(j, "scene.json");
   });
-  return 0;
 }

@@ -3,8 +3,7 @@
 #include "assets/hand_track.hpp"
 #include "fuzz.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace clothbench;
+void clothbench::fuzz_track(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   reads_or_refuses([&] {
     const assets::HandRecording recording = assets::parse_hand_recording(text, "track.json");
@@ -14,5 +13,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const assets::HandTrack track = assets::parse_hand_track(text, "track.json");
     assets::retimed(track, 2);
   });
-  return 0;
 }

@@ -9,27 +9,27 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-using V = Eigen::Vector3d;
+using Vector = Eigen::Vector3d;
 
-V vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vector vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 struct Contact {
   double mesh_depth = 0.03, hand_depth = 0.01;  // defaults of the solver
   long touched = 0;
 
-  void touch(V& at, const V& from, const V& normal, double push, double friction) {
+  void touch(Vector& at, const Vector& from, const Vector& normal, double push, double friction) {
     at += push * normal;
-    const V way = at - from;
+    const Vector way = at - from;
     at -= std::min(friction, 1.0) * (way - way.dot(normal) * normal);
     ++touched;
   }
-  void ball(V& at, const V& from, const V& center, double reach, double friction) {
-    const V d = at - center;
+  void ball(Vector& at, const Vector& from, const Vector& center, double reach, double friction) {
+    const Vector d = at - center;
     if (d.norm() < reach) touch(at, from, d.normalized(), reach - d.norm(), friction);
   }
-  void box(V& at, const V& from, const Collider& c) {
+  void box(Vector& at, const Vector& from, const Collider& c) {
     double least = 1e300;
-    V normal = V::Zero();
+    Vector normal = Vector::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       const double along = (at - vector(c.center_m)).dot(vector(c.axes[k]));
       const double depth = c.half_extent_m[k] + c.margin_m - std::abs(along);
@@ -41,25 +41,25 @@ struct Contact {
     }
     touch(at, from, normal, least, c.friction);
   }
-  void capsule(V& at, const V& from, const Capsule& c, const Collider& of) {
-    const V a = vector(c.a_m), ab = vector(c.b_m) - a;
+  void capsule(Vector& at, const Vector& from, const Capsule& c, const Collider& of) {
+    const Vector a = vector(c.a_m), ab = vector(c.b_m) - a;
     const double t = ab.squaredNorm() > 0 ? std::clamp((at - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
     ball(at, from, a + t * ab, c.radius_m + of.margin_m, of.friction);
   }
-  void mesh(V& at, const V& from, const Collider& c, const std::vector<double>& x, double depth) {
+  void mesh(Vector& at, const Vector& from, const Collider& c, const std::vector<double>& x, double depth) {
     for (const auto& t : c.mesh->triangles) {
-      const V a = V::Map(&x[3 * t[0]]), b = V::Map(&x[3 * t[1]]), d = V::Map(&x[3 * t[2]]);
-      const V normal = (b - a).cross(d - a).normalized();
+      const Vector a = Vector::Map(&x[3 * t[0]]), b = Vector::Map(&x[3 * t[1]]), d = Vector::Map(&x[3 * t[2]]);
+      const Vector normal = (b - a).cross(d - a).normalized();
       const double height = (at - a).dot(normal);
       // Barycentric coordinates of the foot, from the 3 x 3 system of its definition.
       Eigen::Matrix3d m;
       m << b - a, d - a, normal;
-      const V s = m.inverse() * (at - a);
+      const Vector s = m.inverse() * (at - a);
       if (height < c.margin_m && height > -depth && s[0] >= 0 && s[1] >= 0 && s[0] + s[1] <= 1)
         touch(at, from, normal, c.margin_m - height, c.friction);
     }
   }
-  void all(V& at, const V& from, const Scene& s, const FrameMotion* end) {
+  void all(Vector& at, const Vector& from, const Scene& s, const FrameMotion* end) {
     using Shape = Collider::Shape;
     const auto each = [&](Shape shape, bool moves, auto fn) {
       for (std::size_t k = 0; k < s.colliders.size(); ++k)
@@ -97,9 +97,11 @@ class PaperContacts : public Gpu {
     const double h = s.time.dt();
     Contact contact;
     for (std::size_t i = 0; i < s.cloth.vertex_count(); ++i) {
-      const V from = V::Map(&x[3 * i]);
+      const Vector from = Vector::Map(&x[3 * i]);
       const bool pinned = std::count(s.pins.vertices.begin(), s.pins.vertices.end(), i) != 0;
-      V at = pinned ? from : V(from + h * (vector(s.cloth.initial_velocity_m_per_s) + h * vector(s.gravity_m_per_s2)));
+      Vector at = pinned
+                      ? from
+                      : Vector(from + h * (vector(s.cloth.initial_velocity_m_per_s) + h * vector(s.gravity_m_per_s2)));
       if (!pinned) contact.all(at, from, s, s.motion_after(0));
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(state.position[3 * i + static_cast<std::size_t>(k)], at[k], 2e-6) << what << " vertex " << i;

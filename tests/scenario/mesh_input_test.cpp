@@ -22,7 +22,7 @@ constexpr char kPanels[] =
     "o front\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\ng waist left\nf 1/1 2/2 3/3\n"
     "o back\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 2 0\nvt 2 1\nvt 1 1\ng\nf 4/4 5/5 6/6\n";
 
-json scenario(const std::string& file) {
+json panels(const std::string& file) {
   return {{"name", "panels"},
           {"why", "a mesh for the tests"},
           {"cloth", {{"mesh", {{"file", file}}}, {"areal_density_kg_per_m2", 0.3}, {"sides", "single"}}},
@@ -31,7 +31,7 @@ json scenario(const std::string& file) {
 }
 
 Scene scene_of(const ScratchFolder& folder, const char* file, const char* pointer, const json& value) {
-  json j = scenario(file);
+  json j = panels(file);
   if (*pointer != 0) j[json::json_pointer(pointer)] = value;
   return load_scene(folder.file("panels.json", j.dump()));
 }
@@ -215,7 +215,7 @@ TEST(MeshInput, NamesOfFilesMayEndInCapitals) {
   folder.file("SQUARE.Glb", binary(square_gltf()));
   folder.file("square.stl", kPanels);
   for (const char* file : {"PANELS.OBJ", "SQUARE.GLTF", "SQUARE.Glb"}) {
-    const std::string scene = folder.file("SCENE.JSON", scenario(file).dump());
+    const std::string scene = folder.file("SCENE.JSON", panels(file).dump());
     EXPECT_EQ(load_scene(scene).cloth.vertex_count(), 4u) << file;
   }
   EXPECT_NE(
@@ -340,7 +340,7 @@ TEST(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
   const std::string none = complaint(json::object());
   EXPECT_NE(none.find("/material/regions/0: expected \"group\""), std::string::npos) << none;
 
-  json grid = scenario("panels.obj");
+  json grid = panels("panels.obj");
   grid["cloth"].erase("mesh");
   grid["cloth"]["grid"] = {4, 3};
   grid["cloth"]["size_m"] = {1, 1};
@@ -354,7 +354,7 @@ TEST(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
   EXPECT_NE(of_grid(json::object()).find("/material/regions/0: expected \"columns\""), std::string::npos);
 
   // The group of a border has no triangle for itself.
-  json drawn = scenario("panels.obj");
+  json drawn = panels("panels.obj");
   drawn["cloth"]["mesh"] = {{"drawn", {{"size_m", {1, 0.5}}, {"cells", 8}}}};
   drawn["material"]["regions"] = {{{"group", "u0"}, {"membrane_stiffness_N_per_m", 100}}};
   const std::string line = refusal([&] { scene_from_json(drawn, "drawn.json"); });

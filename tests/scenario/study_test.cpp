@@ -75,7 +75,7 @@ Study study_of(const std::string& text, StudyOptions options = {}) {
   return load_study(folder.file("s.json", text), options);
 }
 
-std::string message_of(const std::string& text, StudyOptions options = {}) {
+std::string study_error(const std::string& text, StudyOptions options = {}) {
   try {
     study_of(text, options);
   } catch (const Error& e) {
@@ -120,14 +120,14 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
   const Study s = study_of(with(R"({"time.duration_s":[0.25,0.5]})"));
   EXPECT_EQ(s.scenes[0].scene.time.duration_s, 0.25);
   EXPECT_EQ(s.scenes[1].scene.time.duration_s, 0.5);
-  EXPECT_NE(message_of(with(R"({"time.duration_s":[0.25]})"))
+  EXPECT_NE(study_error(with(R"({"time.duration_s":[0.25]})"))
                 .find("/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1"),
             std::string::npos);
 }
 
 TEST(Study, AKeyOfAnAxisIsNotOverridden) {
   EXPECT_NE(
-      message_of(study_text(R"([{"solver":"a"}])"), {{"cloth.grid=[4,4]"}}).find("--set cloth.grid=[4,4]: the study"),
+      study_error(study_text(R"([{"solver":"a"}])"), {{"cloth.grid=[4,4]"}}).find("--set cloth.grid=[4,4]: the study"),
       std::string::npos);
 }
 
@@ -151,7 +151,7 @@ TEST(Study, QuickLeavesOutAndShortens) {
   EXPECT_EQ(whole.rules.frames, 72);
   EXPECT_EQ(study_of(study_text(solvers, R"(,"quick":{"tags":[]})"), {{}, StudyLength::Quick}).rules.frames, 72)
       << "rules of the study where quick has none";
-  EXPECT_NE(message_of(study_text(solvers), {{}, StudyLength::Quick}).find("\"quick\" is missing"), std::string::npos);
+  EXPECT_NE(study_error(study_text(solvers), {{}, StudyLength::Quick}).find("\"quick\" is missing"), std::string::npos);
 }
 
 TEST(Study, SolversAskedForAloneOrJoined) {
@@ -177,21 +177,22 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
     return study_text(R"([{"solver":"a"}])",
                       R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
   };
-  EXPECT_EQ(message_of(quick(R"("tags":["shape"])")), "");
+  EXPECT_EQ(study_error(quick(R"("tags":["shape"])")), "");
   EXPECT_NE(
-      message_of(quick(R"("tags":["shapes"])")).find("/quick/tags/0: \"shapes\" names none; nearest known: shape"),
+      study_error(quick(R"("tags":["shapes"])")).find("/quick/tags/0: \"shapes\" names none; nearest known: shape"),
       std::string::npos);
-  EXPECT_NE(message_of(quick(R"("tags":{"a x":["shape"]})")).find("/quick/tags: \"a x\" names none"),
+  EXPECT_NE(study_error(quick(R"("tags":{"a x":["shape"]})")).find("/quick/tags: \"a x\" names none"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")).find("/solvers/0/tags/1"),
+  EXPECT_NE(study_error(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")).find("/solvers/0/tags/1"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two runs are named"), std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"),
+  EXPECT_NE(study_error(study_text(R"([{"solver":"a"},{"solver":"a"}])")).find("two runs are named"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.1.friction":0}}])"))
+  EXPECT_NE(study_error(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")).find("nearest known: sides"),
+            std::string::npos);
+  EXPECT_NE(study_error(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.1.friction":0}}])"))
                 .find("/colliders/1: expected an item"),
             std::string::npos);
-  EXPECT_NE(message_of(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.x.friction":0}}])"))
+  EXPECT_NE(study_error(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.x.friction":0}}])"))
                 .find("/colliders/x"),
             std::string::npos);
 }

@@ -130,16 +130,16 @@ XrResult XRAPI_CALL system_properties(XrInstance, XrSystemId, XrSystemProperties
 
 XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrVoidFunction* out) {
   const std::map<std::string, PFN_xrVoidFunction> own = {
-#define NULL_XR(name, function) {name, reinterpret_cast<PFN_xrVoidFunction>(function)}
-      NULL_XR("xrGetInstanceProcAddr", get_instance_proc_addr),
-      NULL_XR("xrEnumerateInstanceExtensionProperties", enumerate_extensions),
-      NULL_XR("xrCreateInstance", create_instance),
-      NULL_XR("xrDestroyInstance", destroy_instance),
-      NULL_XR("xrGetInstanceProperties", instance_properties),
-      NULL_XR("xrPollEvent", poll_event),
-      NULL_XR("xrResultToString", result_to_string),
-      NULL_XR("xrGetSystem", get_system),
-      NULL_XR("xrGetSystemProperties", system_properties)};
+#define NULL_XR_ENTRY(name, function) {name, reinterpret_cast<PFN_xrVoidFunction>(function)}
+      NULL_XR_ENTRY("xrGetInstanceProcAddr", get_instance_proc_addr),
+      NULL_XR_ENTRY("xrEnumerateInstanceExtensionProperties", enumerate_extensions),
+      NULL_XR_ENTRY("xrCreateInstance", create_instance),
+      NULL_XR_ENTRY("xrDestroyInstance", destroy_instance),
+      NULL_XR_ENTRY("xrGetInstanceProperties", instance_properties),
+      NULL_XR_ENTRY("xrPollEvent", poll_event),
+      NULL_XR_ENTRY("xrResultToString", result_to_string),
+      NULL_XR_ENTRY("xrGetSystem", get_system),
+      NULL_XR_ENTRY("xrGetSystemProperties", system_properties)};
   const auto found = own.find(name);
   *out = found != own.end() ? found->second : nullptr;
   for (const auto find : {frame_function, input_function, graphics_function})
