@@ -179,7 +179,7 @@ json header_to_json(const RunHeader& h) {
   json j = {{"load_s", number_to_json(h.load_s)}, {"stages", json::array()}};
   each_member(h, [&](const char* key, const auto& value) { j[key] = value; });
   for (const StageRecord& s : h.stages)
-    j["stages"].push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}, {"bytes", s.bytes}});
+    j["stages"].push_back({{"name", s.name}, {"serves", s.serves}, {"dispatches", s.dispatches}});
   return j;
 }
 
@@ -193,7 +193,7 @@ RunHeader header_from_json(const json& j) {
       j.at(key).get_to(value);
   });
   for (const json& s : j.at("stages"))
-    h.stages.push_back({s.at("name"), s.at("serves"), whole<int>(s.at("dispatches")), s.at("bytes")});
+    h.stages.push_back({s.at("name"), s.at("serves"), whole<int>(s.at("dispatches"))});
   h.load_s = number_from_json(j.at("load_s"), "load_s");
   return h;
 }

@@ -14,7 +14,7 @@ inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertic
   r.header.settings = {{"iterations", 5}, {"mode", "a"}};
   r.header.scenario_json = R"({"name":"sample","cloth":{"grid":[3,2],"sides":"single"}})";
   r.header.scenario_sha256 = "00ff";
-  r.header.stages = {{"First", {"stretch", "shear"}, 3, "computed"}, {"Second", {}, 1, "at least"}};
+  r.header.stages = {{"First", {"stretch", "shear"}, 3}, {"Second", {}, 1}};
   r.header.plan = {{"buffers", nlohmann::json::array()}};
   r.header.environment = {
       {"gpu", "none"}, {"driver", "µ"}, {"gpu_is_software", true}, {"created", "2026-01-01T00:00:00Z"}};

@@ -26,8 +26,6 @@ struct StageRecord {
   std::string name;
   std::vector<std::string> serves;
   int dispatches = 0;
-  /// Meaning of the byte counts: "computed", "at least" (the bytes read are a lower bound), or "" if there are none.
-  std::string bytes = {};
 };
 
 /// Facts of a run that are known before its first frame. Serialised as JSON (results/part_file.hpp).

@@ -58,10 +58,9 @@ struct StagePlan {
   std::string name;
   FeatureSet serves;
   int dispatches = 0;  ///< per frame; 0 on a CPU
-  /// Bytes that shaders load and store in a frame, not the traffic on the memory bus. The host computes them from the
-  /// scene and the kernels' loops; tests check them against an instrumented build of the kernels. NaN on a CPU.
+  /// Bytes that shaders load and store in every frame, not the traffic on the memory bus. NaN if they are not known
+  /// before a frame, or on a CPU.
   double read_B = 0, write_B = 0;
-  bool at_least = false;  ///< read_B is a lower bound: the rest depends on the positions of the cloth
 };
 
 struct BufferPlan {
@@ -89,9 +88,9 @@ struct Plan {
 
 /// Cost of the last step. Device times are NaN where the device has no timestamps or the solver runs on the CPU.
 struct FrameCost {
-  double device_s;                     ///< first to last timestamp
-  std::vector<double> stage_device_s;  ///< one per StagePlan, same order
-  std::vector<double> stage_read_B, stage_write_B;
+  double device_s;                                  ///< first to last timestamp
+  std::vector<double> stage_device_s;               ///< one per StagePlan, same order
+  std::vector<double> stage_read_B, stage_write_B;  ///< NaN unless counted (`count_bytes`) or stated by the plan
 };
 
 /// How often since `reset` a solver could not do what it promises. Stored as a series over the frames of a run.
@@ -119,8 +118,8 @@ struct ClothState {
 struct DeviceOptions {
   int index = -1;           ///< -1: the best device present
   bool validation = false;  ///< Vulkan core + synchronization validation; any message makes the run fail
-  /// A class of devices whose limits to emulate, such as "adreno-like": less memory, smaller workgroups, shorter
-  /// submissions. Empty: $CLOTHBENCH_DEVICE_PROFILE, else the limits of the device.
+  /// A class of devices whose limits to emulate, such as "adreno-like": less memory, smaller workgroups.
+  /// Empty: $CLOTHBENCH_DEVICE_PROFILE, else the limits of the device.
   std::string profile = "";
 };
 
