@@ -172,7 +172,7 @@ std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
 const std::vector<View>& views() {
   static const std::vector<View> all = [] {
     std::vector<View> out = overview_views();
-    for (auto* more : {rate_views, contact_views, accuracy_views})
+    for (auto* more : {rate_views, contact_views, reproduction_views, accuracy_views})
       for (View& v : more()) out.push_back(std::move(v));
     return out;
   }();

@@ -96,6 +96,7 @@ int grade_of(const Row&);
 std::vector<View> overview_views();
 std::vector<View> rate_views();
 std::vector<View> contact_views();
+std::vector<View> reproduction_views();
 std::vector<View> accuracy_views();
 
 }  // namespace clothbench

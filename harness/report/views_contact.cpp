@@ -113,7 +113,7 @@ View pass_rates() {
       "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
       "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: distance "
       "at which the solver keeps the cloth from colliders.",
-      [](const Row& r) { return r.part == Part::Generated; }};
+      [](const Row& r) { return r.part == Part::Generated && !r.drawn().contains("settings"); }};
   v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Texts{label_of(*r.run)} : Texts(); }, true},
             {"kind", [](const Row& r) {
                return Texts{with_assets(r.drawn().value("kind", ""), r), with_assets(kAllRuns, r)};

@@ -68,7 +68,9 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
         entries[k] = absent.get();
         plan.not_built.push_back(std::move(absent));
       }
-      const nlohmann::json settings = entries[k]->make ? complete_settings(entries[k]->info, s.settings) : s.settings;
+      nlohmann::json settings = s.settings;
+      settings.update(item.drawn_settings.value(s.solver, nlohmann::json::object()));
+      if (entries[k]->make) settings = complete_settings(entries[k]->info, settings);
       plan.groups[static_cast<std::size_t>(item.group)].push_back({&item.scene, entries[k], settings, s.label, s.work});
     }
   }

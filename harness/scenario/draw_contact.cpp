@@ -121,16 +121,68 @@ double draw_fold(json& scene, DrawnValues& draw) {
   return after_fall(0, height);
 }
 
-/// Each range is a dotted key of the scene. A range of positive numbers that spans a decade or more is sampled by its
-/// logarithm, because stiffness, density and size have no natural scale.
+/// A range of positive numbers that spans a decade or more is sampled by its logarithm, because stiffness, density and
+/// size have no natural scale.
+bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
+
+/// Each range is a dotted key of the scene.
 double draw_keys(json& scene, DrawnValues& draw) {
-  constexpr double kDecade = 10;
   for (const std::string& key : draw.names()) {
     const auto [low, high] = draw.bounds(key);
-    const double x = low > 0 && high >= kDecade * low ? draw.log_between(key) : draw.between(key);
+    const double x = is_wide(low, high) ? draw.log_between(key) : draw.between(key);
     apply_override(scene, key + "=" + json(x).dump(), draw.at());
   }
   return 0;
+}
+
+/// Point `index` of a sequence that fills the unit cube evenly in its first kBoxSides coordinates; one point of ten is
+/// moved to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
+class BoxPoint {
+ public:
+  explicit BoxPoint(std::uint64_t index) : index_(index), corner_(Dice(index, "corner").unit() < kCorners) {
+    for (int k = 0; k < 64; ++k) root_ = std::pow(1 + root_, 1.0 / (kBoxSides + 1));
+  }
+  /// The next coordinate, in [0, 1].
+  double next() {
+    power_ /= root_;
+    const double u = std::fmod(0.5 + static_cast<double>(index_) * power_, 1.0);
+    return !corner_ ? u : u < 0.5 ? 0 : 1;
+  }
+
+ private:
+  static constexpr int kBoxSides = 16;
+  static constexpr double kCorners = 0.1;
+  const std::uint64_t index_;
+  const bool corner_;
+  double root_ = 1, power_ = 1;
+};
+
+/// The value at `u` of a range, or of a list of words. Whole numbers if both bounds are whole and `may_be_whole`.
+json at_point(const json& range, double u, bool may_be_whole) {
+  if (range[0].is_string())
+    return range[std::min(range.size() - 1, static_cast<std::size_t>(u * static_cast<double>(range.size())))];
+  const double low = range[0].get<double>(), high = range[1].get<double>();
+  const double x = is_wide(low, high) ? low * std::pow(high / low, u) : low + u * (high - low);
+  return may_be_whole && range[0].is_number_integer() && range[1].is_number_integer() ? json(std::lround(x))
+                                                                                      : json(rounded(x));
+}
+
+/// Draws first what all kinds of the study share, so that the kinds of one round have the same values of it.
+void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
+  BoxPoint point(seed / kind.kinds);
+  for (const auto& [solver, settings] : kind.box["settings"].items())
+    for (const auto& [name, range] : settings.items()) {
+      const json value = at_point(range, point.next(), true);
+      draw.note(solver + "." + name, value);
+      scene["drawn"]["settings"][solver][name] = value;
+    }
+  for (const json* ranges : {&kind.box["ranges"], &kind.ranges})
+    for (const auto& [key, range] : ranges->items()) {
+      const json value = at_point(range, point.next(), false);
+      draw.note(key, value);
+      // A square of this side.
+      apply_override(scene, key + "=" + (key == "cloth.size_m" ? json{value, value} : value).dump(), draw.at());
+    }
 }
 
 double draw_crumple(json& scene, DrawnValues& draw) {
@@ -207,7 +259,8 @@ ContactDrawer::~ContactDrawer() = default;
 json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std::uint64_t seed) {
   DrawnValues draw(Dice(seed, kind.name), kind.ranges, kind.at + "/ranges");
   json scene = kind.base;
-  if (kind.how != "keys") {
+  scene.erase("drawn");
+  if (kind.how != "keys" && kind.how != "box") {
     const int grid = draw.whole("grid");
     scene["cloth"]["grid"] = {grid, grid};
   }
@@ -218,6 +271,8 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
       tables_ = std::make_unique<Tables>(source_, room.value("below_m", 0.1), room.value("above_m", 0.05));
     }
     speed = tables_->draw(scene, draw);
+  } else if (kind.how == "box") {
+    draw_box(scene, draw, kind, seed);
   } else {
     static constexpr std::pair<const char*, double (*)(json&, DrawnValues&)> kHow[] = {
         {"shape", draw_shape}, {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
@@ -226,15 +281,15 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
     if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": nothing draws that");
     speed = how->second(scene, draw);
   }
-  draw.check_all_used();
+  if (kind.how != "box") draw.check_all_used();
   scene["name"] = fmt::format("{}-{}-{}", study, seed, kind.name);
   scene["seed"] = seed;
-  scene["drawn"] = {{"study", study},
-                    {"kind", kind.name},
-                    {"assets", source_.kind()},
-                    {"speed_m_per_s", rounded(speed)},
-                    {"values", draw.values()}};
-  // It describes the paper's scene, and a drawn scene is another one.
+  scene["drawn"].update({{"study", study},
+                         {"kind", kind.name},
+                         {"assets", source_.kind()},
+                         {"speed_m_per_s", rounded(speed)},
+                         {"values", draw.values()}});
+  // They describe the paper's scene, and a drawn scene is another one.
   for (const char* key : {"paper", "assumed"}) scene.erase(key);
   return scene;
 }

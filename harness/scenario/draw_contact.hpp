@@ -21,7 +21,9 @@ struct ContactKind {
   std::string how;      ///< which code generates it: "draw/how" of the study's schema
   nlohmann::json base;  ///< the scene, with the changes of the study
   nlohmann::json ranges;
-  std::string at;  ///< file and JSON pointer of the block, for messages
+  std::string at;           ///< file and JSON pointer of the block, for messages
+  nlohmann::json box = {};  ///< the study's "box": ranges that the kinds share, for "how": "box"
+  std::uint64_t kinds = 1;  ///< of the study; seeds that differ by less than a round of kinds share a point of the box
 };
 
 /// The kind that an entry of a study's "scenes" describes. `base`: the file of its scene; `at`: file and JSON pointer
@@ -45,6 +47,7 @@ class ContactDrawer {
   ///   stretch  speed and displacement of two hands, and where they are attached
   ///   fold     radius, height, thickness and noise of a cloth folded over
   ///   keys     any numbers of the scene, each range named by its dotted key; the scene's grid stays
+  ///   box      the same, and settings of solvers, from points that fill the box of all ranges evenly
   ///   crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
   /// Hands come, leave and stay away for 1 s. Drops have a floor 1 m below. Hands and grips of more than 5 m/s have
   /// shorter frames: a hand moves by at most 70 mm in one. Throws Error naming a range that is missing, unknown or

@@ -223,6 +223,8 @@ class Builder {
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) {
       kinds.push_back(contact_kind(j_["scenes"][k], scene_path(k), fmt::format("{}: /scenes/{}", source_, k),
                                    quick_.is_null() ? json::object() : quick_["ranges"]));
+      kinds.back().box = j_["box"];
+      kinds.back().kinds = j_["scenes"].size();
       tags_.insert(kinds.back().name);
     }
     const std::uint64_t first = options_.seed.value_or(1);
@@ -277,7 +279,8 @@ class Builder {
         Scene scene = scene_from_json(scenario, path, all, options_.assets);
         scene.name += v.suffix;
         const int group = group_of(scene);
-        study_.scenes.push_back({std::move(scene), group, {}});
+        study_.scenes.push_back(
+            {std::move(scene), group, {}, scenario.value("/drawn/settings"_json_pointer, json::object())});
       }
       Study::Item& item = study_.scenes[at->second];
       const bool is_first = names_.insert(item.scene.name + " " + solver.name()).second;

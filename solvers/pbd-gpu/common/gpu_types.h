@@ -28,7 +28,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
           BIND_SELF_PAIRS = 46, BIND_TRIANGLE_MAX_DISPLACEMENTS = 47, BIND_SELF_ACTIVE = 48, BIND_SELF_CONTACTS = 49,
           BIND_SELF_CORRECTIONS = 50, BIND_TOUCHED = 51, BIND_ACTIVE_BITS = 52, BIND_BENDING_SLICES = 53,
           BIND_BENDING_ENTRIES = 54, BIND_BENDING_STEPS = 55, BIND_SHIFTS = 56, BIND_LINK_CREEP = 57,
-          BIND_MEMBRANE_SLICES = 58, BIND_MEMBRANE_CORNERS = 59, BIND_COUNT = 60;
+          BIND_MEMBRANE_SLICES = 58, BIND_MEMBRANE_CORNERS = 59, BIND_SLIP = 60, BIND_COUNT = 61;
 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
@@ -66,7 +66,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
 // clang-format on
 // Collision kernels of `paper`.
-#define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u)
+// FRICTION: 0 none, 1 takes tangential displacement off the position, 2 off the velocity.
+#define PAPER_CONSTANTS(C) \
+  C(1, uint, FRICTION, 0u) C(2, uint, PROJECT_PREVIOUS, 0u) C(3, uint, OPPOSITE_NORMALS, 0u)
 #ifdef __cplusplus
 #define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
 #define CLOTHBENCH_PUT(number, type, name, standard) all.at(number) = name;
@@ -104,6 +106,7 @@ struct PaperConstants {
   float h;          // step [s]
   float stiffness;  // k of PBD, 0..1
   float keep;       // fraction of velocity left by damping, max(0, 1 - c h)
+  float relaxation; // factor of the averaged corrections; above 1: over-relaxation
 };
 
 /// Push constants of the collision kernels of `paper`.
@@ -111,6 +114,7 @@ struct PaperContactConstants {
   uint particles;
   uint first, count;              // of the shapes or triangles that every particle is tested against
   float margin, depth, friction;  // of a mesh
+  uint layer;                     // particles of one layer
 };
 
 // Features that a scene needs of the line kernels of `xpbd`: bits of their

@@ -11,6 +11,6 @@ void main() {
   uvec4 sum = d[i];
   if (sum.w == 0u) return;
   vec4 at = q[i];
-  q[i] = vec4(at.xyz + uintBitsToFloat(sum.xyz) / float(sum.w), at.w);
+  q[i] = vec4(at.xyz + p.relaxation * uintBitsToFloat(sum.xyz) / float(sum.w), at.w);
   d[i] = uvec4(0u);
 }

@@ -19,9 +19,9 @@ vec3 satisfied(vec3 at, vec3 from) {
     vec3 normal = cross(ab, ac), d = at - a;
     float area = length(normal);
     if (!(area > 0.0)) continue;
-    normal /= area;
+    normal /= side * area;
     float height = dot(d, normal);
-    if (height < p.margin && height > -p.depth && projects_into(d, ab, ac, normal))
+    if (height < p.margin && height > -p.depth && projects_into(d, ab, ac, side * normal))
       at = touched(at, from, normal, p.margin - height, p.friction);
   }
   return at;

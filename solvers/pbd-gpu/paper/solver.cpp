@@ -13,12 +13,6 @@ FeatureSet with_friction(Feature kind, bool friction) {
   return serves;
 }
 
-std::vector<std::uint32_t> with_friction(bool friction) {
-  PaperSpecialization s;
-  s.FRICTION = friction ? 1 : 0;
-  return s.by_number();
-}
-
 class Paper final : public GpuSolver {
  public:
   using GpuSolver::GpuSolver;
@@ -81,8 +75,18 @@ class Paper final : public GpuSolver {
     add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
 
-  /// Collisions as published: every particle against every sphere, box, capsule and triangle, on predicted positions,
-  /// at the end of each step. Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4. A stage for each kind.
+  bool setting_is(const char* name, const char* value) const { return settings()[name] == value; }
+
+  std::vector<std::uint32_t> contact_constants(bool friction) const {
+    PaperSpecialization s;
+    s.FRICTION = !friction ? 0 : setting_is("friction_on", "position") ? 1 : 2;
+    s.PROJECT_PREVIOUS = setting_is("projection", "previous");
+    s.OPPOSITE_NORMALS = setting_is("second_layer", "opposite");
+    return s.by_number();
+  }
+
+  /// Collisions as published: every particle against every sphere, box, capsule and triangle. Kim, Ma & Hong 2025,
+  /// 3.2.3 to 3.2.6, Algorithms 3 and 4; settings choose what the text leaves open. One stage and kernel for each kind.
   void build_contact() {
     const ColliderBuffers& c = *colliders();
     add_shapes("SatisfySphereCollisions", c.spheres, Feature::Sphere, "satisfy_sphere_collisions");
@@ -96,8 +100,9 @@ class Paper final : public GpuSolver {
   void add_shapes(const char* stage_name, const ShapeBuffer& shapes, Feature kind, const char* name) {
     if (shapes.count == 0) return;
     const int stage = add_stage(stage_name, with_friction(kind, shapes.friction));
-    const FrameKernel* kernel = add_kernel(stage, name, sizeof(PaperContactConstants), with_friction(shapes.friction));
-    contact_.emplace_back(kernel, PaperContactConstants{0, 0, shapes.count, 0, 0, 0});
+    const FrameKernel* kernel =
+        add_kernel(stage, name, sizeof(PaperContactConstants), contact_constants(shapes.friction));
+    contact_.emplace_back(kernel, PaperContactConstants{0, 0, shapes.count, 0, 0, 0, 0});
   }
 
   /// `depth_m`: greatest distance behind a triangle at which a particle still counts as touching it.
@@ -107,11 +112,12 @@ class Paper final : public GpuSolver {
         std::any_of(meshes.ranges.begin(), meshes.ranges.end(), [](const MeshRange& r) { return r.friction > 0; });
     const int stage = add_stage(stage_name, with_friction(kind, friction));
     const FrameKernel* kernel =
-        add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), with_friction(friction), kGroupSize,
-                   {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
+        add_kernel(stage, "satisfy_mesh_collisions", sizeof(PaperContactConstants), contact_constants(friction),
+                   kGroupSize, {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
+    const auto layer = static_cast<std::uint32_t>(scene().cloth.vertex_count());
     for (const MeshRange& r : meshes.ranges)
-      contact_.emplace_back(kernel,
-                            PaperContactConstants{0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction});
+      contact_.emplace_back(
+          kernel, PaperContactConstants{0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction, layer});
   }
 
   void build_stages() {
@@ -129,7 +135,13 @@ class Paper final : public GpuSolver {
       aim_ = grips()->add_kernel(*q_);
     }
     if (colliders() != nullptr) build_contact();
-    update_ = add(add_stage("UpdatePositions", {}), "update_positions");
+    PaperSpecialization update;
+    if (needs.has(Feature::Friction) && setting_is("friction_on", "velocity")) {
+      update.FRICTION = 2;
+      add_buffer(BIND_SLIP, "slip", x_->bytes());
+    }
+    update_ =
+        add_kernel(add_stage("UpdatePositions", {}), "update_positions", sizeof(PaperConstants), update.by_number());
     if (settings()["readback"] == "blocking") {
       stage_readback_ = add_stage("Readback", {});
       host_x_ = &add_host_buffer("positions on the host", x_->bytes());
@@ -149,6 +161,7 @@ class Paper final : public GpuSolver {
     const double h = dt_s / substeps;
     c.h = static_cast<float>(h);
     c.stiffness = settings()["stiffness"].get<float>();
+    c.relaxation = settings()["relaxation"].get<float>();
     c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * h));
     for (int s = 0; s < substeps; ++s) record_step(c, s, substeps, dt_s);
     if (stage_readback_ >= 0) {
@@ -167,12 +180,17 @@ class Paper final : public GpuSolver {
     for (int i = 0; i < settings()["iterations"].get<int>(); ++i) {
       dispatch(*project_, constraint_count_, c);
       dispatch(*average_, particles(), c);
+      if (setting_is("collisions", "inside")) record_contact();
     }
+    if (setting_is("collisions", "after")) record_contact();
+    dispatch(*update_, particles(), c);
+  }
+
+  void record_contact() {
     for (auto& [kernel, constants] : contact_) {
-      constants.particles = c.particles;
+      constants.particles = static_cast<std::uint32_t>(particles());
       dispatch(*kernel, particles(), constants);
     }
-    dispatch(*update_, particles(), c);
   }
 
   int layers_ = 1;
@@ -209,6 +227,11 @@ SolverInfo paper_info() {
       {"readback", "\"none\"", "none | blocking: copy positions and velocities to the host every frame and wait"},
       {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
       {"hand_depth_m", "0.01", "as mesh_depth_m, for the mesh of a hand"},
+      {"relaxation", "1.0", "factor of the averaged corrections; above 1: over-relaxation"},
+      {"collisions", "\"after\"", "after | inside: collide after the loop of iterations (Algorithm 1) or in each"},
+      {"projection", "\"predicted\"", "predicted | previous: positions that are tested against colliders"},
+      {"second_layer", "\"same\"", "same | opposite: side of a triangle to which the duplicated layer is pushed"},
+      {"friction_on", "\"position\"", "position | velocity: friction takes tangential displacement or only velocity"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
       {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
   return info;
@@ -216,6 +239,11 @@ SolverInfo paper_info() {
 
 std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const DeviceOptions& device) {
   require_one_of("paper", settings, "readback", {"none", "blocking"});
+  require_one_of("paper", settings, "collisions", {"after", "inside"});
+  require_one_of("paper", settings, "projection", {"predicted", "previous"});
+  require_one_of("paper", settings, "second_layer", {"same", "opposite"});
+  require_one_of("paper", settings, "friction_on", {"position", "velocity"});
+  require_between("paper", settings, "relaxation", 0.1, 2);
   require_between("paper", settings, "iterations", 1, 100000);
   require_between("paper", settings, "substeps", 1, 4096);
   require_between("paper", settings, "stiffness", 0, 1);

@@ -11,6 +11,11 @@ void main() {
   if (i >= p.particles) return;
   vec4 to = q[i];
   vec4 from = x[i];
-  v[i] = vec4((to.xyz - from.xyz) / p.h, to.w);
+  vec3 displacement = to.xyz - from.xyz;
+  if (FRICTION == 2u) {
+    displacement -= slip[i].xyz;
+    slip[i] = vec4(0.0);
+  }
+  v[i] = vec4(displacement / p.h, to.w);
   x[i] = to;
 }
