@@ -158,10 +158,15 @@ class BoxPoint {
 };
 
 /// The value at `u` of a range, or of a list of words. Whole numbers if both bounds are whole and `may_be_whole`.
-json at_point(const json& range, double u, bool may_be_whole) {
-  if (range[0].is_string())
+json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
+  const auto words = static_cast<std::size_t>(
+      std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));
+  if (words != range.size() && (words != 0 || range.size() != 2))
+    throw Error(at + ": expected a list of words, or two numbers");
+  if (words != 0)
     return range[std::min(range.size() - 1, static_cast<std::size_t>(u * static_cast<double>(range.size())))];
   const double low = range[0].get<double>(), high = range[1].get<double>();
+  if (!(low <= high)) throw Error(at + ": expected the lower bound first");
   const double x = is_wide(low, high) ? low * std::pow(high / low, u) : low + u * (high - low);
   return may_be_whole && range[0].is_number_integer() && range[1].is_number_integer() ? json(std::lround(x))
                                                                                       : json(rounded(x));
@@ -172,13 +177,13 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
   BoxPoint point(seed / kind.kinds);
   for (const auto& [solver, settings] : kind.box["settings"].items())
     for (const auto& [name, range] : settings.items()) {
-      const json value = at_point(range, point.next(), true);
+      const json value = at_point(range, point.next(), true, "/box/settings/" + solver + "/" + name);
       draw.note(solver + "." + name, value);
       scene["drawn"]["settings"][solver][name] = value;
     }
   for (const json* ranges : {&kind.box["ranges"], &kind.ranges})
     for (const auto& [key, range] : ranges->items()) {
-      const json value = at_point(range, point.next(), false);
+      const json value = at_point(range, point.next(), false, draw.at() + "/" + key);
       draw.note(key, value);
       // A square of this side.
       apply_override(scene, key + "=" + (key == "cloth.size_m" ? json{value, value} : value).dump(), draw.at());
