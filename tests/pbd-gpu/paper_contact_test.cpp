@@ -15,12 +15,14 @@ Vector vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 struct Contact {
   double mesh_depth = 0.03, hand_depth = 0.01;  // defaults of the solver
+  bool slows = false;                           // friction on velocities
+  Vector removed = Vector::Zero();              // displacement that the velocity of a particle leaves out
   long touched = 0;
 
   void touch(Vector& at, const Vector& from, const Vector& normal, double push, double friction) {
     at += push * normal;
-    const Vector way = at - from;
-    at -= std::min(friction, 1.0) * (way - way.dot(normal) * normal);
+    const Vector way = at - from, taken = std::min(friction, 1.0) * (way - way.dot(normal) * normal);
+    (slows ? removed : at) += slows ? taken : Vector(-taken);
     ++touched;
   }
   void ball(Vector& at, const Vector& from, const Vector& center, double reach, double friction) {
@@ -89,23 +91,29 @@ Scene flying(int columns, int rows) {
 class PaperContacts : public Gpu {
  protected:
   /// One frame; returns how many contacts there were.
-  long expect_as_in_double(const Scene& s, const std::string& what) {
-    const auto solver = make("paper");
+  long expect_as_in_double(const Scene& s, const std::string& what, const nlohmann::json& settings = {}) {
+    const auto solver = make("paper", settings);
     solver->load(s);
     const ClothState state = after(*solver, s, 1);
     const std::vector<double> x = initial_positions(s);
     const double h = s.time.dt();
     Contact contact;
+    contact.slows = settings.value("friction_on", "") == "velocity";
+    const bool previous = settings.value("projection", "") == "previous";
     for (std::size_t i = 0; i < s.cloth.vertex_count(); ++i) {
       const Vector from = Vector::Map(&x[3 * i]);
       const bool pinned = std::count(s.pins.vertices.begin(), s.pins.vertices.end(), i) != 0;
       Vector at = pinned
                       ? from
                       : Vector(from + h * (vector(s.cloth.initial_velocity_m_per_s) + h * vector(s.gravity_m_per_s2)));
-      if (!pinned) contact.all(at, from, s, s.motion_after(0));
+      Vector tested = previous ? from : at;
+      contact.removed.setZero();
+      if (!pinned) contact.all(tested, from, s, s.motion_after(0));
+      at = previous ? Vector(at + tested - from) : tested;
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(state.position[3 * i + static_cast<std::size_t>(k)], at[k], 2e-6) << what << " vertex " << i;
-        EXPECT_NEAR(state.velocity[3 * i + static_cast<std::size_t>(k)], (at - from)[k] / h, 2e-6 / h) << what;
+        EXPECT_NEAR(state.velocity[3 * i + static_cast<std::size_t>(k)], (at - from - contact.removed)[k] / h, 2e-6 / h)
+            << what;
       }
     }
     return contact.touched;
@@ -129,6 +137,30 @@ TEST_F(PaperContacts, AgreeWithDoublePrecisionKindByKind) {
         if (collider.shape == Collider::Shape::Mesh) s = doubled(s);
         EXPECT_GT(expect_as_in_double(s, name), columns * rows / 50) << name << ": nothing was touched";
       }
+}
+
+TEST_F(PaperContacts, AgreeWithDoublePrecisionInEveryReadingOfTheText) {
+  const nlohmann::json previous = {{"projection", "previous"}}, velocity = {{"friction_on", "velocity"}};
+  const Collider ball = sphere({-0.11, -0.05, 0.07}, 0.3, kContactFriction),
+                 mesh = octahedron({0.013, 0.007, 0.021}, 0.16, false, kContactFriction);
+  for (const Scene& s : {moving(with_collider(flying(33, 17), ball)), doubled(with_collider(flying(33, 17), mesh))})
+    for (const nlohmann::json& settings : {previous, velocity})
+      EXPECT_GT(expect_as_in_double(s, settings.dump(), settings), 10);
+}
+
+TEST_F(PaperContacts, OtherReadingsMoveTheClothElsewhere) {
+  const Scene s = with_collider(doubled(with_damping(sheet(9, 9, 0.2, 0.2))),
+                                open_sheet({0.003, -0.05, 0.004}, 0.4, kContactFriction));
+  const auto end = [&](const nlohmann::json& settings) {
+    const auto solver = make("paper", settings);
+    solver->load(s);
+    return after(*solver, s, 20).position;
+  };
+  const auto standard = end({});
+  EXPECT_EQ(end({{"relaxation", 1.0}, {"collisions", "after"}, {"second_layer", "same"}}), standard);
+  for (const nlohmann::json& settings :
+       {nlohmann::json{{"relaxation", 1.4}}, {{"collisions", "inside"}}, {{"second_layer", "opposite"}}})
+    EXPECT_NE(end(settings), standard) << settings;
 }
 
 TEST_F(PaperContacts, AFallenSheetStaysOnAMesh) {
