@@ -49,7 +49,7 @@ struct RunView {
 /// How a number is computed from a run.
 struct Reduction {
   std::vector<std::string> series;  ///< metrics it depends on; empty: it is measured otherwise
-  std::string how;                  ///< "greatest of all frames"; for a custom rule, its whole description
+  std::string how;                  ///< "maximum of all frames"; for a custom rule, its whole description
   std::function<double(const RunView&)>
       value;               ///< NaN: not defined or not known. Null: added by the code that executed the run
   std::string units = "";  ///< empty: the unit of its one series, and `how` describes the reduction of that series
@@ -67,7 +67,7 @@ struct Gate {
   const char* why = "";
 };
 
-/// For errors: the greatest difference of one solver between lavapipe and an H200 in the Table 3 study is 3.1e-7
+/// For errors: the largest difference of one solver between lavapipe and an H200 in the Table 3 study is 3.1e-7
 /// (paper).
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
                                  "three times the largest difference seen between devices"};

@@ -1,4 +1,4 @@
-// What host and shaders share: vec4 and 4-byte scalars only, so that std430 and C++ agree.
+// Types that host and shaders share: vec4 and 4-byte scalars only, so that std430 and C++ agree.
 #ifdef __cplusplus
 #pragma once
 #include <array>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kResamples = 400, kBlock = 16, kMinBlocks = 8, kMinFrames = 6;
 constexpr double kWide = 0.2;
-constexpr double kMeasurable_s = 2e-5;  // CPU time of shorter frames is mostly that of reading the clock
+constexpr double kMeasurable_s = 2e-5;  // in shorter frames, reading the clock takes most of the CPU time
 
 using Series = std::vector<double>;
 

@@ -133,7 +133,7 @@ struct Row {
   std::string not_ranked() const;
   /// Minimum and maximum contact offset [m]: the solver's own, otherwise the scene's margin; NaN without colliders.
   std::pair<double, double> offset_m() const;
-  /// What the file states of the conditions of the timed trials: "alone", "alone, throttled (1980 to 1400 MHz)", …
+  /// Conditions of the timed trials, as the file states them: "alone", "alone, throttled (1980 to 1400 MHz)", …
   std::string trust() const;
   /// Parameters of a randomly generated scene; null for any other.
   nlohmann::json drawn() const;

@@ -50,7 +50,7 @@ class Loop {
     try {
       show_frames();
     } catch (const std::exception& e) {
-      // What was recorded until here is a result, and replays: a headset's device may go at any time.
+      // The frames recorded until here are a result, and replay: a headset's device may be lost at any time.
       if (log_.rows().empty()) throw;
       end_by(e);
     }

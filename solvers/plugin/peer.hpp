@@ -1,4 +1,4 @@
-/// What the adapters of engines from elsewhere share: the sheet at rest, its springs, its stages. Header only, so that
+/// Shared by the adapters of external engines: the sheet at rest, its springs, its stages. Header only, so that
 /// an adapter builds only with clothbench_plugin.h and its engine.
 #pragma once
 

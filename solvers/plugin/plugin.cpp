@@ -114,7 +114,7 @@ const ClothbenchPlugin& checked(const std::string& path, const ClothbenchPlugin*
   return *c;
 }
 
-/// What its constructors and its description do is found out in a child, where it may crash or hang.
+/// Tries its constructors and its description in a child process, which may crash or hang.
 void probe(const std::string& path) {
   constexpr unsigned kPatience_s = 30;
   const pid_t child = fork();

@@ -129,7 +129,7 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
   const SolverInfo info_;
   const std::vector<double> settings_;
   std::optional<SceneView> view_;
-  void* self_ = nullptr;  ///< there once a scene is loaded, as is what follows
+  void* self_ = nullptr;  ///< valid once a scene is loaded, as are the next members
   DeviceInfo device_ = {"CPU", "", "plugin", false, "{}"};
   Plan plan_;
 };

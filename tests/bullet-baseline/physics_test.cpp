@@ -19,8 +19,8 @@ TEST_P(Bullet, FreeFallIsThatOfItsIntegrator) {
     for (std::size_t k = 0; k < start.size(); ++k)
       worst = std::max(worst, std::abs(state.position[k] - start[k] - (k % 3 == 1 ? fall : 0)) / (0.5 * 9.81 * 0.25));
     printf("  %dx%d: free-fall error at 0.5 s %.2g\n", columns, rows, worst);
-    EXPECT_LE(worst, 5e-5) << columns;  // float32 positions; the deformable body takes up to 70 substeps a frame here
-    // Damped by 0.5/s, so less than g T^2/2 and more than the fall at the greatest drag.
+    EXPECT_LE(worst, 5e-5) << columns;  // float32 positions; the deformable body takes up to 70 substeps per frame here
+    // Damped by 0.5/s, so less than g T^2/2 and more than the fall at the maximum drag.
     EXPECT_NEAR(fall, -0.5 * 9.81 * 0.25, 0.1 * 0.5 * 9.81 * 0.25);
   }
 }
@@ -42,7 +42,7 @@ TEST_P(Bullet, KeepsMomentumAndKnowsItsRestLengths) {
       narrowest = std::min(
           narrowest, vertex(state.position, static_cast<std::size_t>(columns) - 1)[0] - vertex(state.position, 0)[0]);
     }
-    EXPECT_LT(narrowest, 1.02) << "links have the scene's rest lengths, not those of the start";
+    EXPECT_LT(narrowest, 1.02) << "links have the scene's rest lengths, not the lengths of the start";
     const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);
     double total = 0;
     Vec3 p{}, moved{};

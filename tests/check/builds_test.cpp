@@ -112,7 +112,7 @@ TEST(CompareTimes, FalseAlarmsAreAsRareAsStated) {
     }
 }
 
-/// A change of twice the spread of processes is found by 5 processes a side in four of five comparisons, one of three
+/// A change of twice the spread of processes is found by 5 processes per side in four of five comparisons, one of three
 /// times the spread almost always, and more processes find more.
 TEST(CompareTimes, FindsChangesOfTheSizeStated) {
   std::mt19937 random(12);

@@ -28,7 +28,7 @@ class DrawnStudy : public WithFolder {
 };
 
 TEST_F(DrawnStudy, RunsResumesReportsAndItsScenesRunAgain) {
-  // Of seeds 4 to 6: a stretch, a ball and a box.
+  // Seeds 4 to 6 give a stretch, a sphere and a box.
   const std::string study =
       "study contact --quick --procedural --seed 4 --solver ballistic --set time.duration_s=0.1 --out " + out();
   const Answer first = command(study + " --count 2 --jobs 2");

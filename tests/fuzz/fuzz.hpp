@@ -22,7 +22,8 @@ void fuzz_track(const std::uint8_t* data, std::size_t size);
 void fuzz_part(const std::uint8_t* data, std::size_t size);
 void fuzz_hdf5(const std::uint8_t* data, std::size_t size);
 
-/// What a reader may do with any input: take it, or throw Error with a message. Everything else ends the program.
+/// A reader may do two things with any input: accept it, or throw Error with a message. Everything else ends the
+/// program.
 template <class Read>
 void reads_or_refuses(Read read) {
   try {

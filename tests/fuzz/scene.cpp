@@ -6,8 +6,8 @@
 void clothbench::fuzz_scene(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses([&] {
     const nlohmann::json j = parse_json(std::string(reinterpret_cast<const char*>(data), size), "scene.json");
-    // What a file may ask for is bounded by the schema, and slow near its bounds; the reader is looked for faults with
-    // little.
+    // The schema bounds what a file may request. Loading is slow near the bounds, so the fuzzer searches for faults
+    // with small values.
     const auto number = [&](const char* pointer, double otherwise) {
       const nlohmann::json::json_pointer at(pointer);
       return j.contains(at) && j[at].is_number() ? j[at].get<double>() : otherwise;

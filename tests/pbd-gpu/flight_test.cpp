@@ -48,7 +48,7 @@ TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
       if (device_->has_timestamps()) {
         EXPECT_GT(flown->last_cost().device_s, 0);
       }
-      // What follows is stepped again as if nothing had been in flight.
+      // The next frames are stepped again as if nothing had been in flight.
       EXPECT_EQ(after_frame(*flown, s, count).position, after_frame(*stepped, s, count).position);
     }
 }

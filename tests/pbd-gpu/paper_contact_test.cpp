@@ -1,5 +1,5 @@
 // Collision kernels of `paper` against the same in double on the CPU, and what travels to them each frame. A sheet at
-// rest that only flies has no constraint to satisfy: its predicted positions are known, and contact alone moves them.
+// rest that only flies has no constraint to satisfy: its predicted positions are known, and only contact moves them.
 #include <Eigen/Dense>
 #include <algorithm>
 

@@ -62,7 +62,7 @@ void add_kernels(std::vector<Fault>& f) {
 }
 
 /// A fault in every phase of contact. Where planes hold ("struck") responses may be wrong and nothing is
-/// passed; what a rope's friction on a drum is ("wrapped") they alone decide.
+/// passed; only they decide a rope's friction on a drum ("wrapped").
 void add_planes(std::vector<Fault>& f) {
   const auto kernel = [&](const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
     Fault fault{name, stage};

@@ -1,4 +1,4 @@
-// What is drawn, pixel by pixel, under core and synchronization validation.
+// Pictures, pixel by pixel, under core and synchronization validation.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -75,7 +75,7 @@ TEST(Stereo, FilesHaveTheColumnOnlyWhereAsked) {
   }
 }
 
-/// What the vertex shader reads from the solver is what read_state tells.
+/// The vertex shader reads the positions that read_state gives.
 TEST(Stereo, TheSolversBufferLooksAsItsState) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[16,16]"});
   const auto device = vulkan::Device::get(kValidated);
@@ -110,7 +110,7 @@ TEST(Stereo, TheSolversBufferLooksAsItsState) {
       drawn += uploaded.rgb[k] < 200 ? 1 : 0;
     }
     EXPECT_GT(drawn, 2000) << name;
-    EXPECT_LT(different, drawn / 200) << name << ": rounding alone";
+    EXPECT_LT(different, drawn / 200) << name << ": only rounding";
   }
   EXPECT_GE(seen, 2);
   EXPECT_EQ(device->validation_messages(), 0);

@@ -1,4 +1,4 @@
-// What the penetration tables, files and the feature table say.
+// Contents of the penetration tables, of files and of the feature table.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the tables say, read back from their Markdown.
+// Contents of the tables, read back from their Markdown.
 #include <gtest/gtest.h>
 
 #include <algorithm>

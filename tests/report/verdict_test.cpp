@@ -1,4 +1,4 @@
-// What counts as passed: the same in every table, on the console and in JSON.
+// A run counts as passed or not equally in every table, on the console and in JSON.
 #include "report/verdict.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the report of error against run time makes of points that are known.
+// The report of error against run time, from points that are known.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a mesh's file says beyond its triangles: seams, names; glTF beside OBJ.
+// Contents of a mesh's file beyond its triangles: seams, names; glTF beside OBJ.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -174,7 +174,7 @@ TEST(MeshInput, MorphTargetsMoveTheirVertices) {
   j["meshes"][0]["weights"] = {0.5, 1};
   EXPECT_EQ(corner(), (Vec3{3, 3, 5}));
   j["nodes"][0]["weights"] = {2, 0};
-  EXPECT_EQ(corner(), (Vec3{6, 6, 5})) << "those of the node take the place of those of its mesh";
+  EXPECT_EQ(corner(), (Vec3{6, 6, 5})) << "the node's values replace its mesh's";
   j["nodes"][0]["weights"] = {2};
   EXPECT_NE(refusal(corner).find("/meshes/0/primitives/0/targets: 2 morph targets, but 1 weights"), std::string::npos);
 }

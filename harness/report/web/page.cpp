@@ -160,7 +160,7 @@ std::string table_html(const Table& t) {
   return out + "</tbody></table><p class=\"note\">" + escaped(t.note) + "</p>";
 }
 
-/// What shows without a script: title, facts, warnings, tiles and the first table.
+/// The part that needs no script: title, facts, warnings, tiles and the first table.
 std::string head_html(const Page& page) {
   std::string out =
       "<h1>" + escaped(page.heading.title) +

@@ -30,8 +30,8 @@ struct FrameKernel {
 std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint64_t all_B, std::uint64_t largest_B,
                         std::uint64_t memory_B);
 
-/// What a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted repeatedly,
-/// with its plan. With the setting `count_bytes` kernels count the bytes that they load and store.
+/// The frame that a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted
+/// repeatedly, with its plan. With the setting `count_bytes` kernels count the bytes that they load and store.
 class FrameBuilder {
  public:
   FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device);
@@ -57,9 +57,9 @@ class FrameBuilder {
   const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
 
   int add_stage(const std::string& name, FeatureSet serves);
-  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over those of
-  /// add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound instead.
-  /// `constants` by number.
+  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over the
+  /// buffers of add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound
+  /// instead. `constants` by number.
   const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
                                 std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
                                 const vulkan::Buffers& own = {});

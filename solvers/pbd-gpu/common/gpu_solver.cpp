@@ -122,7 +122,7 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   take_messages();
   if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (colliders_) colliders_->write(frame.motion);
-  // What was just released has no last substep of its own.
+  // A vertex that was just released has no last substep of its own.
   if (grips_ && grips_->write(frame.motion)) done_dt_s_ = 0;
   prepare(frame.dt_s);
   done_dt_s_ = frame.dt_s;

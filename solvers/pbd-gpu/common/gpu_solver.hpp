@@ -9,8 +9,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// What both methods share: one recorded frame that is submitted repeatedly, reading back the state, and costs. A
-/// method adds its buffers and its frame.
+/// The part that both methods share: one recorded frame that is submitted repeatedly, reading back the state, and
+/// costs. A method adds its buffers and its frame.
 class GpuSolver : public ClothSolver, protected FrameBuilder {
  public:
   GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device);

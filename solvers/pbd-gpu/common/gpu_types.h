@@ -67,8 +67,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // clang-format on
 // Collision kernels of `paper`.
 // FRICTION: 0 none, 1 takes tangential displacement off the position, 2 off the velocity.
-#define PAPER_CONSTANTS(C) \
-  C(1, uint, FRICTION, 0u) C(2, uint, PROJECT_PREVIOUS, 0u) C(3, uint, OPPOSITE_NORMALS, 0u)
+#define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, PROJECT_PREVIOUS, 0u) C(3, uint, OPPOSITE_NORMALS, 0u)
 #ifdef __cplusplus
 #define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
 #define CLOTHBENCH_PUT(number, type, name, standard) all.at(number) = name;
@@ -103,10 +102,10 @@ struct PaperConstants {
   vec4 gravity;  // m/s^2
   uint particles;
   uint constraints;
-  float h;          // step [s]
-  float stiffness;  // k of PBD, 0..1
-  float keep;       // fraction of velocity left by damping, max(0, 1 - c h)
-  float relaxation; // factor of the averaged corrections; above 1: over-relaxation
+  float h;           // step [s]
+  float stiffness;   // k of PBD, 0..1
+  float keep;        // fraction of velocity left by damping, max(0, 1 - c h)
+  float relaxation;  // factor of the averaged corrections; above 1: over-relaxation
 };
 
 /// Push constants of the collision kernels of `paper`.
@@ -146,7 +145,7 @@ struct LineConstants {
   float substep_part;            // of a frame
   float frames_per_s;
   uint first_pass,
-      passes;          // of this dispatch; each substep has one pass per colour. Of fused_frame: BROAD_PHASE_DONE, or 0
+      passes;          // of this dispatch; each substep has one pass per colour. In fused_frame: BROAD_PHASE_DONE, or 0
   uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
   float per_h;         // 1/h
   float history_weight;  // fraction of the last substep's change that is predicted
@@ -176,7 +175,7 @@ struct ChainRange {
   uint unused0;
 };
 
-/// Rows of a slice of the bending matrix of a mesh: those of a subgroup or a part of one.
+/// Rows of a slice of the bending matrix of a mesh: one subgroup's rows, or a part of them.
 #define BENDING_ROWS 32u
 /// Entry of that matrix, beside the diagonal.
 struct BendingEntry {
@@ -214,7 +213,7 @@ struct ChainConstants {
   uint first_pass, passes;  // of this dispatch; each substep has one pass per colour
   float history_weight;     // fraction of the last substep's change that is predicted
   float per_force_scale;    // 1 / keep
-  uint bending_iterations;  // passes per substep, after one that integrates and before those of colours; 0: no bending
+  uint bending_iterations;  // passes per substep, after the pass that integrates and before the colours; 0: no bending
   uint vertices;
   float bending_step;    // h^2 keep [s^2]
   float bending_gain;    // of the first iteration, 2 / (2 + m), m the maximum eigenvalue of h^2 keep M^-1 K

@@ -14,7 +14,7 @@ bool grid_barrier() {
   if (gl_LocalInvocationIndex == 0u) {
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y, seen = atomicAdd(arrived, 1u) + 1u;
     uint all = (seen + groups - 1u) / groups * groups;
-    // What was seen last counts, not the looks left: lavapipe ends every loop of its own after 65535.
+    // The last value read counts, not the reads left: lavapipe ends every loop of its own after 65535.
     for (uint looks = 0u; looks < p.timeout_polls && seen < all; ++looks) seen = arrived;
     all_arrived = seen >= all;
     if (!all_arrived) timed_out = 1u;

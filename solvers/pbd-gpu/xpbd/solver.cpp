@@ -114,7 +114,7 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// What BDF2 goes on from: the state before the last substep.
+  /// History of BDF2: the state before the last substep.
   void add_history(std::size_t particles) {
     const FeatureDecision prediction = bdf2_decision(scene(), settings());
     set_uses_bdf2(prediction.enabled);
@@ -146,7 +146,7 @@ class Xpbd final : public GpuSolver {
 
   int substeps_in(double dt_s) const { return in_frames(controller_.substeps(), dt_s); }
 
-  /// Of a frame that takes `by_rule` of them if it is as long as the scene's.
+  /// Substeps of a frame that takes `by_rule` of them if it is as long as the scene's.
   int in_frames(int by_rule, double dt_s) const {
     return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor.value : 1);
   }
@@ -299,7 +299,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   return std::make_unique<Xpbd>(xpbd_info(), settings, device);
 }
 
-/// The prediction alone, every substep: without forces inside the cloth it is the whole step.
+/// Only the prediction, every substep: without forces inside the cloth it is the whole step.
 double xpbd_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];

@@ -68,7 +68,7 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
       known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
     if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
   }
-  // Of an activity, what XR_KHR_android_create_instance demands.
+  // The data of an activity that XR_KHR_android_create_instance demands.
   const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
   if (android != nullptr &&
       (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))

@@ -63,7 +63,7 @@ struct Runtime {
   int frames = 0, ended = 0;
   double seconds(XrTime t) const { return static_cast<double>(t - begin_ns) * 1e-9; }
 
-  // What was asked for.
+  // Requests.
   int projection_frames = 0;
   std::array<double, 2> drawn{-1, -1};
   bool android = false;

@@ -7,10 +7,10 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Every pair of a triangle of the cloth and a convex
+/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Every pair of a triangle of the cloth and a
 /// convex shape of a collider that may meet in a substep has a plane that separates both ends of the straight
-/// displacement, and no vertex ends a substep behind a plane of one of its triangles. Works on positions and velocities
-/// alone; what solves the constraints comes between `record_before` and `record_after` and reads inverse masses in .w
+/// displacement, and no vertex ends a substep behind a plane of one of its triangles. Works only on positions and
+/// velocities; the constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w
 /// of the positions. Where FusedFrame has the frame in one dispatch in one kernel, only `record_shapes` is called.
 class XpbdContact {
  public:
@@ -33,11 +33,11 @@ class XpbdContact {
 
   FeatureSet serves() const;
   bool with_itself() const { return with_itself_; }
-  /// What the kernel of a frame in one dispatch needs of the scene.
+  /// Data of the scene for the kernel of a frame in one dispatch.
   FusedFrameSpecialization frame_specialization() const;
   ContactConstants constants(int s, int substeps, double dt_s) const;
 
-  /// What went wrong since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
+  /// Diagnostics since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
   void clear_diagnostics();
   /// Maximum displacement of a vertex in the last frame [m]; infinite if it had no contact. Call it before a frame.

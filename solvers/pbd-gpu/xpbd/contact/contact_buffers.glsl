@@ -1,4 +1,4 @@
-// What the kernels of contact share: what is known of primitives and convex shapes, and of the substep. Primitives are
+// Shared by the kernels of contact: data of primitives, of convex shapes, and of the substep. Primitives are
 // the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a
 // pass has its counts as push constants, the fused frame as specialization constants of the same names.
 #ifndef FUSED_FRAME
@@ -32,7 +32,7 @@ layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 motion_bounds[]; };
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
-layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: farthest it may go
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: motion bound
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
 // First entry a vertex; 4 triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
@@ -66,7 +66,7 @@ const float kTiny = 1e-6;       // a weight below is none
 // One bit per pair: whether it is active in this substep, and whether its contact proposes a correction in this round.
 #define ACTIVE_BITS 0u
 #define CORRECTION_BITS (CAPACITY / 32u + 1u)
-/// Of a range of pairs those that have a bit, `k`, in the list's order.
+/// The pairs `k` of a range that have a bit, in the list's order.
 #define FOR_EACH_PAIR_OF(BITS, RANGE, BODY) \
   uvec2 of = (RANGE).xy; \
   for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) { \

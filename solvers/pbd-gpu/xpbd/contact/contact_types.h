@@ -28,7 +28,7 @@ struct PointSource {
   uint point, index, capsule, shape;
 };
 
-/// What is known of one pair of a primitive of the cloth (a triangle or a vertex) and a convex shape.
+/// State of one pair of a primitive of the cloth (a triangle or a vertex) and a convex shape.
 struct PairState {
   vec4 normal;   // from the convex shape to the cloth; w: lower bound of the pair's distance [m]
   vec4 weights;  // of the primitive's vertices at its nearest point; w: dot(normal, convex shape's nearest point at the
@@ -44,7 +44,7 @@ struct PairState {
 #define PAIR_PLANE 4u    // has a plane
 #define PAIR_LEVELS 4u   // motion bounds tried: each half (with grips or self-contact a quarter) of the one before
 
-/// Of the frame, on the device.
+/// State of the frame, on the device.
 struct ContactFrameState {
   uint pairs;                        // in the list
   float bound_fraction;              // fraction of the vertices' motion bounds that the list is made for
@@ -53,7 +53,7 @@ struct ContactFrameState {
   uint cloth_low[3], cloth_high[3];  // box that the cloth may be in, in the order of atomic_aabb.glsl
   float self_bound_fraction;         // as motion bound, of the list of self-contact pairs
   uint self_active;                  // its pairs active in this substep
-  uint self_contact_pairs;           // those of them that have contacts
+  uint self_contact_pairs;           // active self-contact pairs that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint contact_free;          // 1: the frame was done without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;      // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
@@ -65,7 +65,8 @@ struct ContactFrameState {
 
 #define BROAD_PHASE_DONE 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0
 
-/// Of a triangle of the cloth, by half of the thickness larger: at rest, and grown by its vertices' motion bounds.
+/// Boxes of a triangle of the cloth, larger by half of the thickness: at rest, and grown by its vertices' motion
+/// bounds.
 struct SelfAabb {
   vec4 low_0, high_0, low_1, high_1;  // w unused
 };
@@ -94,7 +95,7 @@ struct SelfContact {
 #define SELF_CONTACTS 7u
 #define SELF_PLANE 128u
 
-/// What an active pair proposes for a vertex: sums weighted by length.
+/// Correction that an active pair proposes for a vertex: sums weighted by length.
 struct SelfCorrection {
   vec4 all;            // w: sum of lengths
   vec4 velocity_part;  // its part that is velocity
@@ -115,7 +116,7 @@ struct ContactConstants {
   uint capacity;                 // pairs that the list has place for
   uint shapes, groups;           // groups of SHAPES_PER_GROUP neighbouring convex shapes have a box each
   uint response_round;           // of responses: 0 before the lines, with the predicted positions; 1 and on after them
-  uint first_substep, substeps;  // this substep; those of the frame
+  uint first_substep, substeps;  // this substep; substeps of the frame
   float substep_part;            // of the frame
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)

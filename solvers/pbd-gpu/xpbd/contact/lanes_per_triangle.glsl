@@ -2,7 +2,7 @@
 // where lanes cannot exchange values.
 uint lanes_per_triangle() { return min(gl_SubgroupSize, 32u); }
 uint triangle_lane() { return gl_SubgroupInvocationID; }
-/// Of all sharers, a bit each.
+/// One bit per sharer.
 uint ballot_bits(bool mine) {
   uint bits = mine ? 1u << triangle_lane() : 0u;
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);

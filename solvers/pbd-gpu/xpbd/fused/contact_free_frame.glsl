@@ -87,13 +87,13 @@ void check_motion_bound() {
   }
 }
 
-/// What the next frame goes by.
+/// Largest displacement, which the next frame uses.
 void record_max_displacement() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     if (on_chain(i)) atomicMax(max_displacement, floatBitsToUint(distance(pos[k], x[index_of(vertex(i))].xyz)));
   }
-  barrier();  // all displacements before the farthest is read
+  barrier();  // wait for all displacements before thread 0 reads the maximum
   if (thread != 0u) return;
   diagnostics.max_displacement = max_displacement;
   frame_state.max_displacement = max_displacement;

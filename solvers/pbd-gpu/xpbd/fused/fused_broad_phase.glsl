@@ -4,7 +4,7 @@ const bool kTestsContactFree = true;  // whether the cloth's own speed may take 
 #else
 const bool kTestsContactFree = false;
 #endif
-// Of the workgroup's primitives in this frame.
+// State of the workgroup's primitives in this frame.
 // No group of convex shapes is within the motion bound; one is; one would meet the cloth without contact.
 const uint kOutOfReach = 0u, kNearby = 1u, kOverlaps = 2u;
 shared uint any_nearby;
@@ -14,7 +14,7 @@ void bound_and_grow(float max_shape_displacement) {
   uvec3 from = uvec3(kLowNone), to = uvec3(kHighNone);
   FOR_EACH_STRIDED(i, VERTICES) widen(from, to, motion_bound_of_vertex(i, max_shape_displacement));
   widen_box(from, to);
-  barrier();  // the workgroup's box before that of all
+  barrier();  // wait for the workgroup's box before adding it to the box of all
   if (thread < 3u) {
     atomicMin(frame_state.cloth_low[thread], cloth_low[thread]);
     atomicMax(frame_state.cloth_high[thread], cloth_high[thread]);

@@ -26,7 +26,7 @@ vec3 anchor(uvec2 at, uint k) {
 const bool SECOND_SOLVE = false;
 const uint SELF = 0u;
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
-// The next substep's prediction, at this one's end. What attachments hold is moved between the two.
+// The next substep's prediction, at this one's end. Attached vertices are moved between the two.
 const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
 #include "xpbd/contact/subgroup_cluster.glsl"
@@ -58,7 +58,7 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #endif
 
 const uint kResponseRounds = 3u;
-uint global_thread, grid_stride;  // this thread among those of all workgroups
+uint global_thread, grid_stride;  // this thread among the threads of all workgroups
 #define FOR_EACH_STRIDED(i, count) for (uint i = global_thread; i < (count); i += grid_stride)
 
 #include "xpbd/fused/fused_broad_phase.glsl"

@@ -47,7 +47,7 @@ bool FusedFrame::add_kernels() {
   LineSpecialization lines = lines_.specialization_with_contact(shape);
   groups_ = lines_.groups_of(shape);
   const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();
-  // Workgroups beyond those of the lines have pairs and vertices alone, and so threads without a line.
+  // Workgroups without lines process only pairs and vertices, and so do threads without a line.
   if (const std::uint32_t smallest = wanted != 0 ? wanted : kWorkgroups; smallest > groups_.x * groups_.y) {
     groups_ = vulkan::groups_for(smallest, 1);
     lines.EXACT = 0;

@@ -8,8 +8,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as there
-/// are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
+/// Threads of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as
+/// there are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;
 
 }  // namespace

@@ -39,13 +39,13 @@ bool goes_on(uint i) {
 /// Lines on the border carry half the width, so they are twice as compliant.
 float border() { return colour < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
 
-// What neighbours n threads away on the same chain hold; what is beyond a chain's ends is anything finite. By shuffles
+// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By shuffles
 // within a subgroup, else through shared memory.
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
 const uint PART = LANES / PARTS;                                               // its threads in one of them
 const uint EXCHANGE_SIZE = PARTS > 1u ? 2u * THREADS : 1u;
-bool apart = false;  // the rows per thread holds concern its own subgroup alone
+bool apart = false;  // the rows of a thread concern only its own subgroup
 
 // Two pages in turn: while some threads still read one, others write the other.
 shared vec4 exchanged[EXCHANGE_SIZE];
@@ -174,11 +174,11 @@ vec3 direction[K], direction_below;  // of links; 0 where there is none
 float w_above;                       // inverse mass of the vertex after the thread's
 float link_length[K], pull[K];  // tension over length that links carry already
 
-/// Of the chain's links, over h^2.
+/// Compliance of the chain's links, over h^2.
 float compliance() { return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border(); }
 
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
-/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `least` is a fraction of the inverse mass that alpha is at least.
+/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest` is the minimum of alpha, as a fraction of the inverse mass.
 void link_equations(float smallest) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);
@@ -194,7 +194,7 @@ void link_equations(float smallest) {
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
     direction[k] = is ? e * per_l : vec3(0.0);
-    // Of chains between attached vertices. Strips: tension must not turn a link by more than a substep resolves, or it
+    // Chains between attached vertices. Strips: tension must not turn a link by more than a substep resolves, or it
     // overshoots and throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times per
     // second difference, so dlambda w / l is held below 1. In sheets diagonals hold a kink. An inextensible link torn
     // to several times its length yields bit by bit. Implicit tension turns links by no more than they can turn, so
@@ -230,7 +230,7 @@ void link_equations(float smallest) {
 
 #include "xpbd/lines/tension.glsl"
 
-/// Of the thread's links and the one before them, in all: of implicit tension too.
+/// Sum over the thread's links and the one before them, with implicit tension.
 void record_link_multipliers(float lambda_below) {
   float lambda[K];
   [[unroll]] for (uint k = 0u; k < K; ++k) {

@@ -18,7 +18,7 @@ float at_once() {
   return 1.0 / (1.0 + waves / (3.0 * waves + links * links / 7.0));
 }
 
-/// What the shift of the thread's vertex k adds along its diagonal.
+/// Length that the shift of the thread's vertex k adds along its diagonal.
 float along_diagonal(uint k) {
   vec2 part = vec2(colour == 2u ? p.rest_u : -p.rest_u, p.rest_v) / p.rest_d;
   return colour >= 2u ? kShiftFraction * dot(part, shift[k].xy) : 0.0;

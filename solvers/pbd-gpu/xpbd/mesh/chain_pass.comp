@@ -52,7 +52,7 @@ void integrate(uint i) {
 #ifdef MEMBRANE
 void stretch(ChainEntry entry, uint rounds) {}  // triangles take the place of links
 #else
-// What the neighbours n entries away hold; beyond the block: zeros. Two pages in turn: while some threads still read
+// Values of the neighbours n entries away; beyond the block: zeros. Two pages in turn: while some threads still read
 // one, others write the other.
 shared vec4 exchanged[2u * THREADS];
 uint exchange_half = 0u;

@@ -104,7 +104,7 @@ void Chains::add_membrane() {
   frame_.add_buffer(BIND_MEMBRANE_CORNERS, "triangle corners", table.entries);
 }
 
-/// As many workgroups as the colour with the most blocks needs.
+/// Workgroups: the maximum number of blocks of a colour.
 vulkan::Groups Chains::all_groups() const {
   std::uint32_t largest = 0;
   for (const Colour& f : colours_) largest = std::max(largest, f.entries);

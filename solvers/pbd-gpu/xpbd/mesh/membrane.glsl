@@ -33,7 +33,7 @@ vec3 membrane_force(MembraneCorner c, vec3 x, vec3 a, vec3 b) {
   return t.x * s.g0 - t.z * s.g2;
 }
 
-/// What small steps of its corners add to that force: of a positive semidefinite matrix, which leaves out what pushes
+/// Force that small steps of its corners add: by a positive semidefinite matrix, which leaves out what pushes
 /// edges aside, and is scaled down where a deformed triangle would exceed the bound of the iteration.
 vec3 membrane_change(MembraneCorner c, vec3 x, vec3 a, vec3 b, vec3 of_x, vec3 of_a, vec3 of_b) {
   vec3 e0 = a - x, e1 = b - a, e2 = x - b;

@@ -1,4 +1,4 @@
-// What lines and chains do with a vertex in a substep, by the push constants `p` and the constant FEATURES of both.
+// Steps of a vertex in a substep that lines and chains share, by the push constants `p` and the constant FEATURES of both.
 
 /// a + b = sum + rest exactly (Knuth's two-sum).
 void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {

@@ -83,7 +83,7 @@ uint overlapping_groups(inout uint bits, uint word, uint part) {
   return cluster_or(overlapping);
 }
 // Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from
-// there on; `own`: those of this lane.
+// there on; `own`: this lane's shapes.
 #define FOR_EACH_OVERLAPPING_SHAPES(BODY) \
   for (uint part = 0u; part < GROUPS_A_BIT; ++part) \
     for (uint word = 0u; word < GROUP_WORDS; ++word) \
@@ -103,7 +103,7 @@ void write_pair(uint at, uint primitive, uint of_shape) {
   states[at].correction = vec4(0.0);
 }
 
-/// Place of a convex shape among those of a turn.
+/// Index of a convex shape among the shapes of a turn.
 uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((1u << bit) - 1u))); }
 
 /// Writes the `count` first pairs of primitive k, from place `at` on.

@@ -58,7 +58,7 @@ void main() {
     }
     atomicMax(displacements[o], floatBitsToUint(distance(q.start.xyz, q.end.xyz)));
   }
-  barrier();  // boxes of points before those of convex shapes
+  barrier();  // wait for boxes of points before making boxes of convex shapes
   ShapeAabb b = ShapeAabb(vec4(1e30, 1e30, 1e30, 0.0), vec4(-1e30));
   if (t < n) {
     b = box_of(first + t, t);

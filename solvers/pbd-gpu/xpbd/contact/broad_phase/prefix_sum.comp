@@ -1,5 +1,5 @@
 #version 450
-// Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs the list has place for, and
+// Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs fit the list, and
 // where each primitive's pairs begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are
 // those of the list of self-contact pairs.
 #include "xpbd/contact/contact_buffers.glsl"
@@ -16,7 +16,7 @@ void main() {
   uvec4 sum = uvec4(0u);
   for (uint k = begin; k < end; ++k) sum += ranges[k];
   sums[t] = sum;
-  barrier();  // the threads' sums before those of blocks of threads
+  barrier();  // wait for the threads' sums before summing blocks of threads
   if (t % kBlock == 0u) {
     uvec4 of_block = uvec4(0u);
     for (uint k = 0u; k < kBlock; ++k) of_block += sums[t + k];

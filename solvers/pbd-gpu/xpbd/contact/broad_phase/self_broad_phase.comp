@@ -37,7 +37,7 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
     } \
   }
 
-/// Of two triangles from their boxes at the frame's start.
+/// Lower bound on the distance of two triangles, from their boxes at the frame's start.
 float min_distance(SelfAabb a, SelfAabb b) {
   vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + THICKNESS_M;
   return kRoundingFactor * length(max(apart, 0.0));

@@ -26,7 +26,7 @@ float bound_at_rest() {
   return last > 0.0 ? min(p.bound_m, kFraction * p.bound_m + (1.0 - kFraction) * fall + kWays * last) : p.bound_m;
 }
 
-/// By the hand that moves farthest: it may take any vertex along.
+/// Largest displacement of an attached vertex: it may take any vertex along.
 float pulled() {
   float largest = 0.0;
   for (uint k = 0u; k < GRIPS; ++k) {

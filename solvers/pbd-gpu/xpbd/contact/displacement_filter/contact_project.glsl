@@ -2,7 +2,7 @@
 // of its triangles: the feasible point nearest to the predicted position, within the vertex's displacement limit.
 // Method: Hildreth's (1957) dual coordinate descent. If it does not converge to a feasible point, the vertex moves from
 // a known feasible point (its start, or its start carried along by a kinematic shape) towards the prediction until it
-// reaches the first plane. If even the start violates a plane, the least violating point is used and counted in
+// reaches the first plane. If even the start violates a plane, the point with the smallest violation is used and counted in
 // diagnostics.infeasible_vertices.
 const uint kSweeps = 30u;
 const float kFeasibilityTolerance_m = 2e-6;  // that a vertex may lack before its planes, by rounding
@@ -176,7 +176,7 @@ void end_substep(uint i, vec4 proposed, vec3 at) {
 #endif
 }
 
-/// Of a vertex without planes.
+/// Projection of a vertex without planes.
 void project_free(uint i) {
   vec4 proposed = y[i], from = starts[i];
   start = from.xyz;

@@ -11,7 +11,7 @@ void clear_active_bits(uint first, uint at_once) {
     active_bits[ACTIVE_BITS + k] = active_bits[CORRECTION_BITS + k] = 0u;
 }
 
-/// The same of the corrections that contacts propose alone, once vertices have taken it.
+/// Clears only the bits of proposed corrections, after the vertices have applied them.
 void clear_correction_bits(uint first, uint at_once) {
   for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
     active_bits[CORRECTION_BITS + k] = 0u;

@@ -10,7 +10,7 @@ vec3 around;       // origin of all these
 struct Nearest {
   vec3 n;    // from the convex shape to the cloth
   float gap; // between the primitive and the convex shape without its radius; at most 0: they touch
-  vec3 on_cloth, on_shape;  // weights; those of the convex shape only if it has at most three points
+  vec3 on_cloth, on_shape;  // weights; for the convex shape only if it has at most three points
   vec3 witness, displacement;  // the convex shape's nearest point at the end, and its displacement in the substep
 };
 
@@ -42,7 +42,7 @@ float highest_of_subgroup(vec3 n, float t) { return 0.0; }
 // Points are read a few at a time: the loads are issued together.
 const uint kPointUnroll = MAX_POINTS < 4u ? MAX_POINTS : 4u;
 
-/// The farthest along n that the convex shape's points go at time t.
+/// max n·(points of the convex shape) at time t.
 float highest_point(vec3 n, float t) {
   if (by_subgroup) return highest_of_subgroup(n, t);
   float high = -1e30;

@@ -37,7 +37,7 @@ vec3 on_face(vec3 a, vec3 b, vec3 c) {
   return vec3(1.0 - (vb + vc) / all, vb / all, vc / all);
 }
 
-/// Of a tetrahedron: the nearest of the faces that the origin lies beyond. False if it lies inside.
+/// The nearest of a tetrahedron's faces that the origin lies beyond. False if it lies inside.
 bool on_tetrahedron(out vec4 weights) {
   const uvec4 kFaces[4] =
       uvec4[4](uvec4(0u, 1u, 2u, 3u), uvec4(0u, 2u, 3u, 1u), uvec4(0u, 3u, 1u, 2u), uvec4(1u, 3u, 2u, 0u));
@@ -48,7 +48,7 @@ bool on_tetrahedron(out vec4 weights) {
     const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
-    // On the inner side. Of a flat tetrahedron every face is processed: rounding decides where its last corner lies.
+    // On the inner side. Every face of a flat tetrahedron is processed: rounding decides where its last corner lies.
     bool flat_one = abs(inner) <= kFlat * length(n) * length(simplex[f.w].at - a);
     if (!flat_one && origin * inner > 0.0) continue;
     vec3 l = on_face(a, b, c), q = l.x * a + l.y * b + l.z * c;
@@ -87,7 +87,7 @@ bool reduce() {
 }
 
 #ifdef FUSED_FRAME
-/// The first of the convex shape's points that lie farthest along v.
+/// The convex shape's support point along v; the first if there are several.
 uint support_of_subgroup(vec3 v, float t) {
   float high = -1e30;
   uint best = 0u;
@@ -112,7 +112,7 @@ uint support_of_subgroup(vec3 v, float t) {
 uint support_of_subgroup(vec3 v, float t) { return 0u; }
 #endif
 
-/// The corner of the difference that lies farthest against v.
+/// The support point of the difference against v.
 Corner support(vec3 v, float t) {
   Corner c = Corner(vec3(0.0), 0u, 0u);
   float low = 1e30, high = -1e30;
@@ -146,7 +146,7 @@ Corner support(vec3 v, float t) {
   return c;
 }
 
-/// Of three corners the direction across the features that they span: the difference of nearest points has lost digits,
+/// The direction across the features that three corners span: the difference of nearest points has lost digits,
 /// and a tilt of a thousandth is friction.
 void across_features(inout Nearest r, vec3 v, float t) {
   const float kSame_m = 1e-6;  // gaps that rounding cannot tell apart

@@ -33,7 +33,7 @@ vec4 best_normal(Feature f) {
   vec4 best = vec4(0.0, 0.0, 0.0, -1e30);
   float l = length(f.apart);
   if (l > 0.0) best = vec4(f.apart / l, feature_gap(f.apart / l));
-  // Of what nearly touches the difference of the nearest points has lost its digits; across the features it has not.
+  // When triangles nearly touch, the difference of their nearest points has lost its digits; the direction across the features has not.
   float across = length(f.normal);
   if (f.square < 1e-6 && across > 0.0) {
     vec3 n = (dot(f.normal, f.apart) < 0.0 ? -1.0 : 1.0) / across * f.normal;
