@@ -20,18 +20,32 @@ Eigen::Quaterniond from_degrees(const Vector& degrees) {
   return Eigen::Quaterniond(Turn(r.z(), Vector::UnitZ()) * Turn(r.y(), Vector::UnitY()) * Turn(r.x(), Vector::UnitX()));
 }
 
+void read_pose(const JsonAt& at, HandKey& key, bool first) {
+  const std::vector<std::string> known(kPoseNames.begin(), kPoseNames.end());
+  const auto pose = at.maybe("pose"), blend = at.maybe("blend");
+  if (!pose && first) at.fail("\"pose\" is missing; the first key must have one");
+  if (!pose && blend) blend->fail("expected \"pose\" next to it");
+  if (!pose) return;
+  key.pose = pose->word(known);
+  key.blend_to.clear();
+  key.amount = 0;
+  if (!blend) return;
+  blend->only({"to", "amount"});
+  key.blend_to = blend->key("to").word(known);
+  const JsonAt amount = blend->key("amount");
+  key.amount = amount.number();
+  if (!(key.amount >= 0 && key.amount <= 1)) amount.fail("expected 0 to 1, not " + amount.json().dump());
+}
+
 HandKey read_key(const JsonAt& at, const HandKey* before) {
-  at.only({"time_s", "pose", "position_m", "rotation_deg", "grip", "sweep"});
+  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "grip", "sweep"});
   HandKey key = before ? *before : HandKey{};
   const JsonAt time = at.key("time_s");
   key.time_s = time.number();
   if (!(key.time_s >= 0 && key.time_s <= kMostSeconds)) time.fail(fmt::format("expected 0 to {} s", kMostSeconds));
   if (before && !(key.time_s > before->time_s))
     time.fail(fmt::format("expected later than the key before, {} s", before->time_s));
-  if (const auto pose = at.maybe("pose"))
-    key.pose = pose->word({kPoseNames.begin(), kPoseNames.end()});
-  else if (before == nullptr)
-    at.fail("\"pose\" is missing; the first key must have one");
+  read_pose(at, key, before == nullptr);
   const JsonAt position = at.key("position_m");
   key.position_m = position.numbers(3);
   if (!(key.position_m.cwiseAbs().maxCoeff() <= kMostMetres))
@@ -42,6 +56,11 @@ HandKey read_key(const JsonAt& at, const HandKey* before) {
   const auto sweep = at.maybe("sweep");
   key.sweep = sweep && sweep->boolean();
   return key;
+}
+
+HandPose pose_of(const HandKey& key, const Hand& hand) {
+  const HandPose& pose = hand.pose(key.pose);
+  return key.blend_to.empty() ? pose : blended(pose, hand.pose(key.blend_to), key.amount);
 }
 
 }  // namespace
@@ -103,7 +122,8 @@ HandSample sample(const HandTrack& track, const Hand& hand, double time_s) {
 
   HandSample out;
   out.grip = next > 0 && a.grip;
-  out.pose = a.pose == b.pose ? hand.pose(a.pose) : blended(hand.pose(a.pose), hand.pose(b.pose), t);
+  const bool same = a.pose == b.pose && a.blend_to == b.blend_to && a.amount == b.amount;
+  out.pose = same ? pose_of(a, hand) : blended(pose_of(a, hand), pose_of(b, hand), t);
   Frame place = Frame::Identity();
   place.linear() = a.orientation.slerp(t, b.orientation).normalized().toRotationMatrix();
   place.translation() = (1 - t) * a.position_m + t * b.position_m;

@@ -10,10 +10,11 @@ namespace clothbench::assets {
 /// Which point of the hand `position_m` places.
 enum class Anchor { Palm, Pinch };
 
-/// One pose at one time.
+/// One pose at one time: `pose`, or its interpolation to `blend_to` by the fraction `amount`.
 struct HandKey {
   double time_s = 0;
-  std::string pose;
+  std::string pose, blend_to;
+  double amount = 0;
   Vector position_m = Vector::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   bool grip = false;   ///< grips the cloth at the pinch point, from this key to the next
@@ -30,8 +31,8 @@ struct HandTrack {
 
 /// Reads a track, for example
 /// {"hand": "right", "anchor": "palm", "why": "...",
-///  "keys": [{"time_s": 0, "pose": "relaxed", "position_m": [0, 1, 0.1], "rotation_deg": [0, 0, 0], "grip": false,
-///            "sweep": false}, ...]}
+///  "keys": [{"time_s": 0, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [0, 1, 0.1],
+///            "rotation_deg": [0, 0, 0], "grip": false, "sweep": false}, ...]}
 /// rotation_deg rotates about the world's x, then y, then z axis. Without rotation the fingers point to +y and the palm
 /// faces -z. A key without pose or rotation takes it from the key before;
 /// the first key must have a pose. Throws Error with the file and JSON pointer.

@@ -12,7 +12,7 @@ const fs::path kTracks = fs::path(CLOTHBENCH_SOURCE_DIR) / "scenarios/assets";
 
 const char* const kTwoKeys = R"({"hand": "right", "keys": [
   {"time_s": 1, "pose": "relaxed", "position_m": [0, 0, 0], "grip": true},
-  {"time_s": 3, "pose": "pinch", "position_m": [2, 4, -6], "rotation_deg": [0, 90, 0]}]})";
+  {"time_s": 3, "pose": "relaxed", "blend": {"to": "pinch", "amount": 0.5}, "position_m": [2, 4, -6], "rotation_deg": [0, 90, 0]}]})";
 
 TEST(HandTrack, InterpolatesPositionOrientationAndPose) {
   const Hand hand = open_hand(AssetSource{}, Side::Right);
@@ -22,11 +22,12 @@ TEST(HandTrack, InterpolatesPositionOrientationAndPose) {
   EXPECT_LT((palm.translation() - Vector(1, 2, -3)).norm(), 1e-9);
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(EIGEN_PI / 4, Vector::UnitY()));
   EXPECT_LT(Eigen::Quaterniond(palm.linear()).angularDistance(expected), 1e-6);
-  const HandPose between = blended(hand.pose("relaxed"), hand.pose("pinch"), 0.5);
+  // Half-way to a half pinch is within the slerp of a slerp: a quarter.
+  const HandPose quarter = blended(hand.pose("relaxed"), hand.pose("pinch"), 0.25);
   const HandPose local = in_palm_frame(half.pose);
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    EXPECT_LT((local.joints[j].translation() - between.joints[j].translation()).norm(), 1e-9);
-    EXPECT_NEAR(local.radius_m[j], between.radius_m[j], 1e-12);
+    EXPECT_LT((local.joints[j].translation() - quarter.joints[j].translation()).norm(), 1e-9);
+    EXPECT_NEAR(local.radius_m[j], quarter.radius_m[j], 1e-12);
   }
 }
 
@@ -96,6 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"nan", "[2, 4, -6]", "[2, NaN, -6]", "line 3", "not valid JSON"},
                     Bad{"overflow", "[2, 4, -6]", "[2, 1e999, -6]", "line 3", "double range"},
                     Bad{"far", "[2, 4, -6]", "[2, 4e9, -6]", "/keys/1/position_m", "at most"},
+                    Bad{"amount", "0.5", "1.5", "/keys/1/blend/amount", "0 to 1"},
+                    Bad{"blend_key", "\"amount\"", "\"by\"", "/keys/1/blend", "unknown key"},
                     Bad{"grip", "\"grip\": true", "\"grip\": 1", "/keys/0/grip", "true or false"},
                     Bad{"twice", "\"grip\": true", "\"grip\": true, \"grip\": false", "grip", "twice"},
                     Bad{"empty", R"({"hand": "right", "keys": [)", R"({"hand": "right", "keys": [], "why": [)", "/why",

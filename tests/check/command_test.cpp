@@ -117,7 +117,9 @@ TEST_F(CheckCommand, PositionsAreLookedAt) {
   const auto write = [&](const std::vector<float>& position) {
     RunRecord c = contact_run("sweep");
     c.header.vertices = 1;
-    fs::remove_all(run());
+    RunRecord planned = c;
+    planned.outcome.status = "missing";
+    write_study({planned});
     RunWriter writer(run(), c.header);
     if (!position.empty()) writer.write_accuracy({{0, 0.5}, position, {}});
     writer.finish(c.outcome, c.summary);

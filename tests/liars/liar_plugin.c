@@ -56,7 +56,10 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
   return NULL;
 }
 
-static void reset(void* self) { ((Liar*)self)->frame = 0; }
+static int32_t restart(void* self, const ClothbenchRestart* at) {
+  ((Liar*)self)->frame = 0;
+  return at->index < 0;
+}
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
   ((Liar*)self)->frame = (uint32_t)frame->index + 1;
@@ -94,7 +97,7 @@ const ClothbenchPlugin* clothbench_plugin(void) {
       .settings = settings,
       .create = create,
       .destroy = destroy,
-      .reset = reset,
+      .restart = restart,
       .step = step,
       .read_state = read_state,
       .stages = stages,

@@ -8,10 +8,11 @@ using Profiles = Gpu;
 
 TEST(Kernels, AccessesAreReadFromTheCode) {
   using vulkan::Access;
-  EXPECT_EQ(
-      vulkan::accesses_of(shader("update_positions")),
-      (std::map<std::uint32_t, Access>{
-          {BIND_POSITIONS, Access::ReadWrite}, {BIND_VELOCITIES, Access::Write}, {BIND_PREDICTED, Access::Read}}));
+  EXPECT_EQ(vulkan::accesses_of(shader("update_positions")),
+            (std::map<std::uint32_t, Access>{{BIND_POSITIONS, Access::ReadWrite},
+                                             {BIND_VELOCITIES, Access::Write},
+                                             {BIND_PREDICTED, Access::Read},
+                                             {BIND_SLIP, Access::ReadWrite}}));
   const vulkan::SpirV code = shader("update_positions");
   // The header has five words, and the first instruction (OpCapability) has two.
   EXPECT_THROW(vulkan::accesses_of({code.words, 6 * sizeof(std::uint32_t)}), Error) << "torn";

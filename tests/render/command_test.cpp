@@ -85,7 +85,7 @@ TEST_F(RenderCommand, TimesFramesWithTheirPictures) {
       command("study table3 --quick --solver xpbd --trials 1 --with-rendering --eye 32x32 --out " + runs_with);
   ASSERT_EQ(a.code, 0) << a.text;
   ASSERT_EQ(command("report " + runs_with + " -o " + runs_with + "-report").code, 0);
-  EXPECT_NE(clothbench::read_text(runs_with + "-report/report.md").find("with rendering, stereo"), std::string::npos);
+  EXPECT_NE(clothbench::read_text(runs_with + "-report/report.md").find("wall, with rendering"), std::string::npos);
   EXPECT_EQ(command("study table3 --quick --eye 32x32").code, 2) << "an eye without rendering";
   EXPECT_EQ(command("study table3 --quick --with-rendering --eye big --out " + runs_with + "2").code, 2);
 }

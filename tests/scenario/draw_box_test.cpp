@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kKinds = 2;
+constexpr std::uint64_t kClaims = 2;
 
 ContactKind kind(const json& settings, const json& own = {{"colliders.0.margin_m", {0.001, 0.02}}}) {
   const json base = parse_json(read_text(find_scenario("paper/capsule-sweep")), "capsule-sweep");
@@ -25,7 +25,7 @@ ContactKind kind(const json& settings, const json& own = {{"colliders.0.margin_m
           own,
           "mine.json: /scenes/0/draw",
           {{"settings", {{"paper", settings}}}, {"ranges", {{"material.damping_per_s", {0, 2}}}}},
-          kKinds};
+          kClaims};
 }
 
 const json kSettings = {{"iterations", {1, 100}}, {"stiffness", {0.1, 1}}, {"collisions", {"after", "inside"}}};
@@ -35,11 +35,11 @@ TEST(DrawBox, AllClaimsOfARoundShareTheSettings) {
   ContactKind other = kind(kSettings, json::object());
   other.name = "other";
   for (std::uint64_t round = 1; round < 20; ++round) {
-    const json a = drawer.draw(kind(kSettings), "mine", kKinds * round),
-               b = drawer.draw(other, "mine", kKinds * round + 1);
+    const json a = drawer.draw(kind(kSettings), "mine", kClaims * round),
+               b = drawer.draw(other, "mine", kClaims * round + 1);
     EXPECT_EQ(a["drawn"]["settings"], b["drawn"]["settings"]);
     EXPECT_EQ(a["material"]["damping_per_s"], b["material"]["damping_per_s"]);
-    EXPECT_NE(a["drawn"]["settings"], drawer.draw(other, "mine", kKinds * (round + 20))["drawn"]["settings"]);
+    EXPECT_NE(a["drawn"]["settings"], drawer.draw(other, "mine", kClaims * (round + 20))["drawn"]["settings"]);
   }
 }
 
@@ -49,7 +49,7 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
   std::map<std::string, std::array<int, kParts>> counts;
   int corners = 0;
   for (std::uint64_t round = 0; round < kRounds; ++round) {
-    const json scene = drawer.draw(kind(kSettings), "mine", kKinds * round);
+    const json scene = drawer.draw(kind(kSettings), "mine", kClaims * round);
     const json& settings = scene["drawn"]["settings"]["paper"];
     ASSERT_TRUE(settings["iterations"].is_number_integer());
     const double iterations = settings["iterations"], stiffness = settings["stiffness"];
@@ -65,9 +65,10 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
     part("damping", scene["material"]["damping_per_s"].get<double>() / 2);
     part("margin", std::log(scene["colliders"][0]["margin_m"].get<double>() / 0.001) / std::log(20));
   }
-  for (const auto& [name, in] : counts)
-    for (const int n : in)
-      if (name != "words") EXPECT_NEAR(n, kRounds / kParts, kRounds / 12) << name;
+  for (const auto& [name, in] : counts) {
+    if (name == "words") continue;
+    for (const int n : in) EXPECT_NEAR(n, kRounds / kParts, kRounds / 12) << name;
+  }
   EXPECT_NEAR(counts["words"][1], kRounds / 2, kRounds / 12);
   EXPECT_NEAR(corners, 0.1 * kRounds, 0.06 * kRounds);
 }
@@ -102,7 +103,7 @@ TEST(PaperScenes, ListTheSettingsThatTheArticleLeavesOpen) {
   for (const auto& file : std::filesystem::directory_iterator(scenario_root() / "paper")) {
     const Scene s = load_scene(file.path().string());
     std::set<std::string> listed;
-    for (const json& entry : json::parse(s.json)["assumed"])
+    for (const json& entry : parse_json(read_text(file.path()), file.path().string())["assumed"])
       if (const auto text = entry.get<std::string>(); text.starts_with("solver:paper."))
         listed.insert(text.substr(std::string("solver:paper.").size()));
     EXPECT_EQ(listed, open_settings(s)) << file.path();

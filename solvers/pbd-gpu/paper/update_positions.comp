@@ -4,7 +4,9 @@
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) writeonly buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Bdf2 { vec4 q[]; };
+layout(std430, binding = BIND_SLIP) buffer Slip { vec4 slip[]; };
 layout(push_constant) uniform Push { PaperConstants p; };
+PAPER_CONSTANTS(SPECIALIZE)
 
 void main() {
   uint i = item();
