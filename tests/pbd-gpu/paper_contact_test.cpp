@@ -91,7 +91,8 @@ Scene flying(int columns, int rows) {
 class PaperContacts : public Gpu {
  protected:
   /// One frame; returns how many contacts there were.
-  long expect_as_in_double(const Scene& s, const std::string& what, const nlohmann::json& settings = nlohmann::json::object()) {
+  long expect_as_in_double(const Scene& s, const std::string& what,
+                           const nlohmann::json& settings = nlohmann::json::object()) {
     const auto solver = make("paper", settings);
     solver->load(s);
     const ClothState state = after(*solver, s, 1);

@@ -103,7 +103,8 @@ TEST(PaperScenes, ListTheSettingsThatTheArticleLeavesOpen) {
   for (const auto& file : std::filesystem::directory_iterator(scenario_root() / "paper")) {
     const Scene s = load_scene(file.path().string());
     std::set<std::string> listed;
-    for (const json& entry : parse_json(read_text(file.path()), file.path().string())["assumed"])
+    const json given = parse_json(read_text(file.path()), file.path().string());
+    for (const json& entry : given["assumed"])
       if (const auto text = entry.get<std::string>(); text.starts_with("solver:paper."))
         listed.insert(text.substr(std::string("solver:paper.").size()));
     EXPECT_EQ(listed, open_settings(s)) << file.path();

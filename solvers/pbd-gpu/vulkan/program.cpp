@@ -33,8 +33,7 @@ Program::~Program() {
   for (const Copy& c : copies_) {
     vkDestroyQueryPool(device_->handle(), c.queries, nullptr);
     vkDestroyFence(device_->handle(), c.fence, nullptr);
-    if (c.commands != VK_NULL_HANDLE)
-      vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &c.commands);
+    if (c.commands != VK_NULL_HANDLE) vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &c.commands);
   }
 }
 
