@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "base/interval.hpp"
 #include "metrics/registry.hpp"
