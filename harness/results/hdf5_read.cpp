@@ -222,7 +222,8 @@ StoredGroup read_group(hid_t file, const std::string& path) {
   for (const std::string& name : attribute_names(group)) g.attributes[name] = attribute_value(group, name);
   for (const std::string& name : link_names(group)) {
     const Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose, "opening " + name);
-    if (H5Iget_type(object) != H5I_DATASET || H5DSis_scale(object) > 0) continue;
+    // Only scales have a CLASS. H5DSis_scale frees memory twice where that attribute is damaged (HDF5 1.10.8).
+    if (H5Iget_type(object) != H5I_DATASET || H5Aexists(object, "CLASS") > 0) continue;
     const Id type(H5Dget_type(object), H5Tclose, "H5Dget_type");
     StoredArray& a = g.arrays.emplace_back();
     a.name = name;
