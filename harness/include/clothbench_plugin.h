@@ -47,13 +47,12 @@ enum {
   CLOTHBENCH_FRICTION = 1 << 12,
   CLOTHBENCH_DOUBLE_SIDED = 1 << 13,     /* contact from both sides without a second layer */
   CLOTHBENCH_DUPLICATED_LAYER = 1 << 14, /* a second, oppositely wound layer tied to the first; the solver makes it: the
-                                            scene has the vertices of one layer alone, and so has `read_state` */
+                                            scene and `read_state` have the vertices of one layer */
   CLOTHBENCH_SELF_COLLISION = 1 << 15,
-  CLOTHBENCH_RENDER = 1 << 16,
-  CLOTHBENCH_UNEVEN_GRID = 1 << 17, /* cells of different widths */
-  CLOTHBENCH_REGIONS = 1 << 18,     /* a membrane stiffness that varies between columns or groups */
-  CLOTHBENCH_SPIN = 1 << 19,        /* an initial spin: the velocity differs between vertices */
-  CLOTHBENCH_CLOTH_MESH = 1 << 20 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
+  CLOTHBENCH_UNEVEN_GRID = 1 << 16, /* cells of different widths */
+  CLOTHBENCH_REGIONS = 1 << 17,     /* a membrane stiffness that varies between columns or groups */
+  CLOTHBENCH_SPIN = 1 << 18,        /* an initial spin: the velocity differs between vertices */
+  CLOTHBENCH_CLOTH_MESH = 1 << 19 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
 /* How a step ended. Any other than OK ends the run and becomes its status in the results. */

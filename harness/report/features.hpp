@@ -12,7 +12,7 @@ namespace clothbench {
 /// Names of solvers, each with its features as describe_features() states them; null if the build lacks the solver.
 using DeclaredFeatures = std::vector<std::pair<std::string, nlohmann::json>>;
 
-/// Of every solver among the runs, as their files store them; in the order of first appearance.
+/// The features that every solver among the runs declares in its files, in the order of first appearance.
 DeclaredFeatures declared_features(const std::vector<RunRecord>& runs);
 
 /// Table 4: rows are features, columns solvers. Cells: "yes", "no", "yes (only with duplicated layer)", "ignored" or

@@ -15,7 +15,7 @@ Collider floor_below(double height_m) {
 
 TEST_P(Bullet, SaysWhatItCannotDo) {
   const SolverInfo& info = entry_of(GetParam()).info;
-  for (Feature f : {Feature::DuplicatedLayer, Feature::SelfCollision, Feature::Render})
+  for (Feature f : {Feature::DuplicatedLayer, Feature::SelfCollision})
     EXPECT_EQ(unsupported(info, {Feature::Stretch, f}), FeatureSet{f});
   EXPECT_TRUE(
       unsupported(info, kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::MovingPins})

@@ -27,7 +27,6 @@ FEATURE(DuplicatedLayer, duplicated_layer, DUPLICATED_LAYER, Cloth,
         scene.cloth.sides == Sides::DoubleDuplicated)
 FEATURE(SelfCollision, self_collision, SELF_COLLISION, Cloth, "contact of the cloth with itself",
         scene.cloth.self_collision.thickness_m > 0)
-FEATURE(Render, render, RENDER, Cloth, "reserved", false)
 FEATURE(UnevenGrid, uneven_grid, UNEVEN_GRID, Data, "cells of different widths (cloth.column_factors)",
         !scene.cloth.column_factors.empty())
 FEATURE(Regions, regions, REGIONS, Data,

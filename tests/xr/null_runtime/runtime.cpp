@@ -7,7 +7,7 @@
 #include <sstream>
 
 namespace null_xr {
-/// What a loader and a runtime tell each other (chapter "Loader Design", runtime negotiation).
+/// The data that a loader and a runtime exchange (chapter "Loader Design", runtime negotiation).
 struct NegotiateLoaderInfo {
   int struct_type = 1;
   std::uint32_t struct_version = 1;
