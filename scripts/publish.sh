@@ -19,6 +19,7 @@ gpu       hang              study hang --trials 3
 gpu       work-precision    study work-precision --trials 1
 gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic
 gpu       contact           study contact --seed 1 --count 200 --solver xpbd --jobs JOBS
+gpu       reproduction      study reproduction --jobs JOBS
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS

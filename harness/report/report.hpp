@@ -60,7 +60,8 @@ std::string trials_csv(const RunTable&);
 /// states the reason. Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
 
-/// Head, failures and two tables on the terminal, and where the rest is. Of a few runs, the first has a row for each.
+/// Head, failures and two tables on the terminal, and where the rest is. With few runs, the first table has a row for
+/// each.
 void print_console_report(const std::vector<std::filesystem::path>& results);
 
 }  // namespace clothbench

@@ -32,7 +32,7 @@ bool touches(const json& scenario) { return !at(scenario, "/colliders").empty() 
 Part part_of(const RunRecord& c, const json& scenario) {
   if (c.header.scenario_json.empty() && c.outcome.status == "missing") return Part::None;
   if (scenario.contains("stability")) return Part::Stability;
-  if (scenario.contains("drawn")) return Part::Generated;
+  if (scenario.contains("drawn")) return scenario["drawn"].contains("settings") ? Part::Claims : Part::Generated;
   if (!text_at(scenario, "/truth/case").empty()) return Part::Truth;
   return touches(scenario) ? Part::Contact : Part::Rates;
 }

@@ -74,7 +74,7 @@ struct Resolution {
 };
 
 /// The section of the report that a run belongs to. None: a planned run whose scene is not known.
-enum class Part { Rates, Contact, Generated, Truth, Stability, None };
+enum class Part { Rates, Contact, Generated, Claims, Truth, Stability, None };
 
 /// Properties of a scene with an exact solution that all of its runs share.
 struct TruthFacts {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/interval.hpp"
 #include "report/report.hpp"
 
 namespace clothbench {
@@ -177,6 +178,12 @@ const std::vector<View>& views() {
     return out;
   }();
   return all;
+}
+
+std::string share_text(std::size_t passed, std::size_t all) {
+  if (all == 0) return "";
+  const Interval i = wilson_95(passed, all);
+  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", passed, all, 100 * i.low, 100 * i.high);
 }
 
 const std::vector<Section>& sections() {

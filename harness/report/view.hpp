@@ -81,6 +81,9 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
+/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's 95 % interval; empty without runs.
+std::string share_text(std::size_t passed, std::size_t all);
+
 /// Titles of sections by id, in their order: "rates", "contact", …
 struct Section {
   const char *id, *title;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "base/interval.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
 
@@ -45,9 +44,7 @@ std::string pass_rate(const Group& g) {
   std::vector<const RunRecord*> runs;
   for (const Row* r : g) runs.push_back(r->run);
   const VerdictCounts n = count_verdicts(runs);
-  if (n.runs == 0) return "";
-  const Interval i = wilson_95(n.passed, n.runs);
-  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", n.passed, n.runs, 100 * i.low, 100 * i.high);
+  return share_text(n.passed, n.runs);
 }
 
 View verdicts() {
@@ -113,7 +110,7 @@ View pass_rates() {
       "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
       "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: distance "
       "at which the solver keeps the cloth from colliders.",
-      [](const Row& r) { return r.part == Part::Generated && !r.drawn().contains("settings"); }};
+      [](const Row& r) { return r.part == Part::Generated; }};
   v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Texts{label_of(*r.run)} : Texts(); }, true},
             {"kind", [](const Row& r) {
                return Texts{with_assets(r.drawn().value("kind", ""), r), with_assets(kAllRuns, r)};

@@ -106,7 +106,8 @@ View memory() {
          "of the whole trial where it is shorter. "
          "Memory: device-local buffers. CPU solvers, whose bytes are not known, are left out.",
          [](const Row& r) {
-           return r.part != Part::Generated && r.part != Part::Stability && std::isfinite(r.value("device_memory_B"));
+           return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability &&
+                  std::isfinite(r.value("device_memory_B"));
          }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {column("kB per frame, read / written",

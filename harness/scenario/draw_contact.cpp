@@ -174,6 +174,8 @@ json at_point(const json& range, double u, bool may_be_whole, const std::string&
 
 /// Draws first what all kinds of the study share, so that the kinds of one round have the same values of it.
 void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
+  if (!kind.box.contains("settings") || kind.box["settings"].empty())
+    throw Error(kind.at + "/how: \"box\" needs \"box\" of the study, with \"settings\" of a solver");
   BoxPoint point(seed / kind.kinds);
   for (const auto& [solver, settings] : kind.box["settings"].items())
     for (const auto& [name, range] : settings.items()) {
@@ -181,8 +183,8 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
       draw.note(solver + "." + name, value);
       scene["drawn"]["settings"][solver][name] = value;
     }
-  for (const json* ranges : {&kind.box["ranges"], &kind.ranges})
-    for (const auto& [key, range] : ranges->items()) {
+  for (const json& ranges : {kind.box.value("ranges", json::object()), kind.ranges})
+    for (const auto& [key, range] : ranges.items()) {
       const json value = at_point(range, point.next(), false, draw.at() + "/" + key);
       draw.note(key, value);
       // A square of this side.

@@ -206,6 +206,39 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
   EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
 }
 
+/// A claim at a point of the box: `held` 1, 0, or NaN, and the dispatches of a frame.
+RunRecord claim(const std::string& kind, int iterations, double held, double dispatches) {
+  RunRecord c = generated("paper", kind, iterations, 0, "pass");
+  nlohmann::json scenario = nlohmann::json::parse(c.header.scenario_json);
+  scenario["drawn"]["settings"] = {{"paper", {{"iterations", iterations}, {"substeps", 2}}}};
+  c.header.scenario_json = scenario.dump();
+  c.header.scene += "-" + kind;
+  c.summary["expect.contact_length_max_m"] = held;
+  c.summary["expect.motion"] = 0;  // no part of a claim
+  c.summary["dispatches"] = dispatches;
+  return c;
+}
+
+TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
+  const std::vector<RunRecord> runs = {claim("c8", 2, 0, 9),    claim("c10", 2, 1, 7),   claim("c8", 20, 1, 90),
+                                       claim("c10", 20, 1, 70), claim("c8", 40, 1, 180), claim("c10", 40, NAN, 150),
+                                       claim("c8", 100, 1, 400)};  // its other claim was not run
+  const Table t = table_of(runs, "Claims of the article, over what it leaves open");
+  const auto cell = [&](const std::string& kind, const std::string& column) { return entry(t, "paper", kind, column); };
+  EXPECT_EQ(cell("c8", "holds").substr(0, 3), "3/4");
+  EXPECT_EQ(cell("c10", "holds").substr(0, 3), "2/3") << "a bound that was not measured does not hold";
+  EXPECT_EQ(cell("all", "holds").substr(0, 3), "1/3") << "of the points with both claims";
+  EXPECT_EQ(cell("all", "reading"), "reproducible");
+  EXPECT_EQ(cell("all", "fewest dispatches"), "90") << "of the most expensive claim";
+  EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
+  EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
+  RunRecord unbounded = claim("c8", 2, 1, 9);
+  unbounded.summary.erase("expect.contact_length_max_m");
+  EXPECT_EQ(entry(table_of({unbounded}, "Claims of the article, over what it leaves open"), "paper", "c8", "reading"),
+            "not reproduced in the box");
+  EXPECT_TRUE(tables_titled(runs, kRates).empty());
+}
+
 TEST(Stability, RunsOfEachCaseByGrade) {
   const auto judged = [](const std::string& solver, const std::string& kase, double grade, const std::string& klass) {
     RunRecord c = fake_run(solver, 8, "single", 1e-3);

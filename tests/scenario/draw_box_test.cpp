@@ -87,6 +87,14 @@ TEST(DrawBox, RefusesRangesThatAreNone) {
   }
 }
 
+TEST(DrawBox, RefusesAStudyWithoutABox) {
+  ContactKind none = kind(kSettings);
+  for (const json& box : {json(), json::object(), json{{"settings", json::object()}}}) {
+    none.box = box;
+    EXPECT_THROW(ContactDrawer(Assets::MayBeProcedural).draw(none, "mine", 1), Error) << box;
+  }
+}
+
 /// Settings of `paper` that the article leaves open and that a scene uses.
 std::set<std::string> open_settings(const Scene& s) {
   std::set<std::string> out = {"iterations", "substeps", "stiffness", "relaxation"};

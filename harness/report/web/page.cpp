@@ -25,7 +25,7 @@ constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothb
 /// Summary values that a figure shows.
 constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
                                          "bandwidth_write_peak_B_per_s", "stretch_max_last_second"};
-constexpr const char* kParts[] = {"rates", "contact", "generated", "accuracy", "stability", ""};
+constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
 /// Vertices along one side; for a grid that is no square, the side of the square with as many.
 double width_of(const Resolution& r) { return std::sqrt(r.size()); }
@@ -49,7 +49,7 @@ void add_times(const Row& r, json& out) {
     if (!times->sorted.empty()) out[name] = times_json(*times);
 }
 
-/// What figures show of a run or published value. Missing = null.
+/// A run or published value as figures show it. Missing = null.
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
               {"scene", r.scene},
