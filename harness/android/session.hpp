@@ -7,7 +7,7 @@
 
 namespace clothbench::android {
 
-/// What a session needs from its activity; called from the session's thread.
+/// The activity as a session needs it; called from the session's thread.
 struct Activity {
   std::filesystem::path files;  ///< folder of the results
   std::string arguments;        ///< command line; empty: study table3

@@ -38,7 +38,7 @@ void tell_parent(const std::string& line) {
   static_cast<void>(send(STDIN_FILENO, (line + "\n").data(), line.size() + 1, MSG_NOSIGNAL));
 }
 
-/// What the function answers or throws, and its progress on the way.
+/// The function's answer or error; its progress on the way.
 json answer_of(const WorkerFunctions& functions, const json& request) {
   const auto progress = [](const std::string& what, std::size_t done, std::size_t total) {
     tell_parent(fmt::format("{} {} {}", done, total, what));

@@ -53,7 +53,7 @@ struct Study {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
-    /// Drawn with the scene, by solver; they replace those of the study.
+    /// By solver, drawn with the scene; they replace the study's settings.
     nlohmann::json drawn_settings = nlohmann::json::object();
   };
   std::string name, why, protocol;

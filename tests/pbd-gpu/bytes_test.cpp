@@ -13,7 +13,7 @@ struct Stage {
   double read_B, written_B;
 };
 
-/// Of each stage in the second frame.
+/// Bytes of each stage in the second frame.
 std::map<std::string, Stage> counted(GpuSolver& solver, const Scene& scene) {
   after(solver, scene, 2);
   std::map<std::string, Stage> all;

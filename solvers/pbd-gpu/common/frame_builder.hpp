@@ -93,8 +93,8 @@ class FrameBuilder {
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  /// Of all stages (four words each; vulkan/count_bytes.hpp), on the device and as the host reads them, and zeros; null
-  /// unless bytes are counted.
+  /// Counters of all stages (four words each; vulkan/count_bytes.hpp) on the device, as the host reads them, and zeros;
+  /// null unless bytes are counted.
   const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
   std::vector<double> copied_B_;  ///< by stage, in a frame
   std::vector<std::unique_ptr<FrameKernel>> kernels_;

@@ -105,7 +105,7 @@ class Paper final : public GpuSolver {
     contact_.emplace_back(kernel, PaperContactConstants{0, 0, shapes.count, 0, 0, 0, 0});
   }
 
-  /// `depth_m`: greatest distance behind a triangle at which a particle still counts as touching it.
+  /// `depth_m`: maximum distance behind a triangle at which a particle still counts as touching it.
   void add_meshes(const char* stage_name, const MeshBuffers& meshes, Feature kind, float depth_m) {
     if (meshes.ranges.empty()) return;
     const bool friction =

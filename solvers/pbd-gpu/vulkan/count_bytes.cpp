@@ -57,7 +57,7 @@ class Counting {
     to.insert(to.end(), w, w + (*w >> 16));
   }
 
-  /// What is known of ids: sizes of types, pointers and what they lead to.
+  /// Notes sizes of types, pointers, and the buffers that they lead to.
   void note(spv::Op op, const std::uint32_t* w) {
     if (op == spv::OpEntryPoint) entry_ = w[2];
     if (op == spv::OpDecorate && w[2] == spv::DecorationBinding) binding_[w[1]] = w[3];

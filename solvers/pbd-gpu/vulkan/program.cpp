@@ -115,7 +115,7 @@ void Program::record_steps(Copy& copy) {
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
-  // Orders reads and writes of earlier submissions before those of this one. Later submissions see host writes.
+  // Reads and writes of earlier submissions come before any of this one. Later submissions see host writes.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(copy.queries, 0);
   Unordered since;

@@ -75,7 +75,7 @@ class Program {
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   void barrier_if_needed(const Touched& next, Unordered& since);
-  /// What each submission in flight needs of its own.
+  /// Objects that each submission in flight has for itself.
   struct Copy {
     VkCommandBuffer commands = VK_NULL_HANDLE;  ///< reused by later recordings
     VkFence fence = VK_NULL_HANDLE;

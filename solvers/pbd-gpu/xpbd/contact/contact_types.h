@@ -16,7 +16,7 @@ struct ShapePoint {
   vec4 start, end;
 };
 
-/// Of a convex shape, around its displacement through the frame, its radius and its margin; or of a group of shapes.
+/// Box around a convex shape or a group of shapes: its displacement through the frame, its radius and its margin.
 struct ShapeAabb {
   vec4 low;  // w: maximum displacement of any of their points in the frame
   vec4 high;

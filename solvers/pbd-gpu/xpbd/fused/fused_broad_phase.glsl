@@ -24,8 +24,8 @@ void bound_and_grow(float max_shape_displacement) {
 shared uint listed, first_listed;  // of the workgroup
 const uint kKept = 16u;
 /// Lists the pairs of all primitives at a fraction of the motion bounds, a cluster of lanes per primitive. Elements
-/// have their places in no fixed order; the order within a primitive's is that of convex shapes. What the list has no
-/// place for is counted only.
+/// have their places in no fixed order; a primitive's are in the order of convex shapes. Pairs beyond the
+/// capacity are only counted.
 void fill_at(float fraction, uint level) {
   for (uint base = (global_thread - thread) / LANES_PER_PRIMITIVE; base < TRIANGLES + VERTICES;
        base += grid_stride / LANES_PER_PRIMITIVE) {

@@ -1,6 +1,6 @@
-// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, whose displacement of
-// a substep they foresee: it changes the lengths that diagonals are solved for, by what a low-pass filter of second
-// order makes of those of the last substeps. Links creep, without which that would feed oscillations.
+// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows and foresee their
+// displacement: a low-pass filter of second order over the displacements of the last substeps shifts the lengths that
+// diagonals are solved for. Links creep, because the shift would feed oscillations otherwise.
 layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep

@@ -37,7 +37,7 @@ void from_part_turn(inout vec3 d, out vec3 d_below) {
 #define RIGHT turn_right
 #include "xpbd/lines/tridiagonal.glsl"
 
-/// Solves the links as they are for their tension alone, then moves the vertices by it. Links then carry `pull`.
+/// Solves the links as they are only for their tension, then moves the vertices by it. Links then carry `pull`.
 void turn_by_tension(float smallest) {
   [[unroll]] for (uint k = 0u; k < K; ++k) pull[k] = 0.0;
   link_equations(smallest);

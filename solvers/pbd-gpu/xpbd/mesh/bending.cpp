@@ -98,7 +98,7 @@ class Patch {
   }
 
   /// The derivative across the edge at its middle, to the left and per edge length, of the quadratic that fits best.
-  /// Vertices of the edge's own triangles weigh most. Of quadratics that fit alike it is the smallest one.
+  /// Vertices of the edge's own triangles weigh most. If several quadratics fit alike, it takes the smallest.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;

@@ -74,7 +74,7 @@ inline constexpr Substeps kKinematicContactChains = {{{5, 8, 20}, {6, 4, 1.5}}, 
     "chains of a mesh leave more error than grid lines", "strain of garments under capsules"};
 inline constexpr Substeps kReleased = {{{4, 5, 20}, {8, 8, 6}}, "substeps",
     "what a hand has strained relaxes without contact",
-    "strain at the end: with the substeps of the cloth alone 6 of 68 drawn runs fail"};
+    "strain at the end: with the substeps of free cloth 6 of 68 random runs fail"};
 inline constexpr Substeps kResting = {{{8, 16, 32}, {4, 2, 1}}, "substeps",
     "much of the cloth is struck at once", "strain at impact and friction on edges"};
 inline constexpr Substeps kRestingStrip = {{{8, 14, 28}, {12, 6, 3}}, "substeps",

@@ -1,7 +1,7 @@
 #version 450
 // Start of a frame, one workgroup: the maximum fraction of the motion bounds whose pairs fit the list, and
-// where each primitive's pairs begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: `ranges` are
-// those of the list of self-contact pairs.
+// where each primitive's pairs begin. In: a primitive's pairs at each share; out: first, pairs. OF_SELF: the same
+// for the list of self-contact pairs.
 #include "xpbd/contact/contact_buffers.glsl"
 const uint kThreads = 256u;
 const uint kBlock = 32u;

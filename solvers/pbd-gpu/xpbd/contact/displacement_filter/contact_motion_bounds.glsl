@@ -1,7 +1,7 @@
-// Conservative bound of a vertex' motion in the frame: boxes are inflated by it, and vertices are clamped to it.
+// Conservative bound of a vertex's motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
-// In a frame a vertex may go several times as far as at its speed: a corner that whips, what hands released, or what
-// an impact stops while its motion bound drifts on. A vertex that would go farther is held back, and the momentum of
+// A vertex may go several times as far in a frame as at its speed: a corner that whips, cloth that hands released, or
+// cloth that an impact stops while its motion bound drifts on. A vertex that would go farther is held back, and the momentum of
 // the cloth changes with nothing near.
 #define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
@@ -13,8 +13,8 @@ float max_displacement_of_shapes() {
   return max_shape_displacement;
 }
 
-/// Whether the cloth goes no farther in a frame than about a cell. What is faster takes the substeps of contact in each
-/// frame that is active a collider: an impact strains it, and that grows with fewer.
+/// Whether the cloth goes no farther in a frame than about a cell. Faster cloth takes the substeps of contact in each
+/// frame near a collider, because an impact strains it more with fewer.
 bool is_slow() { return uintBitsToFloat(frame_state.max_displacement) <= 2.0 * p.bound_m; }
 
 /// Motion bound of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame,
