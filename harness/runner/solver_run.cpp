@@ -322,7 +322,8 @@ void SolverRun::profile_stages(TimedTrial& trial, int frames) {
   }
 }
 
-/// Bytes come from a twin whose kernels count them, on the frames of the first trial; the other trials have the same bytes.
+/// Bytes come from a twin whose kernels count them, on the frames of the first trial; the other trials have the same
+/// bytes.
 void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
   if (counted_.frames() != trial.frames()) {
     const std::unique_ptr<ClothSolver> twin = twin_with("count_bytes", spec_, device_);

@@ -105,7 +105,7 @@ const ClothbenchPlugin* another_name(void) {
 const ClothbenchPlugin* clothbench_plugin(void) {
 #endif
   static ClothbenchPlugin plugin = {
-      CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 20) - 1, 1, 0, NULL,
+      CLOTHBENCH_PLUGIN_HEADER, "faulty", "wrong on purpose", "1", "float64", 0, (1u << 19) - 1, 1, 0, NULL,
       create, free, restart, step, read_state, stages, free_fall, NULL, contact_margin};
 #ifdef FAULT_VERSION
   plugin.version = 99;
