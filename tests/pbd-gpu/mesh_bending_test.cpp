@@ -5,7 +5,7 @@
 #include <random>
 
 #include "mesh_scene.hpp"
-#include "xpbd/mesh/bending.hpp"
+#include "xpbd/mesh/matrices.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

@@ -10,7 +10,7 @@
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 #include "scenario/drawn_mesh.hpp"
-#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {

@@ -9,7 +9,7 @@
 #include "runner/solver_run.hpp"
 #include "xpbd/contact/contact.hpp"
 #include "xpbd/lines/line_layout.hpp"
-#include "xpbd/time/substep_count.hpp"
+#include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

@@ -46,8 +46,6 @@ class ColliderBuffers {
   ShapeBuffer planes, spheres, boxes, capsules;
   MeshBuffers static_meshes, kinematic_meshes;
 
-  Vec3 origin_m() const { return origin_m_; }
-
   bool written_each_frame() const { return stage_upload_ >= 0; }
 
   /// Records upload and skinning; must come before any kernel that reads dynamic colliders.

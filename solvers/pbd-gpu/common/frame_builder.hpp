@@ -93,7 +93,7 @@ class FrameBuilder {
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  /// Counters of all stages (four words each; vulkan/count_bytes.hpp) on the device, as the host reads them, and zeros;
+  /// Counters of all stages (four words each; vulkan/count_bytes.cpp) on the device, as the host reads them, and zeros;
   /// null unless bytes are counted.
   const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
   std::vector<double> copied_B_;  ///< by stage, in a frame

@@ -111,17 +111,13 @@ struct ContactDiagnostics {
 
 /// Push constants of the kernels of contact.
 struct ContactConstants {
-  vec4 gravity_h;  // g h [m/s]
-  uint vertices, triangles;
-  uint capacity;                 // pairs that the list has place for
-  uint shapes, groups;           // groups of SHAPES_PER_GROUP neighbouring convex shapes have a box each
+  vec4 gravity_h;                // g h [m/s]
   uint response_round;           // of responses: 0 before the lines, with the predicted positions; 1 and on after them
   uint first_substep, substeps;  // this substep; substeps of the frame
   float substep_part;            // of the frame
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)
   float frame_s;
-  float bound_m;   // of a vertex at rest
-  float margin_m;  // maximum margin of any collider
+  float bound_m;  // of a vertex at rest
 };
 #define SHAPES_PER_GROUP 16u

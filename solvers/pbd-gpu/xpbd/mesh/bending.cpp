@@ -1,4 +1,4 @@
-#include "xpbd/mesh/bending.hpp"
+#include "xpbd/mesh/matrices.hpp"
 
 #include <algorithm>
 #include <array>

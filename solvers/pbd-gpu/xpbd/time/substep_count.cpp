@@ -1,4 +1,4 @@
-#include "xpbd/time/substep_count.hpp"
+#include "xpbd/time/integrator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "clothbench/solver.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
-#include "xpbd/time/integrator.hpp"
 #include "xpbd/time/rules.hpp"
 
 namespace clothbench::pbd_gpu {
