@@ -49,8 +49,8 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Chain kernel of `xpbd`. TETHERS: entries per vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
-// Contact of `xpbd`, its passes and the fused frame. PLANES: half-spaces. MAX_POINTS: of a convex shape. HAS_KINEMATIC: 1
-// if any convex shape moves. CAPACITY: pairs that the list has place for. GROUPS: groups of SHAPES_PER_GROUP
+// Contact of `xpbd`, its passes and the fused frame. PLANES: half-spaces. MAX_POINTS: of a convex shape. HAS_KINEMATIC:
+// 1 if any convex shape moves. CAPACITY: pairs that the list has place for. GROUPS: groups of SHAPES_PER_GROUP
 // neighbouring convex shapes, which have a box each. MARGIN_BITS: the maximum margin, as the bits of a float.
 // LANES_PER_VERTEX: lanes that share a vertex.
 #define CONTACT_CONSTANTS(C) \
@@ -125,8 +125,7 @@ struct PaperContactConstants {
   uint layer;                     // particles of one layer
 };
 
-// Features that a scene needs of the line kernels of `xpbd`: bits of their
-// constant FEATURES.
+// Features that a scene needs of the line kernels of `xpbd`: bits of their constant FEATURES.
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
@@ -138,32 +137,29 @@ struct PaperContactConstants {
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                // g h keep [m/s]; w: tether_spread_m
-  float h;                       // implicit step, h' of TimeStep [s]
-  float damping_fraction;        // of velocity by damping
-  float speed_limit;             // [m/s]
-  float tether_stretch;          // 1 + slack
-  float rest_u, rest_v, rest_d;  // rest lengths of links [m]
-  float alpha_u, alpha_v,
-      alpha_d;           // compliance over h^2 keep [1/kg] of inner links
-  float bend_u, bend_v;  // the same for bending
-  float inverse_mass;    // of an inner vertex [1/kg]
-  float regularisation;  // least ratio of alpha to inverse mass, for chains that need it
+  vec4 gravity_h;                   // g h keep [m/s]; w: tether_spread_m
+  float h;                          // implicit step, h' of TimeStep [s]
+  float damping_fraction;           // of velocity by damping
+  float speed_limit;                // [m/s]
+  float tether_stretch;             // 1 + slack
+  float rest_u, rest_v, rest_d;     // rest lengths of links [m]
+  float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
+  float bend_u, bend_v;             // the same for bending
+  float inverse_mass;               // of an inner vertex [1/kg]
+  float regularisation;             // least ratio of alpha to inverse mass, for chains that need it
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
   float frames_per_s;
-  uint first_pass,
-      passes;          // of this dispatch; each substep has one pass per colour. In fused_frame: BROAD_PHASE_DONE, or 0
-  uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
-  float per_h;         // 1/h
-  float history_weight;  // fraction of the last substep's change that is predicted
-  float frame_s;         // with contact by separating planes, as is bound_m
-  float bound_m;         // of a vertex at rest
+  uint first_pass, passes;  // of this dispatch; a substep has one per colour. In fused_frame: BROAD_PHASE_DONE, or 0
+  uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
+  float per_h;              // 1/h
+  float history_weight;     // fraction of the last substep's change that is predicted
+  float frame_s;            // with contact by separating planes, as is bound_m
+  float bound_m;            // of a vertex at rest
 };
 
-/// A vertex of a chain and its link to the next entry; no link if `rest` is
-/// below 0.
+/// A vertex of a chain and its link to the next entry; no link if `rest` is below 0.
 struct ChainEntry {
   uint vertex;           // CHAIN_NO_VERTEX: padding
   float rest;            // [m]
@@ -215,8 +211,7 @@ struct ChainConstants {
   float speed_limit;       // [m/s]
   float per_h;             // 1/h
   uint first_entry;        // of the colour, if a dispatch solves only one
-  uint rounds;             // of cyclic reduction: 2^rounds is at least the number of links of
-                           // its longest chain
+  uint rounds;             // of cyclic reduction: 2^rounds is at least the links of its longest chain
   uint timeout_polls;      // polls of a barrier over the whole dispatch before it times out
   uint colours;
   uint first_pass, passes;  // of this dispatch; each substep has one pass per colour

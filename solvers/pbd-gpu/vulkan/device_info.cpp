@@ -34,12 +34,9 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(physical, &memory);
 
-  nlohmann::json j = {{"vendor_id", p.vendorID},
-                      {"device_id", p.deviceID},
-                      {"device_type", p.deviceType},
-                      {"driver_name", driver.driverName},
-                      {"driver_info", driver.driverInfo},
-                      {"subgroup_size", subgroup.subgroupSize},
+  nlohmann::json j = {{"vendor_id", p.vendorID},          {"device_id", p.deviceID},
+                      {"device_type", p.deviceType},      {"driver_name", driver.driverName},
+                      {"driver_info", driver.driverInfo}, {"subgroup_size", subgroup.subgroupSize},
                       {"limits", limits(p.limits)}};
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     j["memory_heaps"].push_back({{"bytes", memory.memoryHeaps[i].size}, {"flags", memory.memoryHeaps[i].flags}});

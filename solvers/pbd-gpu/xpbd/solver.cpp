@@ -279,8 +279,9 @@ SolverInfo xpbd_info() {
                     "limit the distance of vertices from pinned ones (long-range attachments), where that is correct"},
                    {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
                    {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
-  info.tuning = {{"contact_groups", "0", "minimum workgroups of a fused frame with contact; 0: 96, or as many as the lines have"},
-                 {"contact_pairs", "0", "pairs that the list has capacity for; 0: by the cloth's primitives"}};
+  info.tuning = {
+      {"contact_groups", "0", "minimum workgroups of a fused frame with contact; 0: 96, or as many as the lines have"},
+      {"contact_pairs", "0", "pairs that the list has capacity for; 0: by the cloth's primitives"}};
   for (const Tuning& t : tunings()) info.tuning.push_back({t.name, t.values.front().dump(), t.doc});
   return info;
 }

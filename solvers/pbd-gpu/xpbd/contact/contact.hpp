@@ -7,11 +7,9 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Every pair of a triangle of the cloth and a
-/// convex shape of a collider that may meet in a substep has a plane that separates both ends of the straight
-/// displacement, and no vertex ends a substep behind a plane of one of its triangles. Works only on positions and
-/// velocities; the constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w
-/// of the positions. Where FusedFrame has the frame in one dispatch in one kernel, only `record_shapes` is called.
+/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Works only on positions and velocities; the
+/// constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w of the positions.
+/// Where FusedFrame has the frame in one kernel, only `record_shapes` is called.
 class XpbdContact {
  public:
   /// Adds buffers, and what kinematic convex shapes need. `particle`: of each vertex, the vertex that it is welded to

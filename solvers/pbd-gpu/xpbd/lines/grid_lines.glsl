@@ -1,7 +1,6 @@
-// XPBD on whole grid lines at once. A chain is a line of one of four colours: 0 rows, 1 columns, 2 and 3 the diagonals,
-// wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are
-// a tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly. LANES
-// threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// XPBD on whole grid lines at once (xpbd/lines/README.md). A chain is a line of one of four colours: 0 rows, 1 columns,
+// 2 and 3 the diagonals, wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap.
+// LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 
@@ -39,8 +38,8 @@ bool goes_on(uint i) {
 /// Lines on the border carry half the width, so they are twice as compliant.
 float border() { return colour < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
 
-// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By shuffles
-// within a subgroup, else through shared memory.
+// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By
+// shuffles within a subgroup, else through shared memory.
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
 const uint PART = LANES / PARTS;                                               // its threads in one of them
@@ -171,7 +170,7 @@ float link_length[K], pull[K];  // tension over length that links carry already
 float compliance() { return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border(); }
 
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
-/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest` is the minimum of alpha, as a fraction of the inverse mass.
+/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest`: the minimum of alpha, as a fraction of the inverse mass.
 void link_equations(float smallest) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);

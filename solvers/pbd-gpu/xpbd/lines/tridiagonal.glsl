@@ -1,11 +1,10 @@
 // A tridiagonal system along a chain, MATRIX a row: LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT. Every thread
-// holds M consecutive rows of it. Included once for each kind of entry, with the macros SOLVE, MATRIX, VECTOR, M and the
-// four arrays. Threads of a chain beyond its end hold rows of the unit matrix.
+// holds M consecutive rows of it. Included once for each kind of entry, with the macros SOLVE, MATRIX, VECTOR, M and
+// the four arrays. Threads of a chain beyond its end hold rows of the unit matrix.
 //
-// Each thread eliminates its own rows, until one a thread is left that knows its neighbours' (Wang 1981, "A parallel
-// method for tridiagonal equations"); those are solved by parallel cyclic reduction (Hockney & Jesshope 1981), in
-// `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a system of its own, then by
-// shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
+// Each thread eliminates its own rows until one is left (Wang 1981); those are solved by parallel cyclic reduction
+// (Hockney & Jesshope 1981) in `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a
+// system of its own, then by shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
 
 /// The reduction of one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the row before.
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {

@@ -16,11 +16,8 @@ struct BendingMatrix {
   double max_per_s2 = 0;  ///< at least the maximum eigenvalue of (diagonal of masses)^-1 K [1/s^2], nothing held
 };
 
-/// Morley's primitive (1968): second derivatives are constant in a triangle, from positions along its edges and
-/// derivatives across them. A derivative is taken from the weighted least-squares quadratic through the vertices of the
-/// triangles near its edge, so that there are no unknowns but positions. Exact for quadratic deflections on any mesh,
-/// in energy and in force. A triangle whose vertices are all pinned is a clamp: derivatives across its edges are its
-/// own. `reference` solves for the derivatives instead.
+/// By Morley's element (xpbd/mesh/README.md). Exact for quadratic deflections on any mesh, in energy and in force.
+/// `reference` solves for the derivatives across edges instead.
 BendingMatrix bending_matrix(const Scene&);
 
 /// Chebyshev's iteration for (M + h^2 K) x = M y: count of iterations that leaves a thousandth of the way from y to x,

@@ -1,5 +1,3 @@
-#include "xpbd/mesh/matrices.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {

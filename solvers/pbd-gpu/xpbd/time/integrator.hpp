@@ -70,12 +70,9 @@ struct TravelLimit {
   double wanted(double max_displacement_m) const;
 };
 
-/// Chooses the number of substeps of the next frame from the largest vertex displacement of the previous frame, for
-/// cloth in contact with static colliders or itself. An impact needs many substeps; most frames have none.
-/// - Displacement above the travel limit: more substeps, up to the scene's maximum.
-/// - After an impact: at most 25 % fewer substeps per frame.
-/// - At rest (four frames with less than 1/24 cell of displacement): half of the base, later a quarter. More than 1/6
-///   cell restores the base. The two thresholds differ so that the count does not oscillate.
+/// Chooses the number of substeps of the next frame from the largest displacement in the last one, for cloth in contact
+/// with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many substeps; most frames have
+/// none.
 class SubstepController {
  public:
   SubstepController() = default;

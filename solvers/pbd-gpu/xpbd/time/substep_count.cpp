@@ -1,5 +1,3 @@
-#include "xpbd/time/integrator.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include "clothbench/solver.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/time/integrator.hpp"
 #include "xpbd/time/rules.hpp"
 
 namespace clothbench::pbd_gpu {
