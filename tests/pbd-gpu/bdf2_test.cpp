@@ -10,7 +10,6 @@
 #include "scenario/load.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/integrator.hpp"
-#include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -44,13 +43,6 @@ class Bdf2 : public Gpu {
         n += 1.0 / 3;
       }
     return std::sqrt(sum / n) / std::max(s.cloth.width_m, s.cloth.height_m);
-  }
-  static std::string reason(const Scene& s, const nlohmann::json& given = nlohmann::json::object()) {
-    const auto solver = make("xpbd", predicting(given));
-    solver->load(s);
-    for (const LeftOut& l : solver->plan().left_out)
-      if (l.what == "bdf2") return l.why;
-    return "";
   }
 };
 

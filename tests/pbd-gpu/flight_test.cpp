@@ -17,21 +17,9 @@ ClothState state_of(const ClothSolver& solver) {
   return out;
 }
 
-Scene ball_under(Scene s) {
-  Collider c;
-  c.name = "ball";
-  c.shape = Collider::Shape::Sphere;
-  c.center_m = {0, -0.3, 0};
-  c.radius_m = 0.25;
-  c.margin_m = 0.004;
-  s.colliders.push_back(c);
-  s.needs.add(Feature::Sphere);
-  return s;
-}
-
 TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
   const Scene plain = with_damping(with_pins(with_bending(sheet(9, 7)))), many = with_pins(sheet(40, 37));
-  for (const Scene& s : {plain, many, ball_under(sheet(13, 11))})
+  for (const Scene& s : {plain, many, with_collider(sheet(13, 11), sphere({0, -0.3, 0}, 0.25))})
     for (const int count : {1, 2, 7}) {
       const auto stepped = make("xpbd", {{"substeps", 5}}), flown = make("xpbd", {{"substeps", 5}});
       stepped->load(s);

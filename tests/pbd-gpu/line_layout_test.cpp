@@ -3,7 +3,7 @@
 
 #include "gpu_fixture.hpp"
 #include "scenario/load.hpp"
-#include "xpbd/time/substep_count.hpp"
+#include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

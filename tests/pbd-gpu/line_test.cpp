@@ -15,31 +15,14 @@ namespace {
 
 class LineScenes : public Gpu {
  protected:
-  struct Result {
-    AccuracyPass pass;
-    double last_second(const std::string& name, bool greatest) const {
-      for (const MetricSeries& m : pass.metrics) {
-        if (m.name != name) continue;
-        const std::size_t from = m.values.size() - 72;
-        double most = 0, sum = 0;
-        for (std::size_t f = from; f < m.values.size(); ++f) {
-          most = max_or_nan(most, m.values[f]);
-          sum += m.values[f] / 72;
-        }
-        return greatest ? most : sum;
-      }
-      return kMissing;
-    }
-  };
-
-  static Result run(const Scene& scene, const nlohmann::json& given) {
+  static AccuracyPass run(const Scene& scene, const nlohmann::json& given) {
     const SolverEntry entry{xpbd_info(), nullptr, xpbd_free_fall_m};
     const nlohmann::json settings = complete_settings(entry.info, given);
     const auto solver = make_xpbd(settings, {});
     solver->load(scene);
     const MetricContext context{scene, entry, settings};
     MetricPass metrics(context);
-    Result r;
+    AccuracyPass pass;
     ClothState state;
     for (int f = 0; f <= scene.time.frames(); ++f) {
       const double dt = scene.time.dt();
@@ -48,14 +31,12 @@ class LineScenes : public Gpu {
       }
       solver->read_state(state);
       metrics.add(state);
-      r.pass.time_s.push_back(f * dt);
+      pass.time_s.push_back(f * dt);
     }
-    r.pass.metrics = metrics.take();
-    return r;
+    pass.metrics = metrics.take();
+    return pass;
   }
 };
-
-class SlowLineScenes : public LineScenes {};
 
 TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
   struct Row {
@@ -83,7 +64,7 @@ TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
                          {"two-hand-pull", 2, 0.01, 2},
                          {"two-hand-pull", 9, 1e-3, 2}}) {
     const Scene s = load_scene(std::string("validation/") + row.scene);
-    const auto summary = scalars_of({s, run(s, {{"substeps", row.substeps}, {"time_order", row.order}}).pass});
+    const auto summary = scalars_of({s, run(s, {{"substeps", row.substeps}, {"time_order", row.order}})});
     EXPECT_LE(summary.at("truth_error"), row.error)
         << row.scene << " substeps " << row.substeps << " order " << row.order;
     if (keeps_energy(s)) {

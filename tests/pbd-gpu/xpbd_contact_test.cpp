@@ -1,6 +1,5 @@
 // Contact of `xpbd` by planes: no pair of a triangle and a convex shape meets, at any step, checked by force; the same
 // bits again; friction; what a scene does not need is not there.
-#include <functional>
 #include <set>
 
 #include "contact_check.hpp"
@@ -9,7 +8,7 @@
 #include "runner/solver_run.hpp"
 #include "xpbd/contact/contact.hpp"
 #include "xpbd/lines/line_layout.hpp"
-#include "xpbd/time/substep_count.hpp"
+#include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -54,47 +53,34 @@ TEST_F(XpbdContacts, PartEveryPairAtEveryStep) {
     }
 }
 
-/// A sheet slides on a slope by g (sin - friction cos) T^2 / 2, or is held, on `collider` of an angle.
-template <typename Make>
-void expect_coulomb_friction(Make make, const std::function<Collider(double angle)>& collider) {
-  const double friction = 0.5, g = 9.81, T = 0.5;
-  for (const double share : {0.98, 1.1}) {
-    const double angle = std::atan(share * friction), sine = std::sin(angle), cosine = std::cos(angle);
-    Collider slope = collider(angle);
-    slope.friction = friction;
-    Scene s = with_collider(sheet(5, 5, 0.4, 0.4), slope);
-    s.cloth.axis_u = {cosine, -sine, 0};
-    s.cloth.center_m = {0.02 * sine, 0.02 * cosine, 0};
-    const auto solver = make();
-    solver->load(s);
-    const ClothState state = after(*solver, s, 36);
-    const std::vector<double> start = initial_positions(s);
-    for (std::size_t i = 0; i < start.size(); i += 3) {
-      const double slid = cosine * (state.position[i] - start[i]) - sine * (state.position[i + 1] - start[i + 1]);
-      const double expected = std::max(0.0, 0.5 * g * (sine - friction * cosine) * T * T);
-      EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected)) << "tangent " << share << " of the friction";
-    }
-  }
+Collider slope(bool half, double angle) {
+  const double sine = std::sin(angle), cosine = std::cos(angle);
+  if (half) return half_space({0, 0, 0}, {sine, cosine, 0}, 0.5);
+  // The nearest points of a large face have lost the digits that tell its normal.
+  Collider large = box({-sine, -cosine, 0}, {2, 1, 1}, 0.5);
+  large.axes = {{{cosine, -sine, 0}, {sine, cosine, 0}, {0, 0, 1}}};
+  return large;
 }
 
+/// A sheet slides on a slope by g (sin - friction cos) T^2 / 2, or is held, on a half-space and on a large box.
 TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
-  expect_coulomb_friction([] { return make("xpbd"); },
-                          [](double angle) {
-                            return half_space({0, 0, 0}, {std::sin(angle), std::cos(angle), 0}, 0);
-                          });
-}
-
-// The nearest points of a large face have lost the digits that tell its normal.
-TEST_F(XpbdContacts, HaveTheSameFrictionOnALargeBox) {
-  expect_coulomb_friction([] { return make("xpbd"); },
-                          [](double angle) {
-                            Collider box = touching(Collider::Shape::Box, 0);
-                            const double sine = std::sin(angle), cosine = std::cos(angle);
-                            box.half_extent_m = {2, 1, 1};
-                            box.axes = {{{cosine, -sine, 0}, {sine, cosine, 0}, {0, 0, 1}}};
-                            box.center_m = {-sine, -cosine, 0};
-                            return box;
-                          });
+  const double friction = 0.5, g = 9.81, T = 0.5;
+  for (const bool half : {true, false})
+    for (const double share : {0.98, 1.1}) {
+      const double angle = std::atan(share * friction), sine = std::sin(angle), cosine = std::cos(angle);
+      Scene s = with_collider(sheet(5, 5, 0.4, 0.4), slope(half, angle));
+      s.cloth.axis_u = {cosine, -sine, 0};
+      s.cloth.center_m = {0.02 * sine, 0.02 * cosine, 0};
+      const auto solver = make("xpbd");
+      solver->load(s);
+      const ClothState state = after(*solver, s, 36);
+      const std::vector<double> start = initial_positions(s);
+      for (std::size_t i = 0; i < start.size(); i += 3) {
+        const double slid = cosine * (state.position[i] - start[i]) - sine * (state.position[i + 1] - start[i + 1]);
+        const double expected = std::max(0.0, 0.5 * g * (sine - friction * cosine) * T * T);
+        EXPECT_NEAR(slid, expected, std::max(1e-5, 0.02 * expected)) << "tangent " << share << " of the friction";
+      }
+    }
 }
 
 Scene of_every_kind() {
@@ -145,6 +131,45 @@ TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
     solver->reset();
   }
   EXPECT_EQ(ends[0].position, ends[1].position) << "by the frame that the last one of the run before had recorded";
+}
+
+/// Two triangles in the plane z = `at`, 4 m wide, that a single joint carries along z.
+Collider carried_wall(double at) {
+  Collider c = touching(Collider::Shape::Mesh, 0);
+  auto mesh = std::make_shared<ColliderMesh>();
+  mesh->positions = {-2, -2, at, 2, -2, at, 2, 2, at, -2, 2, at};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh->joint_count = 1;
+  for (int k = 0; k < 4; ++k) {
+    mesh->joints.push_back({0, 0, 0, 0});
+    mesh->weights.push_back({1, 0, 0, 0});
+  }
+  c.mesh = mesh;
+  return c;
+}
+
+TEST_F(XpbdContacts, NothingPassesAThinSheetHoweverFastItComes) {
+  for (double metres_per_frame : {0.02, 0.3, 1.0}) {
+    Scene s = two_sided(with_collider(sheet(9, 7), carried_wall(-0.11)));
+    s.cloth.axis_v = {0, -1, 0};
+    s.gravity_m_per_s2 = {};
+    for (int k = 0; k <= 6; ++k) {
+      FrameMotion& m = s.motion.emplace_back();
+      m.colliders = {{{}, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, k * metres_per_frame}}}}}};
+    }
+    const auto solver = make("xpbd");
+    solver->load(s);
+    bool pushed = false;
+    for (int f = 0; f < 6; ++f) {
+      const ClothState state = after_frame(*solver, s, f);
+      const double wall = -0.11 + (f + 1) * metres_per_frame;
+      for (std::size_t i = 2; i < state.position.size(); i += 3) {
+        ASSERT_GT(state.position[i], wall) << metres_per_frame << " m a frame, frame " << f;
+        pushed = pushed || state.position[i] > 0.01;
+      }
+    }
+    EXPECT_TRUE(pushed);
+  }
 }
 
 }  // namespace

@@ -30,11 +30,7 @@ struct ShapeBuffer {
   bool friction = false;  ///< at least one shape has friction
 };
 
-/// Colliders on the device: one buffer for each kind of collider in the scene.
-///
-/// Static colliders are written once. The host writes dynamic ones into a mapped buffer each frame, and the stage
-/// UploadColliders copies it to the device: it crosses the bus once instead of at every cache miss of every kernel.
-/// For a skinned mesh only the joints' matrices are copied (48 B each); the stage SkinHand computes vertices.
+/// Colliders on the device: one buffer for each kind of collider in the scene (common/README.md).
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
@@ -45,8 +41,6 @@ class ColliderBuffers {
 
   ShapeBuffer planes, spheres, boxes, capsules;
   MeshBuffers static_meshes, kinematic_meshes;
-
-  Vec3 origin_m() const { return origin_m_; }
 
   bool written_each_frame() const { return stage_upload_ >= 0; }
 

@@ -6,7 +6,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "vulkan/count_bytes.hpp"
 
 namespace clothbench::pbd_gpu {
 

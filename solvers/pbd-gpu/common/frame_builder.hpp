@@ -57,7 +57,7 @@ class FrameBuilder {
   const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
 
   int add_stage(const std::string& name, FeatureSet serves);
-  /// Kernel `name` (shaders.hpp) with the buffers that its code declares; `own` take precedence over the
+  /// Kernel `name` with the buffers that its code declares; `own` take precedence over the
   /// buffers of add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound
   /// instead. `constants` by number.
   const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
@@ -93,7 +93,7 @@ class FrameBuilder {
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  /// Counters of all stages (four words each; vulkan/count_bytes.hpp) on the device, as the host reads them, and zeros;
+  /// Counters of all stages (four words each; vulkan/count_bytes.cpp) on the device, as the host reads them, and zeros;
   /// null unless bytes are counted.
   const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
   std::vector<double> copied_B_;  ///< by stage, in a frame

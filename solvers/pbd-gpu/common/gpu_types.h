@@ -49,21 +49,22 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Chain kernel of `xpbd`. TETHERS: entries per vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
-// Plane contact of `xpbd`. PLANES: half-spaces. GRIPS: vertices that hands may hold. MAX_POINTS: of a convex shape.
-// HAS_KINEMATIC: 1 if any convex shape moves. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY,
-// ACTIVE_CAPACITY, CONTACT_CAPACITY: pairs, active pairs and those with contacts that its lists have place for;
-// THICKNESS_BITS, SELF_FRICTION_BITS: floats. LANES_PER_VERTEX: lanes that share a vertex. FILL: pairs are written, not
-// counted. OF_SELF: the list is of the cloth with itself.
+// Contact of `xpbd`, its passes and the fused frame. PLANES: half-spaces. MAX_POINTS: of a convex shape. HAS_KINEMATIC:
+// 1 if any convex shape moves. CAPACITY: pairs that the list has place for. GROUPS: groups of SHAPES_PER_GROUP
+// neighbouring convex shapes, which have a box each. MARGIN_BITS: the maximum margin, as the bits of a float.
+// LANES_PER_VERTEX: lanes that share a vertex.
 #define CONTACT_CONSTANTS(C) \
-  C(1, uint, PLANES, 0u) C(2, uint, GRIPS, 0u) C(3, uint, MAX_POINTS, 3u) C(4, uint, HAS_KINEMATIC, 0u) \
-  C(5, uint, SELF, 0u) C(6, uint, SELF_CAPACITY, 0u) C(7, uint, ACTIVE_CAPACITY, 0u) C(8, uint, CONTACT_CAPACITY, 0u) \
-  C(9, uint, THICKNESS_BITS, 0u) C(10, uint, SELF_FRICTION_BITS, 0u) C(11, uint, LANES_PER_VERTEX, 1u) \
-  C(12, bool, SECOND_SOLVE, false) C(13, bool, FILL, false) C(14, bool, OF_SELF, false)
-// The same, for the kernel of a frame in one dispatch, beside LINE_CONSTANTS. MARGIN_BITS: the maximum margin.
-#define FUSED_FRAME_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
+// What only the passes have. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, ACTIVE_CAPACITY,
+// CONTACT_CAPACITY: pairs, active pairs and those with contacts that its lists have place for; THICKNESS_BITS,
+// SELF_FRICTION_BITS: floats. FILL: pairs are written, not counted. OF_SELF: the list is of the cloth with itself.
+// GRIPS: vertices that hands may hold, under the number that lines have it.
+#define CONTACT_PASS_CONSTANTS(C) \
+  C(1, uint, SELF, 0u) C(2, uint, SELF_CAPACITY, 0u) C(3, uint, ACTIVE_CAPACITY, 0u) C(4, uint, CONTACT_CAPACITY, 0u) \
+  C(5, uint, THICKNESS_BITS, 0u) C(6, uint, SELF_FRICTION_BITS, 0u) C(7, bool, SECOND_SOLVE, false) \
+  C(8, bool, FILL, false) C(9, bool, OF_SELF, false) C(19, uint, GRIPS, 0u)
 // clang-format on
 // Collision kernels of `paper`.
 // FRICTION: 0 none, 1 takes tangential displacement off the position, 2 off the velocity.
@@ -83,8 +84,16 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 CLOTHBENCH_SPECIALIZATION(LineSpecialization, LINE_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ChainSpecialization, CHAIN_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(ContactSpecialization, CONTACT_CONSTANTS)
-CLOTHBENCH_SPECIALIZATION(FusedFrameSpecialization, FUSED_FRAME_CONSTANTS)
+CLOTHBENCH_SPECIALIZATION(ContactPassSpecialization, CONTACT_PASS_CONSTANTS)
 CLOTHBENCH_SPECIALIZATION(PaperSpecialization, PAPER_CONSTANTS)
+/// The constants of two lists that have no number in common.
+template <class First, class Second>
+std::vector<uint> joined(const First& first, const Second& second) {
+  std::vector<uint> all = first.by_number();
+  const std::vector<uint> more = second.by_number();
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] |= more[k];
+  return all;
+}
 #undef CLOTHBENCH_SPECIALIZATION
 #undef CLOTHBENCH_PUT
 #undef CLOTHBENCH_MEMBER
@@ -116,8 +125,7 @@ struct PaperContactConstants {
   uint layer;                     // particles of one layer
 };
 
-// Features that a scene needs of the line kernels of `xpbd`: bits of their
-// constant FEATURES.
+// Features that a scene needs of the line kernels of `xpbd`: bits of their constant FEATURES.
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
@@ -129,32 +137,29 @@ struct PaperContactConstants {
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                // g h keep [m/s]; w: tether_spread_m
-  float h;                       // implicit step, h' of TimeStep [s]
-  float damping_fraction;        // of velocity by damping
-  float speed_limit;             // [m/s]
-  float tether_stretch;          // 1 + slack
-  float rest_u, rest_v, rest_d;  // rest lengths of links [m]
-  float alpha_u, alpha_v,
-      alpha_d;           // compliance over h^2 keep [1/kg] of inner links
-  float bend_u, bend_v;  // the same for bending
-  float inverse_mass;    // of an inner vertex [1/kg]
-  float regularisation;  // least ratio of alpha to inverse mass, for chains that need it
+  vec4 gravity_h;                   // g h keep [m/s]; w: tether_spread_m
+  float h;                          // implicit step, h' of TimeStep [s]
+  float damping_fraction;           // of velocity by damping
+  float speed_limit;                // [m/s]
+  float tether_stretch;             // 1 + slack
+  float rest_u, rest_v, rest_d;     // rest lengths of links [m]
+  float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
+  float bend_u, bend_v;             // the same for bending
+  float inverse_mass;               // of an inner vertex [1/kg]
+  float regularisation;             // least ratio of alpha to inverse mass, for chains that need it
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
   float frames_per_s;
-  uint first_pass,
-      passes;          // of this dispatch; each substep has one pass per colour. In fused_frame: BROAD_PHASE_DONE, or 0
-  uint timeout_polls;  // polls of a barrier over the whole dispatch before it times out
-  float per_h;         // 1/h
-  float history_weight;  // fraction of the last substep's change that is predicted
-  float frame_s;         // with contact by separating planes, as is bound_m
-  float bound_m;         // of a vertex at rest
+  uint first_pass, passes;  // of this dispatch; a substep has one per colour. In fused_frame: BROAD_PHASE_DONE, or 0
+  uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
+  float per_h;              // 1/h
+  float history_weight;     // fraction of the last substep's change that is predicted
+  float frame_s;            // with contact by separating planes, as is bound_m
+  float bound_m;            // of a vertex at rest
 };
 
-/// A vertex of a chain and its link to the next entry; no link if `rest` is
-/// below 0.
+/// A vertex of a chain and its link to the next entry; no link if `rest` is below 0.
 struct ChainEntry {
   uint vertex;           // CHAIN_NO_VERTEX: padding
   float rest;            // [m]
@@ -206,8 +211,7 @@ struct ChainConstants {
   float speed_limit;       // [m/s]
   float per_h;             // 1/h
   uint first_entry;        // of the colour, if a dispatch solves only one
-  uint rounds;             // of cyclic reduction: 2^rounds is at least the number of links of
-                           // its longest chain
+  uint rounds;             // of cyclic reduction: 2^rounds is at least the links of its longest chain
   uint timeout_polls;      // polls of a barrier over the whole dispatch before it times out
   uint colours;
   uint first_pass, passes;  // of this dispatch; each substep has one pass per colour

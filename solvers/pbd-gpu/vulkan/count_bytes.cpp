@@ -1,7 +1,6 @@
-#include "vulkan/count_bytes.hpp"
-
-#include <map>
 #include <spirv/unified1/spirv.hpp>
+
+#include "vulkan/kernel.hpp"
 
 namespace clothbench::vulkan {
 namespace {

@@ -46,8 +46,8 @@ struct Profile {
 /// cs_shared_mem_size). The limit of 256 threads per group is our precaution. Throws Error for any other name.
 const Profile& find_profile(const std::string& name);
 
-/// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps, queue families,
-/// and the limits that compute meets; `vulkaninfo` has all others.
+/// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps and
+/// the limits that compute meets; `vulkaninfo` has all others.
 DeviceInfo describe(VkPhysicalDevice physical);
 
 /// Instance, device and its one compute queue (Vulkan 1.1 core, no required extension). A process has one for each
@@ -74,7 +74,6 @@ class Device {
   VkCommandPool command_pool() const { return pool_; }
   /// Limits of the device, reduced to the profile's if there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
-  const Profile* profile() const { return profile_; }  ///< null: the device as it is
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Lanes of a subgroup that compute shaders can shuffle values between; 0 where they cannot.
   std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }
@@ -93,8 +92,6 @@ class Device {
 
   int validation_messages() const;
   std::vector<std::string> messages() const;  ///< text of the validation layer's warnings and errors so far
-  /// Messages of all devices of this process, those at their destruction (leaked objects) included.
-  static int validation_messages_ever();
   void note_message(const char* text);
   /// From now on every message adds to this count too. Solvers share a device, so each sets its own count before it
   /// uses the device. Messages from making the device go to the first count.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <spirv/unified1/spirv.hpp>
 
 namespace clothbench::vulkan {
@@ -41,11 +40,7 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
   for (const auto& [number, access] : accesses_of(code_)) {
     const auto found = buffers.find(number);
     if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
-    const Buffer& b = *found->second;
-    if (b.bytes() > device_->limits().maxStorageBufferRange)
-      throw Error(fmt::format("{}: buffer \"{}\" of {} B is larger than this device binds ({} B)", name_, b.name(),
-                              b.bytes(), device_->limits().maxStorageBufferRange));
-    bindings_.push_back({number, &b, access});
+    bindings_.push_back({number, found->second, access});
   }
   if (const std::uint32_t most = device_->limits().maxComputeWorkGroupInvocations; specialization.at(0) > most)
     throw Error(fmt::format("kernel {}: its workgroups of {} are larger than this device's or its profile's {}", name_,

@@ -63,11 +63,9 @@ struct Tethers {
   double stretch = 1;
   std::string reason;  ///< reason if `to` is empty
 };
-/// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less: an
-/// inextensible cloth, or one whose springs stretch far less than the slack, 5 rho g L / Y for its own weight and
-/// 2 v0 / c for its speed. The reach of elastic cloth grows by two more lengths, so that tethers carry no load at rest:
-/// how far a substep's prediction falls, and `tether_spread_m` log(1 + r/w) at r from pins that span w. `wanted`: by
-/// the settings.
+/// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less
+/// (xpbd/README.md); their slack is 5 rho g L / Y for the cloth's weight and 2 v0 / c for its speed. `wanted`: by the
+/// settings.
 Tethers tethers_of(const Scene&, bool wanted = true);
 
 /// The same vertex by vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.

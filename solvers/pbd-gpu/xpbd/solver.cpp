@@ -12,10 +12,9 @@
 #include "xpbd/lines/grid_lines.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/chains.hpp"
-#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
 #include "xpbd/time/rules.hpp"
-#include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -90,7 +89,7 @@ class Xpbd final : public GpuSolver {
     const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
     if (!splitting_correction.enabled)
       disable("splitting correction", splitting_correction.reason, soft ? "sheet_Y" : "");
-    second_solve_ = touches && chained && !membrane.enabled && frame().tuning()["second_solve"] == "auto";
+    second_solve_ = touches && chained;
     if (touches)
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_);
     if (chained)
@@ -250,8 +249,6 @@ const std::vector<Tuning>& tunings() {
       {"bdf2", {"auto", "always"}, "time_order 2; auto: where it is safe, always: in every scene without contact"},
       {"tension", {"auto", "always", "never"}, "implicit tension; auto: where it pays, always: without contact"},
       {"splitting_correction", {"auto", "always", "never"}, "of diagonals; auto: in sheets whose modulus needs it"},
-      {"membrane", {"auto", "never"}, "triangles of constant strain in elastic meshes; auto: without contact"},
-      {"second_solve", {"auto", "never"}, "chains are solved again between responses; auto: yes"},
       {"vertices_a_thread", {0, 2, 4, 8, 16, 32}, "of a line; 0: by line and device"},
       {"threads_a_group", {0, 32, 64, 128, 256, 512, 1024}, "of one colour; 0: by line and device"},
       {"lines_beside", {0, 1, 2, 4}, "neighbouring lines whose threads alternate; 0: by line and device"}};

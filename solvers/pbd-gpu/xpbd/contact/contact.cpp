@@ -32,31 +32,33 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
     : frame_(frame), scene_(scene), with_itself_(scene.needs.has(Feature::SelfCollision)) {
   const ConvexShapes all = convex_shapes(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
-  max_margin_m_ = all.max_margin_m;
-  shapes_ = static_cast<std::uint32_t>(all.shapes.size());
-  groups_ = static_cast<std::uint32_t>(all.boxes.size() - all.shapes.size());
   kinematic_points_ = static_cast<std::uint32_t>(all.sources.size());
-  if (shapes_ > 0) {
+  constants_.SHAPES = static_cast<uint>(all.shapes.size());
+  constants_.GROUPS = static_cast<uint>(all.boxes.size() - all.shapes.size());
+  if (constants_.SHAPES > 0) {
     frame_.add_buffer(BIND_SHAPES, "contact convex shapes", all.shapes);
     frame_.add_buffer(BIND_POINTS, "contact points", all.points);
     frame_.add_buffer(BIND_SHAPE_AABBS, "contact convex shape boxes", all.boxes);
   }
   if (kinematic_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
   constants_.PLANES = colliders != nullptr ? colliders->planes.count : 0;
-  constants_.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   constants_.MAX_POINTS = all.max_points;
   constants_.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;
   constants_.LANES_PER_VERTEX = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMaxLanesPerVertex));
-  constants_.SECOND_SOLVE = second_solve ? 1 : 0;
+  constants_.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
+  const double layers_m = with_itself_ ? 0.5 * scene_.cloth.self_collision.thickness_m : 0;
+  constants_.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(std::max(all.max_margin_m, layers_m)));
+  pass_constants_.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
+  pass_constants_.SECOND_SOLVE = second_solve ? 1 : 0;
   add_primitives(particle);
   if (with_itself_) add_self_pairs(particle);
   if (kinematic_points_ == 0) return;
   stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
-  update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * groups_)};
+  update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * constants_.GROUPS)};
 }
 
 void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
-  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const std::uint32_t n = constants_.VERTICES;
   const auto of = [&](std::uint32_t v) { return particle.empty() ? v : particle[v]; };
   std::vector<uvec4> primitives;
   std::vector<std::vector<std::uint32_t>> vertex_triangles(n);
@@ -65,7 +67,7 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
     primitives.push_back({of(t[0]), of(t[1]), of(t[2]), 3});
     for (std::uint32_t corner = 0; corner < 3; ++corner) vertex_triangles[of(t[corner])].push_back(4 * number + corner);
   }
-  triangles_ = static_cast<std::uint32_t>(primitives.size());
+  constants_.TRIANGLES = static_cast<std::uint32_t>(primitives.size());
   for (std::uint32_t v = 0; v < n; ++v) primitives.push_back({v, v, v, 1});
   std::vector<std::uint32_t> all;
   auto first = n + 1;
@@ -76,70 +78,55 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
   all.push_back(first);
   for (const auto& fan : vertex_triangles) all.insert(all.end(), fan.begin(), fan.end());
   const auto count = static_cast<std::uint32_t>(primitives.size());
-  capacity_ = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
-  if (capacity_ == 0) {
+  std::uint32_t& capacity = constants_.CAPACITY = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
+  if (capacity == 0) {
     // The AABB of a long oblique triangle overlaps much of the cloth, so small scenes get a list of all their pairs.
-    const auto all_pairs = static_cast<std::uint32_t>(std::min(std::uint64_t{count} * shapes_, kAllPairs));
-    capacity_ = std::max(std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs), all_pairs);
+    const auto all_pairs = static_cast<std::uint32_t>(std::min(std::uint64_t{count} * constants_.SHAPES, kAllPairs));
+    capacity = std::max(std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs), all_pairs);
   }
   frame_.add_buffer(BIND_PRIMITIVES, "contact primitives", primitives);
-  frame_.add_buffer(BIND_VERTEX_TRIANGLES, "contact fans", all);
+  frame_.add_buffer(BIND_VERTEX_TRIANGLES, "contact vertex triangles", all);
   frame_.add_buffer(BIND_RANGES, "contact ranges", count * sizeof(uvec4));
   frame_.add_buffer(BIND_TOUCHED, "contact touched", 4 * std::uint64_t{n} * sizeof(uint));
-  frame_.add_buffer(BIND_ACTIVE_BITS, "contact active pairs", 2 * std::uint64_t{capacity_ / 32 + 1} * sizeof(uint));
-  frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity_} * sizeof(uvec4));
-  frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity_} * sizeof(PairState));
+  frame_.add_buffer(BIND_ACTIVE_BITS, "contact active pairs", 2 * std::uint64_t{capacity / 32 + 1} * sizeof(uint));
+  frame_.add_buffer(BIND_PAIRS, "contact pairs", std::uint64_t{capacity} * sizeof(uvec4));
+  frame_.add_buffer(BIND_PAIR_STATES, "contact pair states", std::uint64_t{capacity} * sizeof(PairState));
   ContactFrameState frame_state{};
   std::fill(std::begin(frame_state.cloth_low), std::end(frame_state.cloth_low), ~0u);
-  frame_.add_buffer(BIND_FRAME_STATE, "contact ledger", std::vector{frame_state});
-  frame_.add_buffer(BIND_PREDICTED, "contact proposals", n * sizeof(vec4));
+  frame_.add_buffer(BIND_FRAME_STATE, "contact frame state", std::vector{frame_state});
+  frame_.add_buffer(BIND_PREDICTED, "contact predicted positions", n * sizeof(vec4));
   frame_.add_buffer(BIND_STARTS, "contact starts", n * sizeof(vec4));
-  frame_.add_buffer(BIND_MOTION_BOUNDS, "contact reaches", n * sizeof(vec4));
-  frame_.add_buffer(BIND_VERTEX_DISPLACEMENTS, "contact ways", n * sizeof(float));
-  diagnostics_ = &frame_.add_host_buffer("contact faults", sizeof(ContactDiagnostics), BIND_DIAGNOSTICS);
+  frame_.add_buffer(BIND_MOTION_BOUNDS, "contact motion bounds", n * sizeof(vec4));
+  frame_.add_buffer(BIND_VERTEX_DISPLACEMENTS, "contact vertex displacements", n * sizeof(float));
+  diagnostics_ = &frame_.add_host_buffer("contact diagnostics", sizeof(ContactDiagnostics), BIND_DIAGNOSTICS);
 }
 
 /// Buffers of the cloth's pairs with itself.
 void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   const auto& self = scene_.cloth.self_collision;
-  max_margin_m_ = std::max(max_margin_m_, 0.5 * self.thickness_m);
   auto all = triangles(scene_.cloth);
   for (auto& t : all)
     for (auto& v : t) v = particle.empty() ? v : particle[v];
   // A short list that tests ask for is one of active pairs too.
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
-  ContactSpecialization& c = constants_;
+  ContactPassSpecialization& c = pass_constants_;
   c.SELF = 1;
-  c.SELF_CAPACITY = wanted != 0 ? wanted : std::min(kPairsPerTriangle * triangles_, kMaxSelfPairs);
-  c.ACTIVE_CAPACITY = wanted != 0 ? wanted : std::min(kActivePerTriangle * triangles_, kMaxActive);
-  c.CONTACT_CAPACITY = std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * triangles_, kMinContactPairs));
+  c.SELF_CAPACITY = wanted != 0 ? wanted : std::min(kPairsPerTriangle * constants_.TRIANGLES, kMaxSelfPairs);
+  c.ACTIVE_CAPACITY = wanted != 0 ? wanted : std::min(kActivePerTriangle * constants_.TRIANGLES, kMaxActive);
+  c.CONTACT_CAPACITY =
+      std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * constants_.TRIANGLES, kMinContactPairs));
   c.THICKNESS_BITS = std::bit_cast<uint>(static_cast<float>(self.thickness_m));
   c.SELF_FRICTION_BITS = std::bit_cast<uint>(static_cast<float>(self.friction));
-  const std::uint32_t groups = (triangles_ + SHAPES_PER_GROUP - 1) / SHAPES_PER_GROUP;
+  const std::uint32_t groups = (constants_.TRIANGLES + SHAPES_PER_GROUP - 1) / SHAPES_PER_GROUP;
   const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
-  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (triangles_ + groups) * sizeof(SelfAabb));
-  self_ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", triangles_ * sizeof(uvec4));
+  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (constants_.TRIANGLES + groups) * sizeof(SelfAabb));
+  self_ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
-  frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact ways", triangles_ * sizeof(vec4));
+  frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact displacements", constants_.TRIANGLES * sizeof(vec4));
   frame_.add_buffer(BIND_SELF_ACTIVE, "self-contact active pairs", active * sizeof(SelfActivePair));
   frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts", touching * SELF_CONTACTS * sizeof(SelfContact));
-  frame_.add_buffer(BIND_SELF_CORRECTIONS, "self-contact pushes", touching * 3 * sizeof(SelfCorrection));
-}
-
-FusedFrameSpecialization XpbdContact::frame_specialization() const {
-  FusedFrameSpecialization s;
-  s.PLANES = constants_.PLANES;
-  s.MAX_POINTS = constants_.MAX_POINTS;
-  s.HAS_KINEMATIC = constants_.HAS_KINEMATIC;
-  s.LANES_PER_VERTEX = constants_.LANES_PER_VERTEX;
-  s.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
-  s.TRIANGLES = triangles_;
-  s.CAPACITY = capacity_;
-  s.SHAPES = shapes_;
-  s.GROUPS = groups_;
-  s.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(max_margin_m_));
-  return s;
+  frame_.add_buffer(BIND_SELF_CORRECTIONS, "self-contact corrections", touching * 3 * sizeof(SelfCorrection));
 }
 
 FeatureSet XpbdContact::serves() const {
@@ -148,30 +135,30 @@ FeatureSet XpbdContact::serves() const {
 }
 
 XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads,
-                                    const ContactSpecialization* constants, const vulkan::Buffers& own) {
-  const std::vector<std::uint32_t> values = (constants != nullptr ? *constants : constants_).by_number();
+                                    const ContactPassSpecialization* constants, const vulkan::Buffers& own) {
+  const std::vector<std::uint32_t> values = joined(constants_, constants != nullptr ? *constants : pass_constants_);
   return {frame_.add_kernel(stage, name, sizeof(ContactConstants), values, threads, own),
           vulkan::groups_for(items, threads)};
 }
 
 void XpbdContact::add_broad_phase() {
   if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
-  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const std::uint32_t n = constants_.VERTICES;
   broad_phase_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
-  ContactSpecialization fill = constants_;
+  ContactPassSpecialization fill = pass_constants_;
   fill.FILL = 1;
   if (with_itself_) {
     const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
-    const std::uint64_t shared = std::uint64_t{lanes} * triangles_;
-    ContactSpecialization self = fill;
+    const std::uint64_t shared = std::uint64_t{lanes} * constants_.TRIANGLES;
+    ContactPassSpecialization self = fill;
     self.OF_SELF = 1;
-    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", triangles_));
+    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES));
     broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads));
     broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads, &self, {{BIND_RANGES, self_ranges_}}));
     broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads, &self));
   }
-  if (shapes_ == 0) return;
-  const std::uint32_t primitives = triangles_ + n, threads = std::min(primitives, kPairThreads);
+  if (constants_.SHAPES == 0) return;
+  const std::uint32_t primitives = constants_.TRIANGLES + n, threads = std::min(primitives, kPairThreads);
   broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads));
   broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads));
   broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, kGroupSize, &fill));
@@ -180,7 +167,7 @@ void XpbdContact::add_broad_phase() {
 void XpbdContact::add_kernels() {
   add_broad_phase();
   const int stage = frame_.add_stage("ContactSubstep", serves());
-  const auto n = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
+  const std::uint32_t n = constants_.VERTICES;
   const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   const std::uint32_t at_once = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
   const std::uint64_t shared = std::uint64_t{constants_.LANES_PER_VERTEX} * n;
@@ -190,16 +177,16 @@ void XpbdContact::add_kernels() {
   if (kinematic_points_ > 0) add({&before_}, pass(stage, "contact_predict", n));
   const Pass clamp = pass(stage, "contact_clamp", n);
   add({&first_round_}, clamp);
-  if (constants_.SECOND_SOLVE != 0) add({&later_round_}, clamp);
-  if (shapes_ > 0) {
+  if (pass_constants_.SECOND_SOLVE != 0) add({&later_round_}, clamp);
+  if (constants_.SHAPES > 0) {
     add({&before_, &first_round_}, pass(stage, "contact_active_pairs", at_once));
     add({&before_, &first_round_}, pass(stage, "contact_nearest_points", at_once));
     add({&later_round_}, pass(stage, "contact_respond", at_once));
     add({&end_}, pass(stage, "contact_select_plane", at_once));
   }
   if (with_itself_) {
-    add({&first_round_}, pass(stage, "self_max_displacement", triangles_));
-    add({&first_round_}, pass(stage, "self_active_pairs", std::uint64_t{lanes} * triangles_, threads));
+    add({&first_round_}, pass(stage, "self_max_displacement", constants_.TRIANGLES));
+    add({&first_round_}, pass(stage, "self_active_pairs", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
     add({&first_round_}, pass(stage, "self_nearest_points", at_once));
     add({&later_round_}, pass(stage, "self_respond", at_once));
     add({&end_}, pass(stage, "self_select_plane", at_once));
@@ -215,11 +202,6 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   const auto f = [](double x) { return static_cast<float>(x); };
   ContactConstants c{};
   c.gravity_h = {f(g[0] * h), f(g[1] * h), f(g[2] * h), 0};
-  c.vertices = static_cast<uint>(cloth.vertex_count());
-  c.triangles = triangles_;
-  c.capacity = capacity_;
-  c.shapes = shapes_;
-  c.groups = groups_;
   c.first_substep = static_cast<uint>(s);
   c.substeps = static_cast<uint>(substeps);
   c.substep_part = f(1.0 / substeps);
@@ -228,7 +210,6 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   c.damping_fraction = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
   c.frame_s = f(dt_s);
   c.bound_m = f(0.5 * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
-  c.margin_m = f(max_margin_m_);
   return c;
 }
 

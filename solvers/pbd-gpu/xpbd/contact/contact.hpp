@@ -7,11 +7,9 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Every pair of a triangle of the cloth and a
-/// convex shape of a collider that may meet in a substep has a plane that separates both ends of the straight
-/// displacement, and no vertex ends a substep behind a plane of one of its triangles. Works only on positions and
-/// velocities; the constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w
-/// of the positions. Where FusedFrame has the frame in one dispatch in one kernel, only `record_shapes` is called.
+/// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Works only on positions and velocities; the
+/// constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w of the positions.
+/// Where FusedFrame has the frame in one kernel, only `record_shapes` is called.
 class XpbdContact {
  public:
   /// Adds buffers, and what kinematic convex shapes need. `particle`: of each vertex, the vertex that it is welded to
@@ -34,7 +32,7 @@ class XpbdContact {
   FeatureSet serves() const;
   bool with_itself() const { return with_itself_; }
   /// Data of the scene for the kernel of a frame in one dispatch.
-  FusedFrameSpecialization frame_specialization() const;
+  const ContactSpecialization& specialization() const { return constants_; }
   ContactConstants constants(int s, int substeps, double dt_s) const;
 
   /// Diagnostics since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
@@ -51,9 +49,9 @@ class XpbdContact {
     vulkan::Groups groups;
   };
   using Phase = std::vector<Pass>;
-  /// `constants`: null: constants_.
+  /// `constants`: null: pass_constants_.
   Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize,
-            const ContactSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
+            const ContactPassSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle);
   void add_broad_phase();
@@ -62,9 +60,9 @@ class XpbdContact {
   FrameBuilder& frame_;
   const Scene& scene_;
   const bool with_itself_;
-  ContactSpecialization constants_;  ///< of most kernels
-  std::uint32_t triangles_ = 0, shapes_ = 0, groups_ = 0, kinematic_points_ = 0, capacity_ = 0;
-  double max_margin_m_ = 0;
+  ContactSpecialization constants_;
+  ContactPassSpecialization pass_constants_;  ///< of most passes
+  std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
   const vulkan::Buffer *diagnostics_ = nullptr, *self_ranges_ = nullptr;
   Phase update_shapes_, broad_phase_, before_, first_round_, later_round_, end_;

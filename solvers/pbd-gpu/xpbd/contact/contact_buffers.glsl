@@ -1,17 +1,12 @@
 // Shared by the kernels of contact: data of primitives, of convex shapes, and of the substep. Primitives are
-// the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes. A kernel of a
-// pass has its counts as push constants, the fused frame as specialization constants of the same names.
+// the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes.
 #ifndef FUSED_FRAME
 #include "common/common.glsl"
 layout(push_constant) uniform Push { ContactConstants p; };
-CONTACT_CONSTANTS(SPECIALIZE)
-#define VERTICES p.vertices
-#define TRIANGLES p.triangles
-#define CAPACITY p.capacity
-#define SHAPES p.shapes
-#define GROUPS p.groups
-#define MARGIN_M p.margin_m
+CONTACT_PASS_CONSTANTS(SPECIALIZE)
 #endif
+CONTACT_CONSTANTS(SPECIALIZE)
+#define MARGIN_M uintBitsToFloat(MARGIN_BITS)
 
 layout(std430, binding = BIND_SHAPES) readonly buffer ConvexShapeBuffer { ConvexShape shapes[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { ShapePoint points[]; };
@@ -85,6 +80,7 @@ const float kTiny = 1e-6;       // a weight below is none
 #define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
 
 uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
+#define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
 // Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
 // without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
 // 0.7 % less with one response.

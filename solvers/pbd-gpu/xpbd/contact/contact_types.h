@@ -31,12 +31,11 @@ struct PointSource {
 /// State of one pair of a primitive of the cloth (a triangle or a vertex) and a convex shape.
 struct PairState {
   vec4 normal;   // from the convex shape to the cloth; w: lower bound of the pair's distance [m]
-  vec4 weights;  // of the primitive's vertices at its nearest point; w: dot(normal, convex shape's nearest point at the
-                 // end)
-  vec4 displacement_or_plane;  // of the convex shape's nearest point in the substep; w: distance to keep. Then the
-                               // plane, w: offset
-  vec4 correction;  // proposed correction of the contact over its inverse mass; w: its part that is no velocity. Then
-                    // multipliers
+  vec4 weights;  // of the primitive's vertices at its nearest point; w: dot(normal, shape's nearest point at the end)
+  // Of the shape's nearest point in the substep; w: distance to keep. Then the plane; w: offset.
+  vec4 displacement_or_plane;
+  // Of the contact over its inverse mass; w: its part that is no velocity. Then multipliers.
+  vec4 correction;
 };
 
 #define PAIR_TESTED 1u   // near enough to be processed in this substep
@@ -57,8 +56,7 @@ struct ContactFrameState {
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint contact_free;          // 1: the frame was done without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;      // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
-  uint max_displacement;      // maximum displacement of a vertex in a frame [m], the bits of a float: this one
-                              // at its end; until its list is made, the last one; 0: there was none
+  uint max_displacement;      // of a vertex in this frame [m], a float's bits; until its list is made, in the last one
   uint counted[PAIR_LEVELS];  // pairs at each fraction of the motion bounds
   float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with
 };
@@ -111,17 +109,13 @@ struct ContactDiagnostics {
 
 /// Push constants of the kernels of contact.
 struct ContactConstants {
-  vec4 gravity_h;  // g h [m/s]
-  uint vertices, triangles;
-  uint capacity;                 // pairs that the list has place for
-  uint shapes, groups;           // groups of SHAPES_PER_GROUP neighbouring convex shapes have a box each
+  vec4 gravity_h;                // g h [m/s]
   uint response_round;           // of responses: 0 before the lines, with the predicted positions; 1 and on after them
   uint first_substep, substeps;  // this substep; substeps of the frame
   float substep_part;            // of the frame
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)
   float frame_s;
-  float bound_m;   // of a vertex at rest
-  float margin_m;  // maximum margin of any collider
+  float bound_m;  // of a vertex at rest
 };
 #define SHAPES_PER_GROUP 16u

@@ -15,7 +15,7 @@ struct Clusters {
 };
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// The convex convex shapes of a scene's colliders except for planes: of a capsule, a segment and its radius; of a
+/// The convex shapes of a scene's colliders except for planes: of a capsule, a segment and its radius; of a
 /// sphere, a point and its radius; of a box or a static mesh, each triangle; of one that is kinematic, hulls of
 /// clusters of at most Clusters::kClusterSize neighbouring triangles.
 struct ConvexShapes {

@@ -1,7 +1,5 @@
-// Contact-free fast path. A frame takes it if no collider shape overlaps the cloth's conservative motion bound. Such a
-// frame runs the constraint solve only and is bit-identical to a frame of the same scene without colliders. The bound
-// is an estimate of how far the cloth moves, not a guarantee. check_motion_bound() tests it after every substep. If a
-// vertex leaves its bound, the frame's result is discarded and the contact kernel simulates the frame from its start.
+// Contact-free fast path (xpbd/fused/README.md). The bound on how far the cloth moves is an estimate, not a guarantee:
+// check_motion_bound() tests it after every substep.
 const uint kMaxNearbyGroups = 32u;  // of convex shapes; where more are active, some meet the cloth
 shared uint nearby_groups[kMaxNearbyGroups], nearby_group_count, max_displacement;
 vec3 box_low, box_high;

@@ -1,10 +1,8 @@
 #version 450
-// Simulates one frame in a single dispatch: broad phase, then in each substep the constraint solve and all contact
-// passes. It calls the same functions as the path with one kernel per pass; on a software device results are
-// bit-identical to that path. All workgroups must run at once (grid_barrier.glsl). Grid barriers per substep: 9 with
-// kinematic shapes, 8 otherwise. CONTACT_FREE: dispatched first. Runs the broad phase; if no collider is within the
-// cloth's motion bound, it simulates the frame with constraints only and sets frame_state.contact_free, so that the
-// kernel with contact exits.
+// Simulates one frame in a single dispatch (xpbd/fused/README.md) with the functions of the path with one kernel per
+// pass. Grid barriers per substep: 9 with kinematic shapes, 8 otherwise. CONTACT_FREE: dispatched first. Runs the broad
+// phase; if no collider is within the cloth's motion bound, it simulates the frame with constraints only and sets
+// frame_state.contact_free, so that the kernel with contact exits.
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
@@ -12,8 +10,6 @@ layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCom
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
 
-FUSED_FRAME_CONSTANTS(SPECIALIZE)
-#define MARGIN_M uintBitsToFloat(MARGIN_BITS)
 #include "xpbd/lines/grid_lines.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
 vec3 anchor(uvec2 at, uint k) {
@@ -37,7 +33,6 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/contact_correction.glsl"
 #include "xpbd/contact/narrow_phase/contact_nearest_points.glsl"
-#include "xpbd/contact/response/contact_respond.glsl"
 #include "xpbd/contact/response/contact_accumulate.glsl"
 #include "xpbd/contact/displacement_filter/contact_select_plane.glsl"
 #include "xpbd/contact/displacement_filter/contact_project.glsl"
@@ -46,14 +41,12 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #include "common/grid_barrier.glsl"
 #define GRID_BARRIER_OR_RETURN if (!grid_barrier()) return
 #define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
-#define COUNTED(t) frame_state.active_pair_count[t]
 #define CLOTH_LOW frame_state.cloth_low
 #define CLOTH_HIGH frame_state.cloth_high
 // Within a workgroup, also for what its threads write to buffers.
 #define WORKGROUP_BARRIER { groupMemoryBarrier(); barrier(); }
 #include "xpbd/contact/broad_phase/cloth_aabb.glsl"
 #ifndef CONTACT_FREE
-#define ACTIVE_COUNT COUNTED(min(response_round, 1u))
 #include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
 #endif
 
@@ -169,7 +162,7 @@ bool narrow_phase() {
   find_active_pairs();
   if (!kPairsOfSubgroups) return true;
   GRID_BARRIER_OR_FAIL;  // active pairs before they are shared out: neighbours in the list are active together
-  FOR_EACH_ACTIVE_PAIR(n, COUNTED(min(response_round, 1u))) process_pair(pairs[n].w);
+  FOR_EACH_ACTIVE_PAIR(n, ACTIVE_COUNT) process_pair(pairs[n].w);
   return true;
 }
 
@@ -186,13 +179,13 @@ bool respond_to_contact(out uint active_count) {
     if (SHAPES > 0u && !narrow_phase()) return false;
     GRID_BARRIER_OR_FAIL;  // the corrections that contacts propose before vertices take it
   }
-  active_count = COUNTED(min(response_round, 1u));
+  active_count = ACTIVE_COUNT;
   if (global_thread == 0u && active_count > 0u) frame_state.contact_possible = 1u;
   if (response_round == 2u && active_count > 0u) {
     FOR_EACH_STRIDED(n, active_count) respond(pairs[n].w);
     GRID_BARRIER_OR_FAIL;  // as above
   }
-  if (global_thread == 0u && response_round > 0u) COUNTED(0u) = 0u;
+  if (global_thread == 0u && response_round > 0u) frame_state.active_pair_count[0] = 0u;
   if (active_count == 0u && PLANES == 0u) return true;
   accumulate_all(global_thread, grid_stride);
   GRID_BARRIER_OR_FAIL;  // vertices before what reads them
@@ -214,7 +207,7 @@ bool substep_with(uint s) {
   }
   project_all(global_thread, grid_stride);
   clear_correction_bits(global_thread, grid_stride);
-  if (global_thread == 0u) COUNTED(1u) = 0u;
+  if (global_thread == 0u) frame_state.active_pair_count[1] = 0u;
   GRID_BARRIER_OR_FAIL;  // the substep's end before the next one
   return true;
 }

@@ -1,8 +1,5 @@
 #include "xpbd/fused/fused_frame.hpp"
 
-#include <algorithm>
-#include <functional>
-
 #include "xpbd/grid_barrier.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -13,17 +10,6 @@ constexpr std::uint32_t kThreadsTogether = 32;
 /// Workgroups: those beyond the lines' have pairs and vertices only. One takes a sixth longer where capsules sweep,
 /// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
-
-/// The two have no number in common.
-std::vector<std::uint32_t> both(const LineSpecialization& lines, const FusedFrameSpecialization& planes) {
-  std::vector<std::uint32_t> all = lines.by_number();
-  const std::vector<std::uint32_t> more = planes.by_number();
-  std::transform(more.begin(), more.end(), all.begin(), all.begin(), std::bit_or<>());
-  return all;
-}
-
-constexpr FeatureSet kOfLines{Feature::Stretch, Feature::Shear, Feature::Bend,
-                              Feature::Damping, Feature::Pins,  Feature::MovingPins};
 
 }  // namespace
 
@@ -44,7 +30,7 @@ std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, 
 bool FusedFrame::add_kernels() {
   const LineShape shape = lines_.shape_with_contact();
   if (shape.threads % kThreadsTogether != 0) return false;
-  LineSpecialization lines = lines_.specialization_with_contact(shape);
+  LineSpecialization lines = lines_.persistent_specialization(shape);
   groups_ = lines_.groups_of(shape);
   const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();
   // Workgroups without lines process only pairs and vertices, and so do threads without a line.
@@ -52,30 +38,30 @@ bool FusedFrame::add_kernels() {
     groups_ = vulkan::groups_for(smallest, 1);
     lines.EXACT = 0;
   }
-  const std::vector<std::uint32_t> constants = both(lines, contact_.frame_specialization());
+  const std::vector<std::uint32_t> constants = joined(lines, contact_.specialization());
   if (!runs_at_once<LineConstants>(frame_, "fused_frame", constants, shape.threads, groups_)) return false;
   add_grid_barrier(frame_);
-  const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kOfLines) | contact_.serves());
+  const int stage = frame_.add_stage("FusedFrame", (frame_.scene().needs & kLineFeatures) | contact_.serves());
   kernel_ = frame_.add_kernel(stage, "fused_frame", sizeof(LineConstants), constants, shape.threads);
   add_contact_free(constants, shape.threads);
   return true;
 }
 
 void FusedFrame::add_contact_free(const std::vector<std::uint32_t>& constants, std::uint32_t threads) {
-  const FusedFrameSpecialization planes = contact_.frame_specialization();
+  const ContactSpecialization& planes = contact_.specialization();
   if (planes.SHAPES == 0 || planes.PLANES > 0) return;
   const LineShape one = lines_.single_dispatch_shape();
   const bool in_one_group = one.threads > 0;
   if (!in_one_group && !runs_at_once<LineConstants>(frame_, "fused_frame_contact_free", constants, threads, groups_))
     return;
-  const int stage = frame_.add_stage("ContactFreeFrame", frame_.scene().needs & kOfLines);
+  const int stage = frame_.add_stage("ContactFreeFrame", frame_.scene().needs & kLineFeatures);
   if (!in_one_group) {
     contact_free_lists_ = true;
     contact_free_ = frame_.add_kernel(stage, "fused_frame_contact_free", sizeof(LineConstants), constants, threads);
     contact_free_groups_ = groups_;
   } else {
     contact_free_ = frame_.add_kernel(stage, "line_frame_contact_free", sizeof(LineConstants),
-                                      both(lines_.single_dispatch_specialization(one), planes), one.threads);
+                                      joined(lines_.single_dispatch_specialization(one), planes), one.threads);
   }
 }
 

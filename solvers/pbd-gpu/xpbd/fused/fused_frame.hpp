@@ -6,7 +6,7 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Lines and contact by separating planes of a frame in one dispatch in one kernel (shaders/fused_frame.comp), phase
+/// Lines and contact by separating planes of a frame in one dispatch in one kernel (fused_frame.comp), phase
 /// for phase as the kernels of the phases have it. It also moves attached vertices.
 class FusedFrame {
  public:
@@ -26,7 +26,7 @@ class FusedFrame {
       : frame_(frame), lines_(lines), contact_(contact) {}
   bool add_kernels();
   /// The kernel of frames in which no collider can be near: of one workgroup where that holds the cloth
-  /// (shaders/contact_free_frame.glsl), else the kernel of many without contact, which also lists the pairs.
+  /// (contact_free_frame.glsl), else the kernel of many without contact, which also lists the pairs.
   void add_contact_free(const std::vector<std::uint32_t>& constants, std::uint32_t threads);
 
   LineConstants constants(double dt_s, const Steps&, bool listed) const;

@@ -38,12 +38,17 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tensi
 }
 
 void Lines::add_kernels(bool any_masses) {
-  const LineShape whole = single_dispatch_shape();
-  const bool in_one = whole.threads > 0 && !any_masses && scene_.cloth.mass_factors.empty();
-  if (in_one)
-    add_single_dispatch(whole);
-  else if (!scene_.cloth.mass_factors.empty() || !add_persistent())
+  const LineShape one_group = single_dispatch_shape();
+  const bool scaled = !scene_.cloth.mass_factors.empty();
+  moves_grips_ = one_group.threads > 0 && !any_masses && !scaled;
+  if (moves_grips_) {
+    shape_ = {one_group, one_group};
+    substeps_ =
+        frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & kLineFeatures), "line_frame", sizeof(LineConstants),
+                          single_dispatch_specialization(one_group).by_number(), one_group.threads);
+  } else if (scaled || !add_persistent()) {
     add_passes();
+  }
 }
 
 LineRequest Lines::request() const {
@@ -114,15 +119,6 @@ LineSpecialization Lines::single_dispatch_specialization(const LineShape& shape)
   return s;
 }
 
-void Lines::add_single_dispatch(const LineShape& shape) {
-  const FeatureSet serves{Feature::Stretch, Feature::Shear,      Feature::Bend,
-                          Feature::Damping, Feature::MovingPins, Feature::Pins};
-  shape_[0] = shape_[1] = shape_[2] = shape;
-  const LineSpecialization s = single_dispatch_specialization(shape);
-  single_dispatch_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & serves), "line_frame",
-                                       sizeof(LineConstants), s.by_number(), shape.threads);
-}
-
 vulkan::Groups Lines::groups_of(const LineShape& shape) const {
   const auto chains = static_cast<std::uint32_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
   return vulkan::groups_for(chains, shape.chains_a_group());
@@ -138,8 +134,8 @@ LineShape Lines::shape_with_contact() const {
   return pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), wanted, device());
 }
 
-LineSpecialization Lines::specialization_with_contact(const LineShape& shape) {
-  shape_[0] = shape_[1] = shape_[2] = shape;
+LineSpecialization Lines::persistent_specialization(const LineShape& shape) {
+  shape_ = {shape, shape};
   LineSpecialization s = specialization(shape);
   s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   s.PERSISTENT = 1;
@@ -149,29 +145,25 @@ LineSpecialization Lines::specialization_with_contact(const LineShape& shape) {
 /// False where the device does not run all workgroups at once, or where that is unknown.
 bool Lines::add_persistent() {
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), request(), device());
-  shape_[0] = shape_[1] = shape_[2] = shape;
-  LineSpecialization s = specialization(shape);
-  s.PERSISTENT = 1;
-  const std::string name = "line_pass";
-  if (!runs_at_once<LineConstants>(frame_, name, s.by_number(), shape.threads, all_groups())) return false;
-  const FeatureSet serves{Feature::Stretch, Feature::Shear, Feature::Bend, Feature::Damping, Feature::Pins};
-  const int stage = frame_.add_stage("Lines", scene_.needs & serves);
+  const std::vector<std::uint32_t> constants = persistent_specialization(shape).by_number();
+  if (!runs_at_once<LineConstants>(frame_, "line_pass", constants, shape.threads, groups_of(shape))) return false;
+  const int stage = frame_.add_stage("Lines", scene_.needs & (kLineFeatures - FeatureSet{Feature::MovingPins}));
   add_grid_barrier(frame_);
-  persistent_ = frame_.add_kernel(stage, name, sizeof(LineConstants), s.by_number(), shape.threads);
+  substeps_ = frame_.add_kernel(stage, "line_pass", sizeof(LineConstants), constants, shape.threads);
   return true;
 }
 
 void Lines::add_passes() {
-  const FeatureSet needs = scene_.needs;
-  shape_[0] = pass_shape(scene_.cloth.columns, request(), device());
-  shape_[1] = shape_[2] = pass_shape(scene_.cloth.rows, request(), device());
+  shape_ = {pass_shape(scene_.cloth.columns, request(), device()), pass_shape(scene_.cloth.rows, request(), device())};
   const char* const names[] = {"Rows", "Columns", "Diagonals"};
   const FeatureSet serves[] = {{Feature::Stretch, Feature::Bend, Feature::Damping, Feature::Pins},
                                {Feature::Stretch, Feature::Bend},
                                {Feature::Shear}};
-  for (std::size_t k = 0; k < (needs.has(Feature::Shear) ? 3u : 2u); ++k)
-    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], needs & serves[k]), "line_pass", sizeof(LineConstants),
-                                 specialization(shape_[k]).by_number(), shape_[k].threads);
+  for (std::size_t k = 0; k < (scene_.needs.has(Feature::Shear) ? 3u : 2u); ++k) {
+    const LineShape& shape = shape_[std::min<std::size_t>(k, 1)];
+    pass_[k] = frame_.add_kernel(frame_.add_stage(names[k], scene_.needs & serves[k]), "line_pass",
+                                 sizeof(LineConstants), specialization(shape).by_number(), shape.threads);
+  }
 }
 
 LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) const {
@@ -208,23 +200,19 @@ void Lines::record(int first, int count, int substeps, double dt_s, const TimeSt
   LineConstants c = constants(dt_s, substeps, step);
   c.first_substep = static_cast<std::uint32_t>(first);
   c.substeps = static_cast<std::uint32_t>(count);
-  if (single_dispatch_ == nullptr && persistent_ == nullptr) {
-    c.passes = 1;
-    for (c.first_pass = 0; c.first_pass < passes(); ++c.first_pass) record_pass(c);
+  if (substeps_ != nullptr) {
+    c.passes = c.substeps * passes();
+    frame_.dispatch_groups(*substeps_, groups_of(shape_[0]), c);
     return;
   }
-  c.passes = c.substeps * passes();
-  if (single_dispatch_ != nullptr)
-    frame_.dispatch_groups(*single_dispatch_, {1, 1}, c);
-  else
-    frame_.dispatch_groups(*persistent_, all_groups(), c);
-}
-
-void Lines::record_pass(const LineConstants& c) {
-  const std::uint32_t colour = colour_of(c.first_pass);
-  const std::size_t kind = std::min(colour, 2u);
-  const auto chains = static_cast<std::uint32_t>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
-  frame_.dispatch_groups(*pass_[kind], vulkan::groups_for(chains, shape_[kind].chains_a_group()), c);
+  c.passes = 1;
+  for (c.first_pass = 0; c.first_pass < passes(); ++c.first_pass) {
+    // Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
+    const std::uint32_t colour = passes() - 1 - c.first_pass;
+    const auto chains = static_cast<std::uint32_t>(colour == 0 ? scene_.cloth.rows : scene_.cloth.columns);
+    frame_.dispatch_groups(*pass_[std::min(colour, 2u)],
+                           vulkan::groups_for(chains, shape_[std::min(colour, 1u)].chains_a_group()), c);
+  }
 }
 
 }  // namespace clothbench::pbd_gpu

@@ -1,7 +1,6 @@
-// XPBD on whole grid lines at once. A chain is a line of one of four colours: 0 rows, 1 columns, 2 and 3 the diagonals,
-// wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap. The links of a chain are
-// a tridiagonal system in their multipliers, its bending hinges a pentadiagonal one; both are solved directly. LANES
-// threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// XPBD on whole grid lines at once (xpbd/lines/README.md). A chain is a line of one of four colours: 0 rows, 1 columns,
+// 2 and 3 the diagonals, wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap.
+// LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 
@@ -39,8 +38,8 @@ bool goes_on(uint i) {
 /// Lines on the border carry half the width, so they are twice as compliant.
 float border() { return colour < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
 
-// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By shuffles
-// within a subgroup, else through shared memory.
+// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By
+// shuffles within a subgroup, else through shared memory.
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
 const uint PART = LANES / PARTS;                                               // its threads in one of them
@@ -84,32 +83,29 @@ vec4 from_part(vec4 mine, out vec4 below) {
   return exchanged[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
 }
 
+// The same of a row of a system, by the type of its entries (tridiagonal.glsl).
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
-void exchange_link(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
-                   out float a_above, out float c_above, out float d_above) {
+float inverse_of(float x) { return 1.0 / x; }
+void exchange_row(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
+                  out float a_above, out float c_above, out float d_above) {
   vec4 below, above;
   exchange(vec4(a, c, d, 0.0), n, below, above);
   a_below = below.x; c_below = below.y; d_below = below.z;
   a_above = above.x; c_above = above.y; d_above = above.z;
 }
-void to_part_link(inout float a, inout float c, inout float d) {
+void to_part(inout float a, inout float c, inout float d) {
   vec4 row = to_part(vec4(a, c, d, 0.0));
   a = row.x; c = row.y; d = row.z;
 }
-void from_part_link(inout float d, out float d_below) {
+void from_part(inout float d, out float d_below) {
   vec4 below;
   d = from_part(vec4(d), below).x;
   d_below = below.x;
 }
 #define SOLVE solve_links
-#define EXCHANGE_WITH exchange_link
-#define TO_PART to_part_link
-#define FROM_PART from_part_link
 #define MATRIX float
 #define VECTOR float
 #define M K
-#define UNIT 1.0
-#define INVERSE(x) (1.0 / (x))
 #define LOWER link_lower
 #define DIAGONAL link_diagonal
 #define UPPER link_upper
@@ -120,8 +116,9 @@ void from_part_link(inout float d, out float d_below) {
 const uint BLOCKS = K > 1u ? K / 2u : 1u;
 mat2 hinge_lower[BLOCKS], hinge_diagonal[BLOCKS], hinge_upper[BLOCKS];
 mat3x2 hinge_right[BLOCKS];  // one column per coordinate
-void exchange_hinge(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2 c_below, out mat3x2 d_below,
-                    out mat2 a_above, out mat2 c_above, out mat3x2 d_above) {
+mat2 inverse_of(mat2 x) { return inverse(x); }
+void exchange_row(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2 c_below, out mat3x2 d_below,
+                  out mat2 a_above, out mat2 c_above, out mat3x2 d_above) {
   vec4 below, above;
   exchange(vec4(a[0], a[1]), n, below, above);
   a_below = mat2(below.xy, below.zw);
@@ -135,7 +132,7 @@ void exchange_hinge(uint n, mat2 a, mat2 c, mat3x2 d, out mat2 a_below, out mat2
   d_below = mat3x2(below.xy, below.zw, z_below.xy);
   d_above = mat3x2(above.xy, above.zw, z_above.xy);
 }
-void to_part_hinge(inout mat2 a, inout mat2 c, inout mat3x2 d) {
+void to_part(inout mat2 a, inout mat2 c, inout mat3x2 d) {
   vec4 row = to_part(vec4(a[0], a[1]));
   a = mat2(row.xy, row.zw);
   row = to_part(vec4(c[0], c[1]));
@@ -143,20 +140,15 @@ void to_part_hinge(inout mat2 a, inout mat2 c, inout mat3x2 d) {
   row = to_part(vec4(d[0], d[1]));
   d = mat3x2(row.xy, row.zw, to_part(vec4(d[2], 0.0, 0.0)).xy);
 }
-void from_part_hinge(inout mat3x2 d, out mat3x2 d_below) {
+void from_part(inout mat3x2 d, out mat3x2 d_below) {
   vec4 below, z_below, row = from_part(vec4(d[0], d[1]), below);
   d = mat3x2(row.xy, row.zw, from_part(vec4(d[2], 0.0, 0.0), z_below).xy);
   d_below = mat3x2(below.xy, below.zw, z_below.xy);
 }
 #define SOLVE solve_hinges
-#define EXCHANGE_WITH exchange_hinge
-#define TO_PART to_part_hinge
-#define FROM_PART from_part_hinge
 #define MATRIX mat2
 #define VECTOR mat3x2
 #define M BLOCKS
-#define UNIT mat2(1.0)
-#define INVERSE(x) inverse(x)
 #define LOWER hinge_lower
 #define DIAGONAL hinge_diagonal
 #define UPPER hinge_upper
@@ -178,7 +170,7 @@ float link_length[K], pull[K];  // tension over length that links carry already
 float compliance() { return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border(); }
 
 /// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
-/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest` is the minimum of alpha, as a fraction of the inverse mass.
+/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest`: the minimum of alpha, as a fraction of the inverse mass.
 void link_equations(float smallest) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);

@@ -8,6 +8,9 @@
 
 namespace clothbench::pbd_gpu {
 
+inline constexpr FeatureSet kLineFeatures{Feature::Stretch, Feature::Shear, Feature::Bend,
+                                          Feature::Damping, Feature::Pins,  Feature::MovingPins};
+
 /// The constraints of `xpbd`: a substep integrates, applies tethers and solves rows, columns and diagonals, each line
 /// directly. One dispatch takes any number of substeps: of one workgroup for small cloths, of many for larger ones
 /// where the device runs them all at once. Else a substep takes four dispatches (two without shear).
@@ -19,9 +22,10 @@ class Lines {
   /// Adds its stages and kernels. With contact by separating planes vertices have any inverse mass while they are
   /// solved, which the kernel of a frame in one workgroup cannot do.
   void add_kernels(bool any_masses);
-  /// The kernel of lines and contact in one: its shape, of workgroups that run at once, and what it is specialized to.
+  /// Shape of the kernel of lines and contact in one.
   LineShape shape_with_contact() const;
-  LineSpecialization specialization_with_contact(const LineShape&);
+  /// What a kernel of workgroups that run at once is specialized to.
+  LineSpecialization persistent_specialization(const LineShape&);
   /// Shape of the kernel that takes a frame in one dispatch in one workgroup (threads 0 if cloth or device do not fit
   /// it), and what it is specialized to.
   LineShape single_dispatch_shape() const;
@@ -33,33 +37,27 @@ class Lines {
   /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. A cloth that does
   /// not fit one dispatch takes one substep a call.
   void record(int first, int count, int substeps, double dt_s, const TimeStep&);
-  bool is_single_dispatch() const {
-    return single_dispatch_ != nullptr || (persistent_ != nullptr && scene_.grips.vertices.empty());
-  }
+  bool is_single_dispatch() const { return substeps_ != nullptr && (moves_grips_ || scene_.grips.vertices.empty()); }
   /// True if its kernels move attached vertices with their hands.
-  bool moves_grips() const { return single_dispatch_ != nullptr; }
+  bool moves_grips() const { return moves_grips_; }
 
  private:
   LineDevice device() const;
   std::uint32_t features() const;
   LineSpecialization specialization(const LineShape&) const;
-  void add_single_dispatch(const LineShape&);
   bool add_persistent();
   void add_passes();
   LineRequest request() const;
-  /// Diagonals are solved first, then columns, then rows: the constraints along warp and weft are satisfied best.
-  std::uint32_t colour_of(std::uint32_t pass) const { return passes() - 1 - pass; }
-  vulkan::Groups all_groups() const { return groups_of(shape_[0]); }
-  void record_pass(const LineConstants&);
 
   FrameBuilder& frame_;
   const Scene& scene_;
   const Tethers tethers_;
   const std::vector<std::uint8_t> over_constrained_;
   const bool uses_bdf2_, tension_, corrects_splitting_, regularised_;
-  const FrameKernel *single_dispatch_ = nullptr, *persistent_ = nullptr;
+  bool moves_grips_ = false;
+  const FrameKernel* substeps_ = nullptr;     ///< takes any number of substeps in a dispatch; else pass_ one colour
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
-  std::array<LineShape, 3> shape_{};
+  std::array<LineShape, 2> shape_{};          ///< of rows, and of columns and diagonals
 };
 
 }  // namespace clothbench::pbd_gpu

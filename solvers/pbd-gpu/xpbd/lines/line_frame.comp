@@ -13,7 +13,7 @@ layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[];
 layout(std430, binding = BIND_FRAME_STATE) buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) writeonly buffer Diagnostics { ContactDiagnostics diagnostics; };
 layout(std430, binding = BIND_SHAPE_AABBS) readonly buffer ShapeAabbs { ShapeAabb boxes[]; };  // shapes, then groups
-FUSED_FRAME_CONSTANTS(SPECIALIZE)
+CONTACT_CONSTANTS(SPECIALIZE)
 const uint SELF = 0u;
 #endif
 #include "xpbd/lines/grid_lines.glsl"

@@ -1,28 +1,14 @@
 #pragma once
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 #include <vector>
 
 #include "xpbd/constraints.hpp"
 
 namespace clothbench::pbd_gpu {
 
-/// Whether a scene gets a part of the method, and else why not.
-struct FeatureDecision {
-  bool enabled = false;
-  std::string reason;
-};
-
 /// One flag for each chain of the four colours (rows, columns, both diagonals; max(columns, rows) each): 1 if two held
 /// vertices may pull it over-constrained, so that its links are one more than its degrees of freedom.
 std::vector<std::uint8_t> over_constrained_lines(const Scene&);
-
-/// Whether links and masses are all alike in an elastic sheet that is held and touches nothing, so that its colours
-/// may be coupled (xpbd/time/README.md); else why not.
-FeatureDecision may_correct_splitting(const Scene&, const nlohmann::json& settings);
-/// Implicit substeps of BDF2 in a frame that a stretch wave takes across as many cells as the correction bears.
-double substeps_for_splitting(const Scene&);
 
 /// Properties of a device that decide how lines are spread over threads.
 struct LineDevice {

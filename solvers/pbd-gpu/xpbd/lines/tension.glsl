@@ -2,8 +2,8 @@
 // springs of their tension, which is a system with vertices as unknowns. It is diagonally dominant at any load.
 float turn_lower[K], turn_diagonal[K], turn_upper[K];
 vec3 turn_right[K];
-void exchange_turn(uint n, float a, float c, vec3 d, out float a_below, out float c_below, out vec3 d_below,
-                   out float a_above, out float c_above, out vec3 d_above) {
+void exchange_row(uint n, float a, float c, vec3 d, out float a_below, out float c_below, out vec3 d_below,
+                  out float a_above, out float c_above, out vec3 d_above) {
   vec4 below, above;
   exchange(vec4(d, 0.0), n, below, above);
   d_below = below.xyz;
@@ -12,25 +12,20 @@ void exchange_turn(uint n, float a, float c, vec3 d, out float a_below, out floa
   a_below = below.x; c_below = below.y;
   a_above = above.x; c_above = above.y;
 }
-void to_part_turn(inout float a, inout float c, inout vec3 d) {
+void to_part(inout float a, inout float c, inout vec3 d) {
   d = to_part(vec4(d, 0.0)).xyz;
   vec4 row = to_part(vec4(a, c, 0.0, 0.0));
   a = row.x; c = row.y;
 }
-void from_part_turn(inout vec3 d, out vec3 d_below) {
+void from_part(inout vec3 d, out vec3 d_below) {
   vec4 below;
   d = from_part(vec4(d, 0.0), below).xyz;
   d_below = below.xyz;
 }
 #define SOLVE solve_turn
-#define EXCHANGE_WITH exchange_turn
-#define TO_PART to_part_turn
-#define FROM_PART from_part_turn
 #define MATRIX float
 #define VECTOR vec3
 #define M K
-#define UNIT 1.0
-#define INVERSE(x) (1.0 / (x))
 #define LOWER turn_lower
 #define DIAGONAL turn_diagonal
 #define UPPER turn_upper

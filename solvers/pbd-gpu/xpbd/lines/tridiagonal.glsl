@@ -1,12 +1,10 @@
 // A tridiagonal system along a chain, MATRIX a row: LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT. Every thread
-// holds M consecutive rows of it. Included once for each kind of entry, with the macros set: SOLVE and its
-// EXCHANGE_WITH, TO_PART and FROM_PART, MATRIX, VECTOR, M, UNIT, INVERSE and the four arrays. Threads of a chain beyond
-// its end hold rows of UNIT.
+// holds M consecutive rows of it. Included once for each kind of entry, with the macros SOLVE, MATRIX, VECTOR, M and
+// the four arrays. Threads of a chain beyond its end hold rows of the unit matrix.
 //
-// Each thread eliminates its own rows, until one a thread is left that knows its neighbours' (Wang 1981, "A parallel
-// method for tridiagonal equations"); those are solved by parallel cyclic reduction (Hockney & Jesshope 1981), in
-// `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a system of its own, then by
-// shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
+// Each thread eliminates its own rows until one is left (Wang 1981); those are solved by parallel cyclic reduction
+// (Hockney & Jesshope 1981) in `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a
+// system of its own, then by shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
 
 /// The reduction of one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the row before.
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
@@ -14,8 +12,8 @@ void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_b
   VECTOR d_above;
   // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
 #define REDUCE(n) \
-    EXCHANGE_WITH(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
-    f = INVERSE(UNIT - a * c_below - c * a_above); \
+    exchange_row(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
+    f = inverse_of(MATRIX(1.0) - a * c_below - c * a_above); \
     d = f * (d - a * d_below - c * d_above); \
     a = -(f * (a * a_below)); \
     c = -(f * (c * c_above));
@@ -25,7 +23,7 @@ void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_b
       REDUCE(n)
       --rounds;
     }
-    TO_PART(a, c, d);
+    to_part(a, c, d);
     apart = true;
     [[unroll]] for (uint n = 1u; n < PART; n <<= 1u) {
       if (rounds == 0u) break;
@@ -33,23 +31,23 @@ void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_b
       --rounds;
     }
     apart = false;
-    FROM_PART(d, d_below);
+    from_part(d, d_below);
   } else
   {
     for (uint n = 1u; n < LANES && rounds > 0u; n <<= 1u, --rounds) { REDUCE(n) }
-    EXCHANGE_WITH(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
+    exchange_row(1u, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above);
   }
 #undef REDUCE
 }
 
 void SOLVE(uint rounds, out VECTOR before) {
-  MATRIX f = INVERSE(DIAGONAL[0]);
+  MATRIX f = inverse_of(DIAGONAL[0]);
   LOWER[0] = f * LOWER[0];
   UPPER[0] = f * UPPER[0];
   RIGHT[0] = f * RIGHT[0];
   // Forwards: u[k] = RIGHT[k] - LOWER[k] before - UPPER[k] u[k+1].
   [[unroll]] for (uint k = 1u; k < M; ++k) {
-    f = INVERSE(DIAGONAL[k] - LOWER[k] * UPPER[k - 1u]);
+    f = inverse_of(DIAGONAL[k] - LOWER[k] * UPPER[k - 1u]);
     RIGHT[k] = f * (RIGHT[k] - LOWER[k] * RIGHT[k - 1u]);
     UPPER[k] = f * UPPER[k];
     LOWER[k] = -(f * (LOWER[k] * LOWER[k - 1u]));
@@ -63,13 +61,13 @@ void SOLVE(uint rounds, out VECTOR before) {
   }
   const uint last = M - 1u;
   // The next thread's first row in terms of this thread's last and its own last; a thread of one row is its own last.
-  MATRIX zero = UNIT - UNIT;
+  MATRIX zero = MATRIX(0.0);
   MATRIX a, c, a_below, c_below;
   VECTOR d, d_below;
-  MATRIX a_above = M > 1u ? LOWER[0] : zero, c_above = M > 1u ? UPPER[0] : -UNIT;
+  MATRIX a_above = M > 1u ? LOWER[0] : zero, c_above = M > 1u ? UPPER[0] : -MATRIX(1.0);
   VECTOR d_above = M > 1u ? RIGHT[0] : RIGHT[0] - RIGHT[0];
-  EXCHANGE_WITH(1u, a_above, c_above, d_above, a_below, c_below, d_below, a_above, c_above, d_above);
-  f = INVERSE(UNIT - UPPER[last] * a_above);
+  exchange_row(1u, a_above, c_above, d_above, a_below, c_below, d_below, a_above, c_above, d_above);
+  f = inverse_of(MATRIX(1.0) - UPPER[last] * a_above);
   a = f * LOWER[last];
   c = -(f * (UPPER[last] * c_above));
   d = f * (RIGHT[last] - UPPER[last] * d_above);
@@ -79,14 +77,9 @@ void SOLVE(uint rounds, out VECTOR before) {
   [[unroll]] for (uint k = 0u; k < last; ++k) RIGHT[k] -= LOWER[k] * before + UPPER[k] * d;
 }
 #undef SOLVE
-#undef EXCHANGE_WITH
-#undef TO_PART
-#undef FROM_PART
 #undef MATRIX
 #undef VECTOR
 #undef M
-#undef UNIT
-#undef INVERSE
 #undef LOWER
 #undef DIAGONAL
 #undef UPPER

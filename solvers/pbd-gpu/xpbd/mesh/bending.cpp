@@ -1,5 +1,3 @@
-#include "xpbd/mesh/bending.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "clothbench/vector.hpp"
+#include "xpbd/mesh/matrices.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

@@ -1,12 +1,10 @@
 #version 450
-// One colour of chains of a cloth whose links are not all alike: a triangle mesh, a grid of uneven cells or
-// stiffnesses. A chain is a path of links of which each vertex of the cloth is on at most one in a colour; a thread
-// holds a vertex and the link to the next entry, one workgroup per block of whole chains. The links of a chain are a
-// tridiagonal system in their multipliers (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once), solved by
-// parallel cyclic reduction. The first colour of a substep has every vertex and integrates what it loads. A mesh that
-// bends has passes before the first colour: one that integrates, then the iterations of its bending, one thread per
-// vertex. With MEMBRANE triangles of constant strain take part in these, and there are no colours. A dispatch is one
-// pass, or with PERSISTENT any number of them: then its workgroups run at once and wait for one another.
+// One colour of chains (xpbd/mesh/README.md): a thread holds a vertex and the link to the next entry, a workgroup a
+// block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved by parallel cyclic
+// reduction. The first colour of a substep has every vertex and integrates what it loads. A mesh that bends has passes
+// before the first colour: one that integrates, then the iterations of its bending, one thread per vertex. With
+// MEMBRANE triangles take part in these, and there are no colours. PERSISTENT: a dispatch is any number of passes, not
+// one.
 #include "common/common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass

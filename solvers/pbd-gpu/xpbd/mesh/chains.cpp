@@ -4,8 +4,7 @@
 
 #include "xpbd/constraints.hpp"
 #include "xpbd/grid_barrier.hpp"
-#include "xpbd/mesh/bending.hpp"
-#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/mesh/matrices.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

@@ -10,12 +10,11 @@ namespace clothbench::pbd_gpu {
 /// True if the links of a cloth are not all alike, so that chains (chain_pass) solve it instead of lines.
 bool needs_chain_solver(const Scene&);
 
-/// Factor on the substeps of an even cloth. Short links turn faster, by the square root of the ratio of lengths. The
-/// factor is 1 while the shortest link that is not welded has at least half of the mean length.
+/// Factor on the substeps of an even cloth: short links turn faster, by the square root of the ratio of lengths. 1
+/// while the shortest link that is not welded has at least half of the mean length.
 double substeps_for_short_links(const Scene&);
 
-/// Particles and links of a chain cloth. Edges shorter than a fiftieth of the mean length are slivers, and the vertices
-/// at their ends are welded: so short a link turns by any angle within a substep of real-time length.
+/// Particles and links of a chain cloth, slivers welded (xpbd/mesh/README.md).
 struct ChainCloth {
   std::vector<std::uint32_t> particle;  ///< one a vertex: itself, or the vertex that it is welded to
   struct Link {
@@ -36,14 +35,14 @@ struct EdgePath {
   int colour = -1;                      ///< wanted colour; -1: any
   std::vector<float> share = {};        ///< of each link's stiffness; empty: 1
 };
-/// Strands of a cloth; every link is on exactly one, or on two that share its stiffness. The edge paths of a grid are
-/// its rows, columns and (with shear) both diagonals.
+/// Edge paths of a cloth; every link is on exactly one, or on two that share its stiffness. The edge paths of a grid
+/// are its rows, columns and (with shear) both diagonals.
 std::vector<EdgePath> edge_paths(const Scene&, const ChainCloth&);
 
 /// One colour: chains that share no vertex.
 struct ChainColour {
   std::vector<std::vector<std::uint32_t>> chains;  ///< each of at least two vertices and at most a block
-  std::vector<std::vector<float>> shares;          ///< of each chain's links, as in a edge path
+  std::vector<std::vector<float>> shares;          ///< of each chain's links, as in an edge path
   std::uint32_t longest() const;                   ///< links of the longest chain
 };
 /// Cuts edge paths into chains and spreads them over few colours, without cutting much. Colours are in the order in

@@ -1,5 +1,3 @@
-#include "xpbd/mesh/membrane.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +5,9 @@
 
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
-#include "xpbd/mesh/bending.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
-#include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -100,13 +97,11 @@ double membrane_bound(const Scene& scene) {
 }
 
 FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& settings) {
-  const std::string wanted = settings.value(kTuning, nlohmann::json::object()).value("membrane", "auto");
   if (!scene.cloth.mesh) return {false, "the cloth is a grid"};
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
   if (std::any_of(scene.material.regions.begin(), scene.material.regions.end(),
                   [](const StiffnessRegion& r) { return !r.membrane_stiffness_N_per_m; }))
     return {false, "a region of the cloth is inextensible"};
-  if (wanted == "never") return {false, "setting tuning.membrane=never"};
   if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps;

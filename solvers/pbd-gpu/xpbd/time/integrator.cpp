@@ -12,9 +12,8 @@
 #include "xpbd/constraints.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
-#include "xpbd/mesh/membrane.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/rules.hpp"
-#include "xpbd/time/substep_count.hpp"
 
 namespace clothbench::pbd_gpu {
 

@@ -1,5 +1,3 @@
-#include "xpbd/time/substep_count.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -11,7 +11,7 @@ layout(std430, binding = BIND_KINEMATIC_END) readonly buffer KinematicEnd { vec4
 layout(std430, binding = BIND_SHAPES) readonly buffer ConvexShapeBuffer { ConvexShape shapes[]; };
 layout(std430, binding = BIND_POINTS) writeonly buffer Points { ShapePoint points[]; };
 layout(std430, binding = BIND_SHAPE_AABBS) buffer ShapeAabbs { ShapeAabb boxes[]; };
-layout(push_constant) uniform Push { ContactConstants p; };
+CONTACT_CONSTANTS(SPECIALIZE)
 
 shared uint lows[3u * SHAPES_PER_GROUP], highs[3u * SHAPES_PER_GROUP], displacements[SHAPES_PER_GROUP];
 
@@ -35,8 +35,8 @@ ShapeAabb box_of(uint k, uint t) {
 
 void main() {
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, t = gl_LocalInvocationIndex;
-  if (group >= p.groups) return;
-  uint first = SHAPES_PER_GROUP * group, n = min(SHAPES_PER_GROUP, p.shapes - first);
+  if (group >= GROUPS) return;
+  uint first = SHAPES_PER_GROUP * group, n = min(SHAPES_PER_GROUP, SHAPES - first);
   if (t < SHAPES_PER_GROUP) {
     displacements[t] = 0u;
     for (uint c = 0u; c < 3u; ++c) {
@@ -81,5 +81,5 @@ void main() {
       b.high[c] = max(b.high[c], of_ordered(highs[3u * o + c]));
     }
   }
-  boxes[p.shapes + group] = b;
+  boxes[SHAPES + group] = b;
 }

@@ -1,9 +1,7 @@
-// Last pass of a substep. Projects each vertex onto the intersection of the half-spaces given by the separating planes
-// of its triangles: the feasible point nearest to the predicted position, within the vertex's displacement limit.
-// Method: Hildreth's (1957) dual coordinate descent. If it does not converge to a feasible point, the vertex moves from
-// a known feasible point (its start, or its start carried along by a kinematic shape) towards the prediction until it
-// reaches the first plane. If even the start violates a plane, the point with the smallest violation is used and counted in
-// diagnostics.infeasible_vertices.
+// Last pass of a substep. Projects each vertex onto its separating planes by Hildreth's (1957) dual coordinate descent.
+// Where that finds no feasible point, the vertex moves from a known one (its start, or its start carried along by a
+// kinematic shape) towards the prediction until it reaches the first plane. If even the start violates a plane, the
+// point with the smallest violation is used and counted in diagnostics.infeasible_vertices.
 const uint kSweeps = 30u;
 const float kFeasibilityTolerance_m = 2e-6;  // that a vertex may lack before its planes, by rounding
 uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;

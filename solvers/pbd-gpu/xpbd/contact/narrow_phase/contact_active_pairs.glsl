@@ -1,9 +1,6 @@
-// Selects the active pairs of a substep: the candidate pairs that can come into contact before its end. Later passes
-// process only these. Tests, cheapest first: the stored lower bound on distance less the motion since (may_be_active);
-// the gap along the last separating normal, or between the centres (is_active); nearest points
-// (contact_nearest_points.glsl). An active pair is recorded twice: as a bit in active_bits, so that a vertex visits its
-// pairs in the fixed order of the candidate list (sums stay reproducible), and as an entry of a list in any order, over
-// which threads are distributed.
+// Selects the active pairs of a substep: the candidate pairs that can come into contact before its end. An active pair
+// is recorded twice: as a bit in active_bits, so that a vertex visits its pairs in the fixed order of the candidate
+// list (sums stay reproducible), and as an entry of a list in any order, over which threads are distributed.
 
 float shape_displacement(uint k) { return p.substep_part * boxes[k].low.w; }
 float max_of(uvec4 e, bool of_ways) {

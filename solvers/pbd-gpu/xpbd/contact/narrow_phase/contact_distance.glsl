@@ -1,4 +1,4 @@
-// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex convex shape. Every distance that is
+// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex shape. Every distance that is
 // used is certified: the gap between the two along a direction, which is at most their distance whatever rounding did
 // to the direction, and equal to it for the best one. Coordinates are relative to a point near the primitive.
 vec3 cloth[3];     // the primitive's vertices

@@ -11,7 +11,7 @@ float recovery(float lacking, float margin) {
   return response_round < 2u ? clamp(lacking, 0.0, kRecovered * margin) : 0.0;
 }
 
-/// `push`: by how much the contact has come too active in this substep [m]; `slip`: its relative displacement.
+/// `correction`: by how much the gap is below its target [m]; `slip`: the relative displacement in this substep.
 Correction respond_along(vec3 n, float correction, float recover, vec3 slip, float friction) {
   if (!(correction + recover > 0.0)) return Correction(vec3(0.0), 0.0);
   float velocity_part = max(0.0, correction);
