@@ -36,10 +36,10 @@ const Row* largest(const Group& g) {
   return at == g.end() ? nullptr : *at;
 }
 
-ViewColumn at_largest(std::string head, std::function<std::string(const Row&)> text) {
-  return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) {
+ViewColumn at_largest(std::string head, std::function<Cell(const Row&)> cell) {
+  return {std::move(head), [cell = std::move(cell)](const Group& g, const Texts&) {
             const Row* r = largest(g);
-            return r == nullptr ? std::string() : text(*r);
+            return r == nullptr ? Cell() : cell(*r);
           }};
 }
 
@@ -80,26 +80,28 @@ View speed_and_error() {
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
               [](const Group& g) {
                 const Row& r = *g.front();
-                if (r.published >= 0) return fmt::format("{:g}", r.value("fps_at_72"));
-                return r.status() == "ok" ? rate_text(r.value("fps_median")) : ending(r.run->outcome);
+                const double fps = r.value(r.published >= 0 ? "fps_at_72" : "fps_median");
+                if (r.published >= 0) return Cell(fmt::format("{:g}", fps), fps);
+                return r.status() == "ok" ? Cell(rate_text(fps), fps) : ending_cell(*r.run);
               },
               [](const Row& r) { return r.resolution.size(); }};
-  v.columns = {at_largest("95 % interval", rate_interval),
+  v.columns = {at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
                at_largest("× " + time_baseline(),
-                          [](const Row& r) { return significant(r.baseline_s / r.value("frame_wall_median_s"), 3); }),
-               at_largest("rank", [](const Row& r) { return r.rank > 0 ? std::to_string(r.rank) : std::string(); }),
+                          [](const Row& r) { return number_cell(r.baseline_s / r.value("frame_wall_median_s"), 3); }),
+               at_largest("rank", [](const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }),
                at_largest("free-fall error",
                           [](const Row& r) {
                             const double e = r.value("free_fall_error");
-                            return std::isfinite(e) ? fmt::format("{:.1e}{}", e, e > kFallLimit ? " !" : "")
-                                                    : std::string();
+                            if (!std::isfinite(e)) return Cell();
+                            return e > kFallLimit ? Cell(fmt::format("{:.1e} !", e), e, "bad")
+                                                  : Cell(fmt::format("{:.1e}", e), e);
                           }),
                at_largest("stretch, mean / maximum [%]",
                           [](const Row& r) {
-                            return paired(100 * r.value("stretch_mean_last_second"),
-                                          100 * r.value("stretch_max_last_second"), " / ", 2);
+                            const double mean = 100 * r.value("stretch_mean_last_second");
+                            return Cell(paired(mean, 100 * r.value("stretch_max_last_second"), " / ", 2), mean);
                           }),
-               at_largest("trials", [](const Row& r) { return trials_column().text({&r}, {}); })};
+               at_largest("trials", [](const Row& r) { return trials_column().cell({&r}, {}); })};
   for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));
   v.more = peers;
   v.timed = true;

@@ -7,6 +7,7 @@
 
 #include "base/interval.hpp"
 #include "report/report.hpp"
+#include "report/verdict.hpp"
 
 namespace clothbench {
 namespace {
@@ -20,7 +21,7 @@ struct TableRow {
 
 constexpr const char* kAll = "all";
 
-bool has_value(const std::string& text) { return !text.empty() && text != "–" && !text.starts_with("– /"); }
+bool has_value(const Cell& c) { return !c.text.empty() && c.text != "–"; }
 
 /// Every combination of a run's values, one per key.
 std::vector<Texts> combinations(const View& v, const Row& r) {
@@ -74,12 +75,16 @@ Texts values_across(const Across& a, const Group& runs) {
 }
 
 /// Adds a column if a row has a value in it. Returns whether it was added.
-bool add_column(ViewTable& t, const std::string& head, const Texts& cells, bool always,
+bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& cells, bool always,
                 const std::string& solver = "") {
   if (!always && std::none_of(cells.begin(), cells.end(), has_value)) return false;
   t.solvers.push_back(solver);
   t.rows[0].push_back(head);
-  for (std::size_t k = 0; k < cells.size(); ++k) t.rows[k + 1].push_back(or_dash(cells[k]));
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    t.rows[k + 1].push_back(or_dash(cells[k].text));
+    t.cells[k].push_back(cells[k]);
+    t.cells[k].back().text = t.rows[k + 1].back();
+  }
   return true;
 }
 
@@ -96,30 +101,32 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   ViewTable t{{title, note_of(v, runs), {}, v.in_full}};
   const std::vector<TableRow> rows = rows_of(v, runs);
   t.rows.resize(rows.size() + 1);
+  t.cells.resize(rows.size());
   for (const TableRow& r : rows) t.runs.push_back(r.runs.front());
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
-    Texts cells;
-    for (const TableRow& r : rows) cells.push_back(r.keys[k]);
+    std::vector<Cell> cells;
+    for (const TableRow& r : rows) cells.emplace_back(r.keys[k]);
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
       t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
   bool any = v.columns.empty() && !v.across;
   if (v.across)
     for (const std::string& value : values_across(*v.across, runs)) {
-      Texts cells;
+      std::vector<Cell> cells;
       std::string solver;
       for (const TableRow& r : rows) {
         const auto at = r.across.find(value);
-        cells.push_back(at == r.across.end() ? "" : v.across->cell(at->second));
+        cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second));
         any = any || has_value(cells.back());
         if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
       }
       add_column(t, value, cells, true, solver);
     }
   for (const ViewColumn& c : v.columns) {
-    Texts cells;
-    for (const TableRow& r : rows) cells.push_back(c.text(r.runs, r.keys));
-    const bool same = c.if_differs && std::all_of(cells.begin(), cells.end(), [&](auto& x) { return x == cells[0]; });
+    std::vector<Cell> cells;
+    for (const TableRow& r : rows) cells.push_back(c.cell(r.runs, r.keys));
+    const bool same =
+        c.if_differs && std::all_of(cells.begin(), cells.end(), [&](auto& x) { return x.text == cells[0].text; });
     any = (!same && add_column(t, c.head, cells, false)) || any;
   }
   if (!any && (!v.timed || withheld_note(runs).empty())) t.rows.resize(1);
@@ -146,14 +153,14 @@ Key sides_key() {
   return key("sides", [](const Row& r) { return or_dash(r.sides); });
 }
 
-ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs) {
-  return {std::move(head), [text = std::move(text)](const Group& g, const Texts&) { return text(*g.front()); },
+ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs) {
+  return {std::move(head), [cell = std::move(cell)](const Group& g, const Texts&) { return cell(*g.front()); },
           if_differs};
 }
 
 ViewColumn trials_column() {
   return column("trials", [](const Row& r) {
-    return r.run->trials.empty() ? std::string() : std::to_string(r.run->trials.size());
+    return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
   });
 }
 
@@ -180,10 +187,25 @@ const std::vector<View>& views() {
   return all;
 }
 
-std::string share_text(std::size_t passed, std::size_t all) {
-  if (all == 0) return "";
+Cell number_cell(double v, int digits) { return {significant(v, digits), v}; }
+
+Cell share_cell(std::size_t passed, std::size_t all) {
+  if (all == 0) return {};
   const Interval i = wilson_95(passed, all);
-  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", passed, all, 100 * i.low, 100 * i.high);
+  return {fmt::format("{}/{} ({:.0f}–{:.0f} %)", passed, all, 100 * i.low, 100 * i.high),
+          static_cast<double>(passed) / static_cast<double>(all)};
+}
+
+Cell ending_cell(const RunRecord& c) {
+  const std::string& status = c.outcome.status;
+  const bool not_run = status == "unsupported" || status == "missing" || status == "over_budget";
+  return {ending(c.outcome), kMissing, status == "ok" ? "" : not_run ? "dim" : "bad"};
+}
+
+Cell verdict_cell(const RunRecord& c) {
+  if (c.outcome.status != "ok") return ending_cell(c);
+  const std::string v = verdict(c);
+  return {v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
 }
 
 const std::vector<Section>& sections() {

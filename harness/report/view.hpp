@@ -13,6 +13,26 @@ namespace clothbench {
 using Group = std::vector<const Row*>;
 using Texts = std::vector<std::string>;
 
+/// A value of a table: its text, and what it means to the page, which sorts by the number and tints by the tone.
+struct Cell {
+  std::string text;
+  double value = kMissing;  ///< NaN: the text is no number
+  const char* tone = "";    ///< "good", "bad", "dim" or none
+
+  Cell() = default;
+  Cell(std::string t, double v = kMissing, const char* tinted = "") : text(std::move(t)), value(v), tone(tinted) {}
+  Cell(const char* t) : text(t) {}
+};
+/// A number with `digits` significant digits; "–" if it is missing.
+Cell number_cell(double v, int digits);
+
+/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's 95 % interval; empty without runs.
+Cell share_cell(std::size_t passed, std::size_t all);
+
+/// The verdict on a run; how it ended.
+Cell verdict_cell(const RunRecord&);
+Cell ending_cell(const RunRecord&);
+
 /// Divides runs into rows or columns. A run with several values stands in several of them ("all" as well as its own).
 struct Key {
   std::string head;
@@ -33,11 +53,11 @@ Key sides_key();
 /// A value of a row; an empty text or "–" is no value.
 struct ViewColumn {
   std::string head;
-  std::function<std::string(const Group&, const Texts& keys)> text;
+  std::function<Cell(const Group&, const Texts& keys)> cell;
   bool if_differs = false;  ///< left out where all rows have the same value
 };
 /// A column that shows the row's first run.
-ViewColumn column(std::string head, std::function<std::string(const Row&)> text, bool if_differs = false);
+ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false);
 
 /// The number of timed trials of the row's first run.
 ViewColumn trials_column();
@@ -49,7 +69,7 @@ std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pic
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
   Key key;
-  std::function<std::string(const Group&)> cell;
+  std::function<Cell(const Group&)> cell;
   std::function<double(const Row&)> order = nullptr;
 };
 
@@ -70,9 +90,10 @@ struct View {
 
 /// A table with the runs behind it, for filters and commands of the page.
 struct ViewTable : Table {
-  std::vector<const Row*> runs = {};      ///< the first run of each row
-  int solver_column = -1;                 ///< column of the key that names the solver; -1: none
-  std::vector<std::string> solvers = {};  ///< by column: the solver that a column is about, or ""
+  std::vector<const Row*> runs = {};          ///< the first run of each row
+  int solver_column = -1;                     ///< column of the key that names the solver; -1: none
+  std::vector<std::vector<Cell>> cells = {};  ///< of the rows below the head; empty: text only
+  std::vector<std::string> solvers = {};      ///< by column: the solver that a column is about, or ""
 };
 
 /// The tables of a view that have rows and values; none if no run is concerned.
@@ -80,9 +101,6 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 
 /// All views, in the order of report.md.
 const std::vector<View>& views();
-
-/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's 95 % interval; empty without runs.
-std::string share_text(std::size_t passed, std::size_t all);
 
 /// Titles of sections by id, in their order: "rates", "contact", …
 struct Section {
@@ -94,6 +112,18 @@ const std::vector<Section>& sections();
 std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.
 int grade_of(const Row&);
+
+/// A run of a claim of the article, with the settings that the article leaves open.
+struct ClaimPoint {
+  std::string claim;
+  double iterations = 1, substeps = 1;
+  std::size_t bounds = 0, unmet = 0;  ///< the check of motion is no part of a claim
+  bool ended = false;
+  bool holds() const { return ended && bounds > 0 && unmet == 0; }
+  /// One of several bounds is not met.
+  bool is_near() const { return ended && bounds > 1 && unmet == 1; }
+};
+ClaimPoint claim_point(const Row&);
 
 // Parts of views(), by file.
 std::vector<View> overview_views();

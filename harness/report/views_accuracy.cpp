@@ -48,7 +48,8 @@ ViewColumn time_to(const char* head, double most, Measure clock) {
   return {head, [=](const Group& g, const Texts&) {
             const Row* r = best(
                 g, [&](const Row& row) { return row.error() <= most; }, clock);
-            return r == nullptr ? "" : fmt::format("{:.3g} ({})", (r->*clock)(), short_setting(*r));
+            return r == nullptr ? Cell()
+                                : Cell(fmt::format("{:.3g} ({})", (r->*clock)(), short_setting(*r)), (r->*clock)());
           }};
 }
 
@@ -62,8 +63,8 @@ ViewColumn best_error(std::string head, double most_ms) {
   return {std::move(head), [=](const Group& g, const Texts&) {
             const auto fits = [&](const Row& row) { return row.wall_ms_per_s() / row.frame_rate_hz() <= most_ms; };
             const Row* r = best(g, fits, &Row::error);
-            if (r == nullptr) return std::string();
-            return error_text(r->error(), r->truth->rank_floor()) + " (" + short_setting(*r) + ")";
+            if (r == nullptr) return Cell();
+            return Cell(error_text(r->error(), r->truth->rank_floor()) + " (" + short_setting(*r) + ")", r->error());
           }};
 }
 
@@ -75,7 +76,7 @@ const Row* representative(const Group& g) {
       g, [](const Row&) { return true; }, &Row::error);
 }
 
-std::string failed_text(const Group& g) {
+Cell failed_cell(const Group& g) {
   std::size_t failed = 0, over_budget = 0, able = 0;
   for (const Row* r : g) {
     if (r->status() == "over_budget")
@@ -84,8 +85,9 @@ std::string failed_text(const Group& g) {
       ++failed;
     able += r->status() != "unsupported" && r->status() != "missing";
   }
-  if (able == 0) return "unsupported";
-  return fmt::format("{} of {}", failed, g.size()) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : "");
+  if (able == 0) return {"unsupported", kMissing, "dim"};
+  return {fmt::format("{} of {}", failed, g.size()) + (over_budget > 0 ? fmt::format(", {} not run", over_budget) : ""),
+          static_cast<double>(failed) / static_cast<double>(g.size())};
 }
 
 std::string ranked_text(const Group& g) {
@@ -128,7 +130,7 @@ View work() {
     v.columns.push_back(best_error(fmt::format("error within {:g} ms", budget_ms), budget_ms));
   v.columns.push_back(best_error("best error", INFINITY));
   for (ViewColumn& c : tail_columns(representative)) v.columns.push_back(std::move(c));
-  v.columns.push_back({"failed", [](const Group& g, const Texts&) { return failed_text(g); }});
+  v.columns.push_back({"failed", [](const Group& g, const Texts&) { return failed_cell(g); }});
   v.columns.push_back(trials_column());
   v.columns.push_back({"ranked", [](const Group& g, const Texts&) { return ranked_text(g); }});
   v.timed = true;
@@ -139,7 +141,8 @@ View work() {
 ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}") {
   return {head, [=](const Group& g, const Texts&) {
             const auto at = std::find_if(g.begin(), g.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
-            return at == g.end() ? std::string() : fmt::format(fmt::runtime(form), (*at)->value(name));
+            return at == g.end() ? Cell()
+                                 : Cell(fmt::format(fmt::runtime(form), (*at)->value(name)), (*at)->value(name));
           }};
 }
 
@@ -174,7 +177,7 @@ std::string class_of(const Row& r) {
 }
 
 /// "5/7 stable, 2 failed (F1, F2)".
-std::string tally(const Group& g) {
+Cell tally(const Group& g) {
   std::map<int, std::map<std::string, int>> classes;
   int all = 0, stable = 0, unsupported = 0;
   for (const Row* r : g) {
@@ -185,7 +188,7 @@ std::string tally(const Group& g) {
     stable += grade == 0;
     if (grade > 0) ++classes[grade][class_of(*r)];
   }
-  if (all == 0) return unsupported > 0 ? "unsupported" : "–";
+  if (all == 0) return {unsupported > 0 ? "unsupported" : "–", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
   for (const auto& [grade, counts] : classes) {
     int runs = 0;
@@ -196,7 +199,7 @@ std::string tally(const Group& g) {
     }
     out += fmt::format(", {} {} ({})", runs, kGrades[grade], names);
   }
-  return out;
+  return {out, static_cast<double>(stable) / all};
 }
 
 View robustness() {
@@ -249,10 +252,10 @@ View violated() {
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
   v.columns = {{"expected", [](const Group& g, const Texts& k) { return criterion(*g.front(), k[2]); }},
                {"found", [](const Group& g, const Texts& k) {
-                  if (k[2] == "outcome") return ending(g.front()->run->outcome);
-                  if (k[2].starts_with("fail")) return std::string("fail");
+                  if (k[2] == "outcome") return ending_cell(*g.front()->run);
+                  if (k[2].starts_with("fail")) return Cell("fail", kMissing, "bad");
                   const double found = g.front()->value(k[2]);
-                  return std::isfinite(found) ? fmt::format("{:.4g}", found) : "–";
+                  return std::isfinite(found) ? Cell(fmt::format("{:.4g}", found), found) : Cell();
                 }}};
   return v;
 }
@@ -276,7 +279,6 @@ View environment() {
   for (const auto& [name, head] : kKeys)
     v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
       const json e = environment_of(*r.run, name);
-      // Facts, not verdicts: the page colours yes and no.
       if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";
       return e.is_null() ? "–" : e.is_string() ? or_dash(e.get<std::string>()) : e.dump();
     }));

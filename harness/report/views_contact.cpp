@@ -29,7 +29,7 @@ ViewColumn values(const char* head, std::vector<const char*> names, double per_s
       return v < 1e-3 ? "<0.001" : significant(v, 3);
     };
     const bool any = std::any_of(names.begin(), names.end(), [&](auto* name) { return !std::isnan(r.value(name)); });
-    return any ? joined(names, " / ", text) : std::string();
+    return any ? Cell(joined(names, " / ", text), per_si * r.value(names.front())) : Cell();
   });
 }
 
@@ -40,11 +40,11 @@ std::string offset_of(const Row& r) {
 }
 
 /// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
-std::string pass_rate(const Group& g) {
+Cell pass_rate(const Group& g) {
   std::vector<const RunRecord*> runs;
   for (const Row* r : g) runs.push_back(r->run);
   const VerdictCounts n = count_verdicts(runs);
-  return share_text(n.passed, n.runs);
+  return share_cell(n.passed, n.runs);
 }
 
 View verdicts() {
@@ -55,7 +55,7 @@ View verdicts() {
          in_contact};
   v.keys = {{"scene", [](const Row& r) { return Texts{r.scene, kAllRuns}; }}};
   v.by_key = true;
-  v.across = {solver_key(), [](const Group& g) { return g.size() > 1 ? pass_rate(g) : verdict(*g.front()->run); }};
+  v.across = {solver_key(), [](const Group& g) { return g.size() > 1 ? pass_rate(g) : verdict_cell(*g.front()->run); }};
   return v;
 }
 
@@ -72,8 +72,8 @@ View contact() {
       in_contact};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
-      column("verdict", [](const Row& r) { return verdict(*r.run); }),
-      column("contact offset [mm]", offset_of),
+      column("verdict", [](const Row& r) { return verdict_cell(*r.run); }),
+      column("contact offset [mm]", [](const Row& r) { return Cell(offset_of(r), 1e3 * r.offset_m().first); }),
       values("crossings", {"crossings_max"}),
       values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, 1e3),
       values("depth [mm]", {"depth_max_m"}, 1e3),

@@ -11,10 +11,9 @@ namespace clothbench {
 namespace {
 
 /// "12.3 / 4.50" of the bytes read and written, times `scale`.
-std::string bytes(const Row& r, const char* read, const char* written, double scale) {
+Cell bytes(const Row& r, const char* read, const char* written, double scale) {
   const double in = scale * r.value(read), out = scale * r.value(written);
-  if (!std::isfinite(in) && !std::isfinite(out)) return "–";
-  return significant(in, 3) + " / " + significant(out, 3);
+  return {paired(in, out, " / ", 3), in};
 }
 
 /// Rows of a run's frame times: by clock, of all frames and of those with contact.
@@ -32,25 +31,31 @@ Texts clocks_of(const Row& r) {
 
 std::string milliseconds(double s) { return significant(1e3 * s, 3); }
 
+Cell milliseconds_cell(double s) { return {milliseconds(s), s}; }
+
 /// "2.00 (1.95–2.10)"; " ~" follows if the interval is wide.
-std::string median_text(const FrameTimes& t) {
+Cell median_cell(const FrameTimes& t) {
   const std::string span = milliseconds(t.median.low) + "–" + milliseconds(t.median.high);
-  return milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") + (t.uncertain() ? " ~" : "");
+  return {
+      milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") + (t.uncertain() ? " ~" : ""),
+      t.at(0.5)};
 }
 
-std::string tails_text(const FrameTimes& t) {
-  return milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1));
+Cell tails_cell(const FrameTimes& t) {
+  return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
-std::string missed_text(const FrameTimes& t) { return paired(100 * t.missed(72), 100 * t.missed(90), " / ", 3); }
-
-std::string real_time_factor(const Row& r) { return significant(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
-
-std::string ratio(const Row& r) {
-  return std::isfinite(r.baseline_s) ? significant(r.times->wall.at(0.5) / r.baseline_s, 3) : "";
+Cell missed_cell(const FrameTimes& t) {
+  return {paired(100 * t.missed(72), 100 * t.missed(90), " / ", 3), t.missed(72)};
 }
 
-std::string rank(const Row& r) { return r.rank > 0 ? std::to_string(r.rank) : ""; }
+Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
+
+Cell ratio(const Row& r) {
+  return std::isfinite(r.baseline_s) ? number_cell(r.times->wall.at(0.5) / r.baseline_s, 3) : Cell();
+}
+
+Cell rank(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
 
 View frame_times() {
   View v{"time", "Time per frame [ms]",
@@ -66,33 +71,33 @@ View frame_times() {
              kIntervalMethod,
          [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
-  const auto add = [&](const std::string& head, std::function<std::string(const FrameTimes&)> text) {
+  const auto add = [&](const std::string& head, std::function<Cell(const FrameTimes&)> text) {
     v.columns.push_back({head, [text](const Group& g, const Texts& keys) {
                            for (const auto& [name, times] : kClocks)
                              if (keys.back() == name) return text((*g.front()->times).*times);
-                           return std::string();
+                           return Cell();
                          }});
   };
-  const auto add_wall = [&](const std::string& head, std::function<std::string(const Row&)> text) {
+  const auto add_wall = [&](const std::string& head, std::function<Cell(const Row&)> text) {
     v.columns.push_back({head, [text](const Group& g, const Texts& keys) {
-                           return keys.back() == kClocks[0].first ? text(*g.front()) : std::string();
+                           return keys.back() == kClocks[0].first ? text(*g.front()) : Cell();
                          }});
   };
   v.columns.push_back(trials_column());
-  add("frames", [](auto& t) { return std::to_string(t.sorted.size()); });
-  add("p50 (95 %)", median_text);
-  add("p95 / p99 / worst", tails_text);
-  add("missed 72 / 90 Hz [%]", missed_text);
+  add("frames", [](auto& t) { return number_cell(static_cast<double>(t.sorted.size()), 1); });
+  add("p50 (95 %)", median_cell);
+  add("p95 / p99 / worst", tails_cell);
+  add("missed 72 / 90 Hz [%]", missed_cell);
   add_wall("real-time factor", real_time_factor);
-  add_wall("pipelined", [](const Row& r) { return milliseconds(r.value("frame_pipelined_median_s")); });
-  add_wall("load", [](const Row& r) { return milliseconds(r.value("load_s")); });
+  add_wall("pipelined", [](const Row& r) { return milliseconds_cell(r.value("frame_pipelined_median_s")); });
+  add_wall("load", [](const Row& r) { return milliseconds_cell(r.value("load_s")); });
   add_wall("× " + time_baseline(), ratio);
   add_wall("rank", rank);
   for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
     v.columns.push_back(column(
         head, [key = key](const Row& r) { return r.environment(key); }, true));
   v.columns.push_back(column(
-      "CPU threads", [](const Row& r) { return significant(r.times->threads, 1); }, true));
+      "CPU threads", [](const Row& r) { return number_cell(r.times->threads, 1); }, true));
   v.columns.push_back(column("conditions", &Row::trust));
   v.in_full = true;
   v.timed = true;
@@ -116,9 +121,9 @@ View memory() {
                       [](const Row& r) {
                         return bytes(r, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
                       }),
-               column("window [s]", [](const Row& r) { return significant(r.value("bandwidth_window_s"), 2); }),
-               column("memory [kB]", [](const Row& r) { return significant(1e-3 * r.value("device_memory_B"), 4); }),
-               column("dispatches", [](const Row& r) { return significant(r.value("dispatches"), 1); })};
+               column("window [s]", [](const Row& r) { return number_cell(r.value("bandwidth_window_s"), 2); }),
+               column("memory [kB]", [](const Row& r) { return number_cell(1e-3 * r.value("device_memory_B"), 4); }),
+               column("dispatches", [](const Row& r) { return number_cell(r.value("dispatches"), 1); })};
   v.in_full = true;
   v.timed = true;
   return v;
@@ -136,14 +141,14 @@ View in_short(std::function<bool(const Row&)> where) {
   v.columns = {
       column("outcome",
              [](const Row& r) {
-               const std::string text = verdict(*r.run);
-               return text == "–" ? r.status() : text;
+               const bool judged = r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
+               return judged ? verdict_cell(*r.run) : Cell(r.status());
              }),
-      column("stretch [%]", [](const Row& r) { return significant(100 * r.value("stretch_max_last_second"), 3); })};
+      column("stretch [%]", [](const Row& r) { return number_cell(100 * r.value("stretch_max_last_second"), 3); })};
   for (ViewColumn& c : tail_columns([](const Group& g) { return g.front(); })) v.columns.push_back(std::move(c));
   v.columns.push_back(column("with contact: p50 / p95 / p99 / worst", [](const Row& r) {
     const FrameTimes& t = r.times->contact_wall;
-    return t.sorted.empty() ? "" : milliseconds(t.at(0.5)) + " / " + tails_text(t);
+    return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
   }));
   v.columns.push_back(trials_column());
   v.columns.push_back(column("× " + time_baseline(), ratio));
@@ -155,15 +160,20 @@ View in_short(std::function<bool(const Row&)> where) {
 }  // namespace
 
 std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick) {
-  const auto of = [&](const char* head, std::function<std::string(const Row&)> text) {
-    return ViewColumn{head, [pick, text](const Group& g, const Texts&) {
+  const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {
+    return ViewColumn{head, [pick, cell](const Group& g, const Texts&) {
                         const Row* r = pick(g);
-                        return r == nullptr || r->times->wall.sorted.empty() ? std::string() : text(*r);
+                        return r == nullptr || r->times->wall.sorted.empty() ? Cell() : cell(*r);
                       }};
   };
-  return {of("frame p50 [ms]", [](const Row& r) { return median_text(r.times->wall) + r.frames_mark(); }),
-          of("p95 / p99 / worst", [](const Row& r) { return tails_text(r.times->wall); }),
-          of("missed 72 / 90 Hz [%]", [](const Row& r) { return missed_text(r.times->wall); }),
+  return {of("frame p50 [ms]",
+             [](const Row& r) {
+               Cell c = median_cell(r.times->wall);
+               c.text += r.frames_mark();
+               return c;
+             }),
+          of("p95 / p99 / worst", [](const Row& r) { return tails_cell(r.times->wall); }),
+          of("missed 72 / 90 Hz [%]", [](const Row& r) { return missed_cell(r.times->wall); }),
           of("real-time factor", real_time_factor)};
 }
 

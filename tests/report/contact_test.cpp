@@ -92,6 +92,23 @@ TEST(Penetration, VerdictsHaveAColumnForEverySettingAndASum) {
                            {"all", "unsupported", "pass", "2/2 (34–100 %)"}}));
 }
 
+TEST(Penetration, CellsHaveTheNumberAndToneOfTheirText) {
+  std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none"), desk_run("paper", "default", "none")};
+  runs[1].summary["expect.crossings_max"] = 0;
+  const RunTable table(runs);
+  for (const View& v : views())
+    if (v.title == kContact) {
+      const ViewTable t = tables_of(v, table).at(0);
+      const auto column = [&](const char* head) {
+        return std::find(t.rows[0].begin(), t.rows[0].end(), head) - t.rows[0].begin();
+      };
+      EXPECT_STREQ(t.cells.at(0).at(column("verdict")).tone, "bad");
+      EXPECT_STREQ(t.cells.at(1).at(column("verdict")).tone, "good");
+      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("contour, max / settled [mm]")).value, 12.3);
+      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("depth [mm]")).value, 0.003) << "not as its text is rounded";
+    }
+}
+
 TEST(Penetration, SeriesHaveOneRowPerFrame) {
   const auto csv = parse_csv(series_csv(RunTable({desk_run("xpbd", "default", "none")})));
   ASSERT_EQ(csv.size(), 3u);
@@ -230,8 +247,12 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "holds").substr(0, 3), "1/3") << "of the points with both claims";
   EXPECT_EQ(cell("all", "reading"), "reproducible");
   EXPECT_EQ(cell("all", "fewest dispatches"), "90") << "of the most expensive claim";
+  EXPECT_EQ(cell("all", "paper, best"), "--set solver.iterations=20 --set solver.substeps=2");
   EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
+  const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7)};
+  EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),
+            "1 of 2 claims: --set solver.iterations=2 --set solver.substeps=2");
   RunRecord unbounded = claim("c8", 2, 1, 9);
   unbounded.summary.erase("expect.contact_length_max_m");
   EXPECT_EQ(entry(table_of({unbounded}, "Claims of the article, over what it leaves open"), "paper", "c8", "reading"),

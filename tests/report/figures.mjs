@@ -20,6 +20,7 @@ for (const [n, solver] of solvers.entries()) {
   for (let k = 0; k < 60; ++k) runs.push({...common, part: 'contact', scene: `scene-with-a-long-name-${k}`, verdict: k % 3 ? 'pass' : 'fail'});
   for (const [speed, verdict] of [[0.5, 'pass'], [2, 'fail'], [8, 'not measured']]) runs.push({...common, part: 'contact', scene: `sweep-${String(speed).replace('.', 'p')}mps`, speed, verdict});
   for (let k = 0; k < 9; ++k) runs.push({...common, part: 'generated', kind: `kind-${k}`, verdict: k < n ? 'pass' : k === 8 ? 'unsupported' : 'fail', status: k === 8 ? 'unsupported' : 'ok'});
+  for (let k = 0; k < 36; ++k) runs.push({...common, part: 'claims', kind: `c${k % 6}-claim`, iterations: 1 + k, substeps: 1 + k % 20, dispatches: 9, claim: ['holds', 'near', 'fails'][k % 3]});
   for (let k = 0; k < 26; ++k) runs.push({...common, part: 'stability', case: `S${k} some case`, grade: k % 3, verdict: 'pass'});
   for (let k = 1; k < 9; ++k) {
     const times = {wall_ms_per_s: 10 ** k, error: 10 ** -k, space_error: 1e-4, reference_uncertainty: 1e-9};
@@ -28,7 +29,7 @@ for (const [n, solver] of solvers.entries()) {
   }
 }
 const doc = {runs, solvers: roles, studies: []}, figures = Object.fromEntries(make_figures(doc).map(f => [f.id, f])), rows = id => figures[id].rows(settled(figures[id], {}));
-assert.deepEqual(Object.keys(figures), ['error-time', 'verdicts', 'forest', 'failure-speed', 'rates', 'stability', 'frame-times']);
+assert.deepEqual(Object.keys(figures), ['error-time', 'verdicts', 'forest', 'failure-speed', 'claims-map', 'rates', 'stability', 'frame-times']);
 // A verdict that was not measured is no failure, and nothing unsupported passed.
 assert.deepEqual([...new Set(rows('failure-speed').map(r => r.speed))], [0.5, 2]);
 const all = rows('forest').find(r => r.kind === 'all' && r.solver === solvers[3]);

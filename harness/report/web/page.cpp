@@ -72,6 +72,16 @@ json figure_row(const Row& r) {
     out["kind"] = r.drawn().value("kind", "");
     out["speed"] = finite_or_null(r.drawn().value("speed_m_per_s", kMissing));
   }
+  if (r.part == Part::Claims) {
+    const ClaimPoint p = claim_point(r);
+    out.update({{"kind", p.claim},
+                {"iterations", p.iterations},
+                {"substeps", p.substeps},
+                {"claim", p.holds()     ? "holds"
+                          : p.is_near() ? "near"
+                                        : "fails"},
+                {"dispatches", finite_or_null(r.value("dispatches"))}});
+  }
   if (r.part == Part::Rates) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
@@ -124,12 +134,23 @@ json studies_of(const RunTable& table, json& rows) {
   return out;
 }
 
+/// The head, then rows of cells: a text, or [text, value or null, tone].
+json rows_json(const ViewTable& t) {
+  json out = t.rows;
+  for (std::size_t r = 0; r < t.cells.size(); ++r)
+    for (std::size_t c = 0; c < t.cells[r].size(); ++c)
+      if (const Cell& cell = t.cells[r][c]; std::isfinite(cell.value) || *cell.tone != 0)
+        out[r + 1][c] = {cell.text, rounded(cell.value), cell.tone};
+  return out;
+}
+
 json table_json(const ViewTable& t, const RunTable& table) {
   json runs = json::array(), solvers = json::array();
   for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
   for (const std::string& s : t.solvers) solvers.push_back(s);
-  return {{"title", t.title},  {"note", t.note}, {"rows", t.rows}, {"runs", runs}, {"solver_column", t.solver_column},
-          {"solvers", solvers}};
+  return {
+      {"title", t.title},  {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs}, {"solver_column", t.solver_column},
+      {"solvers", solvers}};
 }
 
 std::string replaced(const std::string& text, const std::map<char, const char*>& by) {

@@ -3,7 +3,7 @@
 // Several panels share a band axis y. A panel: {title?, solver?, x, y, marks, lines?, rules?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
 // a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, row (with its solver), kind: 'point', 'cell', 'failed'
 // (at the upper edge) or 'none', open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], shift? (in bands),
-// tone?, glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
+// tone? and shape? (in place of those of the solver), glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
 
 export const unique = list => [...new Set(list)];
 export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
@@ -173,7 +173,7 @@ function draw_labels(look, lines, taken, {left, right, top, bottom}) {
 }
 
 function draw_mark(look, m, x, y, index, box) {
-  const hit = ` data-i="${index}"`, {solver} = m.row, colour = look.colour(solver);
+  const hit = ` data-i="${index}"`, {solver} = m.row, colour = look.colour(solver), drawn = m.tone ? {...look, colour: () => `var(--${m.tone})`, symbol: () => m.shape} : look;
   if (m.kind === 'cell') {
     const w = Math.max(x.step - 1, 1), h = Math.max(y.step - 1, 1), left = x.at(m.x) - w / 2, top = y.at(m.y) - h / 2;
     const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${m.tone})"${hit}/>`;
@@ -189,7 +189,7 @@ function draw_mark(look, m, x, y, index, box) {
   if (m.high > m.low) out += line(along(m.low, m.high), colour, ` stroke-width="${1.6 * look.unit}"`);
   if (m.thick) out += line(along(...m.thick), colour, ` stroke-width="${7 * look.unit}" stroke-opacity="0.35"`);
   if (m.note) out += text(look, Math.max(a, x.at(m.high) || a) + 8, b + 4, m.note, {size: look.small});
-  return out + (m.kind === 'none' ? '' : symbol(look, solver, a, b, m.open, hit));
+  return out + (m.kind === 'none' ? '' : symbol(drawn, solver, a, b, m.open, hit));
 }
 
 function draw_panel(look, panel, box, first, marks) {
@@ -228,7 +228,7 @@ function draw_panel(look, panel, box, first, marks) {
 
 /// Below a picture: on paper solvers with their symbols; meanings of the tones of cells.
 function draw_legend(look, chart, width, top) {
-  const points = chart.panels.flatMap(p => p.marks).filter(m => m.kind !== 'cell'), box = (x, y, tone) =>
+  const points = chart.panels.flatMap(p => p.marks).filter(m => !m.tone), box = (x, y, tone) =>
       `<rect x="${px(x)}" y="${px(y - 5)}" width="10" height="10" rx="2" style="fill:var(--${tone})"/>`;
   const items = [
     ...(look.paper ? unique(points.map(m => m.row.solver)) : []).map(s => [s, (x, y) => symbol(look, s, x + 6, y)]),

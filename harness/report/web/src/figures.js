@@ -258,7 +258,7 @@ function verdicts(doc) {
 const kind_of = scene => scene.replace(/-?\d+(p\d+)?mps.*$|\[.*\]$/, '').replace(/-at$/, '');
 
 function failure_speed(doc) {
-  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && /pass|fail/.test(tone_of(r)[0]) && r.setting === 'default')
+  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default')
                   .map(r => ({...r, kind: kind_of(r.scene), row: r}));
   const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)), name = r => `${r.kind} · ${r.solver}`;
   return rows.length && {
@@ -337,9 +337,47 @@ const stability = doc => shares(doc.runs.filter(r => r.grade >= 0 || (r.part ===
   caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson).'
 });
 
+// What the article leaves open ------------------------------------------------
+
+const kClaims = {
+  holds: ['good', 'circle', false],
+  near: ['soft', 'circle', true],
+  fails: ['bad', 'x', false]
+};
+
+function claims(doc) {
+  const all = doc.runs.filter(r => r.part === 'claims' && r.status !== 'missing');
+  return all.length && {
+    id: 'claims-map',
+    section: 'contact',
+    hero: true,
+    title: () => 'Where each claim of the article holds',
+    caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
+        'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',
+    rows: () => all,
+    chart: (rows, s, width) => ({
+      height: 130,
+      right: 30,
+      columns: Math.max(2, Math.min(3, Math.floor(width / 220))),
+      tones: [['good', 'holds'], ['soft', 'near (ring)'], ['bad', 'fails']],
+      panels: unique(rows.map(r => r.kind)).sort().map(kind => ({
+        title: kind,
+        x: {type: 'log', title: 'iterations'},
+        y: {type: 'log'},
+        marks: rows.filter(r => r.kind === kind).map(r => {
+          const [tone, shape, open] = kClaims[r.claim];
+          return {kind: 'point', x: r.iterations, y: r.substeps, tone, shape, open, row: r};
+        })
+      }))
+    }),
+    tip: r => [`${r.label}, ${r.kind}: ${r.claim}`, `${number(r.iterations)} iterations × ${number(r.substeps)} substeps, ${number(r.dispatches)} dispatches`, ...why(r)],
+    columns: ['kind', 'label', 'iterations', 'substeps', 'dispatches', 'claim']
+  };
+}
+
 /// All figures that the document has runs for.
 export const make_figures = doc =>
-    [error_time, verdicts, forest, failure_speed, rates, stability, frame_times].map(make => make(doc)).filter(Boolean);
+    [error_time, verdicts, forest, failure_speed, claims, rates, stability, frame_times].map(make => make(doc)).filter(Boolean);
 
 /// The choices of a figure with their defaults, where `given` has none that fits.
 export function settled(figure, given) {

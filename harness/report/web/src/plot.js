@@ -121,7 +121,7 @@ class Figure {
     const {entry, doc, rows} = this;
     const table = {
       title: `Values: ${entry.title(this.state)}`,
-      rows: [entry.columns, ...rows.map(r => entry.columns.map(name => String(r[name] ?? '')))],
+      rows: [entry.columns, ...rows.map(r => entry.columns.map(name => typeof r[name] === 'number' ? [String(r[name]), r[name]] : String(r[name] ?? '')))],
       runs: rows.map(r => doc.runs.indexOf(r.row ?? r)),
       solver_column: -1,
       solvers: []

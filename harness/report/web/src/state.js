@@ -57,7 +57,7 @@ export const page_look = (all, narrow) => ({
 
 const kPaper = {
   ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
-  pass: '#8fcab6', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
+  good: '#0b6b4b', bad: '#b23608', pass: '#8fcab6', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
   'on-pass': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
 };
 

@@ -5,21 +5,8 @@ import {command_of} from './figures.js';
 import {page_look, set_value, shown, state} from './state.js';
 
 const kFolded = 15;
-const kBad = /^(fail\b|diverged|not_finite|timed_out|device_lost|crashed|error\b)| !$/;
-const kDim = /^(unsupported|missing|ignored|not measured|not ranked|–)/;
-const kGood = /^pass\b/;
-const kScale = {
-  k: 1e3,
-  M: 1e6
-};
-
-/// The number or share ("3/5", "3 of 5") that a cell starts with, for sorting and alignment; NaN for text.
-export function value_of(text) {
-  const share = text.match(/^(\d+)(?:\/| of )(\d+)(?![\d.])/);
-  if (share) return share[1] / share[2];
-  const m = text.match(/^[≤≥<>~]?\s?([-−]?\d[\d.]*(?:e[-+]?\d+)?)([kM](?![a-z]))?/);
-  return m && !/^\d+-\D|^\d{4}-/.test(text) ? Number(m[1].replace('−', '-')) * (kScale[m[2]] ?? 1) : NaN;
-}
+/// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
+const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
 
 export function copy_command(command) {
   navigator.clipboard?.writeText(command).catch(() => {});
@@ -44,8 +31,9 @@ export const block_head = (id, name, what, more) =>
 export class ShownTable {
   constructor(doc, look, table, id) {
     Object.assign(this, {doc, look, table, id, open: false});
-    const [head, ...body] = table.rows, number = r => k => !Number.isNaN(value_of(r[k]));
-    this.numeric = head.map((_, k) => body.some(r => number(r)(k)) && body.filter(r => number(r)(k) || r[k] === '–').length * 2 >= body.length);
+    this.head = table.rows[0];
+    this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]]}));
+    this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`});
     this.more = button('Show all rows', null, () => {
       this.open = !this.open;
@@ -58,17 +46,16 @@ export class ShownTable {
   }
 
   sorted() {
-    const {table} = this, [head, ...body] = table.rows, rows = body.map((cells, k) => ({cells, run: this.doc.runs[table.runs[k]]}));
-    const [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'),
-                   k = head[Number(column)] === undefined || column === '' ? -1 : Number(column);
+    const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'),
+                   k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
     this.sort = {k, down: way === 'down'};
-    const left = rows.filter(r => !r.run || table.solver_column < 0 || shown(r.run.solver));
+    const left = this.body.filter(r => !r.run || table.solver_column < 0 || shown(r.run.solver));
     if (k < 0) return left;
-    const sign = way === 'down' ? -1 : 1, value = r => value_of(r.cells[k]);
+    const sign = way === 'down' ? -1 : 1;
     return left.sort((a, b) => {
-      const [p, q] = [value(a), value(b)], none = Number.isNaN(p) - Number.isNaN(q);
-      if (!this.numeric[k]) return sign * a.cells[k].localeCompare(b.cells[k], 'en', {numeric: true});
-      return none || sign * (p - q) || 0;
+      const [p, q] = [a.cells[k], b.cells[k]];
+      if (!this.numeric[k]) return sign * p.text.localeCompare(q.text, 'en', {numeric: true});
+      return (p.value === undefined) - (q.value === undefined) || sign * (p.value - q.value) || 0;
     });
   }
 
@@ -85,10 +72,9 @@ export class ShownTable {
         button([h || ' ', arrow], null, sort));
   }
 
-  cell(text, k, run) {
-    const tone = kBad.test(text) ? 'bad' : kGood.test(text) ? 'good' : kDim.test(text) ? 'dim' : '';
+  cell({text, value, tone}, k, run) {
     const shape = this.numeric[k] ? 'n' : text.length > 60 ? 'long' : '';
-    const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null});
+    const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value});
     if (k === this.table.solver_column && run && !run.published)
       c.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>`;
     c.append(text);
@@ -97,12 +83,12 @@ export class ShownTable {
 
   /// The button that copies the command of a row.
   again({cells, run}) {
-    const command = run && !run.published ? command_of(this.doc, run) : null, label = `Copy the command of ${cells.slice(0, 3).join(', ')}`;
+    const command = run && !run.published ? command_of(this.doc, run) : null, label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
     return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, run.file].filter(Boolean).join('\n')}) : null;
   }
 
   fill() {
-    const rows = this.sorted(), {table} = this, [head] = table.rows, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
+    const rows = this.sorted(), {table, head} = this, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
     this.columns = head.map((_, k) => k).filter(k => shown(table.solvers[k]));
     const titles = [this.columns.map(k => this.head_cell(head[k], k)), any ? element('th', {scope: 'col'}, 'run again') : null];
     const body = (this.open ? rows : rows.slice(0, kFolded)).map(({cells, run}, n) => {
