@@ -20,36 +20,35 @@ constexpr const char* kTogether = "all";
 /// Lower ends of the bands of iterations per frame, over all substeps; `paper` has 5 by default.
 constexpr std::array kIterations = {1.0, 10.0, 30.0, 100.0, 300.0};
 
-/// Points of the box, each with the number of claims that were run and that hold there.
+/// A point of the box, with the number of claims that were run and that hold there.
 struct Point {
   std::size_t claims = 0, held = 0;
   double dispatches = 0;
   const Row* run = nullptr;  ///< one of its runs
 };
+/// Points at which all claims of the group were run: where the number of scenes is no multiple of the claims, the last
+/// one lacks some.
 std::map<std::string, Point> points_of(const Group& runs) {
   std::map<std::string, Point> out;
+  std::set<std::string> claims;
   for (const Row* r : runs) {
+    claims.insert(claim_point(*r).claim);
     Point& p = out[r->drawn()["settings"].dump()];
     ++p.claims;
     p.held += claim_point(*r).holds();
     p.run = r;
     if (const double d = r->value("dispatches"); d > p.dispatches) p.dispatches = d;
   }
+  std::erase_if(out, [&](const auto& point) { return point.second.claims != claims.size(); });
   return out;
 }
 
-/// Points of the group at which all of its claims hold, of how many. A point without some claims does not count: the
-/// last one, if the number of scenes is no multiple of the claims.
+/// Points of the group at which all of its claims hold, of how many.
 std::pair<std::size_t, std::size_t> held_of(const Group& g) {
-  std::set<std::string> claims;
-  for (const Row* r : g) claims.insert(r->drawn().at("kind"));
-  std::size_t held = 0, all = 0;
-  for (const auto& [settings, p] : points_of(g)) {
-    if (p.claims != claims.size()) continue;
-    ++all;
-    held += p.held == p.claims;
-  }
-  return {held, all};
+  const auto points = points_of(g);
+  const auto held =
+      std::count_if(points.begin(), points.end(), [](const auto& p) { return p.second.held == p.second.claims; });
+  return {static_cast<std::size_t>(held), points.size()};
 }
 
 Cell share(const Group& g) {
@@ -59,6 +58,7 @@ Cell share(const Group& g) {
 
 std::string reading(const Group& g) {
   const auto [held, all] = held_of(g);
+  if (all == 0) return "";
   return held == all ? "reproduced" : held > 0 ? "reproducible" : "not reproduced in the box";
 }
 
@@ -108,8 +108,8 @@ View claims() {
          "Share of the points of the box at which a claim holds, with Wilson's 95 % interval, also by iterations × "
          "substeps of a frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
          "point. Fewest dispatches: the cheapest point, in dispatches per frame of its most expensive claim. Paper, "
-         "best: its "
-         "settings, as options of `clothbench run`; if the claims hold nowhere together, of the point where most do.",
+         "best: the solver's settings there, as options of `clothbench run`, without the values drawn for the scene; "
+         "if the claims hold nowhere together, of the point where most do.",
          [](const Row& r) { return r.part == Part::Claims; }};
   v.keys = {solver_key(), {"claim", [](const Row& r) { return Texts{r.drawn().value("kind", ""), kTogether}; }}};
   v.columns = {{"reading", [](const Group& g, const Texts&) { return reading(g); }},

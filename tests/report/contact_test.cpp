@@ -250,9 +250,12 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "paper, best"), "--set solver.iterations=20 --set solver.substeps=2");
   EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
-  const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7)};
+  // The cheapest point lacks a claim, so nothing is known of both together there.
+  const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
   EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),
             "1 of 2 claims: --set solver.iterations=2 --set solver.substeps=2");
+  const std::vector<RunRecord> never = {claim("c8", 2, 1, 9), claim("c10", 20, 1, 7)};
+  EXPECT_EQ(entry(table_of(never, "Claims of the article, over what it leaves open"), "paper", "all", "reading"), "–");
   RunRecord unbounded = claim("c8", 2, 1, 9);
   unbounded.summary.erase("expect.contact_length_max_m");
   EXPECT_EQ(entry(table_of({unbounded}, "Claims of the article, over what it leaves open"), "paper", "c8", "reading"),

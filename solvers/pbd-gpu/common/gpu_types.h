@@ -57,7 +57,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
-// What only the passes have. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, ACTIVE_CAPACITY,
+// Only in the passes. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, ACTIVE_CAPACITY,
 // CONTACT_CAPACITY: pairs, active pairs and those with contacts that its lists have place for; THICKNESS_BITS,
 // SELF_FRICTION_BITS: floats. FILL: pairs are written, not counted. OF_SELF: the list is of the cloth with itself.
 // GRIPS: vertices that hands may hold, under the number that lines have it.

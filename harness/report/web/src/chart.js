@@ -3,7 +3,7 @@
 // Several panels share a band axis y. A panel: {title?, solver?, x, y, marks, lines?, rules?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
 // a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, row (with its solver), kind: 'point', 'cell', 'failed'
 // (at the upper edge) or 'none', open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], shift? (in bands),
-// tone? and shape? (in place of those of the solver), glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
+// tone? and shape? (instead of the solver's), glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
 
 export const unique = list => [...new Set(list)];
 export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
