@@ -78,7 +78,7 @@ View speed_and_error() {
     return plain ? r.label() : r.label() + ", " + r.sides;
   })};
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
-              [](const Group& g) {
+              [](const Group& g, const Texts&) {
                 const Row& r = *g.front();
                 const double fps = r.value(r.published >= 0 ? "fps_at_72" : "fps_median");
                 if (r.published >= 0) return Cell(fmt::format("{:g}", fps), fps);

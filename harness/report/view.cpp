@@ -116,7 +116,7 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
       std::string solver;
       for (const TableRow& r : rows) {
         const auto at = r.across.find(value);
-        cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second));
+        cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second, r.keys));
         any = any || has_value(cells.back());
         if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
       }

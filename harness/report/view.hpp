@@ -69,7 +69,7 @@ std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pic
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
   Key key;
-  std::function<Cell(const Group&)> cell;
+  std::function<Cell(const Group&, const Texts& keys)> cell;
   std::function<double(const Row&)> order = nullptr;
 };
 

@@ -177,7 +177,7 @@ std::string class_of(const Row& r) {
 }
 
 /// "5/7 stable, 2 failed (F1, F2)".
-Cell tally(const Group& g) {
+Cell tally(const Group& g, const Texts& /*keys*/) {
   std::map<int, std::map<std::string, int>> classes;
   int all = 0, stable = 0, unsupported = 0;
   for (const Row* r : g) {

@@ -40,7 +40,7 @@ std::string offset_of(const Row& r) {
 }
 
 /// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
-Cell pass_rate(const Group& g) {
+Cell pass_rate(const Group& g, const Texts& /*keys*/) {
   std::vector<const RunRecord*> runs;
   for (const Row* r : g) runs.push_back(r->run);
   const VerdictCounts n = count_verdicts(runs);
@@ -55,7 +55,9 @@ View verdicts() {
          in_contact};
   v.keys = {{"scene", [](const Row& r) { return Texts{r.scene, kAllRuns}; }}};
   v.by_key = true;
-  v.across = {solver_key(), [](const Group& g) { return g.size() > 1 ? pass_rate(g) : verdict_cell(*g.front()->run); }};
+  v.across = {solver_key(), [](const Group& g, const Texts& keys) {
+                return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front()->run);
+              }};
   return v;
 }
 
@@ -116,13 +118,12 @@ View pass_rates() {
                return Texts{with_assets(r.drawn().value("kind", ""), r), with_assets(kAllRuns, r)};
              }}};
   v.across = {key("", band_name), pass_rate, band_of};
-  v.columns = {{kAllRuns, [](const Group& g, const Texts&) { return pass_rate(g); }},
-               {"contact offset [mm]", [](const Group& g, const Texts&) {
-                  std::set<std::string> all;
-                  for (const Row* r : g)
-                    if (const std::string at = offset_of(*r); at != "–") all.insert(at);
-                  return joined(all);
-                }}};
+  v.columns = {{kAllRuns, pass_rate}, {"contact offset [mm]", [](const Group& g, const Texts&) {
+                                         std::set<std::string> all;
+                                         for (const Row* r : g)
+                                           if (const std::string at = offset_of(*r); at != "–") all.insert(at);
+                                         return joined(all);
+                                       }}};
   v.by_key = true;
   v.more = [](const Group& g) {
     const auto missing = std::count_if(g.begin(), g.end(), [](const Row* r) { return r->status() == "missing"; });

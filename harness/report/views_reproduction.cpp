@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "metrics/registry.hpp"
 #include "report/view.hpp"
@@ -26,61 +25,59 @@ struct Point {
   double dispatches = 0;
   const Row* run = nullptr;  ///< one of its runs
 };
-/// Points at which all claims of the group were run: where the number of scenes is no multiple of the claims, the last
-/// one lacks some.
-std::map<std::string, Point> points_of(const Group& runs) {
+/// The points of a row of the table. In the row of all claims these are points at which all were run.
+std::map<std::string, Point> points_of(const Group& runs, const Texts& keys) {
   std::map<std::string, Point> out;
-  std::set<std::string> claims;
+  const std::size_t wanted = keys.back() == kTogether ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
   for (const Row* r : runs) {
-    claims.insert(claim_point(*r).claim);
     Point& p = out[r->drawn()["settings"].dump()];
     ++p.claims;
     p.held += claim_point(*r).holds();
     p.run = r;
     if (const double d = r->value("dispatches"); d > p.dispatches) p.dispatches = d;
   }
-  std::erase_if(out, [&](const auto& point) { return point.second.claims != claims.size(); });
+  std::erase_if(out, [&](const auto& point) { return point.second.claims != wanted; });
   return out;
 }
 
 /// Points of the group at which all of its claims hold, of how many.
-std::pair<std::size_t, std::size_t> held_of(const Group& g) {
-  const auto points = points_of(g);
+std::pair<std::size_t, std::size_t> held_of(const Group& g, const Texts& keys) {
+  const auto points = points_of(g, keys);
   const auto held =
       std::count_if(points.begin(), points.end(), [](const auto& p) { return p.second.held == p.second.claims; });
   return {static_cast<std::size_t>(held), points.size()};
 }
 
-Cell share(const Group& g) {
-  const auto [held, all] = held_of(g);
+Cell share(const Group& g, const Texts& keys) {
+  const auto [held, all] = held_of(g, keys);
   return share_cell(held, all);
 }
 
-std::string reading(const Group& g) {
-  const auto [held, all] = held_of(g);
+std::string reading(const Group& g, const Texts& keys) {
+  const auto [held, all] = held_of(g, keys);
   if (all == 0) return "";
   return held == all ? "reproduced" : held > 0 ? "reproducible" : "not reproduced in the box";
 }
 
 /// The cheapest point at which most claims of the group hold; null if none holds anywhere.
-std::optional<Point> best_of(const Group& g) {
+std::optional<Point> best_of(const Group& g, const Texts& keys) {
   std::optional<Point> out;
-  for (const auto& [settings, p] : points_of(g))
+  for (const auto& [settings, p] : points_of(g, keys))
     if (p.held > 0 && p.dispatches > 0 &&
         (!out || p.held > out->held || (p.held == out->held && p.dispatches < out->dispatches)))
       out = p;
   return out;
 }
 
-Cell fewest_dispatches(const Group& g) {
-  const std::optional<Point> p = best_of(g);
+Cell fewest_dispatches(const Group& g, const Texts& keys) {
+  const std::optional<Point> p = best_of(g, keys);
   return p && p->held == p->claims ? number_cell(p->dispatches, 1) : Cell();
 }
 
 /// Settings of the cheapest point as the command line takes them; of the nearest miss if the claims hold nowhere
 /// together.
-Cell best_settings(const Group& g) {
-  const std::optional<Point> p = best_of(g);
+Cell best_settings(const Group& g, const Texts& keys) {
+  const std::optional<Point> p = best_of(g, keys);
   if (!p) return {};
   std::string out = p->held == p->claims ? "" : fmt::format("{} of {} claims:", p->held, p->claims);
   const json settings = p->run->drawn()["settings"].value(p->run->solver, json::object());
@@ -112,10 +109,8 @@ View claims() {
          "if the claims hold nowhere together, of the point where most do.",
          [](const Row& r) { return r.part == Part::Claims; }};
   v.keys = {solver_key(), {"claim", [](const Row& r) { return Texts{r.drawn().value("kind", ""), kTogether}; }}};
-  v.columns = {{"reading", [](const Group& g, const Texts&) { return reading(g); }},
-               {"holds", [](const Group& g, const Texts&) { return share(g); }},
-               {"fewest dispatches", [](const Group& g, const Texts&) { return fewest_dispatches(g); }},
-               {"paper, best", [](const Group& g, const Texts&) { return best_settings(g); }}};
+  v.columns = {
+      {"reading", reading}, {"holds", share}, {"fewest dispatches", fewest_dispatches}, {"paper, best", best_settings}};
   v.across = {key("", band_text), share, band_of_settings};
   v.by_key = true;
   return v;

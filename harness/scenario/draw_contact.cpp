@@ -183,6 +183,7 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
       draw.note(solver + "." + name, value);
       scene["drawn"]["settings"][solver][name] = value;
     }
+  scene["drawn"]["claims"] = kind.kinds;
   for (const json& ranges : {kind.box.value("ranges", json::object()), kind.ranges})
     for (const auto& [key, range] : ranges.items()) {
       const json value = at_point(range, point.next(), false, draw.at() + "/" + key);

@@ -227,6 +227,7 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
 RunRecord claim(const std::string& kind, int iterations, double held, double dispatches) {
   RunRecord c = generated("paper", kind, iterations, 0, "pass");
   nlohmann::json scenario = nlohmann::json::parse(c.header.scenario_json);
+  scenario["drawn"]["claims"] = 2;
   scenario["drawn"]["settings"] = {{"paper", {{"iterations", iterations}, {"substeps", 2}}}};
   c.header.scenario_json = scenario.dump();
   c.header.scene += "-" + kind;
@@ -250,6 +251,8 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "paper, best"), "--set solver.iterations=20 --set solver.substeps=2");
   EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
+  EXPECT_EQ(cell("c8", "100–299 iterations").substr(0, 3), "1/1");
+  EXPECT_EQ(cell("all", "100–299 iterations"), "–") << "one claim says nothing about all";
   // The cheapest point lacks a claim, so nothing is known of both together there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
   EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),

@@ -6,6 +6,8 @@
 // tone? and shape? (instead of the solver's), glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
 
 export const unique = list => [...new Set(list)];
+/// Domain of a logarithmic axis that several panels share.
+export const span = values => [Math.min(...values) / 1.2, Math.max(...values) * 1.2];
 export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
 
 export const paper_widths = {

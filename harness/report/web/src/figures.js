@@ -4,7 +4,7 @@
 // solver; `chart` makes panels of those that the filter of solvers leaves. `columns`: fields of a row, for the table behind it.
 // `stills`: pictures beside the report, [{file, state}]; by default one, named by the id. `hero`: may be the figure of the first
 // screen, for which the first one is taken.
-import {number, unique} from './chart.js';
+import {number, span, unique} from './chart.js';
 
 const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
 const kRefresh_Hz = [72, 90];
@@ -362,8 +362,8 @@ function claims(doc) {
       tones: [['good', 'holds'], ['soft', 'near (ring)'], ['bad', 'fails']],
       panels: unique(rows.map(r => r.kind)).sort().map(kind => ({
         title: kind,
-        x: {type: 'log', title: 'iterations'},
-        y: {type: 'log'},
+        x: {type: 'log', title: 'iterations', domain: span(all.map(r => r.iterations))},
+        y: {type: 'log', domain: span(all.map(r => r.substeps))},
         marks: rows.filter(r => r.kind === kind).map(r => {
           const [tone, shape, open] = kClaims[r.claim];
           return {kind: 'point', x: r.iterations, y: r.substeps, tone, shape, open, row: r};
