@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Runs the published studies one after another into OUT, and makes what is published of them.
 #   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N]
-#   scripts/publish.sh --report OUT... [--to FOLDER]
+#   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz]
 # First form: exit status 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; the same call continues: complete
 # studies are skipped, finished runs stay. 2: bad input. Else the status of the study that failed.
 # Second form: one report per study, one page of all and SHA256SUMS into FOLDER (default results/reference/gpu), from folders of one state of the sources.
+# --archive: the raw result files too, with the commands and RESULTS.SHA256, as one archive to release; its name says how it is compressed.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH names the program (default:
 # build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS take part.
 set -euo pipefail
@@ -12,18 +13,21 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 
 # Columns: table (where the study runs), name (names that are equal up to a "+" are reported together), command of clothbench without --out.
 # PEERS: --solver for each engine of build/peers. JOBS: the number of --jobs.
+# SEED: the first digits of the commit's hash, so that nobody can choose the scenes to suit a solver.
 studies() {
   cat <<'END'
 gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic
 gpu       hang              study hang --trials 3
 gpu       work-precision    study work-precision --trials 1
 gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic
-gpu       contact           study contact --seed 1 --count 200 --solver xpbd --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
+gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
+gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS
-software  contact+others    study contact --seed 1 --count 27 --solver paper --solver bullet-soft PEERS --jobs JOBS
+software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
+software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  stability         study stability --solver xpbd --solver paper --jobs JOBS
 peers     table3+peers      study table3 --trials 5 PEERS
 peers     work-precision+peers study work-precision --trials 1 PEERS
@@ -42,20 +46,20 @@ END
 fail() { echo "scripts/publish.sh: $*" >&2; exit 2; }
 bench=${CLOTHBENCH:-$here/build/release/clothbench}
 [ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
-folders=() to=$here/results/reference/gpu table=gpu only=' ' limit=570 jobs=$(nproc) report=
+folders=() to=$here/results/reference/gpu table=gpu only=' ' limit=570 jobs=$(nproc) report= archive=
 while [ $# -gt 0 ]; do
   case $1 in
     --report) report=1 ;;
-    --to | --table | --only | --limit | --jobs)
+    --to | --archive | --table | --only | --limit | --jobs)
       [ $# -gt 1 ] || fail "$1: expected a value"
-      case $1 in --to) to=$2 ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
+      case $1 in --to) to=$2 ;; --archive) archive=$2 ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
       shift ;;
-    -*) fail "$1: expected --table, --only, --limit, --jobs, --report or --to" ;;
+    -*) fail "$1: expected --table, --only, --limit, --jobs, --report, --to or --archive" ;;
     *) folders+=("$(realpath -m "$1")") ;;
   esac
   shift
 done
-[ ${#folders[@]} -gt 0 ] || { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
+[ ${#folders[@]} -gt 0 ] || { sed -n '2,10s/^# //p' "$0" >&2; exit 2; }
 for number in "$limit" "$jobs"; do [[ $number =~ ^[1-9][0-9]*$ ]] || fail "$number: expected a positive whole number"; done
 to=$(realpath -m "$to") out=${folders[0]}
 cd "$here"
@@ -86,6 +90,12 @@ if [ -n "$report" ]; then
   { printf 'study\tseconds\tcommand\n'; cat "${complete[@]}"; } >"$to/commands.tsv"
   for file in "${complete[@]%.done}"; do (cd "$(dirname "$file")" && find "$(basename "$file")" -name '*.h5' -exec sha256sum {} +); done | sort -k2 >"$to/RESULTS.SHA256"
   (cd "$to" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs -d '\n' sha256sum >"$scratch/sums" && cp "$scratch/sums" SHA256SUMS)
+  if [ -n "$archive" ]; then
+    members=(-C "$to" RESULTS.SHA256 commands.tsv)
+    for file in "${complete[@]%.done}"; do members+=(-C "$(realpath "$(dirname "$file")")" "$(basename "$file")"); done
+    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -caf "$archive" "${members[@]}"  # equal results, equal archive
+    sha256sum "$archive"
+  fi
   echo "$to: ${#names[@]} studies; $(wc -l <"$to/RESULTS.SHA256") result files"
   exit
 fi
@@ -98,6 +108,9 @@ mkdir -p "$out"
 [ ! -f "$out/version" ] || [ "$(sources "$out/version")" = "$(sources "$out/version.now")" ] ||
   fail "$out has results of $(cat "$out/version"), this program is $(cat "$out/version.now"); publish results of one state of the sources"
 mv "$out/version.now" "$out/version"
+commit=$(sed -n 's/.*(\([0-9a-f]*\)).*/\1/p' "$out/version")
+commit=${commit:-1}
+seed=$((16#${commit:0:6}))
 names=()
 for library in build/peers/*/libclothbench_*.so; do
   [ -e "$library" ] || continue
@@ -110,7 +123,7 @@ export CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:-}
 deadline=$((SECONDS + limit))
 while read -r in name line; do
   if [ "$in" != "$table" ] || [[ $only != ' ' && $only != *" $name "* ]] || [ -f "$out/$name.done" ]; then continue; fi
-  read -ra words <<<"${line//JOBS/$jobs}"
+  read -ra words <<<"$(sed "s/JOBS/$jobs/; s/SEED/$seed/" <<<"$line")"
   command=()
   for word in "${words[@]}"; do
     case $word in

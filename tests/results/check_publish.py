@@ -60,8 +60,11 @@ with tempfile.TemporaryDirectory() as scratch:
     assert code == 2 and "no file \"version\"" in said, (code, said)
     code, said = call(real, "--table", "quick", "--only", "hang")
     assert code == 0, said
-    code, said = call("--report", real, "--to", to)
+    archive = scratch / "all.tar.xz"
+    code, said = call("--report", real, "--to", to, "--archive", archive)
     assert code == 0, said
+    subprocess.run(["tar", "-C", scratch, "--one-top-level=unpacked", "-xf", archive], check=True)
+    verified(scratch / "unpacked", "RESULTS.SHA256")
     verified(to, "SHA256SUMS")
     verified(real, to / "RESULTS.SHA256")
     assert re.fullmatch(r"study\tseconds\tcommand\nhang\t\d+\tclothbench study hang .*\n", (to / "commands.tsv").read_text())
