@@ -16,10 +16,10 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 # SEED: the first digits of the commit's hash, so that nobody can choose the scenes to suit a solver.
 studies() {
   cat <<'END'
-gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic
+gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
 gpu       hang              study hang --trials 3
-gpu       work-precision    study work-precision --trials 1
-gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic
+gpu       work-precision    study work-precision --trials 1 --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS
+gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
@@ -28,13 +28,9 @@ software  friction          study friction --trials 1 --solver xpbd --solver pap
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
-software  stability         study stability --solver xpbd --solver paper --jobs JOBS
-peers     table3+peers      study table3 --trials 5 PEERS
-peers     work-precision+peers study work-precision --trials 1 PEERS
-peers     penetration+peers study penetration --trials 1 --require-assets PEERS
+software  stability         study stability --solver xpbd --solver paper PEERS --jobs JOBS
 peers     peers-hang        study solvers/plugin/studies/peers-hang.json
 peers     peers-margins     study solvers/plugin/studies/peers-margins.json
-peers     peers-stability   study stability --jobs JOBS PEERS
 quick     table3            study table3 --quick --trials 2
 quick     hang              study hang --quick --trials 1
 quick     penetration       study penetration --quick --trials 1 --solver xpbd --solver ballistic
