@@ -176,7 +176,7 @@ json at_point(const json& range, double u, bool may_be_whole, const std::string&
 void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
   if (!kind.box.contains("settings") || kind.box["settings"].empty())
     throw Error(kind.at + "/how: \"box\" needs \"box\" of the study, with \"settings\" of a solver");
-  BoxPoint point(seed / kind.kinds);
+  BoxPoint point(seed > 0 ? (seed - 1) / kind.kinds : 0);
   for (const auto& [solver, settings] : kind.box["settings"].items())
     for (const auto& [name, range] : settings.items()) {
       const json value = at_point(range, point.next(), true, "/box/settings/" + solver + "/" + name);
@@ -202,6 +202,12 @@ double draw_crumple(json& scene, DrawnValues& draw) {
   scene["cloth"]["initial_velocity_m_per_s"] = {0, -thrown, 0};
   draw_start(scene, draw);
   return after_fall(thrown, height);
+}
+
+/// Puts the quick form's ranges in the place of those of the same names.
+void narrow(json& ranges, const json& quick) {
+  for (auto& [name, range] : ranges.items())
+    if (quick.contains(name)) range = quick[name];
 }
 
 }  // namespace
@@ -249,15 +255,21 @@ struct ContactDrawer::Tables {
   }
 };
 
-ContactKind contact_kind(const json& entry, const std::filesystem::path& base, const std::string& at,
-                         const json& ranges) {
+ContactKind contact_kind(const json& entry, const std::filesystem::path& base, const std::string& at, const json& quick,
+                         const json& box) {
   if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing, for protocol contact");
   const json& draw = entry["draw"];
-  ContactKind kind{draw["kind"], draw["how"], parse_json(read_text(base), base.string()), draw["ranges"], at + "/draw"};
-  for (const auto& [key, value] : draw["set"].items())
-    apply_override(kind.base, key + "=" + value.dump(), base.string());
-  for (const auto& [name, range] : ranges.items())
-    if (kind.ranges.contains(name)) kind.ranges[name] = range;
+  ContactKind kind{draw["kind"],   draw["how"],  parse_json(read_text(base), base.string()),
+                   draw["ranges"], at + "/draw", box};
+  for (const json& set : {draw["set"], quick.value("/set"_json_pointer / kind.name, json::object())})
+    for (const auto& [key, value] : set.items()) apply_override(kind.base, key + "=" + value.dump(), base.string());
+  const json ranges = quick.value("ranges", json::object());
+  narrow(kind.ranges, ranges);
+  for (auto& [part, of_box] : kind.box.items())
+    if (part == "ranges")
+      narrow(of_box, ranges);
+    else
+      for (auto& [solver, settings] : of_box.items()) narrow(settings, ranges);
   return kind;
 }
 

@@ -23,13 +23,15 @@ struct ContactKind {
   nlohmann::json ranges;
   std::string at;           ///< file and JSON pointer of the block, for messages
   nlohmann::json box = {};  ///< the study's "box": ranges that the kinds share, for "how": "box"
-  std::uint64_t kinds = 1;  ///< of the study; seeds that differ by less than a round of kinds share a point of the box
+  std::uint64_t kinds = 1;  ///< of the study; each round of as many seeds, from seed 1 on, shares a point of the box
 };
 
 /// The kind that an entry of a study's "scenes" describes. `base`: the file of its scene; `at`: file and JSON pointer
-/// of the entry; `ranges`: these instead of the entry's of the same names. Throws Error if the entry has no "draw".
+/// of the entry; `quick`: the study's quick form, whose "ranges" and "set" apply; `box`: the study's. Throws Error if the
+/// entry has no "draw".
 ContactKind contact_kind(const nlohmann::json& entry, const std::filesystem::path& base, const std::string& at,
-                         const nlohmann::json& ranges);
+                         const nlohmann::json& quick = nlohmann::json::object(),
+                         const nlohmann::json& box = nlohmann::json::object());
 
 /// Generates random contact scenes. The same study, kind, seed and assets give the same scene on any machine: see
 /// `Dice`; numbers are rounded to 1e-6, so that they do not depend on the last bit of a math library either.

@@ -222,8 +222,7 @@ class Builder {
     std::vector<ContactKind> kinds;
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) {
       kinds.push_back(contact_kind(j_["scenes"][k], scene_path(k), fmt::format("{}: /scenes/{}", source_, k),
-                                   quick_.is_null() ? json::object() : quick_["ranges"]));
-      kinds.back().box = j_["box"];
+                                   quick_.is_null() ? json::object() : quick_, j_["box"]));
       kinds.back().kinds = j_["scenes"].size();
       tags_.insert(kinds.back().name);
     }

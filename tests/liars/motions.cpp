@@ -44,8 +44,8 @@ void add_drawn(std::vector<Kind>& out) {
     json scenes = json::parse(read_text(file))["scenes"];
     for (json& entry : scenes) {
       entry["draw"].emplace("set", json::object());
-      const ContactKind kind =
-          contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), study, json{{"grid", {12, 20}}});
+      const ContactKind kind = contact_kind(entry, file.parent_path() / entry["file"].get<std::string>(), study,
+                                            json{{"ranges", {{"grid", {12, 20}}}}});
       out.push_back({kind.name, [kind, study](std::uint64_t seed) {
                        static ContactDrawer drawer(Assets::MayBeProcedural);
                        const json scene = drawer.draw(kind, study, seed);

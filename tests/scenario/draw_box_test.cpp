@@ -9,6 +9,7 @@
 #include "clothbench/error.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
+#include "scenario/study.hpp"
 
 namespace clothbench {
 namespace {
@@ -35,11 +36,11 @@ TEST(DrawBox, AllClaimsOfARoundShareTheSettings) {
   ContactKind other = kind(kSettings, json::object());
   other.name = "other";
   for (std::uint64_t round = 1; round < 20; ++round) {
-    const json a = drawer.draw(kind(kSettings), "mine", kClaims * round),
-               b = drawer.draw(other, "mine", kClaims * round + 1);
+    const json a = drawer.draw(kind(kSettings), "mine", kClaims * round + 1),
+               b = drawer.draw(other, "mine", kClaims * round + 2);
     EXPECT_EQ(a["drawn"]["settings"], b["drawn"]["settings"]);
     EXPECT_EQ(a["material"]["damping_per_s"], b["material"]["damping_per_s"]);
-    EXPECT_NE(a["drawn"]["settings"], drawer.draw(other, "mine", kClaims * (round + 20))["drawn"]["settings"]);
+    EXPECT_NE(a["drawn"]["settings"], drawer.draw(other, "mine", kClaims * (round + 20) + 1)["drawn"]["settings"]);
   }
 }
 
@@ -49,7 +50,7 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
   std::map<std::string, std::array<int, kParts>> counts;
   int corners = 0;
   for (std::uint64_t round = 0; round < kRounds; ++round) {
-    const json scene = drawer.draw(kind(kSettings), "mine", kClaims * round);
+    const json scene = drawer.draw(kind(kSettings), "mine", kClaims * round + 1);
     const json& settings = scene["drawn"]["settings"]["paper"];
     ASSERT_TRUE(settings["iterations"].is_number_integer());
     const double iterations = settings["iterations"], stiffness = settings["stiffness"];
@@ -93,6 +94,21 @@ TEST(DrawBox, RefusesAStudyWithoutABox) {
     none.box = box;
     EXPECT_THROW(ContactDrawer(Assets::MayBeProcedural).draw(none, "mine", 1), Error) << box;
   }
+}
+
+TEST(DrawBox, QuickFormRunsAllClaimsAtEachPointInAMinute) {
+  std::map<std::string, std::set<std::string>> claims;
+  double work = 0;
+  for (const Study::Item& item : load_study("reproduction", {{}, StudyLength::Quick}).scenes) {
+    const json settings = item.drawn_settings["paper"];
+    claims[settings.dump()].insert(json::parse(item.scene.json)["drawn"]["kind"]);
+    work += static_cast<double>(item.scene.cloth.vertex_count()) * item.scene.time.frames() *
+            settings["iterations"].get<double>() * settings["substeps"].get<double>();
+  }
+  EXPECT_EQ(claims.size(), 2u);
+  for (const auto& [settings, kinds] : claims) EXPECT_EQ(kinds.size(), 6u) << settings;
+  // 1.1e7 vertices × iterations take 40 s on a software device with two cores.
+  EXPECT_LE(work, 1.2e7);
 }
 
 /// Settings of `paper` that the article leaves open and that a scene uses.

@@ -75,8 +75,7 @@ std::vector<json> drawn_alone(std::uint64_t count) {
   const json study = drawn(1, 1).definition;
   std::vector<ContactKind> kinds;
   for (const json& item : study["scenes"])
-    kinds.push_back(
-        contact_kind(item, file.parent_path() / item["file"].get<std::string>(), "contact", json::object()));
+    kinds.push_back(contact_kind(item, file.parent_path() / item["file"].get<std::string>(), "contact"));
   ContactDrawer drawer(Assets::MayBeProcedural);
   std::vector<json> out;
   for (std::uint64_t seed = 1; seed <= count; ++seed)
