@@ -27,8 +27,8 @@ struct ContactKind {
 };
 
 /// The kind that an entry of a study's "scenes" describes. `base`: the file of its scene; `at`: file and JSON pointer
-/// of the entry; `quick`: the study's quick form, whose "ranges" and "set" apply; `box`: the study's. Throws Error if the
-/// entry has no "draw".
+/// of the entry; `quick`: the study's quick form, whose "ranges" and "set" apply; `box`: the study's. Throws Error if
+/// the entry has no "draw".
 ContactKind contact_kind(const nlohmann::json& entry, const std::filesystem::path& base, const std::string& at,
                          const nlohmann::json& quick = nlohmann::json::object(),
                          const nlohmann::json& box = nlohmann::json::object());
