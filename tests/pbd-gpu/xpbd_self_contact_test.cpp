@@ -91,6 +91,23 @@ TEST_F(SelfContacts, AnImpactPullsNothingDown) {
   }
 }
 
+/// The ball stops the middle of a sheet while its rim falls on. The list of pairs has capacity for small motion bounds
+/// only, and they must not drag along what lies.
+TEST_F(SelfContacts, WithAShortListWhatTheBallStopsStaysThere) {
+  const Scene s = load_scene("contact/sphere", {"cloth.grid=[16,16]", "time.duration_s=0.45",
+                                                R"(cloth.self_collision={"thickness_m":0.006,"friction":0.3})"});
+  const auto solver = make("xpbd", {{kTuning, {{"contact_pairs", 30000}}}});
+  solver->load(s);
+  const std::vector<Edge> sides = edges(s.cloth, EdgeKind::Structural);
+  for (int f = 0; f < s.time.frames(); ++f) {
+    const std::vector<double> x = after_frame(*solver, s, f).position;
+    for (const Edge& e : sides) {
+      const double *a = &x[3 * e.a], *b = &x[3 * e.b];
+      EXPECT_LT(std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]), 1.1 * e.rest_m) << "frame " << f;
+    }
+  }
+}
+
 TEST_F(SelfContacts, RepeatBitForBit) { expect_repeats(fold_on_floor(), 8); }
 
 long crossings(const Scene& s, const ClothState& state) {

@@ -13,8 +13,8 @@ void run() {
   motion_bound_of_vertex(i, max_shape_displacement);
   if (i != 0u) return;
   frame_state.max_shape_displacement = max_shape_displacement;
-  vec3 along = drift();
-  for (uint c = 0u; c < 3u; ++c) frame_state.drift[c] = along[c];
+  vec3 along = mean_velocity();
+  for (uint c = 0u; c < 3u; ++c) frame_state.drift[c] = 0.5 * along[c];
   frame_state.bound_fraction = 1.0;  // prefix_sum may cut it
   frame_state.touched_vertices = 0u;
   frame_state.active_pair_count[0] = frame_state.active_pair_count[1] = 0u;
@@ -31,7 +31,7 @@ void run() {
     }
     uvec4 n = uvec4(pairs_at(k, 1.0), 0u, 0u, 0u);
     [[unroll]] for (uint l = 1u; l < PAIR_LEVELS; ++l)
-      if (n[l - 1u] != 0u) n[l] = pairs_at(k, 1.0 / float(1u << CUT_BITS * l));
+      if (n[l - 1u] != 0u) n[l] = pairs_at(k, kFractions[l]);
     ranges[k] = n;
   }
   for (uint i = item(); FILL && i < VERTICES; i += stride()) list_touched_vertices(i);

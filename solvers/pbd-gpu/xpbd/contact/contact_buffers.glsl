@@ -49,8 +49,9 @@ layout(std430, binding = BIND_SELF_CORRECTIONS) STATE buffer SelfCorrections { S
 layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
-// A cut divides the motion bound by two to this power: larger bounds, larger steps.
-#define CUT_BITS (GRIPS > 0u || SELF > 0u ? 2u : 1u)
+// Fractions of the motion bounds that are tried until a list of pairs has capacity: powers of two, exact when multiplied.
+// A vertex that goes on at its speed is within the second.
+const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // fraction of the margin by which what is too near is let out a substep
 const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes
@@ -96,7 +97,8 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-/// How far the list of self-contact pairs moves in the frame [m].
+/// How far the list of self-contact pairs moves in the frame [m]: half as far as the cloth on average. Its bounds are
+/// larger by as much, so that they hold a vertex that goes on and one that an impact stops.
 #define drift_velocity() vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])
 #define drift_m() (SELF != 0u ? p.frame_s * length(drift_velocity()) : 0.0)
 

@@ -41,7 +41,7 @@ struct PairState {
 #define PAIR_TESTED 1u   // near enough to be processed in this substep
 #define PAIR_NEAREST 2u  // has a contact at its nearest points
 #define PAIR_PLANE 4u    // has a plane
-#define PAIR_LEVELS 4u   // motion bounds tried: each half (with grips or self-contact a quarter) of the one before
+#define PAIR_LEVELS 4u   // motion bounds tried: kFractions of them
 
 /// State of the frame, on the device.
 struct ContactFrameState {
@@ -58,7 +58,7 @@ struct ContactFrameState {
   uint contact_possible;      // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
   uint max_displacement;      // of a vertex in this frame [m], a float's bits; until its list is made, in the last one
   uint counted[PAIR_LEVELS];  // pairs at each fraction of the motion bounds
-  float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with
+  float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with: half the mean
 };
 
 #define BROAD_PHASE_DONE 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0

@@ -71,7 +71,7 @@ void fill_at(float fraction, uint level) {
 void finish_broad_phase(uint level) {
   uint all = frame_state.counted[level];
   frame_state.pairs = min(all, CAPACITY);
-  frame_state.bound_fraction = 1.0 / float(1u << CUT_BITS * level);
+  frame_state.bound_fraction = kFractions[level];
   if (all > CAPACITY) diagnostics.overflow += all - CAPACITY;
 }
 
@@ -102,7 +102,7 @@ bool broad_phase() {
   if (SHAPES == 0u || (any_nearby == kOutOfReach && may_be_contact_free)) return true;
   uint level = 0u;
   for (;; ++level) {
-    fill_at(1.0 / float(1u << CUT_BITS * level), level);
+    fill_at(kFractions[level], level);
     if (thread == 0u && any_nearby == kOverlaps) frame_state.contact_possible = 1u;
     GRID_BARRIER_OR_FAIL;  // pairs before they are read, and their number
     if (may_be_contact_free && frame_state.contact_possible == 0u) return true;

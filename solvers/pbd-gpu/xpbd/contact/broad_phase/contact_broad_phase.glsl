@@ -4,7 +4,7 @@ vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
   high = vec3(-1e30);
-  float drifts = drift_m();
+  float drifts = 2.0 * drift_m();
   for (uint c = 0u; c < e.w; ++c) {
     vec4 r = motion_bounds[e[c]];
     low = min(low, r.xyz - fraction * (r.w + drifts));

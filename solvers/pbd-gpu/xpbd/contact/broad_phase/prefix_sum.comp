@@ -38,7 +38,7 @@ void main() {
     first += count;
   }
   if (t > 0u) return;
-  float fraction = uintBitsToFloat((127u - CUT_BITS * level) << 23u);  // a power of two exactly
+  float fraction = kFractions[level];
   if (OF_SELF) {
     frame_state.self_bound_fraction = fraction;
   } else {

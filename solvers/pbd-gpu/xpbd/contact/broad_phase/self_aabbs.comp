@@ -1,6 +1,6 @@
 #version 450
 // Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
-// motion bounds (share 1), each by half of the thickness, and the group's at share 1. Groups are 16 triangles in
+// motion bounds (share 1), each by half of the thickness and the drift, and the group's at share 1. Groups are 16 triangles in
 // self_order, which keeps neighbours together.
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
@@ -10,7 +10,7 @@ shared uint group_low[3u * kGroups], group_high[3u * kGroups];
 
 SelfAabb box_of(uvec4 e) {
   SelfAabb box = SelfAabb(vec4(1e30), vec4(-1e30), vec4(1e30), vec4(-1e30));
-  float half_m = 0.5 * THICKNESS_M;
+  float half_m = 0.5 * THICKNESS_M + drift_m();
   [[unroll]] for (uint c = 0u; c < 3u; ++c) {
     vec4 r = motion_bounds[e[c]];
     box.low_0.xyz = min(box.low_0.xyz, r.xyz - half_m);

@@ -39,7 +39,7 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
 
 /// Lower bound on the distance of two triangles, from their boxes at the frame's start.
 float min_distance(SelfAabb a, SelfAabb b) {
-  vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + THICKNESS_M;
+  vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + (THICKNESS_M + 2.0 * drift_m());
   return kRoundingFactor * length(max(apart, 0.0));
 }
 
@@ -65,11 +65,7 @@ void count_self_pairs_of(uint slot) {
   FOR_EACH_NEIGHBOUR(box, 1.0,
     if (mine && !share_a_vertex(e, primitives[self_order[q]])) {
       SelfAabb other = self_aabbs[q];
-      float fraction = 1.0;
-      for (uint l = 0u; l < PAIR_LEVELS && aabbs_overlap(box, other, fraction); ++l) {
-        ++n[l];
-        fraction /= float(1u << CUT_BITS);
-      }
+      for (uint l = 0u; l < PAIR_LEVELS && aabbs_overlap(box, other, kFractions[l]); ++l) ++n[l];
     }
   )
   n = sum_over_lanes(n);

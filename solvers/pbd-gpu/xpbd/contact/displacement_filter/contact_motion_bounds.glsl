@@ -1,8 +1,7 @@
 // Conservative bound of a vertex's motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
-// A vertex may go several times as far in a frame as at its speed: a corner that whips, cloth that hands released, or
-// cloth that an impact stops while its motion bound drifts on. A vertex that would go farther is held back, and the momentum of
-// the cloth changes with nothing near.
+// A vertex may go several times as far in a frame as at its speed: a corner that whips, or cloth that hands released. A
+// vertex that would go farther is held back, and the momentum of the cloth changes with nothing near.
 #define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
@@ -36,11 +35,12 @@ float pulled() {
   return largest;
 }
 
-/// Mean velocity of a few vertices of cloth that touches itself: what all of it does brings no two triangles together.
-/// Every velocity is right, for vertices keep to a motion bound around it.
-vec3 drift() {
+/// Mean velocity of a few vertices of cloth that touches itself, spread over it without a pattern: what all of it does
+/// brings no two triangles together. Every velocity is right, for vertices keep to a motion bound around it.
+vec3 mean_velocity() {
+  const uint kSamples = 8u, kSpread = 2654435769u;  // 2^32 / golden ratio (Knuth, TAOCP 3, 6.4)
   vec3 all = vec3(0.0);
-  for (uint k = 0u; SELF != 0u && k < 4u; ++k) all += 0.25 * v[(2u * k + 1u) * VERTICES / 8u].xyz;
+  for (uint k = 1u; SELF != 0u && k <= kSamples; ++k) all += v[kSpread * k % VERTICES].xyz / float(kSamples);
   return all;
 }
 
@@ -57,7 +57,7 @@ float contact_free_bound(float speed, float rest, float by_hands) {
 /// The same in .w of its place, and kept for the frame.
 vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
   vec4 at = x[i];
-  vec3 along = drift();
+  vec3 along = mean_velocity();
   float speed = length(v[i].xyz - along), rest = bound_at_rest(), by_hands = pulled();
   float bound = motion_bound(speed, rest, max_shape_displacement, by_hands);
 #ifdef FUSED_FRAME

@@ -47,9 +47,9 @@ vec3 clamp_to_bounds(uint i, vec3 to, float w) {
   vec4 bound = motion_bounds[i];
   if (SELF != 0u) {
     vec3 drift = (t_end * p.frame_s) * drift_velocity();
-    to = clamp_to(i, to, w, bound.xyz + drift, bound.w * frame_state.self_bound_fraction);
+    to = clamp_to(i, to, w, bound.xyz + drift, drift_m() + bound.w * frame_state.self_bound_fraction);
   }
-  return clamp_to(i, to, w, bound.xyz, (bound.w + drift_m()) * frame_state.bound_fraction);
+  return clamp_to(i, to, w, bound.xyz, (bound.w + 2.0 * drift_m()) * frame_state.bound_fraction);
 }
 
 void clamp_to_motion_bound(uint i, vec4 at) {
