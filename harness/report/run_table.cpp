@@ -176,7 +176,9 @@ std::string TruthFacts::refused() const {
   return "";
 }
 
-std::string Row::label() const { return label_of(*run) + (repeat > 1 ? fmt::format(" ({})", repeat) : ""); }
+std::string Row::label() const {
+  return label_of(*run) + (is_best ? ", best" : "") + (repeat > 1 ? fmt::format(" ({})", repeat) : "");
+}
 
 std::string Row::frames_mark() const {
   return frames() > 0 && frames() < most_frames ? fmt::format(" (first {} frames)", frames()) : "";
@@ -295,6 +297,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
   choose_leading();
   compare_times();
+  mark_best_points(rows_);
 }
 
 /// At most two scenes, no two of one kind.

@@ -109,6 +109,7 @@ struct Row {
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
   double baseline_s = kMissing;  ///< median wall time of a frame of time_baseline() in the same scene
+  bool is_best = false;          ///< of study `reproduction`: at the cheapest point at which most claims hold
   int rank = 0;                  ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
@@ -138,6 +139,9 @@ struct Row {
   /// Parameters of a randomly generated scene; null for any other.
   nlohmann::json drawn() const;
 };
+
+/// Sets Row::is_best. Rows must not move any more.
+void mark_best_points(std::vector<Row>&);
 
 /// True if the run's scene has colliders or hands that grip the cloth.
 bool has_contact(const RunRecord&);

@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kTogether = "all";
+constexpr const char* kPublished = "published: PBD";
 /// Lower ends of the bands of iterations per frame, over all substeps; `paper` has 5 by default.
 constexpr std::array kIterations = {1.0, 10.0, 30.0, 100.0, 300.0};
 
@@ -23,7 +24,7 @@ constexpr std::array kIterations = {1.0, 10.0, 30.0, 100.0, 300.0};
 struct Point {
   std::size_t claims = 0, held = 0;
   double dispatches = 0;
-  const Row* run = nullptr;  ///< one of its runs
+  Group runs = {};
 };
 /// The points of a row of the table. In the row of all claims these are points at which all were run.
 std::map<std::string, Point> points_of(const Group& runs, const Texts& keys) {
@@ -33,7 +34,7 @@ std::map<std::string, Point> points_of(const Group& runs, const Texts& keys) {
     Point& p = out[r->drawn()["settings"].dump()];
     ++p.claims;
     p.held += claim_point(*r).holds();
-    p.run = r;
+    p.runs.push_back(r);
     if (const double d = r->value("dispatches"); d > p.dispatches) p.dispatches = d;
   }
   std::erase_if(out, [&](const auto& point) { return point.second.claims != wanted; });
@@ -74,16 +75,37 @@ Cell fewest_dispatches(const Group& g, const Texts& keys) {
   return p && p->held == p->claims ? number_cell(p->dispatches, 1) : Cell();
 }
 
-/// Settings of the cheapest point as the command line takes them; of the nearest miss if the claims hold nowhere
-/// together.
-Cell best_settings(const Group& g, const Texts& keys) {
+/// Generates the scenes of the cheapest point and runs them; of the nearest miss if the claims hold nowhere together.
+Cell best_command(const Group& g, const Texts& keys) {
   const std::optional<Point> p = best_of(g, keys);
   if (!p) return {};
-  std::string out = p->held == p->claims ? "" : fmt::format("{} of {} claims:", p->held, p->claims);
-  const json settings = p->run->drawn()["settings"].value(p->run->solver, json::object());
-  for (const auto& [name, value] : settings.items())
-    out += fmt::format("{}--set solver.{}={}", out.empty() ? "" : " ", name,
-                       value.is_string() ? value.get<std::string>() : value.dump());
+  const auto seed = [](const Row* r) { return r->scenario.value("seed", std::uint64_t{0}); };
+  const Row& first =
+      **std::min_element(p->runs.begin(), p->runs.end(), [&](const Row* a, const Row* b) { return seed(a) < seed(b); });
+  return fmt::format("{}clothbench study {} --seed {} --count {}{}{}",
+                     p->held == p->claims ? "" : fmt::format("{} of {} claims: ", p->held, p->claims),
+                     first.drawn().value("study", ""), seed(&first), p->runs.size(),
+                     first.environment("protocol") == "quick" ? " --quick" : "",
+                     first.drawn().value("assets", "") == "procedural" ? " --procedural" : "");
+}
+
+/// Values of that point as options of `clothbench run`; of all claims, the ones that their scenes share.
+Cell best_values(const Group& g, const Texts& keys) {
+  const std::optional<Point> p = best_of(g, keys);
+  if (!p) return {};
+  const std::string& solver = p->runs.front()->solver;
+  std::string out;
+  const json values = p->runs.front()->drawn().value("values", json::object());
+  for (const auto& [name, value] : values.items()) {
+    const auto shares = [&, key = name, v = value](const Row* r) {
+      return r->drawn()["values"].value(key, json()) == v;
+    };
+    if (!std::all_of(p->runs.begin(), p->runs.end(), shares)) continue;
+    const std::string key = name.starts_with(solver + ".") ? "solver" + name.substr(solver.size()) : name;
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    out += fmt::format("{}--set {}={}", out.empty() ? "" : " ", key,
+                       key == "cloth.size_m" ? fmt::format("[{0},{0}]", text) : text);  // the side of a square
+  }
   return out;
 }
 
@@ -105,14 +127,132 @@ View claims() {
          "Share of the points of the box at which a claim holds, with Wilson's 95 % interval, also by iterations × "
          "substeps of a frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
          "point. Fewest dispatches: the cheapest point, in dispatches per frame of its most expensive claim. Paper, "
-         "best: the solver's settings there, as options of `clothbench run`, without the values drawn for the scene; "
-         "if the claims hold nowhere together, of the point where most do.",
+         "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
+         "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
          [](const Row& r) { return r.part == Part::Claims; }};
-  v.keys = {solver_key(), {"claim", [](const Row& r) { return Texts{r.drawn().value("kind", ""), kTogether}; }}};
-  v.columns = {
-      {"reading", reading}, {"holds", share}, {"fewest dispatches", fewest_dispatches}, {"paper, best", best_settings}};
+  v.keys = {solver_key("solver", [](const Row& r) { return r.solver; }),
+            {"claim", [](const Row& r) {
+               return Texts{r.drawn().value("kind", ""), kTogether};
+             }}};
+  v.columns = {{"reading", reading},
+               {"holds", share},
+               {"fewest dispatches", fewest_dispatches},
+               {"paper, best", best_command},
+               {"values of paper, best", best_values}};
   v.across = {key("", band_text), share, band_of_settings};
   v.by_key = true;
+  return v;
+}
+
+/// Least squares of time = fixed + slope · particles.
+struct WorkFit {
+  double fixed_s = kMissing, slope_s = kMissing, slope_error_s = kMissing, residual = kMissing;
+};
+using Samples = std::map<std::pair<std::string, double>, double>;  ///< frame time [s] by sides and edge of the grid
+
+double particles(const Samples::value_type& sample) {
+  const auto& [sides, width] = sample.first;
+  return width * width * (sides == "double-duplicated" ? 2 : 1);
+}
+
+WorkFit fit_of(const Samples& samples) {
+  WorkFit out;
+  const auto n = static_cast<double>(samples.size());
+  if (n < 3) return out;
+  double x = 0, t = 0, xx = 0, xt = 0, squares = 0;
+  for (const auto& s : samples) x += particles(s) / n, t += s.second / n;
+  for (const auto& s : samples) xx += std::pow(particles(s) - x, 2), xt += (particles(s) - x) * (s.second - t);
+  out.slope_s = xt / xx;
+  out.fixed_s = t - out.slope_s * x;
+  out.residual = 0;
+  for (const auto& s : samples) {
+    const double off = s.second - out.fixed_s - out.slope_s * particles(s);
+    squares += off * off;
+    out.residual = std::max(out.residual, std::abs(off) / s.second);
+  }
+  out.slope_error_s = std::sqrt(squares / (n - 2) / xx);
+  return out;
+}
+
+/// Published rates of PBD below the display's cap; the others bound a time only from above.
+const Samples& published_samples() {
+  static const Samples all = [] {
+    Samples out;
+    const json table = published_table3();
+    for (const json& c : table.at("columns"))
+      for (std::size_t k = 0; k < c.at("fps").size(); ++k)
+        if (c.contains("sides") && c["fps"][k] < table.at("display_cap_hz"))
+          out[{c["sides"], table.at("resolution")[k]}] = 1 / c["fps"][k].get<double>();
+    return out;
+  }();
+  return all;
+}
+
+/// The times that a row is about: the published ones, or the group's at the same resolutions and sides; empty if one is
+/// missing.
+Samples samples_of(const Group& g, const Texts& keys) {
+  if (keys.front() == kPublished) return published_samples();
+  Samples out;
+  for (const Row* r : g)
+    if (r->label() == keys.front()) out[{r->sides, r->resolution.grid[0]}] = r->value("frame_wall_median_s");
+  return out.size() == published_samples().size() ? out : Samples();
+}
+
+Cell time_ratio(const Samples& s, const Samples::key_type& of, const Samples::key_type& to) {
+  return number_cell(s.at(of) / s.at(to), 3);
+}
+
+double iterations_of(const Row& r) {
+  const json& own = r.run->header.settings;
+  return own.value("iterations", kMissing) * own.value("substeps", 1.0);
+}
+
+/// Iterations of a frame that would take the published time per particle on the run's device.
+Cell allowed_iterations(const Group& g, const Texts& keys) {
+  const WorkFit fit = fit_of(samples_of(g, keys)), published = fit_of(published_samples());
+  const double scale = iterations_of(*g.front()) / fit.slope_s;
+  if (keys.front() == kPublished || !(scale > 0)) return {};
+  const auto at = [&](double errors) {
+    return significant(scale * std::max(0.0, published.slope_s + errors * published.slope_error_s), 2);
+  };
+  return {fmt::format("{} ({}–{})", at(0), at(-2), at(2)), scale * published.slope_s};
+}
+
+View work_model() {
+  View v{"rates", "Table 3: work per frame",
+         "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
+         "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
+         "error. C2, C3: ratios of times. Iterations: constraint iterations of a frame, and how many would take the "
+         "published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
+         "allows fewer. The published times include rendering.",
+         [](const Row& r) {
+           return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
+                  published_samples().contains({r.sides, r.resolution.grid[0]});
+         }};
+  v.keys = {{"solver", [](const Row& r) { return Texts{r.label(), kPublished}; }, true}};
+  v.by_key = true;
+  const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {
+    v.columns.push_back({std::move(head), [cell](const Group& g, const Texts& keys) {
+                           const Samples s = samples_of(g, keys);
+                           return s.empty() ? Cell() : cell(s);
+                         }});
+  };
+  add("fixed [ms]", [](auto& s) { return number_cell(1e3 * fit_of(s).fixed_s, 3); });
+  add("slope (error) [µs per particle]", [](auto& s) {
+    const WorkFit f = fit_of(s);
+    return Cell(paired(1e6 * f.slope_s, 1e6 * f.slope_error_s, " (", 3) + ")", f.slope_s);
+  });
+  add("max residual [%]", [](auto& s) { return number_cell(100 * fit_of(s).residual, 2); });
+  add("C2: 128² / 64²", [](auto& s) { return time_ratio(s, {"single", 128}, {"single", 64}); });
+  for (const int n : {64, 128})
+    add(fmt::format("C3: doubled / single at {}²", n), [n](auto& s) {
+      return time_ratio(s, {"double-duplicated", n}, {"single", n});
+    });
+  v.columns.push_back({"iterations", [](const Group& g, const Texts& keys) {
+                         return keys.front() == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
+                       }});
+  v.columns.push_back({"iterations at the published slope", allowed_iterations});
+  v.timed = true;
   return v;
 }
 
@@ -131,6 +271,15 @@ ClaimPoint claim_point(const Row& r) {
   return out;
 }
 
-std::vector<View> reproduction_views() { return {claims()}; }
+void mark_best_points(std::vector<Row>& rows) {
+  std::map<std::string, Group> solvers;
+  for (const Row& r : rows)
+    if (r.part == Part::Claims) solvers[r.solver].push_back(&r);
+  for (const auto& [solver, runs] : solvers)
+    if (const std::optional<Point> p = best_of(runs, {solver, kTogether}))
+      for (Row& r : rows) r.is_best = r.is_best || contains(p->runs, &r);
+}
+
+std::vector<View> reproduction_views() { return {work_model(), claims()}; }
 
 }  // namespace clothbench

@@ -227,7 +227,9 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
 RunRecord claim(const std::string& kind, int iterations, double held, double dispatches) {
   RunRecord c = generated("paper", kind, iterations, 0, "pass");
   nlohmann::json scenario = nlohmann::json::parse(c.header.scenario_json);
+  scenario["seed"] = 2 * iterations + (kind == "c8");
   scenario["drawn"]["claims"] = 2;
+  scenario["drawn"]["values"] = {{"paper.iterations", iterations}, {"cloth.size_m", 0.5}, {"friction", kind == "c8"}};
   scenario["drawn"]["settings"] = {{"paper", {{"iterations", iterations}, {"substeps", 2}}}};
   c.header.scenario_json = scenario.dump();
   c.header.scene += "-" + kind;
@@ -248,7 +250,13 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "holds").substr(0, 3), "1/3") << "of the points with both claims";
   EXPECT_EQ(cell("all", "reading"), "reproducible");
   EXPECT_EQ(cell("all", "fewest dispatches"), "90") << "of the most expensive claim";
-  EXPECT_EQ(cell("all", "paper, best"), "--set solver.iterations=20 --set solver.substeps=2");
+  EXPECT_EQ(cell("all", "paper, best"), "clothbench study contact --seed 40 --count 2");
+  EXPECT_EQ(cell("c10", "paper, best"), "clothbench study contact --seed 4 --count 1");
+  EXPECT_EQ(cell("all", "values of paper, best"), "--set cloth.size_m=[0.5,0.5] --set solver.iterations=20")
+      << "their scenes differ in friction";
+  const Table contact = table_of(runs, "Contact");
+  EXPECT_EQ(contact.rows.size(), 3u) << "the two scenes of that point";
+  EXPECT_EQ(contact.rows[1][1], "paper, best");
   EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
   EXPECT_EQ(cell("c8", "100–299 iterations").substr(0, 3), "1/1");
@@ -256,7 +264,7 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   // The cheapest point lacks a claim, so nothing is known of both together there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
   EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),
-            "1 of 2 claims: --set solver.iterations=2 --set solver.substeps=2");
+            "1 of 2 claims: clothbench study contact --seed 4 --count 2");
   const std::vector<RunRecord> never = {claim("c8", 2, 1, 9), claim("c10", 20, 1, 7)};
   EXPECT_EQ(entry(table_of(never, "Claims of the article, over what it leaves open"), "paper", "all", "reading"), "–");
   RunRecord unbounded = claim("c8", 2, 1, 9);

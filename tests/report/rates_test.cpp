@@ -45,6 +45,32 @@ TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
   EXPECT_EQ(entry(t, "published: PBD double-sided", "128²"), "16");
 }
 
+TEST(Overview, WorkPerFrameFitsAPlantedLawAndThePublishedRates) {
+  std::vector<RunRecord> runs;
+  for (const int n : {32, 64, 128})
+    for (const char* sides : {"single", "double-duplicated"}) {
+      const int layers = std::string(sides) == "single" ? 1 : 2;
+      runs.push_back(fake_run("paper", n, sides, n == 32 ? 1 : 1e-3 + 0.5e-6 * layers * n * n));
+      runs.back().header.settings = {{"iterations", 5}, {"substeps", 2}};
+    }
+  const Table t = table_of(runs, "Table 3: work per frame");
+  const auto cell = [&](const char* solver, const char* column) { return entry(t, solver, column); };
+  EXPECT_EQ(cell("paper", "fixed [ms]"), "1.00") << "32² is not among the published rates below the cap";
+  EXPECT_EQ(cell("paper", "slope (error) [µs per particle]").substr(0, 4), "0.50");
+  EXPECT_EQ(cell("paper", "C2: 128² / 64²"), "3.02");
+  EXPECT_EQ(cell("paper", "iterations"), "10.0");
+  // 65, 42, 40 and 16 frames per second by Python's statistics.linear_regression.
+  EXPECT_EQ(cell("published: PBD", "fixed [ms]"), "7.48");
+  EXPECT_EQ(cell("published: PBD", "slope (error) [µs per particle]"), "1.58 (0.360)");
+  EXPECT_EQ(cell("published: PBD", "max residual [%]"), "40");
+  EXPECT_EQ(cell("published: PBD", "C2: 128² / 64²"), "1.55");
+  EXPECT_EQ(cell("published: PBD", "C3: doubled / single at 128²"), "2.62");
+  EXPECT_EQ(cell("published: PBD", "iterations"), "–");
+  EXPECT_EQ(cell("paper", "iterations at the published slope"), "32 (17–46)");
+  runs.pop_back();
+  EXPECT_EQ(entry(table_of(runs, "Table 3: work per frame"), "paper", "fixed [ms]"), "–") << "a size is missing";
+}
+
 TEST(Tables, BytesAndMemory) {
   const std::vector<RunRecord> runs = study();
   const auto value = [&](const char* title, const std::string& head) {
