@@ -78,7 +78,8 @@ if [ -n "$report" ]; then
     "$bench" report "${parts[@]}" -o "$scratch/$name" >"$scratch/$name.log" || { tail -5 "$scratch/$name.log" >&2; exit 1; }
     mkdir "$to/$name"
     cp "$scratch/$name/report.md" "$scratch/$name/runs.csv" "$to/$name"
-    [ ! -d "$scratch/$name/figures" ] || { mkdir "$to/$name/figures" && cp "$scratch/$name"/figures/*-wide.svg "$to/$name/figures"; }
+    mapfile -t figures < <(find "$scratch/$name" -name '*-wide.svg')
+    [ ${#figures[@]} -eq 0 ] || { mkdir "$to/$name/figures" && cp "${figures[@]}" "$to/$name/figures"; }
   done
   "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null
   cp "$scratch/all/index.html" "$to"
