@@ -55,6 +55,15 @@ std::map<std::string, long> alive() {
     const VkResult injected = clothbench::faults::next(#name);          \
     return injected != VK_SUCCESS ? injected : __real_##name arguments; \
   }
+// The wait is made even so: a lost device has stopped, but this one still runs what it was given, and the caller then
+// destroys what that uses.
+#define WAITS(name, parameters, arguments)                     \
+  extern "C" VkResult __real_##name parameters;                \
+  extern "C" VkResult __wrap_##name parameters {               \
+    const VkResult waited = __real_##name arguments;           \
+    const VkResult injected = clothbench::faults::next(#name); \
+    return injected != VK_SUCCESS ? injected : waited;         \
+  }
 #define MAKES(kind, name, parameters, arguments, made)                                             \
   extern "C" VkResult __real_##name parameters;                                                    \
   extern "C" VkResult __wrap_##name parameters {                                                   \
@@ -72,16 +81,19 @@ std::map<std::string, long> alive() {
   }
 #include "vulkan_calls.def"
 #undef FALLIBLE
+#undef WAITS
 #undef MAKES
 #undef UNMAKES
 
 std::vector<std::string> clothbench::faults::names() {
   return {
 #define FALLIBLE(name, parameters, arguments) #name,
+#define WAITS(name, parameters, arguments) #name,
 #define MAKES(kind, name, parameters, arguments, made) #name,
 #define UNMAKES(kind, name, parameters, arguments, given) #name,
 #include "vulkan_calls.def"
 #undef FALLIBLE
+#undef WAITS
 #undef MAKES
 #undef UNMAKES
   };
