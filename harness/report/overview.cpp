@@ -62,7 +62,7 @@ std::string peers(const Group& runs) {
 
 View speed_and_error() {
   View v{"rates", "Table 3: speed and error", std::string(kTable3Note) + kIntervalMethod, [](const Row& r) {
-           const bool other_setting = r.paper_table == 3 && r.setting != "default";
+           const bool other_setting = r.paper_table == 3 && r.setting != "default" && !r.is_best;
            return r.part == Part::Rates && !other_setting && !is_floor(r.solver);
          }};
   v.each = [](const Row& r) {

@@ -177,7 +177,7 @@ std::string TruthFacts::refused() const {
 }
 
 std::string Row::label() const {
-  return label_of(*run) + (is_best ? ", best" : "") + (repeat > 1 ? fmt::format(" ({})", repeat) : "");
+  return (is_best ? solver + ", best" : label_of(*run)) + (repeat > 1 ? fmt::format(" ({})", repeat) : "");
 }
 
 std::string Row::frames_mark() const {

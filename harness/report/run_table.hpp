@@ -109,7 +109,7 @@ struct Row {
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
   double baseline_s = kMissing;  ///< median wall time of a frame of time_baseline() in the same scene
-  bool is_best = false;          ///< of study `reproduction`: at the cheapest point at which most claims hold
+  bool is_best = false;          ///< settings of the cheapest point of `reproduction` where most claims hold
   int rank = 0;                  ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"

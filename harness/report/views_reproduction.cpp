@@ -275,9 +275,17 @@ void mark_best_points(std::vector<Row>& rows) {
   std::map<std::string, Group> solvers;
   for (const Row& r : rows)
     if (r.part == Part::Claims) solvers[r.solver].push_back(&r);
-  for (const auto& [solver, runs] : solvers)
-    if (const std::optional<Point> p = best_of(runs, {solver, kTogether}))
-      for (Row& r : rows) r.is_best = r.is_best || contains(p->runs, &r);
+  for (const auto& [solver, runs] : solvers) {
+    const std::optional<Point> p = best_of(runs, {solver, kTogether});
+    if (!p) continue;
+    const json best = p->runs.front()->drawn()["settings"].value(solver, json::object());
+    for (Row& r : rows) {
+      json settings = r.run->header.settings;
+      settings.update(best);
+      r.is_best = r.is_best || contains(p->runs, &r) ||
+                  (r.part != Part::Claims && r.solver == solver && settings == r.run->header.settings);
+    }
+  }
 }
 
 std::vector<View> reproduction_views() { return {work_model(), claims()}; }

@@ -257,6 +257,15 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   const Table contact = table_of(runs, "Contact");
   EXPECT_EQ(contact.rows.size(), 3u) << "the two scenes of that point";
   EXPECT_EQ(contact.rows[1][1], "paper, best");
+  std::vector<RunRecord> elsewhere = runs;
+  for (const int iterations : {20, 40}) {
+    elsewhere.push_back(fake_run("paper", 32, "single", 1e-3));
+    elsewhere.back().header.setting = fmt::format("iterations={}", iterations);
+    elsewhere.back().header.settings = {{"iterations", iterations}, {"substeps", 2}, {"stiffness", 1}};
+  }
+  const Table table3 = table_of(elsewhere, "Table 3: speed and error");
+  EXPECT_EQ(table3.rows[1][0], "paper, best") << "runs of other studies with the settings of that point";
+  EXPECT_TRUE(table3.rows[2][0].starts_with("published"));
   EXPECT_EQ(cell("c8", "1–9 iterations").substr(0, 3), "0/1");
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
   EXPECT_EQ(cell("c8", "100–299 iterations").substr(0, 3), "1/1");
