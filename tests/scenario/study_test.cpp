@@ -212,7 +212,7 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
       }
   }
   EXPECT_TRUE(scenes.contains("self-fold") && scenes.contains("self-crumple"));
-  EXPECT_EQ(scenes.size(), 15u);
+  EXPECT_EQ(scenes.size(), 18u);
 }
 
 TEST(Study, RequiredAssetsMustBeThere) {
