@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -114,16 +114,27 @@ std::size_t display_width(const std::string& s) {
       std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
 }
 
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns) {
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head) {
   std::istringstream words(text);
-  std::string out, line(indent, ' ');
-  for (std::string word; words >> word;) {
-    if (display_width(line) > indent && display_width(line) + 1 + display_width(word) > columns) {
-      out += line + "\n";
-      line.assign(indent, ' ');
+  std::string out, line = head;
+  std::size_t width = display_width(head);  // of the line so far
+  const auto pad = [&](std::size_t to) {
+    line.append(to > width ? to - width : 0, ' ');
+    width = std::max(width, to);
+  };
+  bool any = false;  // a word stands in the line
+  pad(head.empty() ? indent : std::max(indent, width + 2));
+  for (std::string word; words >> word; any = true) {
+    if ((any || width > indent) && width + (any ? 1 : 0) + display_width(word) > columns) {
+      out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+      line.clear();
+      width = 0;
+      any = false;
+      pad(indent);
     }
-    if (display_width(line) > indent) line += ' ';
+    if (any) pad(width + 1);
     line += word;
+    width += display_width(word);
   }
   return out + line + "\n";
 }
@@ -142,13 +153,13 @@ std::string Table::markdown() const {
   return out + (note.empty() ? "" : "\n" + note + "\n");
 }
 
-/// Number of columns that are repeated where a table is too wide for one piece: the first, and a second one without
-/// numbers.
+/// Number of columns that are repeated where a table is too wide for one piece: those that tell its rows apart, at
+/// most 2.
 static std::size_t label_columns(const std::vector<std::vector<std::string>>& rows) {
-  const auto is_label = [](const auto& row) {
-    return row.size() < 2 || row[1].empty() || !std::isdigit(static_cast<unsigned char>(row[1][0]));
-  };
-  return rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), is_label) ? 2 : 1;
+  std::set<std::string> names;
+  for (const auto& row : rows)
+    if (!row.empty()) names.insert(row[0]);
+  return names.size() < rows.size() ? 2 : 1;
 }
 
 std::string Table::console() const {

@@ -32,7 +32,8 @@ std::string paired(double a, double b, const std::string& between, int digits);
 std::size_t display_width(const std::string&);
 
 /// Breaks text at spaces so that indented lines fit `columns`; a longer word gets its own line. Ends with a newline.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns);
+/// `head`: stands in the indent of the first line, or, if longer, before the text.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head = "");
 
 /// A number in full precision, for CSV: "inf" or "-inf" if it is infinite, empty if it is missing.
 std::string csv_number(double v);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <sstream>
 
 #include "base/plugin_environment.hpp"
+#include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "runner/build_info.hpp"
@@ -31,14 +34,41 @@ constexpr AddCommand* kCommands[] = {
 #endif
 };
 
-/// Suggests the nearest command if the first word is not a command.
-void suggest_command(const CLI::App& app, const std::vector<std::string>& words) {
-  if (words.empty() || !app.get_subcommands().empty()) return;
-  std::vector<std::string> commands;
+/// Help that fits the terminal.
+struct Help : CLI::Formatter {
+  std::string fitted(const std::string& text, std::size_t left) const {
+    std::string out = wrapped(text, 0, console_columns() - left);
+    out.pop_back();
+    return out;
+  }
+  std::string make_description(const CLI::App* app) const override { return fitted(app->get_description(), 0) + "\n"; }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return fitted(option->get_description(), get_column_width());
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_display_name(true),
+                             fitted(command->get_description(), get_column_width()), get_column_width());
+    return out.str();
+  }
+};
+
+/// The first word if it is no command, or an option that its command does not have, with the nearest known; or nothing.
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return "";
+  std::vector<std::string> commands, options;
   for (const CLI::App* c : app.get_subcommands({})) commands.push_back(c->get_name());
-  const std::string near = nearest(words.front(), commands);
-  if (!near.empty() && near != words.front())
-    fmt::print(stderr, "no command \"{}\"; nearest known: {}\n", words.front(), near);
+  if (!words.front().starts_with("-") && !contains(commands, words.front()))
+    return "no command \"" + words.front() + "\"" + nearest_known(words.front(), commands);
+  std::vector<const CLI::App*> given = {&app};
+  for (const CLI::App* c : app.get_subcommands()) given.push_back(c);
+  for (const CLI::App* a : given)
+    for (const CLI::Option* o : a->get_options())
+      for (const std::string& name : o->get_lnames()) options.push_back("--" + name);
+  for (const std::string& word : words)
+    if (const std::string name = word.substr(0, word.find('=')); name.starts_with("--") && !contains(options, name))
+      return "no option \"" + name + "\"" + nearest_known(name, options);
+  return "";
 }
 
 }  // namespace
@@ -48,6 +78,7 @@ int run_command_line(const std::vector<std::string>& words) {
       "clothbench: runs interchangeable cloth solvers on the same scenes and compares error, time and "
       "robustness",
       "clothbench"};
+  app.formatter(std::make_shared<Help>());
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("clothbench ") + build_info::kVersion + " (" + build_info::kGitCommit +
                                         "), sources " + build_info::kSourceSha256);
@@ -74,9 +105,9 @@ int run_command_line(const std::vector<std::string>& words) {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    suggest_command(app, words);
+    const std::string unknown = unknown_word(app, words);
     console.json = contains(words, "--json");  // not every word was read
-    return report_error(console, std::string(e.what()) + "; --help explains", ExitCode::BadInput);
+    return report_error(console, (unknown.empty() ? e.what() : unknown) + "; --help explains", ExitCode::BadInput);
   } catch (const Error& e) {
     return report_error(console, e.what(), e.code());
   } catch (const std::filesystem::filesystem_error& e) {  // of a path that the user gave

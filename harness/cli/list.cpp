@@ -1,10 +1,12 @@
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
+#include "base/table.hpp"
+#include "base/words.hpp"
 #include "check/baseline.hpp"
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
@@ -141,11 +143,11 @@ std::string rows_text(const nlohmann::json& rows) {
     if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
     if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
     if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
-    out += fmt::format("{:<24} {}\n", r["name"].get<std::string>(), text);
+    out += wrapped(text, 25, console_columns(), r["name"]);
     if (r.contains("settings"))
       for (const auto& s : r["settings"])
-        out += fmt::format("    solver.{}={}  {}\n", s["name"].get<std::string>(), s["default"].dump(),
-                           s["doc"].get<std::string>());
+        out += wrapped(s["doc"], 29, console_columns(),
+                       fmt::format("    solver.{}={}", s["name"].get<std::string>(), s["default"].dump()));
   }
   return out;
 }
@@ -174,7 +176,10 @@ void add_list(CLI::App& app, Console& console) {
   what = "solvers";
   CLI::App* cmd = app.add_subcommand(
       "list", "List solvers, features, scenarios, studies, devices, metrics, scalars, assets or terms");
-  cmd->add_option("what", what, fmt::format("{}", fmt::join(list_names(), " | ")))->check(CLI::IsMember(list_names()));
+  const auto check = [](const std::string& word) {
+    return contains(list_names(), word) ? "" : "no list \"" + word + "\"" + nearest_known(word, list_names());
+  };
+  cmd->add_option("what", what, joined(list_names(), " | "))->check(check);
   add_solvers(*cmd, "--solver", console.arguments<std::vector<std::string>>(),
               "Also these, in lists of solvers and features");
   cmd->footer(

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "base/json_number.hpp"
+#include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "runner/worker.hpp"
@@ -56,28 +57,33 @@ namespace {
 
 std::string plan_text(const json& p) {
   const auto text = [](const json& j) { return j.get<std::string>(); };
-  std::string out =
-      fmt::format("{} on {}\n  needs: {}\n", text(p["solver"]), text(p["scene"]), joined(words(p["needs"])));
-  if (p["status"] != "ok") out += fmt::format("  {}: {}\n", text(p["status"]), text(p["message"]));
-  if (!p["stages"].empty())
-    out += fmt::format("\n  {:<28} {:>10} {:>14} {:>14}  {}\n", "stage, each frame", "dispatches", "read B",
-                       "written B", "serves");
-  for (const auto& s : p["stages"])
-    out += fmt::format("  {:<28} {:>10} {:>14} {:>14}  {}\n", text(s["name"]), s["dispatches"].get<int>(),
-                       bytes(s["read_B"]), bytes(s["write_B"]), joined(words(s["serves"])));
-  if (!p["buffers"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "buffer", "bytes");
-  for (const auto& b : p["buffers"])
-    out += fmt::format("  {:<28} {:>14}  {}\n", text(b["name"]), b["bytes"].get<std::uint64_t>(),
-                       b["device_local"].get<bool>() ? "device" : "host");
-  if (!p["contact_margins"].empty()) out += fmt::format("\n  {:<28} {:>14}\n", "contact offset from", "[m]");
-  for (const auto& m : p["contact_margins"])
-    out += fmt::format("  {:<28} {:>14g}\n", text(m["collider"]), m["margin_m"].get<double>());
-  if (!p["left_out"].empty()) out += "\n  disabled features\n";
+  const std::size_t columns = console_columns();
+  std::string out = fmt::format("{} on {}\n", text(p["solver"]), text(p["scene"]));
+  out += wrapped(joined(words(p["needs"])), 9, columns, "  needs:");
+  if (p["status"] != "ok") out += wrapped(text(p["status"]) + ": " + text(p["message"]), 2, columns);
+  const auto add = [&](const char* title, const char* list, std::vector<std::string> head, auto&& row) {
+    Table t{title, "", {std::move(head)}};
+    for (const json& entry : p[list]) t.rows.push_back(row(entry));
+    if (t.rows.size() > 1) out += t.console();
+  };
+  using Cells = std::vector<std::string>;
+  add("Each frame", "stages", {"stage", "dispatches", "read B", "written B", "serves"}, [&](const json& s) {
+    return Cells{text(s["name"]), s["dispatches"].dump(), bytes(s["read_B"]), bytes(s["write_B"]),
+                 joined(words(s["serves"]))};
+  });
+  add("Buffers", "buffers", {"buffer", "bytes", "memory"}, [&](const json& b) {
+    return Cells{text(b["name"]), b["bytes"].dump(), b["device_local"].get<bool>() ? "device" : "host"};
+  });
+  add("Contact offsets", "contact_margins", {"collider", "offset [m]"}, [&](const json& m) {
+    return Cells{text(m["collider"]), fmt::format("{:g}", m["margin_m"].get<double>())};
+  });
+  if (!p["left_out"].empty()) out += "\nDisabled features\n";
   for (const auto& l : p["left_out"])
-    out += fmt::format("  {:<28} {}{}\n", text(l["what"]), text(l["why"]),
-                       l.contains("no_parameter")
-                           ? "; without it the cloth does not have the stiffness " + text(l["no_parameter"])
-                           : "");
+    out +=
+        wrapped(text(l["why"]) + (l.contains("no_parameter")
+                                      ? "; without it the cloth does not have the stiffness " + text(l["no_parameter"])
+                                      : ""),
+                30, columns, "  " + text(l["what"]));
   return out + "\n";
 }
 

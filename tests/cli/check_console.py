@@ -68,6 +68,16 @@ class Console(unittest.TestCase):
         self.assertEqual(lines[-1], "", "nothing of it is left")
         self.assertEqual(self.piped(*study, "--out", self.out + "-2")[1], "")
 
+    def test_lists_and_help_fit_the_width(self):
+        self.environment["COLUMNS"] = str(COLUMNS)
+        lists = ["solvers", "features", "scenarios", "studies", "metrics", "scalars", "assets", "terms"]
+        for words in [["list", what] for what in lists] + [["plan", "paper/gravity", "--solver", "ballistic"], ["--help"]] + [[command, "--help"] for command in self.commands()]:
+            with self.subTest(words=words):
+                lines = self.piped(*words)[0].split("\nEx")[0].splitlines()
+                # A word and the name of an option with its values are not broken.
+                long = [line for line in lines if len(line) > COLUMNS and " " in line.strip() and not line.startswith("  -")]
+                self.assertEqual(long, [])
+
     def commands(self):
         help_text, _ = self.piped("--help")
         self.assertIn("Example", help_text)

@@ -62,9 +62,17 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
     EXPECT_EQ(answer.code, 2) << answer.text;
     EXPECT_EQ(nlohmann::json::parse(answer.text).at("exit_code"), 2) << answer.text;
   }
-  const Answer unknown = command("run paper/gravity --solver balistic --out " + (dir_ / "p").string());
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.text.find("ballistic"), std::string::npos) << "the nearest name: " << unknown.text;
+  for (const auto& [words, near] : {std::pair{"stduy table3", "study"},
+                                    {"study table3 --quik", "--quick"},
+                                    {"study tabel3", "table3"},
+                                    {"list solvrs", "solvers"},
+                                    {"run paper/gravty", "paper/gravity"},
+                                    {"run paper/gravity --solver balistic", "ballistic"},
+                                    {"run paper/gravity --set cloth.gird=[4,4]", "grid"}}) {
+    const Answer unknown = command(words);
+    EXPECT_EQ(unknown.code, 2) << words;
+    EXPECT_NE(unknown.text.find(std::string("nearest known: ") + near), std::string::npos) << unknown.text;
+  }
   const Answer setting =
       command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
   EXPECT_EQ(setting.code, 2) << setting.text;
