@@ -14,17 +14,12 @@ namespace {
 
 using nlohmann::json;
 
-std::string text(const RunRecord& c, const char* key) {
-  const json e = environment_of(c, key);
-  return e.is_string() ? e.get<std::string>() : "";
-}
-
 bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) == json(true); }
 
 /// The value of a run's environment as the heading shows it.
 std::string fact(const RunRecord& c, const std::string& key) {
-  const std::string value = text(c, key.c_str());
-  if ((key == "gpu" || key == "driver") && text(c, "gpu") == "CPU") return "";
+  const std::string value = environment_text(c, key.c_str());
+  if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
   if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
   if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
   return key == "created" ? value.substr(0, 10) : value;
@@ -38,7 +33,7 @@ std::set<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
     if (!p.is_object()) continue;
     const auto part = [&](const char* key) { return or_dash(p.value(key, "")); };
     out.insert(fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
-                           or_dash(text(c, "solver_version")), part("summary"),
+                           or_dash(environment_text(c, "solver_version")), part("summary"),
                            std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
   }
   return out;
@@ -79,7 +74,7 @@ std::vector<std::string> warnings_of(const RunTable& table) {
   for (const Row& r : table.rows()) {
     const RunRecord& c = *r.run;
     all.push_back(&r);
-    if (text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(text(c, "gpu"));
+    if (environment_text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(environment_text(c, "gpu"));
     if (const json s = environment_of(c, "device_samples"); s.is_object() && !s.value("valid", true))
       for (const json& reason : s.value("reasons", json::array())) invalid.insert(reason.get<std::string>());
   }

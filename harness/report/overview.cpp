@@ -24,7 +24,7 @@ constexpr const char* kTable3Note =
     "72. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
-  if (!std::isfinite(v)) return "–";
+  if (!std::isfinite(v)) return "";
   if (v >= 999500) return significant(1e-6 * v, 3) + "M";
   return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
 }
@@ -37,7 +37,7 @@ const Row* largest(const Group& g) {
 }
 
 ViewColumn at_largest(std::string head, std::function<Cell(const Row&)> cell) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Texts&) {
+  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) {
             const Row* r = largest(g);
             return r == nullptr ? Cell() : cell(*r);
           }};
@@ -73,12 +73,15 @@ View speed_and_error() {
     for (const Row* r : g) fps = r->published < 0 && r->largest ? r->value("fps_median") : fps;
     return g.front()->published >= 0 ? 1 : std::isfinite(fps) ? -fps : 0;
   };
-  v.keys = {solver_key("solver", [](const Row& r) {
-    const bool plain = r.sides.empty() || r.sides == "single" || r.published >= 0;
-    return plain ? r.label() : r.label() + ", " + r.sides;
-  })};
+  v.keys = {key(
+      "solver",
+      [](const Row& r) {
+        const bool plain = r.sides.empty() || r.sides == "single" || r.published >= 0;
+        return plain ? r.label() : r.label() + ", " + r.sides;
+      },
+      true)};
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
-              [](const Group& g, const Texts&) {
+              [](const Group& g, const Keys&) {
                 const Row& r = *g.front();
                 const double fps = r.value(r.published >= 0 ? "fps_at_72" : "fps_median");
                 if (r.published >= 0) return Cell(fmt::format("{:g}", fps), fps);
@@ -98,8 +101,8 @@ View speed_and_error() {
                           }),
                at_largest("stretch, mean / maximum [%]",
                           [](const Row& r) {
-                            const double mean = 100 * r.value("stretch_mean_last_second");
-                            return Cell(paired(mean, 100 * r.value("stretch_max_last_second"), " / ", 2), mean);
+                            return paired_cell(100 * r.value("stretch_mean_last_second"),
+                                               100 * r.value("stretch_max_last_second"), 2);
                           }),
                at_largest("trials", [](const Row& r) { return trials_column().cell({&r}, {}); })};
   for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));

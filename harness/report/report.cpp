@@ -123,10 +123,12 @@ void print_console_report(const std::vector<fs::path>& results) {
   head.insert(head.end(), page.notes.begin(), page.notes.end());
   for (const std::string& line : head) fmt::print("{}", wrapped(line, 0, console_columns()));
   std::size_t shown = 0, rest = 0;
-  if (table.runs().size() <= kFew)
+  const bool few = table.runs().size() <= kFew;
+  if (few)
     if (const Table t = in_short_table(table); !t.rows.empty() && ++shown > 0) fmt::print("{}", t.console());
   for (const PageSection& s : page.sections)
     for (const ViewTable& t : s.tables) {
+      if (few && s.id == "overview") continue;  // its runs stand in the table above
       // Messages are sentences and are printed as lines, not columns; a failed run is never left out.
       if (s.id == "failed" && !t.in_full) {
         fmt::print("\n{}\n", t.title);

@@ -93,6 +93,11 @@ json environment_of(const RunRecord& c, const char* key) {
   return e.is_object() ? e.value(key, json()) : json();
 }
 
+std::string environment_text(const RunRecord& c, const char* key) {
+  const json e = environment_of(c, key);
+  return e.is_string() ? e.get<std::string>() : "";
+}
+
 std::string engine_of(const RunRecord& c) {
   const json plugin = environment_of(c, "plugin");
   return plugin.is_object() ? plugin.value("engine", std::string()) : "";
@@ -159,19 +164,14 @@ std::string Resolution::label() const {
   return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
 }
 
-double TruthFacts::rank_floor() const {
-  double most = 0;
-  for (const double f : {floor(), space_error})
-    if (f > most) most = f;
-  return most;
-}
+double TruthFacts::rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
   // The truth is exact where the reference confirms it, so only the uncertainty of the reference counts here. No solver
   // is ranked below the error of the mesh, so the reference need not be more certain than that.
   if (!std::isfinite(best_error)) return "no solver ranked on it has an error";
-  const double least = std::max(best_error, std::isfinite(space_error) ? space_error : 0.0);
+  const double least = std::fmax(best_error, space_error);
   if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
   return "";
 }
@@ -182,11 +182,6 @@ std::string Row::label() const {
 
 std::string Row::frames_mark() const {
   return frames() > 0 && frames() < most_frames ? fmt::format(" (first {} frames)", frames()) : "";
-}
-
-std::string Row::environment(const char* key) const {
-  const json e = environment_of(*run, key);
-  return e.is_string() ? e.get<std::string>() : "";
 }
 
 double Row::frame_rate_hz() const {
@@ -219,8 +214,7 @@ std::pair<double, double> Row::offset_m() const {
   if (status() == "unsupported" || status() == "missing") return out;
   const auto add = [&](const json& collider) {
     const double m = collider.value("margin_m", kMissing);
-    if (!(out.first <= m)) out.first = m;
-    if (!(out.second >= m)) out.second = m;
+    out = {std::fmin(out.first, m), std::fmax(out.second, m)};
   };
   const json stated = at(run->header.plan, "/contact_margins"), colliders = at(scenario, "/colliders");
   std::set<std::string> names;

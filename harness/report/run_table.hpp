@@ -21,6 +21,8 @@ double summary_value(const RunRecord&, const std::string& name);
 nlohmann::json scenario_of(const RunRecord&);
 /// The environment's value of `key`; null if there is none.
 nlohmann::json environment_of(const RunRecord&, const char* key);
+/// The environment's text of `key`; empty if there is none.
+std::string environment_text(const RunRecord&, const char* key);
 
 /// Engine that the run's plugin wraps, as the plugin states it: "NvCloth"; empty if it states none, or is no plugin.
 std::string engine_of(const RunRecord&);
@@ -118,8 +120,6 @@ struct Row {
   std::string frames_mark() const;
   double value(const std::string& name) const { return summary_value(*run, name); }
   std::string status() const { return run->outcome.status; }
-  /// The environment's text of `key`; empty if there is none.
-  std::string environment(const char* key) const;
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined where the solver supports it.
   double wall_ms_per_s() const;

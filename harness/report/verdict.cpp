@@ -47,7 +47,7 @@ std::string verdict(const RunRecord& c) {
   if (c.outcome.status != "ok") return ending(c.outcome);
   if (c.outcome.expect.starts_with("fail")) return "fail";
   const std::map<std::string, double> all = bounds(c);
-  if (all.empty()) return "–";
+  if (all.empty()) return kNoVerdict;
   if (!violated_bounds(c).empty()) return "fail";
   if (std::any_of(all.begin(), all.end(), [](const auto& b) { return std::isnan(b.second); })) return "not measured";
   return has_contact(c) && touches_nothing(c) ? "ignored" : "pass";
@@ -73,24 +73,20 @@ std::string VerdictCounts::text() const {
   return out;
 }
 
-VerdictCounts count_verdicts(const std::vector<const RunRecord*>& runs) {
-  VerdictCounts out;
-  for (const RunRecord* c : runs) {
-    if (c->outcome.status == "missing" || bounds_of(*c) == 0) continue;
-    ++out.runs;
-    const std::string v = verdict(*c);
-    out.passed += v == "pass" ? 1 : 0;
-    out.ignored += v == "ignored" ? 1 : 0;
-    out.unsupported += v == "unsupported" ? 1 : 0;
-    out.not_measured += v == "not measured" || v == "–" || v == "over_budget" ? 1 : 0;
-  }
-  return out;
+void count_verdict(const RunRecord& c, VerdictCounts& out) {
+  if (c.outcome.status == "missing" || bounds_of(c) == 0) return;
+  ++out.runs;
+  const std::string v = verdict(c);
+  out.passed += v == "pass";
+  out.ignored += v == "ignored";
+  out.unsupported += v == "unsupported";
+  out.not_measured += v == "not measured" || v == kNoVerdict || v == "over_budget";
 }
 
 VerdictCounts count_verdicts(const std::vector<RunRecord>& runs) {
-  std::vector<const RunRecord*> all;
-  for (const RunRecord& c : runs) all.push_back(&c);
-  return count_verdicts(all);
+  VerdictCounts out;
+  for (const RunRecord& c : runs) count_verdict(c, out);
+  return out;
 }
 
 }  // namespace clothbench

@@ -9,7 +9,9 @@ namespace clothbench {
 /// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as it should.
 std::vector<std::string> violated_bounds(const RunRecord&);
 
-/// Verdict on a run: "pass", "fail", "not measured"; "–" if there are no bounds;
+inline constexpr const char* kNoVerdict = "–";
+
+/// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds;
 /// "ignored" if the bounds hold but the scene has contact and the solver ignores all of it, which
 /// proves nothing. If the run did not end well, its ending. Tables, consoles, JSON and the page print this.
 std::string verdict(const RunRecord&);
@@ -27,7 +29,8 @@ struct VerdictCounts {
 };
 
 /// The one count of passed runs: consoles, tables and JSON take it from here.
-VerdictCounts count_verdicts(const std::vector<const RunRecord*>&);
 VerdictCounts count_verdicts(const std::vector<RunRecord>&);
+/// Adds a run to the counts.
+void count_verdict(const RunRecord&, VerdictCounts&);
 
 }  // namespace clothbench

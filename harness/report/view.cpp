@@ -14,22 +14,18 @@ namespace {
 
 /// A row of a table before its cells are known.
 struct TableRow {
-  Texts keys;
+  Keys keys;
   Group runs;
   std::map<std::string, Group> across = {};
 };
 
-constexpr const char* kAll = "all";
-
-bool has_value(const Cell& c) { return !c.text.empty() && c.text != "–"; }
-
 /// Every combination of a run's values, one per key.
-std::vector<Texts> combinations(const View& v, const Row& r) {
-  std::vector<Texts> out = {{}};
+std::vector<Keys> combinations(const View& v, const Row& r) {
+  std::vector<Keys> out = {{}};
   for (const Key& k : v.keys) {
-    std::vector<Texts> longer;
-    for (const Texts& start : out)
-      for (const std::string& value : k.of(r)) {
+    std::vector<Keys> longer;
+    for (const Keys& start : out)
+      for (const KeyValue& value : k.of(r)) {
         longer.push_back(start);
         longer.back().push_back(value);
       }
@@ -40,24 +36,19 @@ std::vector<Texts> combinations(const View& v, const Row& r) {
 
 std::vector<TableRow> rows_of(const View& v, const Group& runs) {
   std::vector<TableRow> out;
-  std::map<Texts, std::size_t> index;
+  std::map<Keys, std::size_t> index;
   for (const Row* r : runs)
-    for (const Texts& keys : combinations(v, *r)) {
+    for (const Keys& keys : combinations(v, *r)) {
       const auto [at, is_new] = index.try_emplace(keys, out.size());
       if (is_new) out.push_back({keys, {}, {}});
       TableRow& row = out[at->second];
       row.runs.push_back(r);
       if (v.across)
-        for (const std::string& value : v.across->key.of(*r)) row.across[value].push_back(r);
+        for (const KeyValue& value : v.across->key.of(*r)) row.across[value.text].push_back(r);
     }
-  const auto place = [](const TableRow& r) {
-    std::vector<std::pair<bool, std::string>> keys;
-    for (const std::string& k : r.keys) keys.emplace_back(k.starts_with(kAll), k);
-    return keys;
-  };
   if (v.order)
     std::stable_sort(out.begin(), out.end(), [&](auto& a, auto& b) { return v.order(a.runs) < v.order(b.runs); });
-  if (v.by_key) std::stable_sort(out.begin(), out.end(), [&](auto& a, auto& b) { return place(a) < place(b); });
+  if (v.by_key) std::stable_sort(out.begin(), out.end(), [](auto& a, auto& b) { return a.keys < b.keys; });
   return out;
 }
 
@@ -66,7 +57,7 @@ Texts values_across(const Across& a, const Group& runs) {
   Texts out;
   std::map<std::string, double> order;
   for (const Row* r : runs)
-    for (const std::string& value : a.key.of(*r)) {
+    for (const auto& [unused, value] : a.key.of(*r)) {
       if (!contains(out, value)) out.push_back(value);
       if (a.order) order[value] = a.order(*r);
     }
@@ -77,7 +68,7 @@ Texts values_across(const Across& a, const Group& runs) {
 /// Adds a column if a row has a value in it. Returns whether it was added.
 bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& cells, bool always,
                 const std::string& solver = "") {
-  if (!always && std::none_of(cells.begin(), cells.end(), has_value)) return false;
+  if (!always && std::all_of(cells.begin(), cells.end(), std::mem_fn(&Cell::is_missing))) return false;
   t.solvers.push_back(solver);
   t.rows[0].push_back(head);
   for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -105,7 +96,7 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   for (const TableRow& r : rows) t.runs.push_back(r.runs.front());
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     std::vector<Cell> cells;
-    for (const TableRow& r : rows) cells.emplace_back(r.keys[k]);
+    for (const TableRow& r : rows) cells.emplace_back(r.keys[k].text);
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
       t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
@@ -117,7 +108,7 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
       for (const TableRow& r : rows) {
         const auto at = r.across.find(value);
         cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second, r.keys));
-        any = any || has_value(cells.back());
+        any = any || !cells.back().is_missing();
         if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
       }
       add_column(t, value, cells, true, solver);
@@ -135,26 +126,20 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
 
 }  // namespace
 
-Key key(std::string head, std::function<std::string(const Row&)> of) {
-  return {std::move(head), [of = std::move(of)](const Row& r) -> Texts { return {of(r)}; }};
-}
-
-Key solver_key(std::string head, std::function<std::string(const Row&)> of) {
-  Key k = key(std::move(head), std::move(of));
-  k.is_solver = true;
-  return k;
+Key key(std::string head, std::function<std::string(const Row&)> of, bool is_solver) {
+  return {std::move(head), [of = std::move(of)](const Row& r) -> Keys { return {of(r)}; }, is_solver};
 }
 
 Key scene_key() {
   return key("scene", [](const Row& r) { return r.scene; });
 }
-Key solver_key() { return solver_key("solver", &Row::label); }
+Key solver_key() { return key("solver", &Row::label, true); }
 Key sides_key() {
-  return key("sides", [](const Row& r) { return or_dash(r.sides); });
+  return key("sides", [](const Row& r) { return r.sides; });
 }
 
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Texts&) { return cell(*g.front()); },
+  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) { return cell(*g.front()); },
           if_differs};
 }
 
@@ -187,7 +172,11 @@ const std::vector<View>& views() {
   return all;
 }
 
-Cell number_cell(double v, int digits) { return {significant(v, digits), v}; }
+Cell number_cell(double v, int digits) { return std::isfinite(v) ? Cell(significant(v, digits), v) : Cell(); }
+
+Cell paired_cell(double a, double b, int digits) {
+  return std::isfinite(a) || std::isfinite(b) ? Cell(paired(a, b, " / ", digits), a) : Cell();
+}
 
 Cell share_cell(std::size_t passed, std::size_t all) {
   if (all == 0) return {};
@@ -205,7 +194,7 @@ Cell ending_cell(const RunRecord& c) {
 Cell verdict_cell(const RunRecord& c) {
   if (c.outcome.status != "ok") return ending_cell(c);
   const std::string v = verdict(c);
-  return {v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
+  return {v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
 }
 
 const std::vector<Section>& sections() {

@@ -13,7 +13,8 @@ namespace clothbench {
 using Group = std::vector<const Row*>;
 using Texts = std::vector<std::string>;
 
-/// A value of a table: its text, and what it means to the page, which sorts by the number and tints by the tone.
+/// A value of a table: its text, and what it means to the page, which sorts by the number and tints by the tone. A
+/// missing value has no text and is shown as "–".
 struct Cell {
   std::string text;
   double value = kMissing;  ///< NaN: the text is no number
@@ -22,9 +23,12 @@ struct Cell {
   Cell() = default;
   Cell(std::string t, double v = kMissing, const char* tinted = "") : text(std::move(t)), value(v), tone(tinted) {}
   Cell(const char* t) : text(t) {}
+  bool is_missing() const { return text.empty(); }
 };
-/// A number with `digits` significant digits; "–" if it is missing.
+/// A number with `digits` significant digits.
 Cell number_cell(double v, int digits);
+/// "12.3 / 4.50", sorted by the first.
+Cell paired_cell(double a, double b, int digits);
 
 /// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's 95 % interval; empty without runs.
 Cell share_cell(std::size_t passed, std::size_t all);
@@ -33,27 +37,34 @@ Cell share_cell(std::size_t passed, std::size_t all);
 Cell verdict_cell(const RunRecord&);
 Cell ending_cell(const RunRecord&);
 
-/// Divides runs into rows or columns. A run with several values stands in several of them ("all" as well as its own).
+/// A value by which runs are divided. `all`: it stands for all values of its key, and its row is the last one.
+struct KeyValue {
+  bool all = false;
+  std::string text;
+
+  KeyValue(std::string t, bool stands_for_all = false) : all(stands_for_all), text(std::move(t)) {}
+  auto operator<=>(const KeyValue&) const = default;
+};
+using Keys = std::vector<KeyValue>;
+
+/// Divides runs into rows or columns. A run with several values stands in several of them (all as well as its own).
 struct Key {
   std::string head;
-  std::function<Texts(const Row&)> of;
+  std::function<Keys(const Row&)> of;
   bool is_solver = false;  ///< the page's filter of solvers applies to its values
 };
 /// A key with one value per run.
-Key key(std::string head, std::function<std::string(const Row&)> of);
-
-/// A key whose values name solvers.
-Key solver_key(std::string head, std::function<std::string(const Row&)> of);
+Key key(std::string head, std::function<std::string(const Row&)> of, bool is_solver = false);
 
 /// The scene; the solver with its setting and the number of a repeated run; the sides.
 Key scene_key();
 Key solver_key();
 Key sides_key();
 
-/// A value of a row; an empty text or "–" is no value.
+/// A value of a row.
 struct ViewColumn {
   std::string head;
-  std::function<Cell(const Group&, const Texts& keys)> cell;
+  std::function<Cell(const Group&, const Keys& keys)> cell;
   bool if_differs = false;  ///< left out where all rows have the same value
 };
 /// A column that shows the row's first run.
@@ -69,7 +80,7 @@ std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pic
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
   Key key;
-  std::function<Cell(const Group&, const Texts& keys)> cell;
+  std::function<Cell(const Group&, const Keys& keys)> cell;
   std::function<double(const Row&)> order = nullptr;
 };
 
@@ -83,7 +94,7 @@ struct View {
   std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, which is its title
   std::function<std::string(const Group&)> more = nullptr;  ///< a further sentence of the note
   std::function<double(const Group&)> order = nullptr;      ///< rows ascend by it
-  bool by_key = false;   ///< rows in the order of their keys, "all" last; otherwise in the order of the runs
+  bool by_key = false;   ///< rows in the order of their keys; otherwise in the order of the runs
   bool timed = false;    ///< shows times: the note states whose times are withheld
   bool in_full = false;  ///< only in files and on the page, not on the terminal
 };

@@ -20,10 +20,6 @@ using nlohmann::json;
 constexpr std::array kBudgets_ms = {0.1, 1.0, 13.9};
 
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
-Key solver_only() {
-  return solver_key("solver", [](const Row& r) { return r.solver; });
-}
-
 using Measure = double (Row::*)() const;
 
 /// The row with the smallest `by` among those that count and satisfy `when`; null without any.
@@ -34,22 +30,12 @@ const Row* best(const Group& g, const std::function<bool(const Row&)>& when, Mea
   return out;
 }
 
-/// "64×1" of "substeps=64,iterations=1"; any other setting as it is.
-std::string short_setting(const Row& r) {
-  const std::string first = "substeps=", second = ",iterations=", &setting = r.setting;
-  const std::size_t at = setting.find(second);
-  if (!setting.starts_with(first)) return setting;
-  if (at == std::string::npos) return setting.substr(first.size());
-  return setting.substr(first.size(), at - first.size()) + "×" + setting.substr(at + second.size());
-}
-
 /// Shortest time to an error of at most `most`, by a clock.
 ViewColumn time_to(const char* head, double most, Measure clock) {
-  return {head, [=](const Group& g, const Texts&) {
+  return {head, [=](const Group& g, const Keys&) {
             const Row* r = best(
                 g, [&](const Row& row) { return row.error() <= most; }, clock);
-            return r == nullptr ? Cell()
-                                : Cell(fmt::format("{:.3g} ({})", (r->*clock)(), short_setting(*r)), (r->*clock)());
+            return r == nullptr ? Cell() : Cell(fmt::format("{:.3g} ({})", (r->*clock)(), r->setting), (r->*clock)());
           }};
 }
 
@@ -60,11 +46,11 @@ std::string error_text(double error, double floor) {
 
 /// Smallest error of a setting whose frame takes at most `most_ms` of wall time.
 ViewColumn best_error(std::string head, double most_ms) {
-  return {std::move(head), [=](const Group& g, const Texts&) {
+  return {std::move(head), [=](const Group& g, const Keys&) {
             const auto fits = [&](const Row& row) { return row.wall_ms_per_s() / row.frame_rate_hz() <= most_ms; };
             const Row* r = best(g, fits, &Row::error);
             if (r == nullptr) return Cell();
-            return Cell(error_text(r->error(), r->truth->rank_floor()) + " (" + short_setting(*r) + ")", r->error());
+            return Cell(error_text(r->error(), r->truth->rank_floor()) + " (" + r->setting + ")", r->error());
           }};
 }
 
@@ -111,7 +97,7 @@ View work() {
   View v{
       "accuracy", "Error against run time",
       "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
-      "brackets the setting, or substeps × iterations. GPU: by the device's own clock. Errors: against the exact "
+      "brackets the setting. GPU: by the device's own clock. Errors: against the exact "
       "solution of the same grid; for triangle meshes, against the continuum's; within: the smallest error of a "
       "setting whose frame takes at most that wall time. Frame, percentiles, missed deadlines and real-time factor: of "
       "the fastest setting with an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which "
@@ -122,7 +108,8 @@ View work() {
       "the scene depends on, as its plan states; effective stiffness is not measured here.",
       in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
-            solver_only()};
+            key(
+                "solver", [](const Row& r) { return r.solver; }, true)};
   v.columns = {time_to("to 1 %", 1e-2, &Row::wall_ms_per_s), time_to("to 0.1 %", 1e-3, &Row::wall_ms_per_s),
                time_to("to 1 %, GPU", 1e-2, &Row::device_ms_per_s),
                time_to("to 0.1 %, GPU", 1e-3, &Row::device_ms_per_s)};
@@ -130,16 +117,16 @@ View work() {
     v.columns.push_back(best_error(fmt::format("error within {:g} ms", budget_ms), budget_ms));
   v.columns.push_back(best_error("best error", INFINITY));
   for (ViewColumn& c : tail_columns(representative)) v.columns.push_back(std::move(c));
-  v.columns.push_back({"failed", [](const Group& g, const Texts&) { return failed_cell(g); }});
+  v.columns.push_back({"failed", [](const Group& g, const Keys&) { return failed_cell(g); }});
   v.columns.push_back(trials_column());
-  v.columns.push_back({"ranked", [](const Group& g, const Texts&) { return ranked_text(g); }});
+  v.columns.push_back({"ranked", [](const Group& g, const Keys&) { return ranked_text(g); }});
   v.timed = true;
   return v;
 }
 
 /// The value of the first run of the scene that has it.
 ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}") {
-  return {head, [=](const Group& g, const Texts&) {
+  return {head, [=](const Group& g, const Keys&) {
             const auto at = std::find_if(g.begin(), g.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
             return at == g.end() ? Cell()
                                  : Cell(fmt::format(fmt::runtime(form), (*at)->value(name)), (*at)->value(name));
@@ -177,7 +164,7 @@ std::string class_of(const Row& r) {
 }
 
 /// "5/7 stable, 2 failed (F1, F2)".
-Cell tally(const Group& g, const Texts& /*keys*/) {
+Cell tally(const Group& g, const Keys& /*keys*/) {
   std::map<int, std::map<std::string, int>> classes;
   int all = 0, stable = 0, unsupported = 0;
   for (const Row* r : g) {
@@ -188,7 +175,7 @@ Cell tally(const Group& g, const Texts& /*keys*/) {
     stable += grade == 0;
     if (grade > 0) ++classes[grade][class_of(*r)];
   }
-  if (all == 0) return {unsupported > 0 ? "unsupported" : "–", kMissing, "dim"};
+  if (all == 0) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
   for (const auto& [grade, counts] : classes) {
     int runs = 0;
@@ -209,7 +196,7 @@ View robustness() {
       "Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, "
       "crash or device.",
       in_stability};
-  v.keys = {{"case", [](const Row& r) { return Texts{case_of(r), "all"}; }}};
+  v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
   return v;
@@ -219,8 +206,8 @@ View failed() {
   View v{"failed", "Runs that failed", "In brackets: the class of a failure, and the first frame of it.",
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
   v.keys = {solver_key(), key("status", [](const Row& r) { return status_with_class(r.run->outcome); }),
-            key("message", [](const Row& r) { return or_dash(r.run->outcome.message); })};
-  v.columns = {{"scenes", [](const Group& g, const Texts&) {
+            key("message", [](const Row& r) { return r.run->outcome.message; })};
+  v.columns = {{"scenes", [](const Group& g, const Keys&) {
                   return joined(g, ", ", [](const Row* r) {
                     const int frame = r->run->outcome.failed_frame;
                     return r->scene + (frame >= 0 ? fmt::format(" (frame {})", frame) : "");
@@ -229,33 +216,44 @@ View failed() {
   return v;
 }
 
-/// The criterion of the scene for a summary value, as text: "at most 0".
+/// " m"; nothing of a value without a unit.
+std::string unit_of(const std::string& name) {
+  const auto at = std::find_if(scalars().begin(), scalars().end(), [&](auto& s) { return s.name == name; });
+  return at == scalars().end() || at->units == "1" ? "" : " " + at->units;
+}
+
+/// The criterion of the scene for a summary value, as text: "at most 0.001 m".
 std::string criterion(const Row& r, const std::string& name) {
-  if (const double exact = r.value(name + kBound); std::isfinite(exact)) return fmt::format("at most {:.3g}", exact);
+  if (const double exact = r.value(name + kBound); std::isfinite(exact))
+    return fmt::format("at most {:.3g}{}", exact, unit_of(name));
   const json e = r.scenario.value("expect", json::object()).value(name, json());
   if (e.is_string()) return e.get<std::string>();
   std::string text;
   for (const auto& [bound, words] : {std::pair{"at_least", "at least "}, std::pair{"at_most", "at most "}})
-    if (e.is_object() && e.contains(bound)) text += (text.empty() ? "" : ", ") + std::string(words) + e[bound].dump();
-  return or_dash(text);
+    if (e.is_object() && e.contains(bound))
+      text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", words, e[bound].dump(), unit_of(name));
+  return text;
 }
 
 /// A row per violated criterion. A verdict that no criterion explains stands as it is.
 View violated() {
   const auto broken = [](const Row& r) {
-    Texts out = violated_bounds(*r.run);
-    if (out.empty() && r.run->outcome.expect.starts_with("fail")) out.push_back(r.run->outcome.expect);
+    Keys out;
+    for (const std::string& name : violated_bounds(*r.run)) out.emplace_back(name);
+    if (out.empty() && r.run->outcome.expect.starts_with("fail")) out.emplace_back(r.run->outcome.expect, true);
     return out;
   };
   View v{"failed", "Acceptance criteria that are violated", "",
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability; }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
-  v.columns = {{"expected", [](const Group& g, const Texts& k) { return criterion(*g.front(), k[2]); }},
-               {"found", [](const Group& g, const Texts& k) {
-                  if (k[2] == "outcome") return ending_cell(*g.front()->run);
-                  if (k[2].starts_with("fail")) return Cell("fail", kMissing, "bad");
-                  const double found = g.front()->value(k[2]);
-                  return std::isfinite(found) ? Cell(fmt::format("{:.4g}", found), found) : Cell();
+  v.columns = {{"expected", [](const Group& g, const Keys& k) { return criterion(*g.front(), k[2].text); }},
+               {"found", [](const Group& g, const Keys& k) {
+                  if (k[2].text == "outcome") return ending_cell(*g.front()->run);
+                  if (k[2].text == "motion") return Cell(g.front()->run->outcome.expect);  // which of its laws
+                  if (k[2].all) return Cell("fail", kMissing, "bad");
+                  const double found = g.front()->value(k[2].text);
+                  return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(k[2].text)), found)
+                                              : Cell();
                 }}};
   return v;
 }
@@ -280,9 +278,9 @@ View environment() {
     v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
       const json e = environment_of(*r.run, name);
       if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";
-      return e.is_null() ? "–" : e.is_string() ? or_dash(e.get<std::string>()) : e.dump();
+      return e.is_null() ? "" : e.is_string() ? e.get<std::string>() : e.dump();
     }));
-  v.columns = {{"runs", [](const Group& g, const Texts&) {
+  v.columns = {{"runs", [](const Group& g, const Keys&) {
                   std::map<std::string, int> runs;
                   for (const Row* r : g) ++runs[r->solver];
                   return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });

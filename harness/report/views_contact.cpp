@@ -35,15 +35,14 @@ ViewColumn values(const char* head, std::vector<const char*> names, double per_s
 
 std::string offset_of(const Row& r) {
   const auto [least, most] = r.offset_m();
-  if (!std::isfinite(most)) return "–";
+  if (!std::isfinite(most)) return "";
   return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
 }
 
 /// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
-Cell pass_rate(const Group& g, const Texts& /*keys*/) {
-  std::vector<const RunRecord*> runs;
-  for (const Row* r : g) runs.push_back(r->run);
-  const VerdictCounts n = count_verdicts(runs);
+Cell pass_rate(const Group& g, const Keys& /*keys*/) {
+  VerdictCounts n;
+  for (const Row* r : g) count_verdict(*r->run, n);
   return share_cell(n.passed, n.runs);
 }
 
@@ -53,9 +52,9 @@ View verdicts() {
          "handles no contact. –: not run, or the scene has no criteria. All: passed scenes, with the 95 % interval of "
          "the probability (Wilson); unsupported counts as not passed.",
          in_contact};
-  v.keys = {{"scene", [](const Row& r) { return Texts{r.scene, kAllRuns}; }}};
+  v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
-  v.across = {solver_key(), [](const Group& g, const Texts& keys) {
+  v.across = {solver_key(), [](const Group& g, const Keys& keys) {
                 return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front()->run);
               }};
   return v;
@@ -105,7 +104,9 @@ std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
 }
 
-bool is_judged(const Row& r) { return r.part == Part::Generated && r.status() != "missing" && verdict(*r.run) != "–"; }
+bool is_judged(const Row& r) {
+  return r.part == Part::Generated && r.status() != "missing" && verdict(*r.run) != kNoVerdict;
+}
 
 View pass_rates() {
   View v{
@@ -114,15 +115,15 @@ View pass_rates() {
       "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: distance "
       "at which the solver keeps the cloth from colliders.",
       [](const Row& r) { return r.part == Part::Generated; }};
-  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Texts{label_of(*r.run)} : Texts(); }, true},
+  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Keys{label_of(*r.run)} : Keys(); }, true},
             {"kind", [](const Row& r) {
-               return Texts{with_assets(r.drawn().value("kind", ""), r), with_assets(kAllRuns, r)};
+               return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};
   v.across = {key("", band_name), pass_rate, band_of};
-  v.columns = {{kAllRuns, pass_rate}, {"contact offset [mm]", [](const Group& g, const Texts&) {
+  v.columns = {{kAllRuns, pass_rate}, {"contact offset [mm]", [](const Group& g, const Keys&) {
                                          std::set<std::string> all;
                                          for (const Row* r : g)
-                                           if (const std::string at = offset_of(*r); at != "–") all.insert(at);
+                                           if (const std::string at = offset_of(*r); !at.empty()) all.insert(at);
                                          return joined(all);
                                        }}};
   v.by_key = true;

@@ -12,8 +12,7 @@ namespace {
 
 /// "12.3 / 4.50" of the bytes read and written, times `scale`.
 Cell bytes(const Row& r, const char* read, const char* written, double scale) {
-  const double in = scale * r.value(read), out = scale * r.value(written);
-  return {paired(in, out, " / ", 3), in};
+  return paired_cell(scale * r.value(read), scale * r.value(written), 3);
 }
 
 /// Rows of a run's frame times: by clock, of all frames and of those with contact.
@@ -22,16 +21,14 @@ constexpr std::pair<const char*, FrameTimes RunTimes::*> kClocks[] = {
     {"GPU", &RunTimes::device}, {"GPU, with contact", &RunTimes::contact_device},
     {"CPU", &RunTimes::cpu},    {"wall, with rendering", &RunTimes::rendered}};
 
-Texts clocks_of(const Row& r) {
-  Texts out;
+Keys clocks_of(const Row& r) {
+  Keys out;
   for (const auto& [name, times] : kClocks)
     if (!((*r.times).*times).sorted.empty()) out.emplace_back(name);
   return out;
 }
 
 std::string milliseconds(double s) { return significant(1e3 * s, 3); }
-
-Cell milliseconds_cell(double s) { return {milliseconds(s), s}; }
 
 /// "2.00 (1.95–2.10)"; " ~" follows if the interval is wide.
 Cell median_cell(const FrameTimes& t) {
@@ -45,15 +42,11 @@ Cell tails_cell(const FrameTimes& t) {
   return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
-Cell missed_cell(const FrameTimes& t) {
-  return {paired(100 * t.missed(72), 100 * t.missed(90), " / ", 3), t.missed(72)};
-}
+Cell missed_cell(const FrameTimes& t) { return paired_cell(100 * t.missed(72), 100 * t.missed(90), 3); }
 
 Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
 
-Cell ratio(const Row& r) {
-  return std::isfinite(r.baseline_s) ? number_cell(r.times->wall.at(0.5) / r.baseline_s, 3) : Cell();
-}
+Cell ratio(const Row& r) { return number_cell(r.times->wall.at(0.5) / r.baseline_s, 3); }
 
 Cell rank(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
 
@@ -72,15 +65,15 @@ View frame_times() {
          [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto add = [&](const std::string& head, std::function<Cell(const FrameTimes&)> text) {
-    v.columns.push_back({head, [text](const Group& g, const Texts& keys) {
+    v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
                            for (const auto& [name, times] : kClocks)
-                             if (keys.back() == name) return text((*g.front()->times).*times);
+                             if (keys.back().text == name) return text((*g.front()->times).*times);
                            return Cell();
                          }});
   };
   const auto add_wall = [&](const std::string& head, std::function<Cell(const Row&)> text) {
-    v.columns.push_back({head, [text](const Group& g, const Texts& keys) {
-                           return keys.back() == kClocks[0].first ? text(*g.front()) : Cell();
+    v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
+                           return keys.back().text == kClocks[0].first ? text(*g.front()) : Cell();
                          }});
   };
   v.columns.push_back(trials_column());
@@ -89,13 +82,13 @@ View frame_times() {
   add("p95 / p99 / worst", tails_cell);
   add("missed 72 / 90 Hz [%]", missed_cell);
   add_wall("real-time factor", real_time_factor);
-  add_wall("pipelined", [](const Row& r) { return milliseconds_cell(r.value("frame_pipelined_median_s")); });
-  add_wall("load", [](const Row& r) { return milliseconds_cell(r.value("load_s")); });
+  add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
+  add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
   add_wall("× " + time_baseline(), ratio);
   add_wall("rank", rank);
   for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
     v.columns.push_back(column(
-        head, [key = key](const Row& r) { return r.environment(key); }, true));
+        head, [key = key](const Row& r) { return environment_text(*r.run, key); }, true));
   v.columns.push_back(column(
       "CPU threads", [](const Row& r) { return number_cell(r.times->threads, 1); }, true));
   v.columns.push_back(column("conditions", &Row::trust));
@@ -138,13 +131,16 @@ View in_short(std::function<bool(const Row&)> where) {
          "wider than 20 % (~).",
          std::move(where)};
   v.keys = {scene_key(), solver_key()};
-  v.columns = {
-      column("outcome",
-             [](const Row& r) {
-               const bool judged = r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
-               return judged ? verdict_cell(*r.run) : Cell(r.status());
-             }),
-      column("stretch [%]", [](const Row& r) { return number_cell(100 * r.value("stretch_max_last_second"), 3); })};
+  v.columns = {column("outcome",
+                      [](const Row& r) {
+                        const bool judged =
+                            r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
+                        return judged ? verdict_cell(*r.run) : Cell(r.status());
+                      }),
+               column("stretch [%]", [](const Row& r) {
+                 const double percent = 100 * r.value("stretch_max_last_second");
+                 return percent > 0 && percent < 1e-3 ? Cell("<0.001", percent) : number_cell(percent, 3);
+               })};
   for (ViewColumn& c : tail_columns([](const Group& g) { return g.front(); })) v.columns.push_back(std::move(c));
   v.columns.push_back(column("with contact: p50 / p95 / p99 / worst", [](const Row& r) {
     const FrameTimes& t = r.times->contact_wall;
@@ -161,7 +157,7 @@ View in_short(std::function<bool(const Row&)> where) {
 
 std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick) {
   const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {
-    return ViewColumn{head, [pick, cell](const Group& g, const Texts&) {
+    return ViewColumn{head, [pick, cell](const Group& g, const Keys&) {
                         const Row* r = pick(g);
                         return r == nullptr || r->times->wall.sorted.empty() ? Cell() : cell(*r);
                       }};

@@ -15,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kTogether = "all";
 constexpr const char* kPublished = "published: PBD";
 /// Lower ends of the bands of iterations per frame, over all substeps; `paper` has 5 by default.
 constexpr std::array kIterations = {1.0, 10.0, 30.0, 100.0, 300.0};
@@ -27,9 +26,9 @@ struct Point {
   Group runs = {};
 };
 /// The points of a row of the table. In the row of all claims these are points at which all were run.
-std::map<std::string, Point> points_of(const Group& runs, const Texts& keys) {
+std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
   std::map<std::string, Point> out;
-  const std::size_t wanted = keys.back() == kTogether ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
+  const std::size_t wanted = keys.back().all ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
   for (const Row* r : runs) {
     Point& p = out[r->drawn()["settings"].dump()];
     ++p.claims;
@@ -42,26 +41,26 @@ std::map<std::string, Point> points_of(const Group& runs, const Texts& keys) {
 }
 
 /// Points of the group at which all of its claims hold, of how many.
-std::pair<std::size_t, std::size_t> held_of(const Group& g, const Texts& keys) {
+std::pair<std::size_t, std::size_t> held_of(const Group& g, const Keys& keys) {
   const auto points = points_of(g, keys);
   const auto held =
       std::count_if(points.begin(), points.end(), [](const auto& p) { return p.second.held == p.second.claims; });
   return {static_cast<std::size_t>(held), points.size()};
 }
 
-Cell share(const Group& g, const Texts& keys) {
+Cell share(const Group& g, const Keys& keys) {
   const auto [held, all] = held_of(g, keys);
   return share_cell(held, all);
 }
 
-std::string reading(const Group& g, const Texts& keys) {
+std::string reading(const Group& g, const Keys& keys) {
   const auto [held, all] = held_of(g, keys);
   if (all == 0) return "";
   return held == all ? "reproduced" : held > 0 ? "reproducible" : "not reproduced in the box";
 }
 
 /// The cheapest point at which most claims of the group hold; null if none holds anywhere.
-std::optional<Point> best_of(const Group& g, const Texts& keys) {
+std::optional<Point> best_of(const Group& g, const Keys& keys) {
   std::optional<Point> out;
   for (const auto& [settings, p] : points_of(g, keys))
     if (p.held > 0 && p.dispatches > 0 &&
@@ -70,13 +69,13 @@ std::optional<Point> best_of(const Group& g, const Texts& keys) {
   return out;
 }
 
-Cell fewest_dispatches(const Group& g, const Texts& keys) {
+Cell fewest_dispatches(const Group& g, const Keys& keys) {
   const std::optional<Point> p = best_of(g, keys);
   return p && p->held == p->claims ? number_cell(p->dispatches, 1) : Cell();
 }
 
 /// Generates the scenes of the cheapest point and runs them; of the nearest miss if the claims hold nowhere together.
-Cell best_command(const Group& g, const Texts& keys) {
+Cell best_command(const Group& g, const Keys& keys) {
   const std::optional<Point> p = best_of(g, keys);
   if (!p) return {};
   const auto seed = [](const Row* r) { return r->scenario.value("seed", std::uint64_t{0}); };
@@ -85,12 +84,12 @@ Cell best_command(const Group& g, const Texts& keys) {
   return fmt::format("{}clothbench study {} --seed {} --count {}{}{}",
                      p->held == p->claims ? "" : fmt::format("{} of {} claims: ", p->held, p->claims),
                      first.drawn().value("study", ""), seed(&first), p->runs.size(),
-                     first.environment("protocol") == "quick" ? " --quick" : "",
+                     environment_text(*first.run, "protocol") == "quick" ? " --quick" : "",
                      first.drawn().value("assets", "") == "procedural" ? " --procedural" : "");
 }
 
 /// Values of that point as options of `clothbench run`; of all claims, the ones that their scenes share.
-Cell best_values(const Group& g, const Texts& keys) {
+Cell best_values(const Group& g, const Keys& keys) {
   const std::optional<Point> p = best_of(g, keys);
   if (!p) return {};
   const std::string& solver = p->runs.front()->solver;
@@ -130,9 +129,10 @@ View claims() {
          "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
          "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
          [](const Row& r) { return r.part == Part::Claims; }};
-  v.keys = {solver_key("solver", [](const Row& r) { return r.solver; }),
+  v.keys = {key(
+                "solver", [](const Row& r) { return r.solver; }, true),
             {"claim", [](const Row& r) {
-               return Texts{r.drawn().value("kind", ""), kTogether};
+               return Keys{r.drawn().value("kind", ""), {"all", true}};
              }}};
   v.columns = {{"reading", reading},
                {"holds", share},
@@ -190,11 +190,11 @@ const Samples& published_samples() {
 
 /// The times that a row is about: the published ones, or the group's at the same resolutions and sides; empty if one is
 /// missing.
-Samples samples_of(const Group& g, const Texts& keys) {
-  if (keys.front() == kPublished) return published_samples();
+Samples samples_of(const Group& g, const Keys& keys) {
+  if (keys.front().text == kPublished) return published_samples();
   Samples out;
   for (const Row* r : g)
-    if (r->label() == keys.front()) out[{r->sides, r->resolution.grid[0]}] = r->value("frame_wall_median_s");
+    if (r->label() == keys.front().text) out[{r->sides, r->resolution.grid[0]}] = r->value("frame_wall_median_s");
   return out.size() == published_samples().size() ? out : Samples();
 }
 
@@ -208,10 +208,10 @@ double iterations_of(const Row& r) {
 }
 
 /// Iterations of a frame that would take the published time per particle on the run's device.
-Cell allowed_iterations(const Group& g, const Texts& keys) {
+Cell allowed_iterations(const Group& g, const Keys& keys) {
   const WorkFit fit = fit_of(samples_of(g, keys)), published = fit_of(published_samples());
   const double scale = iterations_of(*g.front()) / fit.slope_s;
-  if (keys.front() == kPublished || !(scale > 0)) return {};
+  if (keys.front().text == kPublished || !(scale > 0)) return {};
   const auto at = [&](double errors) {
     return significant(scale * std::max(0.0, published.slope_s + errors * published.slope_error_s), 2);
   };
@@ -229,10 +229,10 @@ View work_model() {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
                   published_samples().contains({r.sides, r.resolution.grid[0]});
          }};
-  v.keys = {{"solver", [](const Row& r) { return Texts{r.label(), kPublished}; }, true}};
+  v.keys = {{"solver", [](const Row& r) { return Keys{r.label(), std::string(kPublished)}; }, true}};
   v.by_key = true;
   const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {
-    v.columns.push_back({std::move(head), [cell](const Group& g, const Texts& keys) {
+    v.columns.push_back({std::move(head), [cell](const Group& g, const Keys& keys) {
                            const Samples s = samples_of(g, keys);
                            return s.empty() ? Cell() : cell(s);
                          }});
@@ -248,8 +248,8 @@ View work_model() {
     add(fmt::format("C3: doubled / single at {}²", n), [n](auto& s) {
       return time_ratio(s, {"double-duplicated", n}, {"single", n});
     });
-  v.columns.push_back({"iterations", [](const Group& g, const Texts& keys) {
-                         return keys.front() == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
+  v.columns.push_back({"iterations", [](const Group& g, const Keys& keys) {
+                         return keys.front().text == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
                        }});
   v.columns.push_back({"iterations at the published slope", allowed_iterations});
   v.timed = true;
@@ -276,7 +276,7 @@ void mark_best_points(std::vector<Row>& rows) {
   for (const Row& r : rows)
     if (r.part == Part::Claims) solvers[r.solver].push_back(&r);
   for (const auto& [solver, runs] : solvers) {
-    const std::optional<Point> p = best_of(runs, {solver, kTogether});
+    const std::optional<Point> p = best_of(runs, {solver, {"all", true}});
     if (!p) continue;
     const json best = p->runs.front()->drawn()["settings"].value(solver, json::object());
     for (Row& r : rows) {

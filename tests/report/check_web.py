@@ -48,6 +48,7 @@ assert not re.search(r"\b(nan|inf)\b", html.split('id="clothbench-motions"')[0].
 
 # Tables: those of report.md, run by run.
 markdown = (report / "report.md").read_text(encoding="utf-8")
+assert not re.search(r"\b(nan|inf)\b", markdown), "not a number in a table or a note"
 tables = [t for s in doc["sections"] for t in s["tables"]]
 static = {}
 for block in re.split(r"^### ", markdown, flags=re.M)[1:]:

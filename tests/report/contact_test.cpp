@@ -53,6 +53,8 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
                                  desk_run("paper", "default", "any_vertex_inside")};
   runs[1].summary["crossings_max"] = 34;
   runs[1].summary["expect.crossings_max"] = 0;
+  runs[1].summary["depth_max_m"] = 0.012;
+  runs[1].summary["expect.depth_max_m"] = 0;
   const Table t = table_of(runs, kContact);
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "crossings"), "0");
   EXPECT_EQ(entry(t, "desk-flat-low", "paper", "crossings"), "34");
@@ -63,8 +65,9 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(t.markdown().find("self-contact"), std::string::npos) << "a column without a value is left out";
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
   const Table broken = table_of(runs, "Acceptance criteria that are violated");
-  ASSERT_EQ(broken.rows.size(), 2u);
+  ASSERT_EQ(broken.rows.size(), 3u);
   EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "at most 0", "34"}));
+  EXPECT_EQ(broken.rows[2][4], "0.012 m") << "with its unit";
 }
 
 TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {

@@ -18,7 +18,7 @@ const solvers = Object.keys(roles.look), runs = [];
 for (const [n, solver] of solvers.entries()) {
   const common = {solver, label: solver, setting: 'default', status: 'ok', wall: [1e-3, 9e-4, 1.1e-3, 2e-3, 3e-3, 0.1], trials: 3, trust: 'alone'};
   for (let k = 0; k < 60; ++k) runs.push({...common, part: 'contact', scene: `scene-with-a-long-name-${k}`, verdict: k % 3 ? 'pass' : 'fail'});
-  for (const [speed, verdict] of [[0.5, 'pass'], [2, 'fail'], [8, 'not measured']]) runs.push({...common, part: 'contact', scene: `sweep-${String(speed).replace('.', 'p')}mps`, speed, verdict});
+  for (const [speed, verdict] of [[0.5, 'pass'], [2, 'fail'], [8, 'not measured']]) runs.push({...common, part: 'contact', scene: `sweep ${speed}`, kind: 'capsules', speed, verdict});
   for (let k = 0; k < 9; ++k) runs.push({...common, part: 'generated', kind: `kind-${k}`, verdict: k < n ? 'pass' : k === 8 ? 'unsupported' : 'fail', status: k === 8 ? 'unsupported' : 'ok'});
   for (let k = 0; k < 36; ++k) runs.push({...common, part: 'claims', kind: `c${k % 6}-claim`, iterations: 1 + k, substeps: 1 + k % 20, dispatches: 9, claim: ['holds', 'near', 'fails'][k % 3]});
   for (let k = 0; k < 26; ++k) runs.push({...common, part: 'stability', case: `S${k} some case`, grade: k % 3, verdict: 'pass'});

@@ -292,13 +292,14 @@ async function check_without_webgl() {
     window.clothbench.load_viewer();
     const v = window.clothbench.viewer, drawn = () => v.panels.map(p => p.place.querySelector('svg').innerHTML);
     await v.ready;
+    v.seek(0);
     v.draw();
     const first = drawn();
     v.seek(v.end);
     v.draw();
-    return {panels: v.panels.length, moved: drawn().filter((svg, k) => svg !== first[k]).length, told: document.querySelector('#viewer .warning').textContent};
+    return {panels: v.panels.length, absent: v.absent.textContent, moved: drawn().filter((svg, k) => svg !== first[k]).length, told: document.querySelector('#viewer .warning').textContent};
   });
-  check(paths.panels > 0 && paths.moved === paths.panels && /no WebGL/.test(paths.told), `without WebGL: ${JSON.stringify(paths)}`);
+  check(paths.panels > 0 && paths.moved === paths.panels && /no WebGL/.test(paths.told) && /nvcloth: not run/.test(paths.absent), `without WebGL: ${JSON.stringify(paths)}`);
   await plain.close();
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/files.hpp"
 #include "base/json_number.hpp"
@@ -49,6 +50,15 @@ void add_times(const Row& r, json& out) {
     if (!times->sorted.empty()) out[name] = times_json(*times);
 }
 
+/// What a scene's cloth touches: "2 grips", "hand_capsules". Scenes of one kind may differ in the speed of it.
+std::string kind_of_contact(const json& scenario) {
+  std::set<std::string> out;
+  for (const json& c : scenario.value("colliders", json::array())) out.insert(c.value("type", ""));
+  if (const json grips = scenario.value("grips", json::array()); !grips.empty())
+    out.insert(fmt::format("{} {}", grips.size(), grips.size() == 1 ? "grip" : "grips"));
+  return joined(out);
+}
+
 /// A run or published value as figures show it. Missing = null.
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
@@ -67,11 +77,11 @@ json figure_row(const Row& r) {
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
   for (const std::string& name : violated_bounds(*r.run)) out["violated"].push_back({name, rounded(r.value(name))});
   add_times(r, out);
-  if (r.part == Part::Contact) out["speed"] = finite_or_null(r.value("imposed_speed_m_per_s"));
-  if (r.part == Part::Generated) {
-    out["kind"] = r.drawn().value("kind", "");
-    out["speed"] = finite_or_null(r.drawn().value("speed_m_per_s", kMissing));
-  }
+  if (r.part == Part::Contact)
+    out.update({{"kind", kind_of_contact(r.scenario)}, {"speed", finite_or_null(r.value("imposed_speed_m_per_s"))}});
+  if (r.part == Part::Generated)
+    out.update(
+        {{"kind", r.drawn().value("kind", "")}, {"speed", finite_or_null(r.drawn().value("speed_m_per_s", kMissing))}});
   if (r.part == Part::Claims) {
     const ClaimPoint p = claim_point(r);
     out.update({{"kind", p.claim},

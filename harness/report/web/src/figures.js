@@ -81,10 +81,10 @@ function error_time(doc) {
 // Frame rates ----------------------------------------------------------------
 
 const kRates = {
-  'Fig. 4: frame rate': {unit: 'frames per second', field: 'fps_median', scale: 1, still: 'fig4'},
-  'Fig. 5: peak read bandwidth': {unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'},
-  'peak write bandwidth': {unit: 'GB/s', field: 'bandwidth_write_peak_B_per_s', scale: 1e-9},
-  'maximum stretch': {unit: '%', field: 'stretch_max_last_second', scale: 100}
+  fps: {text: 'Fig. 4: frame rate', unit: 'frames per second', field: 'fps_median', scale: 1, still: 'fig4', is_rate: true},
+  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'},
+  write: {text: 'peak write bandwidth', unit: 'GB/s', field: 'bandwidth_write_peak_B_per_s', scale: 1e-9},
+  stretch: {text: 'maximum stretch', unit: '%', field: 'stretch_max_last_second', scale: 100}
 };
 
 /// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
@@ -107,19 +107,19 @@ function rates(doc) {
     id: 'rates',
     section: 'rates',
     hero: true,
-    title: s => `${s.Value} by resolution, ${s.Scene}`,
+    title: s => `${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
         'above 1 %, so the rate has no meaning. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
         'per second of wall time; the bytes of CPU solvers are not known.',
     choices: [
-      choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v])))),
-      choice('Show', ['one layer, default settings', 'all layers and settings'])
+      choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v]))), undefined, v => kRates[v].text),
+      choice('Show', ['plain', 'all'], 'plain', v => ({plain: 'one layer, default settings', all: 'all layers and settings'})[v])
     ],
     rows: s => {
       const {field, scale} = kRates[s.Value], mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return (s.Show.startsWith('all') || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field], row: r}));
+      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field], row: r}));
     },
     chart: (rows, s, width) => ({
       right: 90,
@@ -132,13 +132,13 @@ function rates(doc) {
           format: t => String(Number(t.toPrecision(4)))
         },
         y: {type: 'log', title: kRates[s.Value].unit},
-        rules: s.Value.includes('rate') ? [{y: 72, text: '72 Hz', optional: true}] : [],
+        rules: kRates[s.Value].is_rate ? [{y: 72, text: '72 Hz', optional: true}] : [],
         lines: lines_of(rows),
         marks: rows.map(r => ({
                           kind: 'point',
                           x: r.width,
                           y: r.value,
-                          ...(s.Value.includes('rate') ? {low: r.fps_low, high: r.fps_high} : {}),
+                          ...(kRates[s.Value].is_rate ? {low: r.fps_low, high: r.fps_high} : {}),
                           along: 'y',
                           open: r.free_fall_error > 0.01,
                           row: r
@@ -226,7 +226,8 @@ const kVerdicts = {
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
 const why = r => r.violated?.map(([name, found]) => `${name} = ${found === null ? 'not met' : number(found)}`) ?? [];
-const judged = (doc, part) => doc.runs.filter(r => r.part === part && !r.verdict.startsWith('–'));
+const kNoVerdict = '–';
+const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== kNoVerdict);
 
 function verdicts(doc) {
   const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));
@@ -254,12 +255,8 @@ function verdicts(doc) {
   };
 }
 
-/// The scene without its speed: "capsule-sweep-0p8mps" and "stretch[v=2]" are of one kind.
-const kind_of = scene => scene.replace(/-?\d+(p\d+)?mps.*$|\[.*\]$/, '').replace(/-at$/, '');
-
 function failure_speed(doc) {
-  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default')
-                  .map(r => ({...r, kind: kind_of(r.scene), row: r}));
+  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default').map(r => ({...r, row: r}));
   const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)), name = r => `${r.kind} · ${r.solver}`;
   return rows.length && {
     id: 'failure-speed',
@@ -302,7 +299,7 @@ function shares(runs, field, is_good, more) {
     rows: () => rows,
     chart: (given, s, width) => ({
       row: 18,
-      right: 16,
+      right: 26,
       columns: Math.max(2, Math.min(6, Math.floor(width / 125))),
       panels: unique(given.map(r => r.label)).map(label => {
         const mine = given.filter(r => r.label === label);

@@ -91,7 +91,9 @@ class Viewer {
     this.scene_list.querySelector('select').value = scene;
     const off = window.clothbench.state.off, here = this.motions.runs.filter(m => m.row.scene === scene);
     await this.set(here.filter(m => !off.has(m.row.solver)));
-    const absent = unique(this.rows.filter(r => !r.published).map(r => r.solver)).filter(s => !here.some(m => m.row.solver === s));
+    // Solvers that no run of the report has, such as an engine that is not installed, are named too.
+    const {look, floor, baseline} = window.clothbench.document.solvers, known = Object.keys(look).filter(s => ![...floor, ...baseline].includes(s));
+    const absent = unique([...this.rows.filter(r => !r.published).map(r => r.solver), ...known]).filter(s => !here.some(m => m.row.solver === s));
     this.absent.textContent = absent.map(s => `${s}: ${this.why_absent(this.rows.find(r => r.scene === scene && r.solver === s))}`).join('; ');
     say(`${scene}: ${this.panels.length} motions`);
   }
@@ -242,9 +244,10 @@ class Viewer {
 }
 
 window.clothbench_viewer = (root, motions, rows) => {
-  const viewer = new Viewer(root, motions, rows), is_drawn = m => m.row.part === 'generated';
-  const touching = motions.runs.filter(m => motions.colliders[m.colliders].length).sort((a, b) => is_drawn(a) - is_drawn(b));
-  const first = window.clothbench.document.solvers.leading_scenes.map(word => touching.find(m => m.row.scene.includes(word))).find(Boolean);
-  viewer.ready = viewer.show_scene((first ?? touching[0] ?? motions.runs[0]).row.scene);
+  const viewer = new Viewer(root, motions, rows), touching = motions.runs.filter(m => motions.colliders[m.colliders].length);
+  const fixed = touching.filter(m => m.row.part === 'contact');
+  const first = window.clothbench.document.solvers.leading_scenes.map(word => fixed.find(m => m.row.scene.includes(word))).find(Boolean);
+  // The first picture is of the middle of the motion, where the cloth touches something.
+  viewer.ready = viewer.show_scene((first ?? fixed[0] ?? touching[0] ?? motions.runs[0]).row.scene).then(() => viewer.seek(viewer.end / 2));
   return viewer;
 };
