@@ -44,7 +44,7 @@ struct Page {
 };
 
 /// Maximum size of packed motions and colliders in one page, as base64.
-inline constexpr std::size_t kMotionBudget_B = 13'000'000;
+inline constexpr std::size_t kMotionBudget_B = 3'500'000;
 
 /// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q, q in
 /// [0, 65535]. `bytes`: zlib of q (frame, axis, vertex; 16 bits) less its prediction, modulo 2^16. The prediction is
