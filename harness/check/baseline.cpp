@@ -92,8 +92,6 @@ Baseline read_baseline(const std::filesystem::path& file) {
   const json j = parse_json(read_text(file), source);
   validate_json(j, kBaselineSchema, source);
   Baseline b;
-  const json& made = j.at("made_with");
-  b.origin = {made.at("command"), made.at("runs"), made.at("commits"), made.at("devices")};
   std::set<RunKey> seen;
   for (std::size_t k = 0; k < j.at("runs").size(); ++k) {
     const std::string where = fmt::format("{}: /runs/{}", source, k);
@@ -107,41 +105,9 @@ Baseline read_baseline(const std::filesystem::path& file) {
 
 std::string baseline_text(const Baseline& b) {
   ordered_json j = {{"format", "clothbench-baseline"}, {"format_version", 1}};
-  j["made_with"] = {{"command", b.origin.command},
-                    {"runs", b.origin.runs},
-                    {"commits", b.origin.commits},
-                    {"devices", b.origin.devices}};
   j["runs"] = ordered_json::array();
   for (const BaselineRun& c : b.runs) j["runs"].push_back(json_of(c));
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
-
-namespace {
-
-std::string text_at(const nlohmann::json& environment, const char* key) {
-  return environment.contains(key) && environment[key].is_string() ? environment[key].get<std::string>() : "";
-}
-
-}  // namespace
-
-BaselineOrigin origin_of(const std::vector<std::filesystem::path>& folders, const std::vector<RunRecord>& runs,
-                         const std::string& command) {
-  BaselineOrigin origin;
-  origin.command = command;
-  for (const std::filesystem::path& folder : folders)
-    if (std::filesystem::is_regular_file(folder / "study.json"))
-      origin.runs.push_back(read_manifest(folder).command_line);
-  std::set<std::string> commits, devices;
-  for (const RunRecord& c : runs) {
-    const nlohmann::json& e = c.header.environment;
-    const std::string commit = text_at(e, "git_commit"), device = text_at(e, "gpu");
-    if (!commit.empty()) commits.insert(commit + (e.contains("git_dirty") && e["git_dirty"] == true ? "-dirty" : ""));
-    if (!device.empty()) devices.insert(device);
-  }
-  std::sort(origin.runs.begin(), origin.runs.end());
-  origin.commits.assign(commits.begin(), commits.end());
-  origin.devices.assign(devices.begin(), devices.end());
-  return origin;
 }
 
 namespace {

@@ -34,19 +34,7 @@ struct BaselineRun {
   std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
 };
 
-/// How a baseline was made. Only for readers of the file; nothing is computed from it.
-struct BaselineOrigin {
-  std::string command;                        ///< command that wrote the baseline
-  std::vector<std::string> runs;              ///< commands that computed the results
-  std::vector<std::string> commits, devices;  ///< of the results, sorted
-};
-
-/// The origin of a baseline that `command` makes from these runs.
-BaselineOrigin origin_of(const std::vector<std::filesystem::path>& folders, const std::vector<RunRecord>& runs,
-                         const std::string& command);
-
 struct Baseline {
-  BaselineOrigin origin;
   std::vector<BaselineRun> runs;  ///< sorted by key, no key twice
 };
 

@@ -51,7 +51,7 @@ std::vector<Finding> new_run(const RunRecord& r) {
 }
 
 bool same_values(const BaselineRun& a, const BaselineRun& b) {
-  return baseline_text({{}, {a}}) == baseline_text({{}, {b}});
+  return baseline_text(Baseline{{a}}) == baseline_text(Baseline{{b}});
 }
 
 /// One run in the processes of two builds.
@@ -213,12 +213,11 @@ Checked check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs,
   return out;
 }
 
-Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs, BaselineOrigin origin) {
+Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs) {
   const auto results = by_name(runs);
   const auto entries = by_name(old);
   if (runs.empty()) throw Error("--update: expected results with at least one run");
   Updated out;
-  out.baseline.origin = std::move(origin);
   for (const auto& [name, r] : results) {
     if (is_missing(r))
       throw Error(fmt::format("--update: {}: {}; a baseline is made of whole studies (`clothbench study … --resume`)",

@@ -112,6 +112,6 @@ struct Updated {
 
 /// The baseline made from the results. Throws Error if there is no result, a run is listed twice, a planned run has no
 /// result, or something is wrong with the motion in a file.
-Updated update_baseline(const Baseline& old, const std::vector<RunRecord>&, BaselineOrigin);
+Updated update_baseline(const Baseline& old, const std::vector<RunRecord>&);
 
 }  // namespace clothbench

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "base/words.hpp"
@@ -23,14 +25,20 @@ constexpr double kFailedFrameRelativeSlack = 0.1;
 
 constexpr const char* kNotMeasured = "not measured";
 
-/// Shorter side of the cloth [m].
-double length_of(const RunRecord& r) {
+/// Sides of the cloth [m]; none if the scene in the result file has no cloth size.
+std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
   const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
   const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");
   const auto is_number = [&](const auto& at) { return scene.contains(at) && scene[at].is_number(); };
-  if (scene.is_discarded() || !is_number(width) || !is_number(height))
-    throw Error(r.header.scene + ": the scene in the result file has no /cloth/size_m; expected two numbers");
-  return std::min(scene[width].get<double>(), scene[height].get<double>());
+  if (scene.is_discarded() || !is_number(width) || !is_number(height)) return {};
+  return {{scene[width].get<double>(), scene[height].get<double>()}};
+}
+
+/// Shorter side of the cloth [m].
+double length_of(const RunRecord& r) {
+  const auto size = cloth_size_m(r);
+  if (!size) throw Error(r.header.scene + ": the scene in the result file has no /cloth/size_m; expected two numbers");
+  return std::min((*size)[0], (*size)[1]);
 }
 
 std::string outcome_text(const BaselineRun& c) {
@@ -139,17 +147,14 @@ std::vector<float> positions_of(const RunRecord& c) {
 /// frames or the scene has no cloth size.
 double motion_distance(const RunRecord& a, const RunRecord& b) {
   const std::vector<float> p = positions_of(a), q = positions_of(b);
-  const nlohmann::json scene = nlohmann::json::parse(a.header.scenario_json, nullptr, false);
-  const nlohmann::json size = scene.is_object()
-                                  ? scene.value(nlohmann::json::json_pointer("/cloth/size_m"), nlohmann::json())
-                                  : nlohmann::json();
-  if (p.empty() || p.size() != q.size() || !size.is_array() || size.size() != 2) return kMissing;
+  const auto size = cloth_size_m(a);
+  if (p.empty() || p.size() != q.size() || !size) return kMissing;
   double most = 0;
   for (std::size_t k = 0; k + 2 < p.size(); k += 3) {
     const double d = std::hypot(double{p[k]} - q[k], double{p[k + 1]} - q[k + 1], double{p[k + 2]} - q[k + 2]);
     most = max_or_nan(most, d);
   }
-  return most / std::max(size[0].get<double>(), size[1].get<double>());
+  return most / std::max((*size)[0], (*size)[1]);
 }
 
 }  // namespace

@@ -16,10 +16,9 @@ struct CheckArguments {
   bool update = false;
 };
 
-void update(const CheckArguments& a, const std::vector<fs::path>& folders, const std::vector<RunRecord>& runs,
-            const Console& console) {
+void update(const CheckArguments& a, const std::vector<RunRecord>& runs, const Console& console) {
   const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
-  const Updated updated = update_baseline(old, runs, origin_of(folders, runs, console.command_line));
+  const Updated updated = update_baseline(old, runs);
   write_file_atomically(a.baseline, baseline_text(updated.baseline));
   console.print([&] { return update_json(updated, a.baseline); }, [&] { return update_text(updated, a.baseline); });
 }
@@ -57,14 +56,13 @@ void add_check(CLI::App& app, Console& console) {
       "check results/runs/mine --baseline results/baselines/penetration.json "
       "--junit check.xml");
   cmd->callback([&console, &a] {
-    const std::vector<fs::path> folders(a.runs.begin(), a.runs.end());
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
       fs::remove(a.junit);  // an older verdict must not outlive a failed check
     if (!a.update && !fs::exists(a.baseline))
       throw Error(a.baseline + ": no such baseline; --update creates it from these results");
-    const std::vector<RunRecord> runs = collect(folders);
+    const std::vector<RunRecord> runs = collect(std::vector<fs::path>(a.runs.begin(), a.runs.end()));
     if (a.update)
-      update(a, folders, runs, console);
+      update(a, runs, console);
     else
       check(a, runs, console);
   });

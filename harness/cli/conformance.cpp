@@ -1,5 +1,6 @@
 #include "runner/conformance.hpp"
 
+#include "base/words.hpp"
 #include "cli/command.hpp"
 
 namespace clothbench {
@@ -13,7 +14,8 @@ struct ConformanceArguments {
 };
 
 void run(const ConformanceArguments& a, Console& console) {
-  refuse_scene(a.with.set, "the scenes are fixed; expected solver.<name>=<value>");
+  for (const std::string& key : split_overrides(a.with.set).scene)
+    throw Error("--set " + shortened(key, 200) + ": the scenes are fixed; expected solver.<name>=<value>");
   const std::vector<std::string> scenes = conformance_scenes(a.scenes);
   nlohmann::json all = nlohmann::json::array();
   int passed = 0, failed = 0, skipped = 0;

@@ -72,14 +72,6 @@ const Scene& add_scene(OwnPlan& own, const json& spec) {
   return own.scenes.emplace_back(std::move(scene));
 }
 
-const SolverEntry* add_entry(RunPlan& plan, const std::string& name, const SolverLookup& lookup) {
-  if (const SolverEntry* e = lookup(name)) return e;
-  auto absent = std::make_shared<SolverEntry>();
-  absent->info.name = name;
-  plan.not_built.push_back(absent);
-  return absent.get();
-}
-
 void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   RunPlan& plan = own.plan;
   j.at("protocol").get_to(plan.protocol);
@@ -95,7 +87,9 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
     for (const json& s : group) {
       RunSpec& spec = plan.groups.back().emplace_back();
       spec.scene = &add_scene(own, s);
-      spec.entry = add_entry(plan, s.at("solver"), lookup);
+      const std::string solver = s.at("solver");
+      spec.entry = lookup(solver);
+      if (spec.entry == nullptr) spec.entry = plan.add_not_built(solver);
       spec.settings = s.at("settings");
       spec.setting = s.at("setting");
       spec.work = s.at("work");

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
-#include <memory>
 #include <set>
 #include <sstream>
 
@@ -63,10 +62,7 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
       const StudySolver& s = study.solvers[k];
       if (entries[k] == nullptr) {
         if (!contains(solver_names_of_tree(), s.solver)) refuse_name(s.solver);
-        auto absent = std::make_shared<SolverEntry>();
-        absent->info.name = s.solver;
-        entries[k] = absent.get();
-        plan.not_built.push_back(std::move(absent));
+        entries[k] = plan.add_not_built(s.solver);
       }
       nlohmann::json settings = s.settings;
       settings.update(item.drawn_settings.value(s.solver, nlohmann::json::object()));
@@ -134,11 +130,6 @@ Overrides split_overrides(const std::vector<std::string>& set) {
       out.solver[key] = value;
   }
   return out;
-}
-
-void refuse_scene(const std::vector<std::string>& set, const std::string& expected) {
-  for (const std::string& key : split_overrides(set).scene)
-    throw Error("--set " + shortened(key, 200) + ": " + expected);
 }
 
 std::string Overrides::label() const {

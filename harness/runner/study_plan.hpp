@@ -41,8 +41,6 @@ struct Overrides {
 };
 /// Throws Error naming the argument that has no "=".
 Overrides split_overrides(const std::vector<std::string>& set);
-/// For commands whose scenes are fixed: throws Error with `expected` if an override is not of the solver.
-void refuse_scene(const std::vector<std::string>& set, const std::string& expected);
 
 /// A solver with complete settings and their short name.
 struct ChosenSolver {

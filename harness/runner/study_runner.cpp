@@ -183,6 +183,12 @@ std::size_t RunPlan::size() const {
   return n;
 }
 
+const SolverEntry* RunPlan::add_not_built(const std::string& solver) {
+  auto absent = std::make_shared<SolverEntry>();
+  absent->info.name = solver;
+  return not_built.emplace_back(std::move(absent)).get();
+}
+
 std::vector<std::string> solver_faults(const std::vector<RunRecord>& runs) {
   struct Ends {
     int finished = 0, failed = 0;

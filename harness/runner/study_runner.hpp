@@ -27,6 +27,7 @@ struct RunPlan {
   bool references = false;  ///< store the reference solution of each scene's truth with its runs
 
   std::size_t size() const;
+  const SolverEntry* add_not_built(const std::string& solver);  ///< its new entry in `not_built`
 };
 
 struct RunOptions {
