@@ -89,17 +89,25 @@ TimedTrial trial_from_json(const json& j, std::size_t stages) {
   return t;
 }
 
-AccuracyPass accuracy_from_json(const json& j, std::size_t vertices) {
-  AccuracyPass a;
-  unpack(j.at("time_s"), a.time_s);
-  unpack(j.at("position"), a.position);
-  expect(a.position.size() == a.time_s.size() * vertices * 3, "expected one set of positions for each time");
-  for (const json& m : j.at("metrics")) {
-    a.metrics.push_back({m.at("name"), m.at("units"), m.at("long_name"), {}});
-    unpack(m.at("values"), a.metrics.back().values);
-    expect(a.metrics.back().values.size() == a.time_s.size(), "a metric has another number of frames");
+void add_frame(const json& j, std::size_t vertices, AccuracyPass& pass) {
+  const auto k = whole<std::size_t>(j.at("index"));
+  if (k == 0) pass = {};
+  expect(k == pass.time_s.size(), "a frame is missing");
+  std::vector<float> position;
+  unpack(j.at("position"), position);
+  expect(position.size() == vertices * 3, "expected one position for each vertex");
+  pass.time_s.push_back(j.at("time_s"));
+  pass.position.insert(pass.position.end(), position.begin(), position.end());
+}
+
+std::vector<MetricSeries> metrics_from_json(const json& j, std::size_t frames) {
+  std::vector<MetricSeries> metrics;
+  for (const json& m : j) {
+    metrics.push_back({m.at("name"), m.at("units"), m.at("long_name"), {}});
+    unpack(m.at("values"), metrics.back().values);
+    expect(metrics.back().values.size() == frames, "a metric has another number of frames");
   }
-  return a;
+  return metrics;
 }
 
 std::vector<StoredGroup> groups_from_json(const json& j) {
@@ -131,7 +139,8 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
 void take(const std::string& kind, const json& body, RunRecord& r) {
   if (kind == "header") r.header = header_from_json(body);
   if (kind == "replay") r.replay = groups_from_json(body);
-  if (kind == "accuracy") r.accuracy = accuracy_from_json(body, r.header.vertices);
+  if (kind == "frame") add_frame(body, r.header.vertices, r.accuracy);
+  if (kind == "accuracy") r.accuracy.metrics = metrics_from_json(body, r.accuracy.time_s.size());
   if (kind == "outcome") outcome_from_json(body, r);
   if (kind != "trial") return;
   TimedTrial t = trial_from_json(body, r.header.stages.size());
@@ -221,12 +230,17 @@ json to_json(const TimedTrial& t) {
   return j;
 }
 
-json to_json(const AccuracyPass& a) {
-  json j = {{"time_s", packed(a.time_s)}, {"position", packed(a.position)}, {"metrics", json::array()}};
-  for (const MetricSeries& m : a.metrics)
-    j["metrics"].push_back(
-        {{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"values", packed(m.values)}});
-  return j;
+json frame_to_json(const AccuracyPass& a, std::size_t k) {
+  const auto size = static_cast<std::ptrdiff_t>(a.position.size() / a.time_s.size());
+  const auto first = a.position.begin() + static_cast<std::ptrdiff_t>(k) * size;
+  return {{"index", k}, {"time_s", a.time_s[k]}, {"position", packed(std::vector<float>(first, first + size))}};
+}
+
+json to_json(const std::vector<MetricSeries>& metrics) {
+  json out = json::array();
+  for (const MetricSeries& m : metrics)
+    out.push_back({{"name", m.name}, {"units", m.units}, {"long_name", m.long_name}, {"values", packed(m.values)}});
+  return out;
 }
 
 json to_json(const std::vector<StoredGroup>& groups) {
@@ -250,7 +264,7 @@ void create_part(const fs::path& path, const RunHeader& header) {
   write_file_atomically(path, {bytes.begin(), bytes.end()});
 }
 
-void append_to_part(const fs::path& path, const char* kind, json body) {
+void append_to_part(const fs::path& path, const char* kind, json body, bool sync) {
   const Bytes bytes = item(kind, std::move(body));
   const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   const off_t before = file < 0 ? 0 : lseek(file, 0, SEEK_END);
@@ -260,7 +274,7 @@ void append_to_part(const fs::path& path, const char* kind, json body) {
     if (n > 0) at += static_cast<std::size_t>(n);
     written = n > 0 || errno == EINTR;
   }
-  written = written && fsync(file) == 0;
+  written = written && (!sync || fsync(file) == 0);
   const int why = errno;
   // If this fails, too, the reader ignores the incomplete item.
   const bool restored = written || file < 0 || ftruncate(file, before) == 0;

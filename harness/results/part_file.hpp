@@ -46,19 +46,23 @@ inline constexpr TrialNumber kTrialNumbers[] = {
 };
 
 nlohmann::json to_json(const TimedTrial&);
-nlohmann::json to_json(const AccuracyPass&);
+nlohmann::json to_json(const std::vector<MetricSeries>&);
+/// Time and positions of frame k of the pass.
+nlohmann::json frame_to_json(const AccuracyPass&, std::size_t k);
 nlohmann::json to_json(const std::vector<StoredGroup>&);
 
 /// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
-/// device without HDF5 it stays the final form. First "header", then as they come "replay", "accuracy", "trial" (one
-/// item per trial), at last "outcome". A later item replaces an earlier one of the same kind (for trials: of the same
-/// index). Series of numbers are byte strings as memory holds them, little-endian.
+/// device without HDF5 it stays the final form. First "header", then as they come "replay", "frame" (one item per frame
+/// of the untimed pass, whose metrics follow as "accuracy"), "trial" (one item per trial), at last "outcome". A later
+/// item replaces an earlier one of the same kind (for trials: of the same index); frame 0 begins the pass anew. Series
+/// of numbers are byte strings as memory holds them, little-endian.
 
 /// Creates the file with its header, whole or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);
 
-/// Appends an item and calls fsync. Throws Error naming the file; the file then is as it was before.
-void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body);
+/// Appends an item and, if `sync`, calls fsync, without which only a killed machine loses it. Throws Error naming the
+/// file; the file then is as it was before.
+void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
 /// Reads all complete items and ignores what follows them: a killed process leaves an incomplete item at the end.
 /// `complete_B`: receives the length of the complete items. Throws Error naming the file if it has no header, or if a

@@ -89,7 +89,14 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
 
 void RunWriter::write_trial(const TimedTrial& trial) { append_to_part(part_, "trial", to_json(trial)); }
 
-void RunWriter::write_accuracy(const AccuracyPass& pass) { append_to_part(part_, "accuracy", to_json(pass)); }
+void RunWriter::write_frames(const AccuracyPass& pass) {
+  for (; frames_ < pass.time_s.size(); ++frames_) append_to_part(part_, "frame", frame_to_json(pass, frames_), false);
+}
+
+void RunWriter::write_accuracy(const AccuracyPass& pass) {
+  write_frames(pass);
+  append_to_part(part_, "accuracy", to_json(pass.metrics));
+}
 
 void RunWriter::write_replay(const std::vector<StoredGroup>& groups) {
   if (groups.empty() || has_replay_) return;

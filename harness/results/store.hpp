@@ -17,15 +17,18 @@ std::string run_name(const RunHeader&);
 enum class Finish { Hdf5, Cbor };
 Finish best_finish();
 
-/// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item for each finished trial and for the accuracy pass
-/// (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and removes
-/// it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL at any moment loses at
-/// most data not yet passed to this class.
+/// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item for each finished trial and for each frame of the
+/// accuracy pass (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename)
+/// and removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL at any moment
+/// loses at most data not yet passed to this class.
 class RunWriter {
  public:
   /// Continues a part file of the same run. Throws Error naming both if scenario_sha256 or settings differ.
   RunWriter(std::filesystem::path dir, RunHeader header, Finish finish = best_finish());
   void write_trial(const TimedTrial&);
+  /// Writes the frames of a pass that has more than before.
+  void write_frames(const AccuracyPass&);
+  /// Writes the rest of its frames, and its metrics.
   void write_accuracy(const AccuracyPass&);
   /// Writes colliders and grips, unless an interrupted attempt has written them.
   void write_replay(const std::vector<StoredGroup>&);
@@ -38,6 +41,7 @@ class RunWriter {
   std::filesystem::path dir_, part_;
   Finish finish_;
   bool has_replay_ = false;
+  std::size_t frames_ = 0;  ///< written by this object
 };
 
 /// `<dir>/<run>.h5` or `.cbor`, whichever exists; empty if the run is not finished.

@@ -108,16 +108,14 @@ const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
 
 std::mutex hdf5;  // the library is not for several threads
 
-/// Writes the file of a run whose process could not write it. A file that the process left incomplete is removed: it is
-/// not the beginning of this one, but output of a crashed solver.
+/// Writes the file of a run whose process could not write it, with the frames of the untimed pass that it had finished.
 void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
   const std::lock_guard lock(hdf5);
-  RunRecord r;
-  r.header = header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol);
+  RunWriter writer(out, header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol));
+  RunRecord r = writer.recovered();
+  r.trials.clear();  // no figures of time for a run that did not end
   r.outcome = outcome;
-  std::error_code ignored;
-  fs::remove(out / (run_name(c) + ".part"), ignored);
-  RunWriter(out, r.header).finish(outcome, summarise(c, {}, r));
+  writer.finish(outcome, summarise(c, {}, r));
 }
 
 /// Gives the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored as

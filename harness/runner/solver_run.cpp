@@ -166,12 +166,14 @@ int SolverRun::accuracy_frames(double duration_s) const {
 
 bool SolverRun::usable(const AccuracyPass& pass, double duration_s) const {
   if (pass.time_s.size() != static_cast<std::size_t>(accuracy_frames(duration_s)) + 1) return false;
+  if (pass.metrics.empty()) return false;  // the process ended before they were written
   for (float x : pass.position)
     if (!std::isfinite(x)) return false;
   return true;
 }
 
-AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
+AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
+                                     const std::function<void(const AccuracyPass&)>& after_frame) {
   const Scene& scene = *spec_.scene;
   const int frames = accuracy_frames(rules.accuracy_duration_s);
   const auto start = Clock::now();
@@ -194,6 +196,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules) {
       fail(StepStatus::NotFinite, frame);
     pass.time_s.push_back(scene.time.at(frame));
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));
+    if (after_frame) after_frame(pass);
     metrics.add(state);
     const std::string fault = add_counts(*solver_, pass.time_s.size(), counts);
     if (outcome_.status == "ok" && !fault.empty()) outcome_ = {"error", "ok", frame, fault};

@@ -83,8 +83,9 @@ class SolverRun {
   /// True if a pass recovered from an interrupted run is whole and ended well. If not, the pass must be run again, so
   /// that a failure recurs and is not lost.
   bool usable(const AccuracyPass& pass, double duration_s) const;
-  /// Runs the untimed pass: positions and metrics at every frame, frame 0 = initial state.
-  AccuracyPass run_accuracy(const TrialRules& rules);
+  /// Runs the untimed pass: positions and metrics at every frame, frame 0 = initial state. `after_frame` gets the
+  /// frames so far, without metrics.
+  AccuracyPass run_accuracy(const TrialRules& rules, const std::function<void(const AccuracyPass&)>& after_frame = {});
   /// Runs one timed trial. `frames` > 0 sets the exact number (so that all trials of a run agree).
   TimedTrial run_trial(int index, const TrialRules& rules, int frames);
   /// Number of validation messages so far, from its solver and its twins; a run with any is not ok.

@@ -132,7 +132,8 @@ class GroupRun {
 
   void accuracy(Running& r) {
     note(r.name() + ": accuracy");
-    r.record.accuracy = r.run->run_accuracy(plan_.rules);
+    r.record.accuracy =
+        r.run->run_accuracy(plan_.rules, [&](const AccuracyPass& so_far) { r.writer->write_frames(so_far); });
     r.writer->write_accuracy(r.record.accuracy);
   }
 

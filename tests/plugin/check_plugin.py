@@ -110,13 +110,21 @@ class Plugin(PluginTest):
     def both(self, *more, **environment):
         return self.command("run", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic", *SMALL, "--out", self.out, *more, **environment)
 
-    def test_a_crash_is_a_row(self):
-        for where, fault in (("accuracy", "crash:5"), ("trial 1 of 1", "crash:365")):
+    def positions(self, name):
+        with h5py.File(os.path.join(self.out, name + ".h5")) as f:
+            return f["trajectory/position"][:]
+
+    def test_a_crash_is_a_row_with_the_frames_before_it(self):
+        self.both()
+        whole = self.positions("gravity__faulty__default")
+        shutil.rmtree(self.out)
+        for where, fault, frames in (("accuracy", "crash:5", 5), ("trial 1 of 1", "crash:365", len(whole))):
             self.assertEqual(self.both(FAULT=fault), 1, self.text)
             outcome = self.stored("gravity__faulty__default")[0]
             self.assertEqual((outcome["status"], outcome["class"]), ("crashed", "F3"))
             self.assertIn("signal 11", outcome["message"])
             self.assertIn(where, outcome["message"])
+            self.assertTrue((self.positions("gravity__faulty__default") == whole[:frames]).all())
             self.assertEqual(self.stored("gravity__ballistic__default")[0]["status"], "ok")
             self.assertIn("crashed", self.text)
             self.assertIn("1 runs ok, 0 unsupported, 1 failed", self.text)

@@ -39,7 +39,7 @@ void work(const fs::path& dir, int pipe_out) {
     const auto byte = static_cast<unsigned char>(k);
     if (pipe_out >= 0 && write(pipe_out, &byte, 1) != 1) _exit(3);
   }
-  if (before.accuracy.time_s.empty()) writer.write_accuracy(r.accuracy);
+  if (before.accuracy.metrics.empty()) writer.write_accuracy(r.accuracy);
   writer.finish(r.outcome, r.summary);
 }
 

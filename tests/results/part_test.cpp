@@ -26,7 +26,8 @@ class Part : public WithFolder {
     create_part(file_, run_.header);
     ends_.push_back(fs::file_size(file_));
     append("replay", to_json(run_.replay));
-    append("accuracy", to_json(run_.accuracy));
+    for (std::size_t k = 0; k < run_.accuracy.time_s.size(); ++k) append("frame", frame_to_json(run_.accuracy, k));
+    append("accuracy", to_json(run_.accuracy.metrics));
     for (const TimedTrial& t : run_.trials) append("trial", to_json(t));
   }
   void append(const char* kind, const nlohmann::json& body) {
@@ -80,8 +81,12 @@ TEST_F(Part, WhatAKillCutShortIsIgnoredAndOverwritten) {
     std::uintmax_t complete = 0;
     const RunRecord r = read_part(file_, &complete);
     EXPECT_EQ(complete, *std::prev(std::upper_bound(ends_.begin(), ends_.end(), size))) << size;
-    EXPECT_EQ(r.trials.size(),
-              static_cast<std::size_t>(std::upper_bound(ends_.begin() + 3, ends_.end(), size) - (ends_.begin() + 3)));
+    const auto items = static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), size) - ends_.begin());
+    const std::size_t frames = std::min(run_.accuracy.time_s.size(), std::max<std::size_t>(items, 2) - 2);
+    const std::size_t before_trials = run_.accuracy.time_s.size() + 3;
+    EXPECT_EQ(r.trials.size(), std::max(items, before_trials) - before_trials);
+    ASSERT_EQ(r.accuracy.time_s.size(), frames);
+    EXPECT_TRUE(std::equal(r.accuracy.position.begin(), r.accuracy.position.end(), run_.accuracy.position.begin()));
   }
   const fs::path part = dir_ / (run_name(run_.header) + ".part");
   std::ofstream(part, std::ios::binary) << whole.substr(0, whole.size() - 5);
@@ -89,6 +94,15 @@ TEST_F(Part, WhatAKillCutShortIsIgnoredAndOverwritten) {
   EXPECT_EQ(writer.recovered().trials.size(), 2u);
   writer.write_trial(run_.trials[2]);
   EXPECT_EQ(content_of(part), whole);
+}
+
+TEST_F(Part, FrameZeroBeginsThePassAnew) {
+  append("frame", frame_to_json(run_.accuracy, 0));
+  const RunRecord r = read_part(file_);
+  EXPECT_EQ(r.accuracy.time_s.size(), 1u);
+  EXPECT_TRUE(r.accuracy.metrics.empty());
+  append("frame", frame_to_json(run_.accuracy, 2));
+  EXPECT_THROW(read_part(file_), Error);
 }
 
 TEST_F(Part, ZerosAfterACrashOfTheSystemAreIgnored) {
