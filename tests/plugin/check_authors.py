@@ -61,7 +61,7 @@ class Authors(PluginTest):
             self.assertTrue(mine["plugin"])
             self.assertEqual([s["name"] for s in mine["settings"]], ["substeps"])
             self.assertEqual(self.command("list", "solvers", *words, **environment), 0)
-            self.assertIn("solver.substeps=20  steps per frame", self.text)
+            self.assertRegex(self.text, "solver.substeps=20 +steps per frame")
             self.assertEqual(self.command("list", "features", *words, **environment), 0)
             self.assertIn("example-xpbd", self.text)
 
