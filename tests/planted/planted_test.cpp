@@ -36,7 +36,7 @@ const RunRecord& healthy(const std::string& name) {
 std::string caught_by(const RunRecord& was, const RunRecord& is) {
   try {
     std::string out;
-    for (const CheckedRun& run : check_runs({{}, {gated_part(was)}}, {is}).runs)
+    for (const CheckedRun& run : check_runs({{gated_part(was)}}, {is}).runs)
       for (const Finding& f : run.findings)
         if (f.verdict == Verdict::Failed) out += (out.empty() ? "" : "; ") + f.sentence();
     return out;
