@@ -36,18 +36,10 @@ class Strict : public nlohmann::json_sax<json> {
   bool number_float(number_float_t, const string_t&) override { return true; }
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return push(true); }
-  bool start_array(std::size_t) override { return push(false); }
-  bool end_object() override {
-    keys_.pop_back();
-    path_.pop_back();
-    return true;
-  }
-  bool end_array() override {
-    keys_.pop_back();
-    path_.pop_back();
-    return true;
-  }
+  bool start_object(std::size_t) override { return push(); }
+  bool start_array(std::size_t) override { return push(); }
+  bool end_object() override { return pop(); }
+  bool end_array() override { return pop(); }
   bool key(string_t& k) override {
     path_.back() = k;
     if (keys_.back().insert(k).second) return true;
@@ -62,7 +54,12 @@ class Strict : public nlohmann::json_sax<json> {
   }
 
  private:
-  bool push(bool) {
+  bool pop() {
+    keys_.pop_back();
+    path_.pop_back();
+    return true;
+  }
+  bool push() {
     keys_.emplace_back();
     path_.emplace_back("…");
     if (keys_.size() > kDeepest) throw Error(fmt::format("{}: nested deeper than {} levels", source_, kDeepest));

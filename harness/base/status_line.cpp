@@ -12,6 +12,8 @@
 namespace clothbench {
 namespace {
 
+int kept = -1;  // the first standard output while another file has its number
+
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string left_for(double s) {
@@ -47,12 +49,6 @@ void StatusLine::show(const std::string& what, std::size_t done, std::size_t tot
   std::fflush(stderr);
   width_ = line.size();
 }
-
-namespace {
-
-int kept = -1;  // the first standard output while another file has its number
-
-}  // namespace
 
 SummaryOutput::SummaryOutput() {
   std::fflush(stdout);

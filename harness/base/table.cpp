@@ -12,8 +12,6 @@
 #include <string_view>
 #include <utility>
 
-#include "base/columns.hpp"
-
 namespace clothbench {
 namespace {
 
@@ -200,34 +198,6 @@ std::string Table::latex() const {
   out += "\\bottomrule\n\\end{tabular}\n";
   if (!note.empty()) out += "\\par\\footnotesize " + latex_text(note) + "\n";
   return out + "\\end{table}\n";
-}
-
-std::string csv_number(double v) { return std::isnan(v) ? "" : fmt::format("{}", v); }
-
-std::string csv_row(const std::vector<std::string>& fields) {
-  std::string out;
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    const bool quote = fields[k].find_first_of(",\"\n\r") != std::string::npos;
-    std::string text = fields[k];
-    for (std::size_t at = 0; quote && (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
-    out += (k > 0 ? "," : "") + (quote ? "\"" + text + "\"" : text);
-  }
-  return out + "\n";
-}
-
-NumberFormat digits(int n) {
-  return [n](double v) { return significant(v, n); };
-}
-
-std::string printed_value(const Value& v, const NumberFormat& format, const Unit& unit) {
-  if (v.is_number() && format) return format(unit.per_si * v.get<double>());
-  return v.is_null() ? "–" : csv_value(v);
-}
-
-std::string csv_value(const Value& v) {
-  if (v.is_string()) return v.get<std::string>();
-  if (v.is_number_float()) return csv_number(v.get<double>());
-  return v.is_null() ? "" : v.dump();
 }
 
 }  // namespace clothbench

@@ -35,10 +35,4 @@ std::size_t display_width(const std::string&);
 /// `head`: stands in the indent of the first line, or, if longer, before the text.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head = "");
 
-/// A number in full precision, for CSV: "inf" or "-inf" if it is infinite, empty if it is missing.
-std::string csv_number(double v);
-
-/// One line of CSV. Fields with a comma, quote or line break are quoted as in RFC 4180.
-std::string csv_row(const std::vector<std::string>& fields);
-
 }  // namespace clothbench

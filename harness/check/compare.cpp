@@ -114,19 +114,8 @@ void compare_pair(const Pair& p, CheckedRun& run) {
 }  // namespace
 
 const char* word_for(Verdict v) {
-  switch (v) {
-    case Verdict::Same:
-      return "same";
-    case Verdict::New:
-      return "new";
-    case Verdict::Improved:
-      return "improved";
-    case Verdict::Changed:
-      return "changed";
-    case Verdict::Failed:
-      return "FAILED";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"same", "new", "improved", "changed", "FAILED"};
+  return kWords[static_cast<int>(v)];
 }
 
 std::string Finding::sentence() const {

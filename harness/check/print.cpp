@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "base/columns.hpp"
 #include "base/json_number.hpp"
+#include "base/table.hpp"
 
 namespace clothbench {
 namespace {
@@ -19,31 +19,19 @@ struct Sides {
 };
 
 /// One row per finding, worst verdict first. Adds their messages to `messages`.
-Table findings_table(const Table& start, const std::vector<CheckedRun>& runs, const Sides& sides,
-                     std::string& messages) {
-  struct Row {
-    std::string run;
-    const Finding* finding;
-  };
-  std::vector<Row> rows;
+Table findings_table(Table t, const std::vector<CheckedRun>& runs, const Sides& sides, std::string& messages) {
+  t.rows = {{"run", "quantity", "verdict", sides.a, sides.b, "allowed"}};
   for (const Verdict verdict : {Verdict::Failed, Verdict::Changed, Verdict::Improved, Verdict::New})
     for (const CheckedRun& run : runs)
       for (const Finding& f : run.findings) {
         if (f.verdict != verdict) continue;
-        rows.push_back({run.key.file_name(), &f});
+        t.rows.push_back({run.key.file_name(), f.quantity, verdict == Verdict::Failed ? sides.worse : word_for(verdict),
+                          f.baseline, f.found, f.allowed});
         if (!f.message.empty() && verdict != Verdict::New)
           messages +=
               wrapped(fmt::format("{}: {}: {}", run.key.file_name(), f.quantity, f.message), 2, console_columns());
       }
-  const Columns<Row> columns = {
-      {"", "run", &Row::run},
-      {"", "quantity", [](auto& r) { return r.finding->quantity; }},
-      {"", "verdict",
-       [=](auto& r) { return r.finding->verdict == Verdict::Failed ? sides.worse : word_for(r.finding->verdict); }},
-      {"", sides.a, [](auto& r) { return r.finding->baseline; }},
-      {"", sides.b, [](auto& r) { return r.finding->found; }},
-      {"", "allowed", [](auto& r) { return r.finding->allowed; }}};
-  return columns.table(start, rows);
+  return t;
 }
 
 /// Table and messages of `runs`; empty if there is no finding.
@@ -57,38 +45,24 @@ std::string percent(double ratio) { return std::isfinite(ratio) ? fmt::format("{
 
 /// Times of the runs that were timed on both sides.
 Table times_table(const Checked& c) {
-  std::vector<CheckedRun> timed = c.runs;
-  std::erase_if(timed, [](const CheckedRun& r) { return !std::isfinite(r.time.ratio); });
-  const Columns<CheckedRun> columns = {
-      {"", "run", [](auto& r) { return r.key.file_name(); }},
-      {"", "A", &CheckedRun::time_a_s, digits(4), kMilliseconds},
-      {"", "B", &CheckedRun::time_b_s, digits(4), kMilliseconds},
-      {"", "change", [](auto& r) { return percent(r.time.ratio); }},
-      {"", "processes", [](auto& r) { return fmt::format("{} and {}", r.time.processes_a, r.time.processes_b); }},
-      {"", "95 % interval",
-       [](auto& r) { return r.time.enough() ? percent(r.time.low) + " … " + percent(r.time.high) : "–"; }},
-      {"", "p", [](auto& r) { return r.time.p; }, digits(2)},
-      {"", "verdict", &CheckedRun::time_verdict}};
-  return columns.table(
-      {"Time per frame, A against B",
-       fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
-                   "omitted. Change: ratio "
-                   "of the geometric means. p: exact permutation test over the processes. *noise*: the 95 "
-                   "% interval contains 0. If none of the {} runs differed, about {:.0f} would be called "
-                   "faster or slower by chance.",
-                   timed.size(), 0.05 * static_cast<double>(timed.size())),
-       {}},
-      timed);
-}
-
-std::vector<Table> comparison_tables(const Checked& c, std::string& messages) {
-  const Table results{
-      "Results that differ",
-      fmt::format("{} runs have the same outcome and the same results. Values that depend on the machine "
-                  "are not compared here.",
-                  c.count(Verdict::Same)),
-      {}};
-  return {times_table(c), findings_table(results, c.runs, {"A", "B"}, messages)};
+  std::vector<std::vector<std::string>> rows = {
+      {"run", "A [ms]", "B [ms]", "change", "processes", "95 % interval", "p", "verdict"}};
+  for (const CheckedRun& r : c.runs) {
+    const TimeRatio& t = r.time;
+    if (!std::isfinite(t.ratio)) continue;
+    rows.push_back({r.key.file_name(), significant(1e3 * r.time_a_s, 4), significant(1e3 * r.time_b_s, 4),
+                    percent(t.ratio), fmt::format("{} and {}", t.processes_a, t.processes_b),
+                    t.enough() ? percent(t.low) + " … " + percent(t.high) : "–", significant(t.p, 2),
+                    r.time_verdict()});
+  }
+  const std::size_t timed = rows.size() - 1;
+  return {"Time per frame, A against B",
+          fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
+                      "omitted. Change: ratio of the geometric means. p: exact permutation test over the processes. "
+                      "*noise*: the 95 % interval contains 0. If none of the {} runs differed, about {:.0f} would be "
+                      "called faster or slower by chance.",
+                      timed, 0.05 * static_cast<double>(timed)),
+          rows};
 }
 
 json key_json(const RunKey& key) { return {{"scene", key.scene}, {"solver", key.solver}, {"setting", key.setting}}; }
@@ -201,7 +175,12 @@ json update_json(const Updated& u, const std::string& file) {
 
 std::string comparison_text(const Checked& c) {
   std::string out = c.differing.marks(), messages;
-  for (const Table& t : comparison_tables(c, messages))
+  const Table results{"Results that differ",
+                      fmt::format("{} runs have the same outcome and the same results. Values that depend on the "
+                                  "machine are not compared here.",
+                                  c.count(Verdict::Same)),
+                      {}};
+  for (const Table& t : {times_table(c), findings_table(results, c.runs, {"A", "B"}, messages)})
     out += t.rows.size() > 1 ? t.console() : fmt::format("\n{}: none\n  {}\n", t.title, t.note);
   return out + messages;
 }

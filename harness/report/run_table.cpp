@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -125,8 +126,7 @@ std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 std::vector<double> trial_means(const RunRecord& c) {
   std::vector<double> out;
   for (const TimedTrial& t : c.trials) {
-    double sum = 0;
-    for (const double w : t.frame_wall_s) sum += w;
+    const double sum = std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0);
     if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
   }
   std::sort(out.begin(), out.end());

@@ -143,6 +143,18 @@ ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool i
           if_differs};
 }
 
+Across by_bands(const std::vector<double>& lows, std::function<double(const Row&)> value,
+                std::function<Cell(const Group&, const Keys&)> cell, double gap, const char* unit) {
+  const auto low = [=](const Row& r) {
+    return *std::find_if(lows.rbegin(), lows.rend() - 1, [v = value(r)](double end) { return v >= end; });
+  };
+  const auto name = [=](const Row& r) {
+    const auto next = std::upper_bound(lows.begin(), lows.end(), low(r));
+    return (next == lows.end() ? fmt::format("≥ {:g}", low(r)) : fmt::format("{:g}–{:g}", low(r), *next - gap)) + unit;
+  };
+  return {key("", name), std::move(cell), low};
+}
+
 ViewColumn trials_column() {
   return column("trials", [](const Row& r) {
     return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);

@@ -84,6 +84,11 @@ struct Across {
   std::function<double(const Row&)> order = nullptr;
 };
 
+/// One column per band of `value`, whose lower ends are `lows`, ascending. A name shows the next band's end less `gap`:
+/// 1 for whole numbers.
+Across by_bands(const std::vector<double>& lows, std::function<double(const Row&)> value,
+                std::function<Cell(const Group&, const Keys&)> cell, double gap = 0, const char* unit = "");
+
 /// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is one of these.
 struct View {
   std::string section, title, note;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -15,8 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kAllRuns = "all";
-/// Lower ends of the speed bands [m/s].
-constexpr std::array kBands = {0.0, 2.0, 5.0, 10.0};
 
 bool in_contact(const Row& r) { return r.part == Part::Contact; }
 
@@ -88,17 +85,6 @@ View contact() {
   return v;
 }
 
-/// Lower end of the speed band of a run.
-double band_of(const Row& r) {
-  const double speed = r.drawn().value("speed_m_per_s", kMissing);
-  return *std::find_if(kBands.rbegin(), kBands.rend() - 1, [&](double low) { return speed >= low; });
-}
-
-std::string band_name(const Row& r) {
-  const auto next = std::upper_bound(kBands.begin(), kBands.end(), band_of(r));
-  return next == kBands.end() ? fmt::format("≥ {:g}", band_of(r)) : fmt::format("{:g}–{:g}", band_of(r), *next);
-}
-
 /// Procedural assets replace scans, so their scenes are another kind.
 std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
@@ -119,7 +105,8 @@ View pass_rates() {
             {"kind", [](const Row& r) {
                return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};
-  v.across = {key("", band_name), pass_rate, band_of};
+  v.across = by_bands(
+      {0, 2, 5, 10}, [](const Row& r) { return r.drawn().value("speed_m_per_s", kMissing); }, pass_rate);
   v.columns = {{kAllRuns, pass_rate}, {"contact offset [mm]", [](const Group& g, const Keys&) {
                                          std::set<std::string> all;
                                          for (const Row* r : g)

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -16,8 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kPublished = "published: PBD";
-/// Lower ends of the bands of iterations per frame, over all substeps; `paper` has 5 by default.
-constexpr std::array kIterations = {1.0, 10.0, 30.0, 100.0, 300.0};
 
 /// A point of the box, with the number of claims that were run and that hold there.
 struct Point {
@@ -34,7 +31,7 @@ std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
     ++p.claims;
     p.held += claim_point(*r).holds();
     p.runs.push_back(r);
-    if (const double d = r->value("dispatches"); d > p.dispatches) p.dispatches = d;
+    p.dispatches = std::fmax(p.dispatches, r->value("dispatches"));
   }
   std::erase_if(out, [&](const auto& point) { return point.second.claims != wanted; });
   return out;
@@ -69,56 +66,52 @@ std::optional<Point> best_of(const Group& g, const Keys& keys) {
   return out;
 }
 
-Cell fewest_dispatches(const Group& g, const Keys& keys) {
-  const std::optional<Point> p = best_of(g, keys);
-  return p && p->held == p->claims ? number_cell(p->dispatches, 1) : Cell();
+/// A column on best_of the row.
+ViewColumn at_best(const char* head, std::function<Cell(const Point&)> cell) {
+  return {head, [cell](const Group& g, const Keys& keys) {
+            const std::optional<Point> p = best_of(g, keys);
+            return p ? cell(*p) : Cell();
+          }};
 }
 
-/// Generates the scenes of the cheapest point and runs them; of the nearest miss if the claims hold nowhere together.
-Cell best_command(const Group& g, const Keys& keys) {
-  const std::optional<Point> p = best_of(g, keys);
-  if (!p) return {};
+Cell dispatches_where_all_hold(const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }
+
+/// Generates the scenes of the point and runs them; states how many claims hold if not all do.
+Cell command_of(const Point& p) {
   const auto seed = [](const Row* r) { return r->scenario.value("seed", std::uint64_t{0}); };
   const Row& first =
-      **std::min_element(p->runs.begin(), p->runs.end(), [&](const Row* a, const Row* b) { return seed(a) < seed(b); });
+      **std::min_element(p.runs.begin(), p.runs.end(), [&](auto* a, auto* b) { return seed(a) < seed(b); });
   return fmt::format("{}clothbench study {} --seed {} --count {}{}{}",
-                     p->held == p->claims ? "" : fmt::format("{} of {} claims: ", p->held, p->claims),
-                     first.drawn().value("study", ""), seed(&first), p->runs.size(),
+                     p.held == p.claims ? "" : fmt::format("{} of {} claims: ", p.held, p.claims),
+                     first.drawn().value("study", ""), seed(&first), p.runs.size(),
                      environment_text(*first.run, "protocol") == "quick" ? " --quick" : "",
                      first.drawn().value("assets", "") == "procedural" ? " --procedural" : "");
 }
 
-/// Values of that point as options of `clothbench run`; of all claims, the ones that their scenes share.
-Cell best_values(const Group& g, const Keys& keys) {
-  const std::optional<Point> p = best_of(g, keys);
-  if (!p) return {};
-  const std::string& solver = p->runs.front()->solver;
-  std::string out;
-  const json values = p->runs.front()->drawn().value("values", json::object());
-  for (const auto& [name, value] : values.items()) {
-    const auto shares = [&, key = name, v = value](const Row* r) {
-      return r->drawn()["values"].value(key, json()) == v;
-    };
-    if (!std::all_of(p->runs.begin(), p->runs.end(), shares)) continue;
-    const std::string key = name.starts_with(solver + ".") ? "solver" + name.substr(solver.size()) : name;
+/// Values of the point as options of `clothbench run`; of all claims, the ones that their scenes share.
+Cell options_of(const Point& p) {
+  const std::string& solver = p.runs.front()->solver;
+  std::vector<std::string> out;
+  const json values = p.runs.front()->drawn().value("values", json::object());
+  for (const auto& item : values.items()) {
+    const std::string& name = item.key();
+    const json& value = item.value();
+    const auto has_it = [&](const Row* r) { return r->drawn()["values"].value(name, json()) == value; };
+    if (!std::all_of(p.runs.begin(), p.runs.end(), has_it)) continue;
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    out += fmt::format("{}--set {}={}", out.empty() ? "" : " ", key,
-                       key == "cloth.size_m" ? fmt::format("[{0},{0}]", text) : text);  // the side of a square
+    if (name == "cloth.size_m")
+      out.push_back(fmt::format("--set {0}=[{1},{1}]", name, text));  // the side of a square
+    else
+      out.push_back(fmt::format("--set {}={}",
+                                name.starts_with(solver + ".") ? "solver" + name.substr(solver.size()) : name, text));
   }
-  return out;
+  return joined(out, " ");
 }
 
-/// Lower end of the run's band. All claims of a point are in one band, because they share the settings.
-double band_of_settings(const Row& r) {
+/// Iterations of a frame, over all substeps. All claims of a point have the same, because they share the settings.
+double iterations_of_point(const Row& r) {
   const ClaimPoint p = claim_point(r);
-  const double n = p.iterations * p.substeps;
-  return *std::find_if(kIterations.rbegin(), kIterations.rend() - 1, [&](double low) { return n >= low; });
-}
-
-std::string band_text(const Row& r) {
-  const auto next = std::upper_bound(kIterations.begin(), kIterations.end(), band_of_settings(r));
-  return next == kIterations.end() ? fmt::format("≥ {:g} iterations", band_of_settings(r))
-                                   : fmt::format("{:g}–{:g} iterations", band_of_settings(r), *next - 1);
+  return p.iterations * p.substeps;
 }
 
 View claims() {
@@ -136,10 +129,10 @@ View claims() {
              }}};
   v.columns = {{"reading", reading},
                {"holds", share},
-               {"fewest dispatches", fewest_dispatches},
-               {"paper, best", best_command},
-               {"values of paper, best", best_values}};
-  v.across = {key("", band_text), share, band_of_settings};
+               at_best("fewest dispatches", dispatches_where_all_hold),
+               at_best("paper, best", command_of),
+               at_best("values of paper, best", options_of)};
+  v.across = by_bands({1, 10, 30, 100, 300}, iterations_of_point, share, 1, " iterations");
   v.by_key = true;
   return v;
 }
@@ -198,10 +191,6 @@ Samples samples_of(const Group& g, const Keys& keys) {
   return out.size() == published_samples().size() ? out : Samples();
 }
 
-Cell time_ratio(const Samples& s, const Samples::key_type& of, const Samples::key_type& to) {
-  return number_cell(s.at(of) / s.at(to), 3);
-}
-
 double iterations_of(const Row& r) {
   const json& own = r.run->header.settings;
   return own.value("iterations", kMissing) * own.value("substeps", 1.0);
@@ -243,11 +232,12 @@ View work_model() {
     return Cell(paired(1e6 * f.slope_s, 1e6 * f.slope_error_s, " (", 3) + ")", f.slope_s);
   });
   add("max residual [%]", [](auto& s) { return number_cell(100 * fit_of(s).residual, 2); });
-  add("C2: 128² / 64²", [](auto& s) { return time_ratio(s, {"single", 128}, {"single", 64}); });
-  for (const int n : {64, 128})
-    add(fmt::format("C3: doubled / single at {}²", n), [n](auto& s) {
-      return time_ratio(s, {"double-duplicated", n}, {"single", n});
-    });
+  const auto add_ratio = [&](const char* head, const Samples::key_type& of, const Samples::key_type& to) {
+    add(head, [=](auto& s) { return number_cell(s.at(of) / s.at(to), 3); });
+  };
+  add_ratio("C2: 128² / 64²", {"single", 128}, {"single", 64});
+  add_ratio("C3: doubled / single at 64²", {"double-duplicated", 64}, {"single", 64});
+  add_ratio("C3: doubled / single at 128²", {"double-duplicated", 128}, {"single", 128});
   v.columns.push_back({"iterations", [](const Group& g, const Keys& keys) {
                          return keys.front().text == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
                        }});

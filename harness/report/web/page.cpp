@@ -254,23 +254,18 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
   return out;
 }
 
-#ifdef CLOTHBENCH_WITH_PAGE
+#ifndef CLOTHBENCH_WITH_PAGE
+PageTemplate page_template() { return {"", "this build was made without it (CLOTHBENCH_WITH_PAGE)"}; }
+Motions motions_of(const RunTable&, std::size_t) { return {}; }
+#endif
+
 std::string write_page(const fs::path& out, const RunTable& table, const Page& page, const PageTemplate& from) {
   if (from.html.empty()) {
     fs::remove(out / "index.html");  // an older run's page is not this report's
     return "The interactive page was left out: " + from.missing + ".";
   }
-  const Motions motions = motions_of(table);
-  write_file_atomically(out / "index.html", page_html(from.html, page, page_document(table, page), motions));
+  write_file_atomically(out / "index.html", page_html(from.html, page, page_document(table, page), motions_of(table)));
   return "";
 }
-#else
-PageTemplate page_template() { return {}; }
-
-std::string write_page(const fs::path& out, const RunTable&, const Page&, const PageTemplate&) {
-  fs::remove(out / "index.html");  // an older run's page is not this report's
-  return "The interactive page was left out: this build was made without it (CLOTHBENCH_WITH_PAGE).";
-}
-#endif
 
 }  // namespace clothbench

@@ -24,10 +24,7 @@ export function select(label, options, value, changed) {
 
 export function download(name, type, content) {
   const url = URL.createObjectURL(new Blob([content], {type}));
-  const link = element('a', {href: url, download: name});
-  document.body.append(link);
-  link.click();
-  link.remove();
+  element('a', {href: url, download: name}).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
