@@ -71,8 +71,8 @@ void add_planes(std::vector<Fault>& f) {
   };
   kernel("points of pieces stand still within the frame", "struck",
          "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)");
-  kernel("a tenth of the reach", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
-         "motion_bounds[i] = vec4(at.xyz, bound);", "motion_bounds[i] = vec4(at.xyz, 0.1 * bound);");
+  kernel("a hundredth of the motion bound", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
+         "motion_bounds[i] = vec4(at.xyz, bound);", "motion_bounds[i] = vec4(at.xyz, 0.01 * bound);");
   kernel("one pair in three not listed", "struck", "xpbd/contact/broad_phase/contact_broad_phase.glsl", "return n;",
          "return n - n / 3u;");
   kernel("half of each element's pairs not found again", "struck", "xpbd/contact/broad_phase/prefix_sum.comp",
