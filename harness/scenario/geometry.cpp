@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 #include "clothbench/scene.hpp"
 #include "clothbench/vector.hpp"
@@ -26,7 +27,7 @@ double chord_angle(int n, double span) {
 
 /// Position [m] of grid line `i` of an arc: along the chord of the ends, from its middle, and below that chord. The n
 /// cells are equal chords of a circle.
-std::array<double, 2> on_arc(const Cloth& c, int i) {
+std::pair<double, double> on_arc(const Cloth& c, int i) {
   const int n = c.columns - 1;
   const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
   return {radius * std::sin((i - n / 2.0) * d), radius * (std::cos((i - n / 2.0) * d) - std::cos(n * d / 2))};
@@ -71,24 +72,12 @@ double Cloth::line_u_m(int i) const {
 }
 
 Vec3 Scene::rest_position(int i, int j) const {
-  if (cloth.mesh) {
-    const Vec3 &at = cloth.mesh->vertices[static_cast<std::size_t>(i)], normal = normal_of(cloth);
-    Vec3 p{};
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = cloth.center_m[k] + at[0] * cloth.axis_u[k] + at[1] * cloth.axis_v[k] + at[2] * normal[k];
-    return p;
-  }
-  std::array<double, 2> at = {cloth.line_u_m(i) - cloth.width_m / 2, 0};
-  if (cloth.span_m > 0) at = on_arc(cloth, i);
-  const double v = j * cloth.dv() - cloth.height_m / 2;
-  const Vec3 &a = cloth.axis_u, &b = cloth.axis_v, normal = normal_of(cloth);
-  if (cloth.drape_radius_m > 0) return plus(draped_row(cloth, i, cloth.drape_offset_m), scaled(v, b));
-  Vec3 p{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = cloth.center_m[k] + at[0] * a[k] + v * b[k];
-    if (cloth.span_m > 0) p[k] += at[1] * normal[k];
-  }
-  return p;
+  Vec3 at = cloth.mesh ? cloth.mesh->vertices[static_cast<std::size_t>(i)]
+                       : Vec3{cloth.line_u_m(i) - cloth.width_m / 2, j * cloth.dv() - cloth.height_m / 2, 0};
+  if (cloth.drape_radius_m > 0) return plus(draped_row(cloth, i, cloth.drape_offset_m), scaled(at[1], cloth.axis_v));
+  if (cloth.span_m > 0) std::tie(at[0], at[2]) = on_arc(cloth, i);
+  const Vec3 in_plane = plus(plus(cloth.center_m, scaled(at[0], cloth.axis_u)), scaled(at[1], cloth.axis_v));
+  return plus(in_plane, scaled(at[2], normal_of(cloth)));
 }
 
 std::array<Vec3, 3> rest_corners(const ClothMesh& m, std::size_t triangle) {
@@ -180,18 +169,9 @@ std::vector<Edge> edges(const Cloth& c, EdgeKind kind) {
   struct Step {
     int di, dj;
   };
-  std::vector<Step> steps;
-  switch (kind) {
-    case EdgeKind::Structural:
-      steps = {{1, 0}, {0, 1}};
-      break;
-    case EdgeKind::Shear:
-      steps = {{1, 1}, {-1, 1}};
-      break;
-    case EdgeKind::SkipOne:
-      steps = {{2, 0}, {0, 2}};
-      break;
-  }
+  const int far = kind == EdgeKind::SkipOne ? 2 : 1;
+  const std::array<Step, 2> steps =
+      kind == EdgeKind::Shear ? std::array{Step{1, 1}, Step{-1, 1}} : std::array{Step{far, 0}, Step{0, far}};
   std::vector<Edge> out;
   for (const Step& s : steps) {
     const double even = std::hypot(s.di * c.du(), s.dj * c.dv());

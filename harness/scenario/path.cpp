@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "clothbench/vector.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {
@@ -46,32 +47,23 @@ void note_jumps(const Path& path, Scene& scene) {
     int frame = 1;
     while (frame <= scene.time.frames() && !(scene.time.at(frame) > jump.time_s)) ++frame;
     if (frame > scene.time.frames()) continue;
-    const Vec3& d = jump.by_m;
-    scene.jumps.push_back({frame, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])});
+    scene.jumps.push_back({frame, length(jump.by_m)});
   }
 }
 
 Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
                       const Vec3& spin, double time_s) {
   // Rodrigues' formula.
-  const double rate = std::sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]);
+  const double rate = length(spin);
   Vec3 turned = axis;
   if (rate > 0) {
     const Vec3 w = {spin[0] / rate, spin[1] / rate, spin[2] / rate};
-    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s),
-                 along = w[0] * axis[0] + w[1] * axis[1] + w[2] * axis[2];
-    const Vec3 across = {w[1] * axis[2] - w[2] * axis[1], w[2] * axis[0] - w[0] * axis[2],
-                         w[0] * axis[1] - w[1] * axis[0]};
+    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s), along = dot(w, axis);
+    const Vec3 across = cross(w, axis);
     for (std::size_t k = 0; k < 3; ++k) turned[k] = axis[k] * c + across[k] * s + w[k] * along * (1 - c);
   }
-  const Vec3 displacement = path.displacement(time_s);
-  Capsule out;
-  out.radius_m = radius_m;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.a_m[k] = center[k] + displacement[k] - length_m / 2 * turned[k];
-    out.b_m[k] = center[k] + displacement[k] + length_m / 2 * turned[k];
-  }
-  return out;
+  const Vec3 middle = plus(center, path.displacement(time_s)), half = scaled(length_m / 2, turned);
+  return {minus(middle, half), plus(middle, half), radius_m};
 }
 
 }  // namespace clothbench
