@@ -157,7 +157,6 @@ ReferenceCase incline(const Strip& s) {
   s.need(std::isfinite(face.gap_m), "a box that is under the whole path of the sheet");
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
-  known.quantity_name = "displacement along the slope";
   if (whole > 0) known.quantity_scale = whole;
   const auto at = [s, d](double displacement) {
     Columns out;
@@ -192,7 +191,6 @@ ReferenceCase capstan(const Strip& s) {
   const double end = displacement(s.scene.time.frames());
   ReferenceCase known = s.reference_case();
   known.by_quantity = known.smooth_law = true;
-  known.quantity_name = "displacement over the cylinder";
   known.quantity = displacement_over(s);
   if (end > 0) known.quantity_scale = end;
   // At rest exactly where the scene puts it.

@@ -57,10 +57,9 @@ double time_rms(std::span<const double> times_s, std::span<const double> errors)
 /// Error of one quantity over the scale that its reference case states.
 double quantity_error(double value, double truth, double scale);
 
-/// Statistics of (strain - true strain) over edges: RMS and, signed, the 99th percentile (nearest rank) and the
-/// maximum.
+/// Statistics of (strain - true strain) over edges, signed: the 99th percentile (nearest rank) and the maximum.
 struct StretchError {
-  double rms, p99, greatest;
+  double p99, greatest;
 };
 StretchError stretch_error(std::span<const double> strains, std::span<const double> truth);
 

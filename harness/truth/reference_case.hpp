@@ -20,10 +20,9 @@ namespace clothbench::truth {
 /// mesh so fine that its own error does not matter.
 struct ReferenceCase {
   std::string name;
-  bool settles = false;      ///< the solution is the shape at rest: only a run's end is compared
-  bool by_quantity = false;  ///< runs are ranked by the quantity's error; otherwise by the distance of the positions
-  bool smooth_law = false;   ///< `columns` move by the continuum's law, so their own mesh adds an error
-  std::string quantity_name;
+  bool settles = false;       ///< the solution is the shape at rest: only a run's end is compared
+  bool by_quantity = false;   ///< runs are ranked by the quantity's error; otherwise by the distance of the positions
+  bool smooth_law = false;    ///< `columns` move by the continuum's law, so their own mesh adds an error
   double quantity_scale = 1;  ///< divisor of errors of the quantity, same unit
 
   std::function<std::vector<Vec3>(int frame)> columns;     ///< [m]

@@ -33,7 +33,6 @@ ReferenceCase free_fall(const Strip& s) {
   s.need_pins({}, "no pins and no grips");
   s.need_flat();
   ReferenceCase known = s.reference_case();
-  known.quantity_name = "fall of the centre of mass";
   const auto body = [c = s.scene.material.damping_per_s](double v, double g) { return FreeFall{v, g, c}; };
   known.quantity_scale = -fall_height_m(body(0, s.g), s.time_s(s.scene.time.frames()));
   const Vec3 v0 = s.scene.cloth.initial_velocity_m_per_s;
@@ -66,7 +65,6 @@ ReferenceCase pendulum(const Strip& s) {
   s.need_damping(false);
   s.need_even_masses();
   ReferenceCase known = s.reference_case();
-  known.quantity_name = "angle from the vertical";
   known.quantity_scale = std::numbers::pi / 2;
   // Only the free row's mass moves: a point pendulum.
   const Pendulum p{s.length_m, s.g, std::numbers::pi / 2};
@@ -97,7 +95,6 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
          "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   ReferenceCase known = s.reference_case();
-  known.quantity_name = "distance of the free end from the wall";
   known.quantity = tip(s.start, s.along);
   using States = std::vector<Nodes>;
   const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5, 0}, s.times_s()));
@@ -137,7 +134,6 @@ std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Colu
 ReferenceCase hanging_at_rest_length(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.settles = known.by_quantity = true;
-  known.quantity_name = "stretch of the strip";
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
   known.columns = [s](int) {
     Columns out;
@@ -161,13 +157,11 @@ ReferenceCase heavy_strip(const Strip& s) {
                          s.end_load_N_per_m()};
   ReferenceCase known = s.reference_case();
   known.settles = known.by_quantity = true;
-  known.quantity_name = "stretch of the strip";
   known.quantity_scale = hang_displacement_m(strip, s.length_m);
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
   const bool sheet = s.scene.needs.has(Feature::Shear);
   if (s.mesh() || sheet) {
     // The pinned edge keeps its width. The half at it is therefore stiffer than a strip, the other one is not.
-    known.quantity_name = "stretch of the lower half";
     known.quantity_scale -= hang_displacement_m(strip, s.length_m / 2);
     known.quantity = [s](const Columns& c) { return dot(c.back() - c[c.size() / 2], s.along) - s.length_m / 2; };
   }
@@ -216,7 +210,6 @@ ReferenceCase cantilever(const Strip& s) {
   s.need(gamma <= 1e4, "areal density * g * length^3 / bending rigidity of at most 1e4");
   ReferenceCase known = s.reference_case();
   known.settles = true;
-  known.quantity_name = "drop of the free end";
   known.quantity_scale = free_m;
   known.quantity = tip(s.start, -1 * s.up);
   known.columns = [s, cell, free_m, nodes = cantilever_nodes(s.links - 1, gamma)](int) {
@@ -276,7 +269,6 @@ ReferenceCase two_hand_pull(const Strip& s) {
              last = displacement(rows, s.scene.motion[0].grip_position_m[rows]);
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
-  known.quantity_name = "greatest strain";
   known.quantity_scale = hands.hand_speed_m_per_s / hands.wave_speed_m_per_s;
   using States = std::vector<std::vector<double>>;
   const auto states = std::make_shared<States>(

@@ -131,7 +131,6 @@ TEST(Norms, Stretch) {
   const StretchError e = stretch_error(strains, truth);
   EXPECT_NEAR(e.greatest, 0.1, 1e-15);
   EXPECT_NEAR(e.p99, 0.01, 1e-15);  // the 198th of 200
-  EXPECT_NEAR(e.rms, std::sqrt((0.01 + 0.0025 + 0.0001 + 0.01) / 200), 1e-15);
   strains[7] = kNan;
   EXPECT_TRUE(std::isnan(stretch_error(strains, truth).p99));
 }
