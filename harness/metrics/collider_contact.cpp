@@ -23,23 +23,11 @@ struct ColliderContact::Probes {
       any_inside |= has_inside(c);
       if (kind_of(c).capsules != nullptr || kind_of(c).half_space) continue;
       try {
-        set_mesh(k, 0);
+        meshes[k] = triangles_of(c, pose_at(s, k, 0));
       } catch (const Error& e) {
         throw Error("collider " + c.name + ": " + e.what());
       }
     }
-  }
-
-  const ColliderPose& pose(std::size_t collider, int frame) const {
-    static const ColliderPose still;
-    const FrameMotion* motion = scene.motion_after(frame - 1);
-    return motion ? motion->colliders[collider] : still;
-  }
-
-  void set_mesh(std::size_t k, int frame) {
-    const Collider& c = scene.colliders[k];
-    const ColliderSurface surface = kind_of(c).surface(c, pose(k, frame), {});
-    meshes[k] = std::make_unique<TriangleTree>(TriangleMeshView{surface.positions, surface.triangles});
   }
 
   ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) {
@@ -49,8 +37,8 @@ struct ColliderContact::Probes {
     if (kind.half_space)
       return contact::half_space_contact(cloth, contact::point(c.center_m), contact::point(c.normal));
     if (kind.capsules != nullptr)
-      return contact::capsule_contact(cloth, contact_capsules(kind.capsules(c, pose(k, frame))));
-    if (frame > 0 && c.moves()) set_mesh(k, frame);
+      return contact::capsule_contact(cloth, contact_capsules(kind.capsules(c, pose_at(scene, k, frame))));
+    if (frame > 0 && c.moves()) meshes[k] = triangles_of(c, pose_at(scene, k, frame));
     return contact::mesh_contact(cloth, links, *meshes[k], has_inside(c));
   }
 

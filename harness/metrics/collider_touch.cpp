@@ -17,11 +17,6 @@ constexpr double kTouchMargin = 0.1;  // of the margin
 using contact::Nearest;
 using contact::Point;
 
-std::unique_ptr<contact::TriangleTree> tree_of(const Collider& c, const ColliderPose& pose) {
-  const ColliderSurface surface = kind_of(c).surface(c, pose, {});
-  return std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{surface.positions, surface.triangles});
-}
-
 }  // namespace
 
 struct ColliderTouch::Watch {
@@ -33,18 +28,12 @@ struct ColliderTouch::Watch {
       const double margin = k < held_at_m.size() && std::isfinite(held_at_m[k]) ? held_at_m[k] : c.margin_m;
       reach_m.push_back(margin + std::max(tolerance, kTouchMargin * margin));
       const bool flat = kind_of(c).surface != nullptr && !kind_of(c).half_space;
-      still.push_back(flat && !c.moves() ? tree_of(c, {}) : nullptr);
+      still.push_back(flat && !c.moves() ? triangles_of(c, {}) : nullptr);
       touched.emplace_back(vertices, 0);
     }
     const std::vector<double> rest = initial_positions(s);
     for (std::size_t t = 0; t < triangles.size(); ++t)
       area.push_back(contact::area(contact::TriangleMeshView{rest, triangles}.triangle(t)));
-  }
-
-  const ColliderPose& pose(std::size_t collider, int frame) const {
-    static const ColliderPose nowhere;
-    const FrameMotion* motion = scene.motion_after(frame - 1);
-    return motion ? motion->colliders[collider] : nowhere;
   }
 
   /// Nearest point of collider k for every vertex within reach. `moved`: its triangles, if it is a mesh that moves.
@@ -58,9 +47,9 @@ struct ColliderTouch::Watch {
         if (found && found->distance_m <= reach_m[k]) out[v] = found;
       }
     };
-    const ColliderPose& was = pose(k, std::max(frame - 1, 0));
+    const ColliderPose& was = pose_at(scene, k, std::max(frame - 1, 0));
     if (ClosedForm::has(c)) {
-      each(ClosedForm(c, pose(k, frame), was));
+      each(ClosedForm(c, pose_at(scene, k, frame), was));
     } else if (moved == nullptr) {
       each([&](const Point<3>& p) { return contact::nearest(p, *still[k], reach_m[k]); });
     } else {
@@ -83,7 +72,7 @@ struct ColliderTouch::Watch {
     std::vector<contact::Capsule> capsules;
     std::vector<contact::Box> boxes;
     contact::Box all;
-    if (kind.capsules != nullptr) capsules = contact_capsules(kind.capsules(c, pose(k, frame)));
+    if (kind.capsules != nullptr) capsules = contact_capsules(kind.capsules(c, pose_at(scene, k, frame)));
     for (const contact::Capsule& s : capsules) {
       contact::Box box = contact::Box(s.a).extend(s.b);
       const Point<3> out = margin + Point<3>::Constant(s.radius_m);
@@ -128,7 +117,7 @@ SceneTouch ColliderTouch::probe(int frame, const std::vector<double>& x) {
   for (std::size_t k = 0; k < w.scene.colliders.size(); ++k) {
     const Collider& c = w.scene.colliders[k];
     const bool moves = !ClosedForm::has(c) && c.moves();
-    const auto moved = moves ? tree_of(c, w.pose(k, frame)) : nullptr;
+    const auto moved = moves ? triangles_of(c, pose_at(w.scene, k, frame)) : nullptr;
     const std::vector<std::optional<Nearest>> found = w.near(k, frame, x, moved.get());
     for (std::size_t v = 0; v < found.size(); ++v) {
       if (found[v] && w.touched[k][v] != 0 && !before_.empty()) {
@@ -156,6 +145,17 @@ std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>& capsu
   std::vector<contact::Capsule> out;
   for (const Capsule& c : capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
   return out;
+}
+
+const ColliderPose& pose_at(const Scene& scene, std::size_t collider, int frame) {
+  static const ColliderPose still;
+  const FrameMotion* motion = scene.motion_after(frame - 1);
+  return motion ? motion->colliders[collider] : still;
+}
+
+std::unique_ptr<contact::TriangleTree> triangles_of(const Collider& c, const ColliderPose& pose) {
+  const ColliderSurface surface = kind_of(c).surface(c, pose, {});
+  return std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{surface.positions, surface.triangles});
 }
 
 ClosedForm::ClosedForm(const Collider& c, const ColliderPose& now, const ColliderPose& was)

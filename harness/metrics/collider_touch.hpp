@@ -36,6 +36,12 @@ class ColliderTouch {
 
 std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>&);
 
+/// Pose of a collider of the scene at the end of a frame, 0 = the start.
+const ColliderPose& pose_at(const Scene&, std::size_t collider, int frame);
+
+/// The triangles of a collider whose kind has a surface.
+std::unique_ptr<contact::TriangleTree> triangles_of(const Collider&, const ColliderPose&);
+
 /// Signed distance to a collider at one instant, for kinds that have a closed form. The other kinds use triangles.
 class ClosedForm {
  public:

@@ -1,21 +1,20 @@
 #include "metrics/contact/capsules.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace clothbench::contact {
-namespace {
 
-Point<3> nearest_on_axis(const Point<3>& p, const Capsule& c) {
+double axis_share(const Point<3>& p, const Capsule& c) {
   const Point<3> axis = c.b - c.a;
-  const double along = axis.dot(p - c.a) / axis.squaredNorm();
-  // A sphere has no axis: `along` is NaN, and a is the nearest point.
-  return along > 0 ? Point<3>(c.a + std::min(along, 1.0) * axis) : c.a;
+  const double squared = axis.squaredNorm();
+  return squared > 0 ? std::clamp(axis.dot(p - c.a) / squared, 0.0, 1.0) : 0.0;
 }
 
-}  // namespace
-
-double signed_distance(const Point<3>& p, const Capsule& c) { return (p - nearest_on_axis(p, c)).norm() - c.radius_m; }
+double signed_distance(const Point<3>& p, const Capsule& c) {
+  return (p - (c.a + axis_share(p, c) * (c.b - c.a))).norm() - c.radius_m;
+}
 
 CapsuleMesh capsule_mesh(const Capsule& c) {
   constexpr int kQuarter = kCapsuleSides / 4;

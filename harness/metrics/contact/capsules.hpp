@@ -13,6 +13,9 @@ struct Capsule {
 
 inline Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
 
+/// Where on the axis the point nearest to p is, from 0 at a to 1 at b; 0 for a sphere.
+double axis_share(const Point<3>& p, const Capsule&);
+
 /// Signed distance [m] to the surface, negative inside; exact.
 double signed_distance(const Point<3>& p, const Capsule&);
 

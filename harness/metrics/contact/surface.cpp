@@ -7,12 +7,6 @@
 namespace clothbench::contact {
 namespace {
 
-double share(const Point<3>& p, const Capsule& c) {
-  const Point<3> ab = c.b - c.a;
-  const double squared = ab.squaredNorm();
-  return squared > 0 ? std::clamp(ab.dot(p - c.a) / squared, 0.0, 1.0) : 0.0;
-}
-
 Point<3> direction(const Point<3>& v) {
   const double length = v.norm();
   return length > 0 ? Point<3>(v / length) : Point<3>(Point<3>::Zero());
@@ -23,7 +17,7 @@ Point<3> direction(const Point<3>& v) {
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before) {
   Nearest best{std::numeric_limits<double>::infinity(), Point<3>::Zero(), Point<3>::Zero()};
   for (std::size_t k = 0; k < now.size(); ++k) {
-    const double t = share(p, now[k]);
+    const double t = axis_share(p, now[k]);
     const Point<3> axis = now[k].a + t * (now[k].b - now[k].a);
     const double distance = (p - axis).norm() - now[k].radius_m;
     if (!(distance < best.distance_m)) continue;

@@ -48,36 +48,34 @@ const std::vector<double>* whole_series(const RunView& r, const std::string& nam
   return r.whole() ? r.series(name) : nullptr;
 }
 
-double greatest_amount(const std::vector<double>* values) {
-  if (values == nullptr) return kMissing;
+double greatest_amount(const std::vector<double>& values) {
   double most = 0;
-  for (const double v : *values) most = max_or_nan(most, std::abs(v));
+  for (const double v : values) most = max_or_nan(most, std::abs(v));
   return most;
 }
 
+/// `moving` is for an exact solution that moves; for one at rest only the last frame counts.
+Reduction of_whole(const char* series, const char* how, double (*moving)(const RunView&, const std::vector<double>&)) {
+  return {{series}, how, [=, name = std::string(series)](const RunView& r) {
+            const std::vector<double>* v = whole_series(r, name);
+            if (v == nullptr) return kMissing;
+            return r.reference_case().settles ? v->back() : moving(r, *v);
+          }};
+}
+
 Reduction at_the_end(const char* series) {
-  return {{series}, "last frame", [name = std::string(series)](const RunView& r) {
-            const std::vector<double>* v = whole_series(r, name);
-            return v == nullptr ? kMissing : v->back();
-          }};
+  return of_whole(series, "last frame", [](const RunView&, const std::vector<double>& v) { return v.back(); });
 }
 
-/// RMS over time for truths in motion; the last frame for truths at rest.
 Reduction over_time(const char* series) {
-  return {{series}, "RMS over time; at rest, the last frame", [name = std::string(series)](const RunView& r) {
-            const std::vector<double>* v = whole_series(r, name);
-            if (v == nullptr) return kMissing;
-            return r.reference_case().settles || v->size() < 2 ? v->back() : truth::time_rms(r.pass.time_s, *v);
-          }};
+  return of_whole(series, "RMS over time; at rest, the last frame", [](const RunView& r, const std::vector<double>& v) {
+    return v.size() < 2 ? v.back() : truth::time_rms(r.pass.time_s, v);
+  });
 }
 
-/// The maximum over frames if the exact solution moves; the last frame if it is at rest.
 Reduction worst(const char* series) {
-  return {{series}, "maximum over the frames; at rest, the last frame", [name = std::string(series)](const RunView& r) {
-            const std::vector<double>* v = whole_series(r, name);
-            if (v == nullptr) return kMissing;
-            return r.reference_case().settles ? v->back() : greatest_amount(v);
-          }};
+  return of_whole(series, "maximum over the frames; at rest, the last frame",
+                  [](const RunView&, const std::vector<double>& v) { return greatest_amount(v); });
 }
 
 bool with_truth(const RunView& r) { return has_truth(r.scene); }

@@ -177,15 +177,8 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
 }
 
 const char* name_of(StabilityVerdict::Grade g) {
-  switch (g) {
-    case StabilityVerdict::Grade::Stable:
-      return "stable";
-    case StabilityVerdict::Grade::Degraded:
-      return "degraded";
-    case StabilityVerdict::Grade::Failed:
-      return "failed";
-  }
-  return "";
+  static constexpr const char* kNames[] = {"stable", "degraded", "failed"};
+  return kNames[static_cast<std::size_t>(g)];
 }
 
 std::string class_name(int k) {
