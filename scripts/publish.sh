@@ -48,7 +48,7 @@ while [ $# -gt 0 ]; do
     --report) report=1 ;;
     --to | --archive | --table | --only | --limit | --jobs)
       [ $# -gt 1 ] || fail "$1: expected a value"
-      case $1 in --to) to=$2 ;; --archive) archive=$2 ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
+      case $1 in --to) to=$2 ;; --archive) archive=$(realpath -m "$2") ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
       shift ;;
     -*) fail "$1: expected --table, --only, --limit, --jobs, --report, --to or --archive" ;;
     *) folders+=("$(realpath -m "$1")") ;;

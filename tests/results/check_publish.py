@@ -48,6 +48,8 @@ with tempfile.TemporaryDirectory() as scratch:
     assert call(*table3, **with_stub)[0] == 0 and len(calls.read_text().splitlines()) == n, "a complete study was run again"
     code, said = call(*table3, **{**with_stub, "SOURCES": "2"})
     assert code == 2 and "one state of the sources" in said, (code, said)
+    code, said = call(out, "--table", "gpu", "--only", "physics", "--limit", 1, **with_stub)  # the stub's commit is "c"
+    assert code == 75 and "--seed 12 --count 300 " in calls.read_text().splitlines()[-1], (code, said)
     code, said = call(out, "--table", "quick", "--only", "hang", **with_stub)
     assert code == 5 and "hang: exit status 5" in said, (code, said)
     for words, why in ((["--limit", "x"], "positive whole number"), (["--table", "none"], "expected gpu, software, peers or quick"), (["--only", "none"], "has no such study"), (["--only"], "expected a value"), (["--x"], "expected --table")):

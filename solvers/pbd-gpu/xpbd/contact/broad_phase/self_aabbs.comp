@@ -1,7 +1,7 @@
 #version 450
 // Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
-// motion bounds (share 1), each by half of the thickness and the drift, and the group's at share 1. Groups are 16 triangles in
-// self_order, which keeps neighbours together.
+// motion bounds (share 1), each by half of the thickness and the drift, and the group's at share 1. Groups are 16
+// triangles in self_order, which keeps neighbours together.
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
