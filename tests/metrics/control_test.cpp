@@ -5,13 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "../scenario/scratch_folder.hpp"
-#include "metrics/registry.hpp"
-#include "prescribed_solver.hpp"
-#include "results/store.hpp"
 #include "runner/frame_loop.hpp"
-#include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
+#include "unmet_bounds.hpp"
 
 namespace clothbench {
 namespace {
@@ -50,19 +46,7 @@ std::vector<std::vector<double>> motion_of(const Scene& scene) {
 std::set<std::string> broken_by_control(const Scene& scene) {
   const auto motion = motion_of(unaware(scene));
   const SolverEntry control = prescribed([&](int frame, std::vector<double>& x) { x = motion.at(frame); });
-  const ScratchFolder folder;
-  RunPlan plan;
-  plan.groups = {{{&scene, &control, json::object()}}};
-  plan.rules.trials = 0;
-  plan.rules.accuracy_duration_s = scene.time.duration_s;
-  plan.protocol = "test";
-  RunOptions options;
-  options.out = folder.path();
-  const RunRecord run = read_run(execute_runs(plan, options).files.at(0));
-  std::set<std::string> out;
-  for (const auto& [name, passed] : run.summary)
-    if (name.starts_with(kExpect) && !(passed == 1)) out.insert(name.substr(kExpect.size()));
-  return out;
+  return unmet_bounds(scene, control);
 }
 
 TEST(Control, EveryBoundOnContactFailsForClothThatFeelsNothing) {
