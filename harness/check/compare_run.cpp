@@ -25,10 +25,15 @@ constexpr double kFailedFrameRelativeSlack = 0.1;
 
 constexpr const char* kNotMeasured = "not measured";
 
-/// Sides of the cloth [m]; none if the scene in the result file has no cloth size.
+/// Sides of the cloth [m], those of its mesh where it has one; none if the result file has neither.
 std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
   const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
   const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");
+  if (!r.file.empty() && scene.is_object() && scene.contains(nlohmann::json::json_pointer("/cloth/mesh"))) {
+    const Cloth cloth = read_motion(r.file).scene.cloth;
+    if (!cloth.mesh) return {};
+    return {{cloth.width_m, cloth.height_m}};
+  }
   const auto is_number = [&](const auto& at) { return scene.contains(at) && scene[at].is_number(); };
   if (scene.is_discarded() || !is_number(width) || !is_number(height)) return {};
   return {{scene[width].get<double>(), scene[height].get<double>()}};
@@ -37,7 +42,7 @@ std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
 /// Shorter side of the cloth [m].
 double length_of(const RunRecord& r) {
   const auto size = cloth_size_m(r);
-  if (!size) throw Error(r.header.scene + ": the scene in the result file has no /cloth/size_m; expected two numbers");
+  if (!size) throw Error(r.header.scene + ": the result file has no cloth mesh and no /cloth/size_m of two numbers");
   return std::min((*size)[0], (*size)[1]);
 }
 
@@ -123,11 +128,13 @@ std::set<std::string> scalar_names(const BaselineRun& was, const BaselineRun& is
 
 std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& is, const RunRecord& record) {
   std::vector<Finding> out;
+  std::optional<double> length;
   for (const std::string& name : scalar_names(was, is)) {
     const double before = scalar(was, name), now = scalar(is, name);
     const Gate& gate = *find_gate(name);
     // Measured moduli and relations of runs have no cloth of their own.
-    const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : length_of(record));
+    if (gate.unit != SlackUnit::One && !length) length = length_of(record);
+    const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : *length);
     const Verdict verdict = judge(name, before, now, tolerance);
     if (verdict == Verdict::Same) continue;
     const std::string limit = !is_verdict(name) && std::isfinite(before) ? "≤ " + shown(name, before + tolerance) : "";
