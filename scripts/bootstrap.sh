@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what clothbench needs from Debian 12 or 13, and only what is missing. Sourced or run by run.sh and test.sh.
-#   scripts/bootstrap.sh [--short | --tests] [--arm64]     --tests: also what only the tests use; --short: what those of test.sh --short use
-#                                                          --arm64: also the cross build and the packaging of the APK
+#   scripts/bootstrap.sh [--short | --tests] [--ci] [--arm64]     --tests: also what only the tests use; --short: what those of test.sh --short use
+#                                                                 --ci: what only CI's tests and the slow ones use
+#                                                                 --arm64: also the cross build and the packaging of the APK
 set -euo pipefail
 
 packages=(g++ cmake make ninja-build ccache
@@ -15,11 +16,12 @@ for argument in "$@"; do
   case $argument in
     --short) packages+=(libgtest-dev vulkan-validationlayers) ;;
     --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
-                        python3-paraview libbenchmark-tools chromium clang clang-format pmccabe libclang-rt-dev slurm-wlm munge) ;;
+                        libbenchmark-tools clang-format pmccabe) ;;
+    --ci) packages+=(python3-paraview chromium clang libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;
-    *) echo "set-up: $argument: expected --short, --tests or --arm64" >&2; exit 2 ;;
+    *) echo "set-up: $argument: expected --short, --tests, --ci or --arm64" >&2; exit 2 ;;
   esac
 done
 

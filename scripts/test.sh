@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Set up, build and pass the tests.
-#   scripts/test.sh [--full | --short]     --full: the slow tier too; --short: a named few programs, in a few minutes
+#   scripts/test.sh [--full | --short]     --full: also what CI runs and the slow tier; --short: a named few programs, in a few minutes
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,8 +15,8 @@ build() {
   local first=()
   [ -f build/release/CMakeCache.txt ] || first=(-DCMAKE_UNITY_BUILD=ON)
   case $tier in
-    full) first+=(-DCLOTHBENCH_SLOW_TESTS=ON) ;;
-    *) [ ${#first[@]} -eq 0 ] || first+=(-DCLOTHBENCH_SLOW_TESTS=OFF) ;;
+    full) first+=(-DCLOTHBENCH_TESTS=slow) ;;
+    *) [ ${#first[@]} -eq 0 ] || first+=(-DCLOTHBENCH_TESTS=quick) ;;
   esac
   configure ci "${first[@]}"
   cmake --build --preset ci -j "$JOBS" --target "${targets[@]}"
@@ -35,16 +35,17 @@ against_baseline() {
   build/release/clothbench check "$out" --baseline "results/baselines/$study$kind.json" --junit "$out.xml"
 }
 
-# What penetrates what: the published scenes, and scenes drawn by fixed seeds.
-contact() {
+# What penetrates what: the published scenes, and scenes drawn by fixed seeds. Beside them the stiff and extreme cases: the first of the three
+# has timed trials, which are run one at a time and use one core.
+studies() {
   local kind='' procedural=()
   # Results on procedural rooms and hands have baselines of their own.
   if build/release/clothbench list assets | grep -q '^procedural'; then kind=-procedural procedural=(--procedural); fi
-  # Side by side: the first has timed trials, which are run one at a time and leave a core idle for part of it.
   against_baseline penetration &
   local penetration=$!
   trap wait EXIT
-  against_baseline contact --seed 1 --jobs "$JOBS" "${procedural[@]}"
+  against_baseline contact --seed 1 "${procedural[@]}"
+  stability
   wait "$penetration"
 }
 
@@ -52,7 +53,7 @@ contact() {
 stability() {
   local out=build/stability-quick
   rm -rf "$out"
-  build/release/clothbench --json study stability --quick --jobs "$JOBS" --out "$out" >"$out.json" || { tail -20 "$out.json"; return 1; }
+  build/release/clothbench --json study stability --quick --out "$out" >"$out.json" || { tail -20 "$out.json"; return 1; }
   /usr/bin/python3 - "$out.json" <<'END'
 import json, sys
 study = json.load(open(sys.argv[1], encoding="utf-8"))
@@ -63,24 +64,23 @@ if study["crashed"] != 0 or bad or not ours:
 END
 }
 
-tier=quick selection=(-LE slow) targets=(all) packages=--tests
+tier=quick selection=(-LE '^(slow|ci)$') targets=(all) packages=(--tests)
 case ${1:-} in
   '') ;;
-  --full) tier=full selection=() ;;
+  --full) tier=full selection=() packages=(--tests --ci) ;;
   --short)
-    tier=short packages=--short
+    tier=short packages=(--short)
     targets=(clothbench "${short[@]}")
     # Without cases that take long and show nothing else on another system, or that judge speed.
-    selection=(-LE slow -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce')
+    selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce')
     ;;
   *) echo "usage: scripts/test.sh [--full | --short]" >&2; exit 2 ;;
 esac
-stage set-up 3 scripts/bootstrap.sh "$packages"
+stage set-up 3 scripts/bootstrap.sh "${packages[@]}"
 stage assets 1 scripts/fetch-assets.sh
 stage build 8 build
 stage --show tests 8 tests
 if [ "$tier" != short ]; then
-  stage contact 4 contact
-  stage stability 3 stability
+  stage studies 4 studies
 fi
 print_budget
