@@ -118,7 +118,7 @@ struct Row {
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
   /// " (first 36 frames)" where the run timed fewer frames than another run of its scene; otherwise empty.
   std::string frames_mark() const;
-  double value(const std::string& name) const { return summary_value(*run, name); }
+  double value(const std::string& scalar) const { return summary_value(*run, scalar); }
   std::string status() const { return run->outcome.status; }
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined where the solver supports it.
