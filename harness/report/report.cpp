@@ -8,7 +8,6 @@
 #include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "report/features.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
@@ -25,17 +24,6 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
   return runs;
 }
 
-/// The table of features is no view: its rows are features, not runs.
-ViewTable features_of(const RunTable& table) {
-  const DeclaredFeatures solvers = declared_features(table.runs());
-  if (std::all_of(solvers.begin(), solvers.end(), [](auto& s) { return s.second.is_null(); })) return {};
-  ViewTable t{feature_table(solvers)};
-  t.in_full = true;
-  t.solvers = {""};
-  for (const auto& [solver, unused] : solvers) t.solvers.push_back(solver);
-  return t;
-}
-
 /// The sections that have tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
@@ -44,8 +32,6 @@ std::vector<PageSection> filled_sections(const RunTable& table) {
     for (const View& v : views())
       if (v.section == s.id)
         for (ViewTable& t : tables_of(v, table)) section.tables.push_back(std::move(t));
-    if (section.id == "features")
-      if (ViewTable t = features_of(table); !t.rows.empty()) section.tables.push_back(std::move(t));
     if (!section.tables.empty()) out.push_back(std::move(section));
   }
   return out;

@@ -141,6 +141,10 @@ struct ClaimPoint {
 };
 ClaimPoint claim_point(const Row&);
 
+/// Table 4: features by solver, as runs of these state them (describe_features); "not built" where a build lacks a
+/// solver.
+View feature_view();
+
 // Parts of views(), by file.
 std::vector<View> overview_views();
 std::vector<View> rate_views();
