@@ -211,18 +211,6 @@ async function check_without_script() {
   await plain.close();
 }
 
-/// What a button saves, instead of saving it.
-async function check_download() {
-  const svg = await page.evaluate(async () => {
-    let saved = null;
-    URL.createObjectURL = blob => (saved = blob, 'blob:none');
-    HTMLAnchorElement.prototype.click = () => {};
-    document.querySelector('button[aria-label="rates: download as SVG"]').click();
-    return saved.text();
-  });
-  check(svg.startsWith('<svg') && /width="493pt"/.test(svg) && !/var\(/.test(svg), 'a figure as SVG is 174 mm wide and has its own colours');
-}
-
 /// The value of a mark, by the pointer and by keyboard, with the command that makes its run again.
 async function check_values() {
   await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'}));
@@ -354,7 +342,7 @@ async function check_colours() {
 try {
   await check_budgets();
   await draw_all();
-  for (const run of [check_tables, check_figures, check_filter, check_download, check_values, check_motion, check_widths, check_without_script, check_colours, check_without_webgl]) await run();
+  for (const run of [check_tables, check_figures, check_filter, check_values, check_motion, check_widths, check_without_script, check_colours, check_without_webgl]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
   const rules = await page.evaluate(() => [...document.styleSheets].flatMap(s => [...s.cssRules]).map(r => r.cssText).filter(t => t.startsWith('@page')).join());
   check(rules.includes(doc.title) && rules.includes('counter(page)'), 'printed pages have the title and a number');

@@ -1,9 +1,9 @@
 // The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
-// its values and downloads as a picture.
-import {draw, draw_on_paper, paper_widths} from './chart.js';
-import {button, download, element, file_name, say, select} from './dom.js';
+// its values.
+import {draw} from './chart.js';
+import {element, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
-import {page_look, paper_look, set_value, shown, state} from './state.js';
+import {page_look, set_value, shown, state} from './state.js';
 import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
@@ -38,7 +38,7 @@ class Figure {
     this.block = element(
         'figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
         element('figcaption', {}, entry.caption), this.remark,
-        element('div', {class: 'bar small'}, this.details, button('SVG', `${entry.id}: download as SVG`, () => this.save())));
+        element('div', {class: 'bar small'}, this.details));
     this.listen();
     figures.push(this);
   }
@@ -129,12 +129,6 @@ class Figure {
     const values = new ShownTable(doc, this.look, table, `${entry.id}-values`);
     values.fill();
     this.values.replaceChildren(values.block);
-  }
-
-  save() {
-    if (!this.drawn) this.redraw();
-    const {svg} = draw_on_paper(this.entry, this.rows, this.state, paper_look(this.look), paper_widths['-wide']);
-    download(`${file_name(this.entry.title(this.state))}.svg`, 'image/svg+xml', svg);
   }
 }
 
