@@ -244,7 +244,7 @@ async function check_motion() {
   await page.waitForFunction(() => window.clothbench.viewer.panels.length > 0, {timeout: 60000});
   await page.evaluate(() => document.querySelector('#stage').scrollIntoView({behavior: 'instant'}));
   await page.evaluate(() => window.clothbench.viewer.ready);
-  await page.focus('#stage canvas');
+  await page.focus('#scrub');
   await page.keyboard.press('Home');
   await drawn();
   const before = await positions(), picture_before = await picture();
@@ -262,11 +262,12 @@ async function check_motion() {
   await page.keyboard.press('ArrowRight');
   equal(
       await page.evaluate(() => window.clothbench.viewer.time),
-      await page.evaluate(() => window.clothbench.viewer.panels[0].motion.time_s[1]),
+      await page.evaluate(() => window.clothbench.viewer.times[1]),
       'an arrow goes to the next frame');
+  await page.focus('#viewer button');
   await page.keyboard.press('Space');
   await page.waitForFunction(
-      () => window.clothbench.viewer.time > window.clothbench.viewer.panels[0].motion.time_s[2], {timeout: 10000});
+      () => window.clothbench.viewer.time > window.clothbench.viewer.times[2], {timeout: 10000});
   await page.keyboard.press('Space');
   equal(await page.evaluate(() => window.clothbench.viewer.playing), false, 'Space plays and stops; playing');
 }

@@ -16,7 +16,6 @@ function start_theme() {
   $('theme').addEventListener('click', () => {
     root.dataset.theme = dark() ? 'light' : 'dark';
     tell();
-    dispatchEvent(new Event('theme'));
   });
   system.addEventListener('change', tell);
   tell();
