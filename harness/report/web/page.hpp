@@ -21,12 +21,12 @@ struct PageTemplate {
 PageTemplate page_template();
 
 struct Drawn {
-  std::string fault;     ///< a sentence on what is missing, and why; empty if all was drawn
-  std::string markdown;  ///< shows the new pictures
+  std::string fault;     ///< a sentence on why there are no pictures; empty if all were drawn
+  std::string markdown;  ///< shows the new pictures, and says why there are no PDF files
 };
 
-/// Draws the figures of `out`/index.html into `out`/figures: SVG (by Node) and PDF (by rsvg-convert). Removes the
-/// pictures of an earlier report first.
+/// Draws the figures of `out`/index.html into `out`/figures by Node (src/stills.js). Removes the pictures of an earlier
+/// report first.
 Drawn draw_pictures(const std::filesystem::path& out, const PageTemplate&);
 
 /// A section of the report: the same tables in report.md and on the page.
