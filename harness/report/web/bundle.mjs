@@ -41,19 +41,13 @@ function licences(inputs) {
 }
 
 const program = await bundled('main.js', {format: 'iife'}), viewer = await bundled('viewer.js', {format: 'iife'});
-const script = script_safe(program.text), style = (await bundled('style.css', {})).text.trim();
 const parts = {
-  style,
-  script,
+  style: `<style>${(await bundled('style.css', {})).text.trim()}</style>`,
+  script: `<script>${script_safe(program.text)}</script>`,
   viewer: `<script type="text/plain" id="viewer-program">${script_safe(viewer.text)}</script>`,
   licences: licences([...program.inputs, ...viewer.inputs])
 };
-const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:(\w+)-->/g, (mark, name) => {
-  if (!(name in parts)) throw new Error(`index.html: unknown mark ${mark}`);
-  return name === 'script' ? `<script>${parts.script}</script>` :
-      name === 'style' ? `<style>${parts.style}</style>` :
-                         parts[name];
-});
+const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:(\w+)-->/g, (_, name) => parts[name]);
 writeFileSync(join(out, 'template.html'), html);
 
 const stills = await bundled('stills.js', {format: 'cjs', target: ['node18'], external: ['node:*']});
