@@ -18,10 +18,9 @@ constexpr double kBudget_ms = 1;     // of wall time per frame
 
 constexpr const char* kTable3Note =
     "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; all other columns are "
-    "for "
-    "the largest mesh. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges in "
-    "the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped at "
-    "72. ";
+    "for the largest mesh. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges "
+    "in the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped "
+    "at 72. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";

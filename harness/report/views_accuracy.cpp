@@ -94,19 +94,17 @@ std::string ranked_text(const Group& g) {
 }
 
 View work() {
-  View v{
-      "accuracy", "Error against run time",
-      "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
-      "brackets the setting. GPU: by the device's own clock. Errors: against the exact "
-      "solution of the same grid; for triangle meshes, against the continuum's; within: the smallest error of a "
-      "setting whose frame takes at most that wall time. Frame, percentiles, missed deadlines and real-time factor: of "
-      "the fastest setting with an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which "
-      "solvers are not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
-      "Failed: runs without a finite "
-      "error. Not run: settings that need more work than the solver's time on the scene allowed. A refused scene "
-      "ranks no solver; the table of reference cases has the reason. Ranked: the solver has every stiffness that "
-      "the scene depends on, as its plan states; effective stiffness is not measured here.",
-      in_truth};
+  View v{"accuracy", "Error against run time",
+         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
+         "brackets the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; "
+         "for triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at "
+         "most that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with "
+         "an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
+         "distinguished, which is three times the reference's uncertainty or the error of the mesh. Failed: runs "
+         "without a finite error. Not run: settings that need more work than the solver's time on the scene allowed. A "
+         "refused scene ranks no solver; the table of reference cases has the reason. Ranked: the solver has every "
+         "stiffness that the scene depends on, as its plan states; effective stiffness is not measured here.",
+         in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key(
                 "solver", [](const Row& r) { return r.solver; }, true)};
@@ -134,13 +132,13 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 }
 
 View reference_cases() {
-  View v{"accuracy", "Reference cases and their reference solutions",
-         "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from "
-         "the continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the "
-         "reference case's quantity, over its scale. On a grid, the distance of the reference solution from the exact "
-         "one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time "
-         "steps agree.",
-         in_truth};
+  View v{
+      "accuracy", "Reference cases and their reference solutions",
+      "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from the "
+      "continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the reference "
+      "case's quantity, over its scale. On a grid, the distance of the reference solution from the exact one must be "
+      "below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time steps agree.",
+      in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
@@ -190,12 +188,11 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
 }
 
 View robustness() {
-  View v{
-      "stability", "Robustness",
-      "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load (F2). "
-      "Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, "
-      "crash or device.",
-      in_stability};
+  View v{"stability", "Robustness",
+         "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
+         "(F2). Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 "
+         "budget, crash or device.",
+         in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;

@@ -51,18 +51,18 @@ Cell ratio(const Row& r) { return number_cell(r.times->wall.at(0.5) / r.baseline
 Cell rank(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
 
 View frame_times() {
-  View v{"time", "Time per frame [ms]",
-         std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp "
-                     "of the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images "
-                     "for both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest "
-                     "rank. Missed: frames longer than one refresh of the display. Real-time factor: simulated time "
-                     "over the median. Pipelined: two frames in flight, median of the trials' means; –: the solver "
-                     "waits for each frame. Load: once, before the first frame. Rank: one more than "
-                     "the number of runs of the scene whose whole interval of wall time is below the run's; runs that "
-                     "failed, and cloths with an edge of more than twice its length, are not ranked. CPU threads: CPU "
-                     "time over wall time. ") +
-             kIntervalMethod,
-         [](const Row& r) { return r.published < 0; }};
+  View v{
+      "time", "Time per frame [ms]",
+      std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
+                  "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
+                  "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
+                  "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
+                  "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
+                  "frame. Load: once, before the first frame. Rank: one more than the number of runs of the scene "
+                  "whose whole interval of wall time is below the run's; runs that failed, and cloths with an edge of "
+                  "more than twice its length, are not ranked. CPU threads: CPU time over wall time. ") +
+          kIntervalMethod,
+      [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto add = [&](const std::string& head, std::function<Cell(const FrameTimes&)> text) {
     v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
@@ -101,8 +101,8 @@ View memory() {
   View v{"time", "Bytes and device memory per frame",
          "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
          "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or "
-         "of the whole trial where it is shorter. "
-         "Memory: device-local buffers. CPU solvers, whose bytes are not known, are left out.",
+         "of the whole trial where it is shorter. Memory: device-local buffers. CPU solvers, whose bytes are not "
+         "known, are left out.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability &&
                   std::isfinite(r.value("device_memory_B"));

@@ -193,10 +193,9 @@ std::string table_html(const Table& t) {
 
 /// The part that needs no script: title, facts, warnings, tiles and the first table.
 std::string head_html(const Page& page) {
-  std::string out =
-      "<h1>" + escaped(page.heading.title) +
-      "</h1><p>clothbench runs cloth solvers on the same scenes and "
-      "reports their speed together with its cost in error and in contact failures.</p><p class=\"meta\">";
+  std::string out = "<h1>" + escaped(page.heading.title) +
+                    "</h1><p>clothbench runs cloth solvers on the same scenes and reports their speed together with "
+                    "its cost in error and in contact failures.</p><p class=\"meta\">";
   for (const auto& [name, value] : page.heading.facts)
     out += (name == page.heading.facts.front().first ? "" : " · ") + escaped(name) + " <b>" + escaped(value) + "</b>";
   out += "</p>";
