@@ -51,8 +51,7 @@ std::pair<Interval95, Interval95> intervals(const std::vector<Series>& trials) {
       }
       rates_drawn.push_back(static_cast<double>(drawn.size() - before) / sum);
     }
-    std::sort(rates_drawn.begin(), rates_drawn.end());
-    rates.push_back(middle(rates_drawn));
+    rates.push_back(median(std::move(rates_drawn)));
     const auto half = drawn.begin() + static_cast<std::ptrdiff_t>((drawn.size() - 1) / 2);
     std::nth_element(drawn.begin(), half, drawn.end());
     medians.push_back(*half);

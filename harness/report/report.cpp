@@ -18,6 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::pair<const char*, const char*> kSections[] = {
+    {"overview", "Overview"},      {"rates", "Frame rates"},
+    {"contact", "Contact"},        {"accuracy", "Error against run time"},
+    {"stability", "Stability"},    {"time", "Frame times"},
+    {"failed", "Failures"},        {"features", "Features"},
+    {"environment", "Environment"}};
+
 std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
   std::vector<RunRecord> runs = collect(results);
   withhold_times(runs);
@@ -27,10 +34,10 @@ std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
 /// The sections that have tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
-  for (const Section& s : sections()) {
-    PageSection section{s.id, s.title, {}};
+  for (const auto& [id, title] : kSections) {
+    PageSection section{id, title, {}};
     for (const View& v : views())
-      if (v.section == s.id)
+      if (v.section == id)
         for (ViewTable& t : tables_of(v, table)) section.tables.push_back(std::move(t));
     if (!section.tables.empty()) out.push_back(std::move(section));
   }

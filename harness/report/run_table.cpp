@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -123,19 +122,10 @@ std::size_t place_of_scene(const std::string& scene) {
 
 std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 
-std::vector<double> trial_means(const RunRecord& c) {
-  std::vector<double> out;
-  for (const TimedTrial& t : c.trials) {
-    const double sum = std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0);
-    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-double middle(const std::vector<double>& sorted) {
-  const std::size_t n = sorted.size();
-  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n == 0 ? kMissing : (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 double quantile(const std::vector<double>& sorted, double q) {

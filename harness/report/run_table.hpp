@@ -42,10 +42,8 @@ std::string time_baseline();
 const nlohmann::json& leading_scenes();
 std::size_t place_of_scene(const std::string& scene);
 
-/// Mean wall time of a frame in each trial [s], ascending.
-std::vector<double> trial_means(const RunRecord&);
-/// The median of a sorted, non-empty list.
-double middle(const std::vector<double>& sorted);
+/// NaN without values.
+double median(std::vector<double>);
 
 /// Nearest-rank quantile of a sorted list; NaN if it is empty.
 double quantile(const std::vector<double>& sorted, double q);

@@ -210,13 +210,4 @@ Cell verdict_cell(const RunRecord& c) {
   return {v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
 }
 
-const std::vector<Section>& sections() {
-  static const std::vector<Section> all = {{"overview", "Overview"},      {"rates", "Frame rates"},
-                                           {"contact", "Contact"},        {"accuracy", "Error against run time"},
-                                           {"stability", "Stability"},    {"time", "Frame times"},
-                                           {"failed", "Failures"},        {"features", "Features"},
-                                           {"environment", "Environment"}};
-  return all;
-}
-
 }  // namespace clothbench

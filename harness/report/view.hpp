@@ -118,12 +118,6 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
-/// Titles of sections by id, in their order: "rates", "contact", …
-struct Section {
-  const char *id, *title;
-};
-const std::vector<Section>& sections();
-
 /// "S01 stiffness" of a scene that stability is judged on.
 std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.
