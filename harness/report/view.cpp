@@ -179,7 +179,6 @@ const std::vector<View>& views() {
     std::vector<View> out = overview_views();
     for (auto* more : {rate_views, contact_views, reproduction_views, accuracy_views})
       for (View& v : more()) out.push_back(std::move(v));
-    out.push_back(feature_view());
     return out;
   }();
   return all;

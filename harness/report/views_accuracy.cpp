@@ -1,4 +1,4 @@
-// Tables of error against run time, stability, failures, violated criteria and machines.
+// Tables of error against run time, stability, failures, violated criteria, machines and features.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
@@ -286,6 +287,32 @@ View environment() {
   return v;
 }
 
+std::string words(std::string_view text) {
+  std::string name(text);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// The first declaration among the runs.
+Cell declared(const Group& g, const Keys& keys) {
+  json features;
+  for (const Row* r : g)
+    if (features.is_null()) features = environment_of(*r->run, "solver_features");
+  if (features.is_null()) return "not built";
+  const auto has = [&](const char* list) {
+    const json& names = features.at(list);
+    return std::any_of(names.begin(), names.end(),
+                       [&](const json& name) { return words(name.get<std::string>()) == keys.front().text; });
+  };
+  if (has("ignores")) return "ignored";
+  if (!has("supports")) return "no";
+  std::string text = "yes";
+  for (const json& pair : features.at("only_with"))
+    if (words(pair.at(0).get<std::string>()) == keys.front().text)
+      text += " (only with " + words(pair.at(1).get<std::string>()) + ")";
+  return text;
+}
+
 }  // namespace
 
 std::string case_of(const Row& r) {
@@ -299,8 +326,24 @@ int grade_of(const Row& r) {
   return std::isfinite(grade) ? static_cast<int>(grade) : 2;
 }
 
+View feature_view() {
+  View v{"features", "Table 4: features",
+         "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+         [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
+  v.keys = {{"feature", [](const Row&) {
+               Keys out;
+               for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name));
+               return out;
+             }}};
+  v.across = {key(
+                  "", [](const Row& r) { return r.solver; }, true),
+              declared};
+  v.in_full = true;
+  return v;
+}
+
 std::vector<View> accuracy_views() {
-  return {work(), reference_cases(), robustness(), failed(), violated(), environment()};
+  return {work(), reference_cases(), robustness(), failed(), violated(), environment(), feature_view()};
 }
 
 }  // namespace clothbench

@@ -10,7 +10,6 @@ const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed'
 const kRefresh_Hz = [72, 90];
 const percent = v => v === null || v === undefined ? '–' : `${number(100 * v, 3)} %`;
 const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
-const file_of = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
 const by_solver = rows => unique(rows.map(r => r.solver)).map(solver => [solver, rows.filter(r => r.solver === solver)]);
 const choice = (label, values, first, text = String) =>
     ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
