@@ -257,7 +257,7 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
 }
 
 #ifndef CLOTHBENCH_WITH_PAGE
-PageTemplate page_template() { return {"", "this build was made without it (CLOTHBENCH_WITH_PAGE)"}; }
+PageTemplate page_template() { return {"", "this build was made without it, or without Node and npm"}; }
 Motions motions_of(const RunTable&, std::size_t) { return {}; }
 #endif
 

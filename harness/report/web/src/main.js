@@ -89,15 +89,7 @@ function start_navigation() {
     const now = end ? all.at(-1) : all.findLast(s => s.getBoundingClientRect().top < edge) ?? all[0];
     links.forEach((l, k) => all[k] === now ? l.setAttribute('aria-current', 'true') : l.removeAttribute('aria-current'));
   };
-  let waiting = false;
-  addEventListener('scroll', () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      spy();
-    });
-  }, {passive: true});
+  addEventListener('scroll', spy, {passive: true});  // at most once in a frame
   addEventListener('resize', bar);
   const open = on => {
     $('contents').classList.toggle('open', on);
