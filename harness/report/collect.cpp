@@ -58,8 +58,6 @@ bool is_time(const std::string& name) {
 
 }  // namespace
 
-double jobs_of(const RunRecord& c) { return summary_value(c, "jobs"); }
-
 void withhold_times(std::vector<RunRecord>& runs) {
   for (RunRecord& c : runs) {
     if (!(jobs_of(c) > 1)) continue;

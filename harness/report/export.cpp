@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-json grid_side(int n) { return n > 0 ? json(n) : json(); }
+json at_least(int least, int n) { return n >= least ? json(n) : json(); }
 
 std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
@@ -79,18 +79,14 @@ std::vector<double> sorted(std::vector<double> s) {
 
 std::string runs_csv(const RunTable& table) {
   Columns columns = {{"family", [](auto& i) { return i.row->family; }},
-                     {"paper_table", [](auto& i) { return grid_side(i.row->paper_table); }}};
+                     {"paper_table", [](auto& i) { return at_least(1, i.row->paper_table); }}};
   append(columns, run_columns());
   append(columns, {{"resolution", [](auto& i) { return i.row->resolution.label(); }},
-                   {"grid_x", [](auto& i) { return grid_side(i.row->resolution.grid[0]); }},
-                   {"grid_y", [](auto& i) { return grid_side(i.row->resolution.grid[1]); }},
+                   {"grid_x", [](auto& i) { return at_least(1, i.row->resolution.grid[0]); }},
+                   {"grid_y", [](auto& i) { return at_least(1, i.row->resolution.grid[1]); }},
                    {"status", [](auto& i) { return i.row->status(); }},
                    {"class", [](auto& i) { return i.row->run->outcome.klass; }},
-                   {"failed_frame",
-                    [](auto& i) {
-                      const int frame = i.row->run->outcome.failed_frame;
-                      return frame < 0 ? json() : json(frame);
-                    }},
+                   {"failed_frame", [](auto& i) { return at_least(0, i.row->run->outcome.failed_frame); }},
                    {"message", [](auto& i) { return i.row->run->outcome.message; }},
                    {"expect", [](auto& i) { return i.row->run->outcome.expect; }},
                    {"verdict", [](auto& i) { return verdict(*i.row->run); }},

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -62,17 +61,11 @@ std::string read_scenario(Row& row) {
   return family.dump();
 }
 
-int rank_of_sides(const std::string& sides) { return sides == "single" ? 0 : sides == "double-duplicated" ? 1 : 2; }
-
-void take(double& to, double value) {
-  if (!std::isfinite(to)) to = value;
-}
-
 /// Adds what one run knows of its scene's exact solution.
 void add_facts(TruthFacts& t, const Row& r) {
   t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
-  take(t.space_error, r.value("truth_space_error"));
-  take(t.uncertainty, r.value("reference_uncertainty"));
+  if (!std::isfinite(t.space_error)) t.space_error = r.value("truth_space_error");
+  if (!std::isfinite(t.uncertainty)) t.uncertainty = r.value("reference_uncertainty");
   if (r.counts() && r.not_ranked().empty() && !is_baseline(r.solver) && !(t.best_error <= r.error()))
     t.best_error = r.error();
 }
@@ -108,19 +101,12 @@ const json& solver_roles() {
   return all;
 }
 
-bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
-bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
-
-const json& leading_scenes() { return solver_roles().at("leading_scenes"); }
-
 std::size_t place_of_scene(const std::string& scene) {
   std::size_t place = 0;
   while (place < leading_scenes().size() && scene.find(leading_scenes()[place].get<std::string>()) == std::string::npos)
     ++place;
   return place;
 }
-
-std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -142,8 +128,6 @@ std::string status_with_class(const Outcome& o) {
   return o.status + (o.klass.empty() || o.klass == "ok" ? "" : " (" + o.klass + ")");
 }
 
-std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
-
 std::string label_of(const RunRecord& c) {
   const std::string& setting = c.header.setting;
   return c.header.solver + (setting == "default" || setting.empty() ? "" : " " + setting);
@@ -153,8 +137,6 @@ std::string Resolution::label() const {
   if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
   return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
 }
-
-double TruthFacts::rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
@@ -183,8 +165,6 @@ double Row::wall_ms_per_s() const {
   const double pipelined = 1e3 * frame_rate_hz() * value("frame_pipelined_median_s");
   return std::isfinite(pipelined) ? pipelined : fenced_ms_per_s();
 }
-
-bool Row::counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
 
 std::string Row::not_ranked() const {
   constexpr double kLeastDependence = 0.01;
@@ -235,8 +215,6 @@ json Row::drawn() const { return at(scenario, "/drawn"); }
 
 bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
 
-json published_table3() { return json::parse(kPublishedTable3); }
-
 RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::map<std::string, std::string> families;
   std::map<std::string, int> names;
@@ -275,8 +253,9 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   }
   add_published();
   const auto key = [&](const Row& r) {
+    const int sides = r.sides == "single" ? 0 : r.sides == "double-duplicated" ? 1 : 2;
     return std::tuple(scenes.at(r.part == Part::Rates ? r.family : r.scene), r.published, r.solver, r.setting, r.repeat,
-                      rank_of_sides(r.sides), r.resolution.size());
+                      sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
   choose_leading();

@@ -157,11 +157,6 @@ constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 bool in_stability(const Row& r) { return r.part == Part::Stability; }
 
-std::string class_of(const Row& r) {
-  const std::string& klass = r.run->outcome.klass;
-  return klass == "ok" || klass.empty() ? "F3" : klass;
-}
-
 /// "5/7 stable, 2 failed (F1, F2)".
 Cell tally(const Group& g, const Keys& /*keys*/) {
   std::map<int, std::map<std::string, int>> classes;
@@ -172,18 +167,18 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
     if (grade < 0) continue;
     ++all;
     stable += grade == 0;
-    if (grade > 0) ++classes[grade][class_of(*r)];
+    const std::string& klass = r->run->outcome.klass;
+    if (grade > 0) ++classes[grade][klass == "ok" || klass.empty() ? "F3" : klass];
   }
   if (all == 0) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
   for (const auto& [grade, counts] : classes) {
     int runs = 0;
-    std::string names;
-    for (const auto& [klass, n] : counts) {
-      runs += n;
-      names += (names.empty() ? "" : ", ") + klass + (counts.size() > 1 ? fmt::format(" {}", n) : "");
-    }
-    out += fmt::format(", {} {} ({})", runs, kGrades[grade], names);
+    for (const auto& [unused, n] : counts) runs += n;
+    const auto name = [several = counts.size() > 1](auto& c) {
+      return c.first + (several ? fmt::format(" {}", c.second) : "");
+    };
+    out += fmt::format(", {} {} ({})", runs, kGrades[grade], joined(counts, ", ", name));
   }
   return {out, static_cast<double>(stable) / all};
 }
@@ -256,23 +251,24 @@ View violated() {
   return v;
 }
 
+constexpr std::pair<const char*, const char*> kStated[] = {{"gpu", "GPU"},
+                                                           {"gpu_is_software", "GPU is software"},
+                                                           {"device_profile", "device profile"},
+                                                           {"driver", "driver"},
+                                                           {"cpu", "CPU"},
+                                                           {"shader_compiler", "shader compiler"},
+                                                           {"clock_policy", "clocks"},
+                                                           {"protocol", "protocol"},
+                                                           {"git_commit", "commit"},
+                                                           {"git_dirty", "local changes"},
+                                                           {"source_sha256", "sources"},
+                                                           {"build_type", "build"},
+                                                           {"assets", "assets"}};
+
 View environment() {
-  static constexpr std::pair<const char*, const char*> kKeys[] = {{"gpu", "GPU"},
-                                                                  {"gpu_is_software", "GPU is software"},
-                                                                  {"device_profile", "device profile"},
-                                                                  {"driver", "driver"},
-                                                                  {"cpu", "CPU"},
-                                                                  {"shader_compiler", "shader compiler"},
-                                                                  {"clock_policy", "clocks"},
-                                                                  {"protocol", "protocol"},
-                                                                  {"git_commit", "commit"},
-                                                                  {"git_dirty", "local changes"},
-                                                                  {"source_sha256", "sources"},
-                                                                  {"build_type", "build"},
-                                                                  {"assets", "assets"}};
   View v{"environment", "Machines of the runs", "As stated in each result file.",
          [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
-  for (const auto& [name, head] : kKeys)
+  for (const auto& [name, head] : kStated)
     v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
       const json e = environment_of(*r.run, name);
       if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";

@@ -88,17 +88,18 @@ std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
 }
 
-bool is_judged(const Row& r) {
-  return r.part == Part::Generated && r.status() != "missing" && verdict(*r.run) != kNoVerdict;
-}
-
 View pass_rates() {
   View v{"contact", "Randomly generated contact scenes: pass rate by speed [m/s]",
          "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
          "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: "
          "distance at which the solver keeps the cloth from colliders.",
          [](const Row& r) { return r.part == Part::Generated; }};
-  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Keys{label_of(*r.run)} : Keys(); }, true},
+  v.keys = {{"solver",
+             [](const Row& r) {
+               const bool judged = r.status() != "missing" && verdict(*r.run) != kNoVerdict;
+               return judged ? Keys{label_of(*r.run)} : Keys();
+             },
+             true},
             {"kind", [](const Row& r) {
                return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};

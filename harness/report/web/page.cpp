@@ -28,13 +28,7 @@ constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandw
                                          "bandwidth_write_peak_B_per_s", "stretch_max_last_second"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
-/// [p50, low, high, p95, p99, worst] in seconds; null without frames.
-json times_json(const FrameTimes& t) {
-  if (t.sorted.empty()) return json();
-  return {rounded(t.at(0.5)),  rounded(t.median.low), rounded(t.median.high),
-          rounded(t.at(0.95)), rounded(t.at(0.99)),   rounded(t.at(1))};
-}
-
+/// [p50, low, high, p95, p99, worst] in seconds, of each clock that has frames.
 void add_times(const Row& r, json& out) {
   const RunTimes& t = *r.times;
   if (t.wall.sorted.empty()) return;
@@ -44,7 +38,10 @@ void add_times(const Row& r, json& out) {
                                     {"gpu_time", &t.device},
                                     {"contact_wall", &t.contact_wall},
                                     {"contact_gpu_time", &t.contact_device}})
-    if (!times->sorted.empty()) out[name] = times_json(*times);
+    if (!times->sorted.empty())
+      for (const double s :
+           {times->at(0.5), times->median.low, times->median.high, times->at(0.95), times->at(0.99), times->at(1)})
+        out[name].push_back(rounded(s));
 }
 
 /// What a scene's cloth touches: "2 grips", "hand_capsules". Scenes of one kind may differ in the speed of it.
@@ -152,12 +149,14 @@ json rows_json(const ViewTable& t) {
 }
 
 json table_json(const ViewTable& t, const RunTable& table) {
-  json runs = json::array(), solvers = json::array();
+  json runs = json::array();
   for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
-  for (const std::string& s : t.solvers) solvers.push_back(s);
-  return {
-      {"title", t.title},  {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs}, {"solver_column", t.solver_column},
-      {"solvers", solvers}};
+  return {{"title", t.title},
+          {"note", t.note},
+          {"rows", rows_json(t)},
+          {"runs", runs},
+          {"solver_column", t.solver_column},
+          {"solvers", t.solvers}};
 }
 
 std::string replaced(const std::string& text, const std::map<char, const char*>& by) {
@@ -209,9 +208,6 @@ std::string head_html(const Page& page) {
   return out + "</div></div>";
 }
 
-/// Text inside a script element ends at "</script" or changes its meaning at "<!--": neither is left.
-std::string script_safe(const std::string& json_text) { return replaced(json_text, {{'<', "\\u003c"}}); }
-
 bool run_by_node(const fs::path& script, const fs::path& page, const fs::path& folder) {
   try {
     const ChildEnd end = ChildProcess({"node", script.string(), page.string(), folder.string()}).wait();
@@ -241,8 +237,10 @@ json page_document(const RunTable& table, const Page& page) {
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
   const auto data = [](const char* id, const json& j) {
+    const std::string text = j.dump(-1, ' ', true, json::error_handler_t::replace);
+    // A script element ends at "</script", and changes its meaning at "<!--": neither is left.
     return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
-                       script_safe(j.dump(-1, ' ', true, json::error_handler_t::replace)));
+                       replaced(text, {{'<', "\\u003c"}}));
   };
   std::string all = data("clothbench-data", document) + data("clothbench-motions", motions.document);
   for (std::size_t k = 0; k < motions.blobs.size(); ++k)
