@@ -39,10 +39,7 @@ const Row* largest(const Group& g) {
 }
 
 ViewColumn at_largest(std::string head, std::function<Cell(const Row&)> cell) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) {
-            const Row* r = largest(g);
-            return r == nullptr ? Cell() : cell(*r);
-          }};
+  return column(std::move(head), std::move(cell), false, largest);
 }
 
 std::string rate_interval(const Row& r) {
@@ -93,7 +90,7 @@ View speed_and_error() {
   v.columns = {at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
                at_largest("× " + time_baseline(),
                           [](const Row& r) { return number_cell(r.baseline_s / r.value("frame_wall_median_s"), 3); }),
-               at_largest("rank", [](const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }),
+               at_largest("rank", rank_cell),
                at_largest("free-fall error",
                           [](const Row& r) {
                             const double e = r.value("free_fall_error");
@@ -106,7 +103,7 @@ View speed_and_error() {
                             return paired_cell(100 * r.value("stretch_mean_last_second"),
                                                100 * r.value("stretch_max_last_second"), 2);
                           }),
-               at_largest("trials", [](const Row& r) { return trials_column().cell({&r}, {}); })};
+               at_largest("trials", trials_cell)};
   for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));
   v.more = peers;
   v.timed = true;
@@ -188,20 +185,6 @@ std::string fact(const RunRecord& c, const std::string& key) {
   return key == "created" ? value.substr(0, 10) : value;
 }
 
-/// A line for each build of a plugin among the runs; two builds differ by the hash.
-std::set<std::string> plugin_lines(const std::vector<RunRecord>& runs) {
-  std::set<std::string> out;
-  for (const RunRecord& c : runs) {
-    const json p = environment_of(c, "plugin");
-    if (!p.is_object()) continue;
-    const auto part = [&](const char* key) { return or_dash(p.value(key, "")); };
-    out.insert(fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
-                           or_dash(environment_text(c, "solver_version")), part("summary"),
-                           std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<View> overview_views() { return {speed_and_error()}; }
@@ -276,7 +259,15 @@ std::vector<std::string> warnings_of(const RunTable& table) {
 }
 
 std::vector<std::string> notes_of(const RunTable& table) {
-  const std::set<std::string> plugins = plugin_lines(table.runs());
+  std::set<std::string> plugins;  // a line for each build of one; two builds differ by the hash
+  for (const RunRecord& c : table.runs()) {
+    const json p = environment_of(c, "plugin");
+    if (!p.is_object()) continue;
+    const auto part = [&](const char* key) { return or_dash(p.value(key, "")); };
+    plugins.insert(fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
+                               or_dash(environment_text(c, "solver_version")), part("summary"),
+                               std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
+  }
   std::vector<std::string> out(plugins.begin(), plugins.end());
   if (const VerdictCounts n = count_verdicts(table.runs()); n.runs > 0)
     out.push_back(n.text() + ", of those whose scene has acceptance criteria.");

@@ -138,8 +138,12 @@ Key sides_key() {
   return key("sides", [](const Row& r) { return r.sides; });
 }
 
-ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) { return cell(*g.front()); },
+ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs, Pick pick) {
+  return {std::move(head),
+          [cell = std::move(cell), pick = std::move(pick)](const Group& g, const Keys&) {
+            const Row* r = pick(g);
+            return r == nullptr ? Cell() : cell(*r);
+          },
           if_differs};
 }
 
@@ -155,11 +159,10 @@ Across by_bands(const std::vector<double>& lows, std::function<double(const Row&
   return {key("", name), std::move(cell), low};
 }
 
-ViewColumn trials_column() {
-  return column("trials", [](const Row& r) {
-    return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
-  });
+Cell trials_cell(const Row& r) {
+  return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
 }
+Cell rank_cell(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
 
 std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   std::vector<std::pair<std::string, Group>> groups;

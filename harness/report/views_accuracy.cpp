@@ -117,7 +117,7 @@ View work() {
   v.columns.push_back(best_error("best error", INFINITY));
   for (ViewColumn& c : tail_columns(representative)) v.columns.push_back(std::move(c));
   v.columns.push_back({"failed", [](const Group& g, const Keys&) { return failed_cell(g); }});
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back({"ranked", [](const Group& g, const Keys&) { return ranked_text(g); }});
   v.timed = true;
   return v;

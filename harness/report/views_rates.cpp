@@ -48,8 +48,6 @@ Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() 
 
 Cell ratio(const Row& r) { return number_cell(r.times->wall.at(0.5) / r.baseline_s, 3); }
 
-Cell rank(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
-
 View frame_times() {
   View v{
       "time", "Time per frame [ms]",
@@ -76,7 +74,7 @@ View frame_times() {
                            return keys.back().text == kClocks[0].first ? text(*g.front()) : Cell();
                          }});
   };
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   add("frames", [](auto& t) { return number_cell(static_cast<double>(t.sorted.size()), 1); });
   add("p50 (95 %)", median_cell);
   add("p95 / p99 / worst", tails_cell);
@@ -85,7 +83,7 @@ View frame_times() {
   add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
   add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
   add_wall("× " + time_baseline(), ratio);
-  add_wall("rank", rank);
+  add_wall("rank", rank_cell);
   for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
     v.columns.push_back(column(
         head, [key = key](const Row& r) { return environment_text(*r.run, key); }, true));
@@ -146,21 +144,19 @@ View in_short(std::function<bool(const Row&)> where) {
     const FrameTimes& t = r.times->contact_wall;
     return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
   }));
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back(column("× " + time_baseline(), ratio));
-  v.columns.push_back(column("rank", rank));
+  v.columns.push_back(column("rank", rank_cell));
   v.timed = true;
   return v;
 }
 
 }  // namespace
 
-std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick) {
+std::vector<ViewColumn> tail_columns(Pick pick) {
   const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {
-    return ViewColumn{head, [pick, cell](const Group& g, const Keys&) {
-                        const Row* r = pick(g);
-                        return r == nullptr || r->times->wall.sorted.empty() ? Cell() : cell(*r);
-                      }};
+    const auto if_timed = [cell](const Row& r) { return r.times->wall.sorted.empty() ? Cell() : cell(r); };
+    return column(head, if_timed, false, pick);
   };
   return {of("frame p50 [ms]",
              [](const Row& r) {
