@@ -58,7 +58,7 @@ bool is_time(const std::string& name) {
 
 }  // namespace
 
-void withhold_times(std::vector<RunRecord>& runs) {
+std::vector<RunRecord> withhold_times(std::vector<RunRecord> runs) {
   for (RunRecord& c : runs) {
     if (!(jobs_of(c) > 1)) continue;
     for (auto& [name, value] : c.summary)
@@ -69,6 +69,7 @@ void withhold_times(std::vector<RunRecord>& runs) {
     c.header.load_s = kMissing;
     c.trials.clear();
   }
+  return runs;
 }
 
 std::string withheld_note(const std::vector<const Row*>& rows) {

@@ -25,12 +25,6 @@ constexpr std::pair<const char*, const char*> kSections[] = {
     {"failed", "Failures"},        {"features", "Features"},
     {"environment", "Environment"}};
 
-std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
-  std::vector<RunRecord> runs = collect(results);
-  withhold_times(runs);
-  return runs;
-}
-
 /// The sections that have tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
@@ -77,7 +71,7 @@ std::string head_markdown(const Page& page) {
 }  // namespace
 
 void write_report(const std::vector<fs::path>& results, const fs::path& out) {
-  const RunTable table(printable(results));
+  const RunTable table(withhold_times(collect(results)));
   const auto write = [&](const std::string& name, const std::string& text) { write_file_atomically(out / name, text); };
   fs::create_directories(out);
   write("runs.csv", runs_csv(table));
@@ -109,7 +103,7 @@ void write_report(const std::vector<fs::path>& results, const fs::path& out) {
 
 void print_console_report(const std::vector<fs::path>& results) {
   constexpr std::size_t kShown = 2, kFew = 24;
-  const RunTable table(printable(results));
+  const RunTable table(withhold_times(collect(results)));
   const Page page = page_of(table, results);
   std::vector<std::string> head = page.warnings;
   head.push_back(facts_of(page.heading));
