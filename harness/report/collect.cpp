@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "clothbench/error.hpp"
 #include "report/report.hpp"

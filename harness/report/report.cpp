@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"

@@ -4,7 +4,6 @@
 #include <compare>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>

@@ -1,11 +1,9 @@
 // Tables of error against run time, stability, failures, violated criteria, machines and features.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"

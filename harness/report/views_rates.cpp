@@ -1,6 +1,4 @@
 // Tables of frame rates, times and memory.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "report/report.hpp"
