@@ -25,18 +25,12 @@ RunRecord missing_run(const std::string& name, bool started) {
   return c;
 }
 
-RunRecord read(const fs::path& path) {
-  RunRecord c = read_run_summary(path);
-  c.file = path.string();
-  return c;
-}
-
 void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   const std::size_t first = runs.size();
   const StudyManifest manifest = read_manifest(dir);
   for (const std::string& name : manifest.runs) {
     const fs::path file = finished_file(dir, name);
-    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read(file));
+    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
   }
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k) {
@@ -91,7 +85,7 @@ std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
     if (fs::is_directory(result))
       collect_folder(result, runs);
     else
-      runs.push_back(read(result));
+      runs.push_back(read_run_summary(result));
   }
   return runs;
 }

@@ -22,8 +22,9 @@ json at(const json& j, const char* pointer) {
   return j.is_object() ? j.value(json::json_pointer(pointer), json()) : json();
 }
 
-std::string text_at(const json& scenario, const char* pointer) {
-  return scenario.value(json::json_pointer(pointer), std::string());
+std::string text_at(const json& j, const char* pointer) {
+  const json text = at(j, pointer);
+  return text.is_string() ? text.get<std::string>() : "";
 }
 
 bool touches(const json& scenario) { return !at(scenario, "/colliders").empty() || !at(scenario, "/grips").empty(); }
@@ -91,10 +92,7 @@ std::string environment_text(const RunRecord& c, const char* key) {
   return e.is_string() ? e.get<std::string>() : "";
 }
 
-std::string engine_of(const RunRecord& c) {
-  const json plugin = environment_of(c, "plugin");
-  return plugin.is_object() ? plugin.value("engine", std::string()) : "";
-}
+std::string engine_of(const RunRecord& c) { return text_at(c.header.environment, "/plugin/engine"); }
 
 const json& solver_roles() {
   static const json all = json::parse(kSolverRoles);

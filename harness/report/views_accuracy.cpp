@@ -21,44 +21,40 @@ constexpr std::array kBudgets_ms = {0.1, 1.0, 13.9};
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
 using Measure = double (Row::*)() const;
 
-/// The row with the smallest `by` among those that count and satisfy `when`; null without any.
-const Row* best(const Group& g, const std::function<bool(const Row&)>& when, Measure by) {
+/// The row with the smallest `by` among those that count with at most this error and wall time of a frame; null without
+/// any.
+const Row* best(const Group& g, Measure by, double error, double frame_ms = INFINITY) {
   const Row* out = nullptr;
   for (const Row* r : g)
-    if (r->counts() && std::isfinite((r->*by)()) && when(*r) && (out == nullptr || (r->*by)() < (out->*by)())) out = r;
+    if (r->counts() && r->error() <= error && r->wall_ms_per_s() / r->frame_rate_hz() <= frame_ms &&
+        std::isfinite((r->*by)()) && (out == nullptr || (r->*by)() < (out->*by)()))
+      out = r;
   return out;
 }
 
 /// Shortest time to an error of at most `most`, by a clock.
 ViewColumn time_to(const char* head, double most, Measure clock) {
-  return {head, [=](const Group& g, const Keys&) {
-            const Row* r = best(
-                g, [&](const Row& row) { return row.error() <= most; }, clock);
-            return r == nullptr ? Cell() : Cell(fmt::format("{:.3g} ({})", (r->*clock)(), r->setting), (r->*clock)());
-          }};
+  const auto text = [=](const Row& r) {
+    return Cell(fmt::format("{:.3g} ({})", (r.*clock)(), r.setting), (r.*clock)());
+  };
+  return column(head, text, false, [=](const Group& g) { return best(g, clock, most); });
 }
 
-/// Errors are not distinguished below the floor.
-std::string error_text(double error, double floor) {
-  return error <= floor ? fmt::format("≤ {:.2g}", floor) : fmt::format("{:.2g}", error);
-}
-
-/// Smallest error of a setting whose frame takes at most `most_ms` of wall time.
+/// Smallest error of a setting whose frame takes at most `most_ms` of wall time. Below the floor errors are not
+/// distinguished.
 ViewColumn best_error(std::string head, double most_ms) {
-  return {std::move(head), [=](const Group& g, const Keys&) {
-            const auto fits = [&](const Row& row) { return row.wall_ms_per_s() / row.frame_rate_hz() <= most_ms; };
-            const Row* r = best(g, fits, &Row::error);
-            if (r == nullptr) return Cell();
-            return Cell(error_text(r->error(), r->truth->rank_floor()) + " (" + r->setting + ")", r->error());
-          }};
+  const auto text = [](const Row& r) {
+    const double floor = r.truth->rank_floor();
+    return Cell(fmt::format("{}{:.2g} ({})", r.error() <= floor ? "≤ " : "", std::max(floor, r.error()), r.setting),
+                r.error());
+  };
+  return column(std::move(head), text, false, [=](const Group& g) { return best(g, &Row::error, INFINITY, most_ms); });
 }
 
 /// The fastest setting with an error of at most 1 %; without one, the most accurate.
 const Row* representative(const Group& g) {
-  const auto is_close = [](const Row& r) { return r.error() <= 1e-2; };
-  if (const Row* r = best(g, is_close, &Row::wall_ms_per_s)) return r;
-  return best(
-      g, [](const Row&) { return true; }, &Row::error);
+  const Row* r = best(g, &Row::wall_ms_per_s, 1e-2);
+  return r != nullptr ? r : best(g, &Row::error, INFINITY);
 }
 
 Cell failed_cell(const Group& g) {

@@ -73,11 +73,7 @@ function start_motions(doc, motions) {
     (0, eval)($('viewer-program').textContent);
     window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);
   };
-  new IntersectionObserver((list, self) => {
-    if (!list.some(e => e.isIntersecting)) return;
-    self.disconnect();
-    load();
-  }, {rootMargin: '300px'}).observe($('motions'));
+  new IntersectionObserver(list => list.some(e => e.isIntersecting) && load(), {rootMargin: '300px'}).observe($('motions'));
   window.clothbench.load_viewer = load;
 }
 
