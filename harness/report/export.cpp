@@ -51,11 +51,6 @@ Fields run_fields(const Row& r) {
   return {{"scene", r.scene}, {"solver", r.solver}, {"setting", r.setting}, {"sides", r.sides}, {"repeat", r.repeat}};
 }
 
-std::vector<double> sorted(std::vector<double> s) {
-  std::sort(s.begin(), s.end());
-  return s;
-}
-
 }  // namespace
 
 std::string runs_csv(const RunTable& table) {
@@ -126,9 +121,11 @@ std::string trials_csv(const RunTable& table) {
     for (const auto& [name, times] :
          {std::pair<std::string, const std::vector<double>&>{"wall", t.frame_wall_s}, {"device", t.frame_device_s}}) {
       const double sum = std::accumulate(times.begin(), times.end(), 0.0);
+      std::vector<double> sorted = times;
+      std::sort(sorted.begin(), sorted.end());
       out.emplace_back(name + "_mean_s", times.empty() ? json() : json(sum / static_cast<double>(times.size())));
       for (const auto& [which, q] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}, {"max", 1.0}})
-        out.emplace_back(fmt::format("{}_{}_s", name, which), quantile(sorted(times), q));
+        out.emplace_back(fmt::format("{}_{}_s", name, which), quantile(sorted, q));
     }
     return out;
   });

@@ -71,6 +71,45 @@ void add_facts(TruthFacts& t, const Row& r) {
     t.best_error = r.error();
 }
 
+/// At most two scenes, no two of one kind.
+void choose_leading(std::vector<Row>& rows) {
+  constexpr std::size_t kMost = 2;
+  std::map<std::size_t, std::string> leading;
+  for (const Row& r : rows)
+    if (r.part == Part::Contact) leading.try_emplace(place_of_scene(r.scene), r.scene);
+  leading.erase(leading_scenes().size());
+  while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
+  for (Row& r : rows)
+    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
+}
+
+/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
+/// below its own.
+void compare_times(std::vector<Row>& all) {
+  std::map<std::string, std::vector<Row*>> scenes;
+  for (Row& r : all)
+    if (r.published < 0) scenes[r.scene].push_back(&r);
+  for (auto& [unused, rows] : scenes) {
+    double baseline_s = kMissing;
+    std::vector<Row*> ranked;
+    for (Row* r : rows) {
+      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
+      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
+        baseline_s = r->times->wall.at(0.5);
+      const std::string v = verdict(*r->run);
+      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
+          std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
+          !(r->value("stretch_max_last_second") > kTornApart))
+        ranked.push_back(r);
+    }
+    for (Row* r : rows) r->baseline_s = baseline_s;
+    for (Row* r : ranked)
+      r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
+                  return other->times->wall.median.high < r->times->wall.median.low;
+                }));
+  }
+}
+
 }  // namespace
 
 double summary_value(const RunRecord& c, const std::string& name) {
@@ -216,6 +255,7 @@ bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
 RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::map<std::string, std::string> families;
   std::map<std::string, int> names;
+  std::map<std::vector<std::string>, int> repeats;
   std::map<std::string, std::shared_ptr<TruthFacts>> facts;
   std::set<std::string> timed;
   std::map<std::string, std::size_t> scenes;
@@ -230,9 +270,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
       found->second = same_name > 1 ? fmt::format("{} ({})", row.name, same_name) : row.name;
     }
     row.family = families.at(family);
-    for (const Row& r : rows_)
-      row.repeat += r.family == row.family && r.resolution == row.resolution && r.sides == row.sides &&
-                    r.solver == row.solver && r.setting == row.setting && r.scene == row.scene;
+    row.repeat = ++repeats[{row.family, row.scene, row.sides, row.solver, row.setting, row.resolution.label()}];
     if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
     most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
     largest[row.family] = std::max(largest[row.family], row.resolution.size());
@@ -256,48 +294,9 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
-  choose_leading();
-  compare_times();
+  choose_leading(rows_);
+  compare_times(rows_);
   mark_best_points(rows_);
-}
-
-/// At most two scenes, no two of one kind.
-void RunTable::choose_leading() {
-  constexpr std::size_t kMost = 2;
-  std::map<std::size_t, std::string> leading;
-  for (const Row& r : rows_)
-    if (r.part == Part::Contact) leading.try_emplace(place_of_scene(r.scene), r.scene);
-  leading.erase(leading_scenes().size());
-  while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
-  for (Row& r : rows_)
-    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
-}
-
-/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
-/// below its own.
-void RunTable::compare_times() {
-  std::map<std::string, std::vector<Row*>> scenes;
-  for (Row& r : rows_)
-    if (r.published < 0) scenes[r.scene].push_back(&r);
-  for (auto& [unused, rows] : scenes) {
-    double baseline_s = kMissing;
-    std::vector<Row*> ranked;
-    for (Row* r : rows) {
-      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
-      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
-        baseline_s = r->times->wall.at(0.5);
-      const std::string v = verdict(*r->run);
-      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
-          std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
-          !(r->value("stretch_max_last_second") > kTornApart))
-        ranked.push_back(r);
-    }
-    for (Row* r : rows) r->baseline_s = baseline_s;
-    for (Row* r : ranked)
-      r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
-                  return other->times->wall.median.high < r->times->wall.median.low;
-                }));
-  }
 }
 
 void RunTable::add_published() {

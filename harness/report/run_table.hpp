@@ -161,8 +161,6 @@ class RunTable {
 
  private:
   void add_published();
-  void choose_leading();
-  void compare_times();
 
   std::vector<RunRecord> runs_;
   std::deque<RunRecord> published_;

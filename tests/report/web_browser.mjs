@@ -163,12 +163,12 @@ async function check_widths() {
     const nav = await page.evaluate(() => ({seen: document.getElementById('contents').checkVisibility(), links: document.querySelectorAll('#contents a').length}));
     check(nav.links <= 9 && nav.seen === (width > 760), `${width} px: ${nav.links} groups, contents ${nav.seen ? 'shown' : 'closed'}`);
     for (const theme of ['light', 'dark']) {
-      await page.evaluate(t => document.documentElement.dataset.theme = t, theme);
+      await page.evaluate(t => document.documentElement.style.colorScheme = t, theme);
       const found = await page.evaluate(async () => (await window.axe.run()).violations.map(v => `${v.id}: ${v.nodes.slice(0, 3).map(n => n.target).join(' ')} (${v.nodes.length})`));
       equal(found, [], `${width} px, ${theme}: axe`);
       if (shots) await page.screenshot({path: join(shots, `${width}-${theme}.png`)});
     }
-    await page.evaluate(() => delete document.documentElement.dataset.theme);
+    await page.evaluate(() => document.documentElement.style.colorScheme = '');
   }
   await page.setViewport({width: 390, height: 844});
   await page.click('#menu');

@@ -43,9 +43,6 @@ struct Page {
   std::vector<PageSection> sections;
 };
 
-/// Maximum size of packed motions and colliders in one page, as base64.
-inline constexpr std::size_t kMotionBudget_B = 3'500'000;
-
 /// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q, q in
 /// [0, 65535]. `bytes`: zlib of q (frame, axis, vertex; 16 bits) less its prediction, modulo 2^16. The prediction is
 /// 2 q(f-1) - q(f-2); in frame 1, q(0); in frame 0, the value before it, and 0 for the first.
@@ -68,8 +65,9 @@ struct Motions {
   std::vector<std::string> blobs;
 };
 
-/// Reads trajectories from the runs' files, at most 150 frames of each, in order of interest until the budget is spent.
-Motions motions_of(const RunTable&, std::size_t budget_B = kMotionBudget_B);
+/// Reads trajectories from the runs' files, at most 150 frames of each, in order of interest until the base64 has this
+/// size.
+Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
 
 /// Six digits; null if it is not finite.
 nlohmann::json rounded(double);

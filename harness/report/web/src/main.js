@@ -11,10 +11,10 @@ const kMethod = ['features', 'environment'];
 
 function start_theme() {
   const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
-  const dark = () => root.dataset.theme ? root.dataset.theme === 'dark' : system.matches;
+  const dark = () => root.style.colorScheme ? root.style.colorScheme === 'dark' : system.matches;
   const tell = () => $('theme').setAttribute('aria-pressed', String(dark()));
   $('theme').addEventListener('click', () => {
-    root.dataset.theme = dark() ? 'light' : 'dark';
+    root.style.colorScheme = dark() ? 'light' : 'dark';
     tell();
   });
   system.addEventListener('change', tell);
