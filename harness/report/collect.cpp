@@ -33,12 +33,10 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
     runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
   }
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
-  for (std::size_t k = first; k < runs.size(); ++k) {
-    if (runs[k].outcome.status != "missing") continue;
+  for (std::size_t k = first; k < runs.size(); ++k)
     for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
       if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
         runs[k].header.scenario_json = runs[j].header.scenario_json;
-  }
 }
 
 /// Whether a summary value is a time, or a rate computed from a time.

@@ -80,11 +80,9 @@ bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& 
 }
 
 std::string note_of(const View& v, const Group& runs) {
-  std::string note = v.note;
-  const auto add = [&](const std::string& more) { note += (note.empty() || more.empty() ? "" : " ") + more; };
-  if (v.more) add(v.more(runs));
-  if (v.timed) add(withheld_note(runs));
-  return note;
+  Texts parts = {v.note, v.more ? v.more(runs) : "", v.timed ? withheld_note(runs) : ""};
+  std::erase(parts, "");
+  return joined(parts, " ");
 }
 
 /// No rows if no cell has a value and no time is withheld.

@@ -268,9 +268,11 @@ std::string write_page(const fs::path& out, const RunTable& table, const Page& p
   return "";
 }
 
-Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
+std::pair<std::string, std::string> draw_pictures(const fs::path& out, const PageTemplate& page) {
   const fs::path folder = out / "figures", script = folder / "figures.cjs", markdown = folder / "figures.md";
-  const auto without = [](const std::string& why) { return Drawn{"Figures were left out: " + why + ".", ""}; };
+  const auto without = [](const std::string& why) {
+    return std::pair{"Figures were left out: " + why + ".", std::string()};
+  };
   if (fs::exists(folder))
     for (const fs::path& file : std::vector<fs::path>(fs::directory_iterator(folder), fs::directory_iterator()))
       if (contains(std::array{".svg", ".pdf"}, file.extension())) fs::remove(file);
@@ -280,9 +282,9 @@ Drawn draw_pictures(const fs::path& out, const PageTemplate& page) {
   const bool drawn = run_by_node(script, out / "index.html", folder);
   fs::remove(script);
   if (!drawn) return without("Node 18 or later was not found, or failed (Debian: nodejs)");
-  Drawn done{"", content_of(markdown)};
+  const std::string shown = content_of(markdown);
   fs::remove(markdown);
-  return done;
+  return {"", shown};
 }
 
 }  // namespace clothbench

@@ -20,14 +20,9 @@ struct PageTemplate {
 
 PageTemplate page_template();
 
-struct Drawn {
-  std::string fault;     ///< a sentence on why there are no pictures; empty if all were drawn
-  std::string markdown;  ///< shows the new pictures, and says why there are no PDF files
-};
-
 /// Draws the figures of `out`/index.html into `out`/figures by Node (src/stills.js). Removes the pictures of an earlier
-/// report first.
-Drawn draw_pictures(const std::filesystem::path& out, const PageTemplate&);
+/// report first. Returns a sentence on why there are no pictures, empty if there are, and Markdown that shows them.
+std::pair<std::string, std::string> draw_pictures(const std::filesystem::path& out, const PageTemplate&);
 
 /// A section of the report: the same tables in report.md and on the page.
 struct PageSection {
