@@ -91,11 +91,6 @@ void require_motions(const Pair& p) {
         throw Error(fmt::format("{}: {}; repeat the run", r->file, fault));
 }
 
-double median(std::vector<double> times) {
-  std::sort(times.begin(), times.end());
-  return times.empty() ? kMissing : middle(times);
-}
-
 void compare_pair(const Pair& p, CheckedRun& run) {
   const auto ended = [](const auto& side) {
     return side.empty() ? std::string("–") : status_with_class(side.front()->outcome);

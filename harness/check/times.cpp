@@ -73,8 +73,12 @@ TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>&
 
 std::vector<double> process_times(const std::vector<const RunRecord*>& processes) {
   std::vector<double> out;
-  for (const RunRecord* r : processes)
-    if (const std::vector<double> t = trial_means(*r); !t.empty()) out.push_back(middle(t));
+  for (const RunRecord* r : processes) {
+    std::vector<double> trials;
+    for (const TimedTrial& t : r->trials)
+      if (t.frames() > 0) trials.push_back(mean(t.frame_wall_s));
+    if (!trials.empty()) out.push_back(median(std::move(trials)));
+  }
   return out;
 }
 

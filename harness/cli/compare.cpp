@@ -29,7 +29,7 @@ std::vector<fs::path> folders_of(const fs::path& given) {
 Processes read_processes(const std::string& given) {
   Processes out;
   for (const std::string& one : CLI::detail::split(given, ','))
-    for (const fs::path& folder : folders_of(one)) withhold_times(out.emplace_back(collect({folder})));
+    for (const fs::path& folder : folders_of(one)) out.push_back(withhold_times(collect({folder})));
   return out;
 }
 

@@ -20,8 +20,7 @@ namespace {
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
   std::vector<RunRecord> runs = collect({out});
   std::erase_if(runs, [&](const RunRecord& c) { return !contains(names, run_name(c.header)); });
-  withhold_times(runs);
-  return runs;
+  return withhold_times(std::move(runs));
 }
 
 /// Outcome and every figure of each run.

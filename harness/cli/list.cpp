@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
+#include <map>
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
@@ -10,7 +9,7 @@
 #include "check/baseline.hpp"
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
-#include "report/features.hpp"
+#include "report/view.hpp"
 #include "runner/environment.hpp"
 #include "runner/study_plan.hpp"
 #include "scenario/load.hpp"
@@ -24,20 +23,18 @@ namespace {
 
 nlohmann::json list_solvers() {
   nlohmann::json rows = nlohmann::json::array();
-  for (const SolverEntry* at : all_solvers()) {
-    const SolverEntry& e = *at;
-    nlohmann::json settings = nlohmann::json::array(), features = nlohmann::json::array();
-    for (const SettingSpec& s : e.info.settings)
+  for (const SolverEntry* e : all_solvers()) {
+    nlohmann::json settings = nlohmann::json::array();
+    for (const SettingSpec& s : e->info.settings)
       settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
-    e.info.supports.for_each([&](Feature f) { features.push_back(name_of(f)); });
-    rows.push_back({{"name", e.info.name},
-                    {"folder", e.info.folder},
-                    {"summary", e.info.summary},
-                    {"version", e.info.version},
-                    {"precision", e.info.precision},
-                    {"gpu", e.info.on_gpu},
-                    {"plugin", is_external(e.info)},
-                    {"supports", features},
+    rows.push_back({{"name", e->info.name},
+                    {"folder", e->info.folder},
+                    {"summary", e->info.summary},
+                    {"version", e->info.version},
+                    {"precision", e->info.precision},
+                    {"gpu", e->info.on_gpu},
+                    {"plugin", is_external(e->info)},
+                    {"supports", describe_features(e->info)["supports"]},
                     {"settings", settings}});
   }
   return rows;
@@ -123,15 +120,29 @@ nlohmann::json list_terms() {
   return rows;
 }
 
-DeclaredFeatures features() {
-  DeclaredFeatures out;
-  for (const SolverEntry* e : all_solvers()) out.emplace_back(e->info.name, describe_features(e->info));
-  return out;
+/// The report's table, of all solvers of this build.
+Table features() {
+  std::vector<RunRecord> runs;
+  for (const SolverEntry* e : all_solvers()) {
+    RunHeader& header = runs.emplace_back().header;
+    header.solver = e->info.name;
+    header.environment["solver_features"] = describe_features(e->info);
+  }
+  return tables_of(feature_view(), RunTable(std::move(runs))).at(0);
 }
 
-nlohmann::json list_features() { return feature_json(features()); }
+nlohmann::json list_features() {
+  const Table table = features();
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t k = 0; k < kFeatureCount; ++k) {
+    rows.push_back({{"name", kFeatures[k].name}, {"doc", kFeatures[k].doc}, {"solvers", nlohmann::json::object()}});
+    for (std::size_t c = 1; c < table.rows[0].size(); ++c)
+      rows.back()["solvers"][table.rows[0][c]] = table.rows[k + 1][c];
+  }
+  return rows;
+}
 
-const std::pair<const char*, nlohmann::json (*)()> kLists[] = {
+const std::map<std::string, nlohmann::json (*)()> kLists = {
     {"solvers", list_solvers}, {"features", list_features}, {"scenarios", list_scenarios},
     {"studies", list_studies}, {"devices", list_devices},   {"metrics", list_metrics},
     {"scalars", list_scalars}, {"assets", list_assets},     {"terms", list_terms}};
@@ -154,18 +165,13 @@ std::string rows_text(const nlohmann::json& rows) {
 
 std::vector<std::string> list_names() {
   std::vector<std::string> names;
-  for (const auto& [name, unused] : kLists) names.emplace_back(name);
+  for (const auto& [name, unused] : kLists) names.push_back(name);
   return names;
 }
 
-nlohmann::json list_of(const std::string& what) {
-  const auto list = std::find_if(std::begin(kLists), std::end(kLists), [&](auto& l) { return l.first == what; });
-  return list->second();
-}
-
 std::string list_text(const std::string& what) {
-  if (what == "features") return feature_table(features()).console();
-  const nlohmann::json rows = list_of(what);
+  if (what == "features") return features().console();
+  const nlohmann::json rows = kLists.at(what)();
   return rows.empty() ? "no " + what + "\n" : rows_text(rows);
 }
 
@@ -185,7 +191,7 @@ void add_list(CLI::App& app, Console& console) {
   cmd->footer(
       "Examples: clothbench list solvers\n"
       "          clothbench list scenarios --json");
-  cmd->callback([&] { console.print([&] { return list_of(what); }, [&] { return list_text(what); }); });
+  cmd->callback([&] { console.print([&] { return kLists.at(what)(); }, [&] { return list_text(what); }); });
 }
 
 }  // namespace clothbench

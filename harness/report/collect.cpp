@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "clothbench/error.hpp"
 #include "report/report.hpp"
@@ -26,26 +25,18 @@ RunRecord missing_run(const std::string& name, bool started) {
   return c;
 }
 
-RunRecord read(const fs::path& path) {
-  RunRecord c = read_run_summary(path);
-  c.file = path.string();
-  return c;
-}
-
 void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
   const std::size_t first = runs.size();
   const StudyManifest manifest = read_manifest(dir);
   for (const std::string& name : manifest.runs) {
     const fs::path file = finished_file(dir, name);
-    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read(file));
+    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
   }
   // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
-  for (std::size_t k = first; k < runs.size(); ++k) {
-    if (runs[k].outcome.status != "missing") continue;
+  for (std::size_t k = first; k < runs.size(); ++k)
     for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
       if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
         runs[k].header.scenario_json = runs[j].header.scenario_json;
-  }
 }
 
 /// Whether a summary value is a time, or a rate computed from a time.
@@ -58,9 +49,7 @@ bool is_time(const std::string& name) {
 
 }  // namespace
 
-double jobs_of(const RunRecord& c) { return summary_value(c, "jobs"); }
-
-void withhold_times(std::vector<RunRecord>& runs) {
+std::vector<RunRecord> withhold_times(std::vector<RunRecord> runs) {
   for (RunRecord& c : runs) {
     if (!(jobs_of(c) > 1)) continue;
     for (auto& [name, value] : c.summary)
@@ -71,6 +60,7 @@ void withhold_times(std::vector<RunRecord>& runs) {
     c.header.load_s = kMissing;
     c.trials.clear();
   }
+  return runs;
 }
 
 std::string withheld_note(const std::vector<const Row*>& rows) {
@@ -93,7 +83,7 @@ std::vector<RunRecord> collect(const std::vector<fs::path>& results) {
     if (fs::is_directory(result))
       collect_folder(result, runs);
     else
-      runs.push_back(read(result));
+      runs.push_back(read_run_summary(result));
   }
   return runs;
 }

@@ -15,21 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-json grid_side(int n) { return n > 0 ? json(n) : json(); }
+json at_least(int least, int n) { return n >= least ? json(n) : json(); }
 
 std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
+/// The names and values of a line; null or NaN: missing.
+using Fields = std::vector<std::pair<std::string, json>>;
 /// A run, or a frame or trial of it.
-struct Item {
-  const Row* row;
-  std::size_t index = 0;
-};
-
-struct Column {
-  std::string name;
-  std::function<json(const Item&)> value;  ///< null or NaN: missing
-};
-using Columns = std::vector<Column>;
+using Item = std::pair<const Row*, std::size_t>;
 
 /// Numbers in full precision, missing values empty; text with a comma, quote or line break is quoted as in RFC 4180.
 std::string csv_field(const json& v) {
@@ -41,119 +34,101 @@ std::string csv_field(const json& v) {
   return "\"" + text + "\"";
 }
 
-std::string csv(const Columns& columns, const std::vector<Item>& items) {
-  std::string out;
-  const auto add_row = [&](const auto& field) {
-    for (const Column& c : columns) out += (&c == &columns.front() ? "" : ",") + csv_field(field(c));
-    out += "\n";
-  };
-  add_row([](const Column& c) { return json(c.name); });
-  for (const Item& i : items) add_row([&](const Column& c) { return c.value(i); });
-  return out;
+std::string csv(const std::vector<Item>& items, const std::function<Fields(const Row&, std::size_t)>& fields_of) {
+  RunRecord none;  // for the names
+  none.accuracy.time_s = {0};
+  none.trials.resize(1);
+  std::string out = joined(fields_of(Row{&none}, 0), ",", [](const auto& f) { return csv_field(f.first); });
+  for (const auto& [row, index] : items) {
+    const Fields fields = fields_of(*row, index);
+    out += "\n" + csv_field(fields.front().second);
+    for (std::size_t k = 1; k < fields.size(); ++k) out += "," + csv_field(fields[k].second);
+  }
+  return out + "\n";
 }
 
-void append(Columns& to, const Columns& more) { to.insert(to.end(), more.begin(), more.end()); }
-
-Columns run_columns() {
-  return {{"scene", [](auto& i) { return i.row->scene; }},
-          {"solver", [](auto& i) { return i.row->solver; }},
-          {"setting", [](auto& i) { return i.row->setting; }},
-          {"sides", [](auto& i) { return i.row->sides; }},
-          {"repeat", [](auto& i) { return i.row->repeat; }}};
-}
-
-/// Every summary value that a run has.
-std::set<std::string> summary_names(const RunTable& table) {
-  std::set<std::string> out;
-  for (const RunRecord& c : table.runs())
-    for (const auto& [name, unused] : c.summary) out.insert(name);
-  return out;
-}
-
-std::vector<double> sorted(std::vector<double> s) {
-  std::sort(s.begin(), s.end());
-  return s;
+Fields run_fields(const Row& r) {
+  return {{"scene", r.scene}, {"solver", r.solver}, {"setting", r.setting}, {"sides", r.sides}, {"repeat", r.repeat}};
 }
 
 }  // namespace
 
 std::string runs_csv(const RunTable& table) {
-  Columns columns = {{"family", [](auto& i) { return i.row->family; }},
-                     {"paper_table", [](auto& i) { return grid_side(i.row->paper_table); }}};
-  append(columns, run_columns());
-  append(columns, {{"resolution", [](auto& i) { return i.row->resolution.label(); }},
-                   {"grid_x", [](auto& i) { return grid_side(i.row->resolution.grid[0]); }},
-                   {"grid_y", [](auto& i) { return grid_side(i.row->resolution.grid[1]); }},
-                   {"status", [](auto& i) { return i.row->status(); }},
-                   {"class", [](auto& i) { return i.row->run->outcome.klass; }},
-                   {"failed_frame",
-                    [](auto& i) {
-                      const int frame = i.row->run->outcome.failed_frame;
-                      return frame < 0 ? json() : json(frame);
-                    }},
-                   {"message", [](auto& i) { return i.row->run->outcome.message; }},
-                   {"expect", [](auto& i) { return i.row->run->outcome.expect; }},
-                   {"verdict", [](auto& i) { return verdict(*i.row->run); }},
-                   {"bounds", [](auto& i) { return bounds_of(*i.row->run); }},
-                   {"offset_min_m", [](auto& i) { return i.row->offset_m().first; }},
-                   {"offset_max_m", [](auto& i) { return i.row->offset_m().second; }},
-                   {"engine", [](auto& i) { return engine_of(*i.row->run); }}});
-  for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
-                          "source_sha256", "build_type", "clock_policy", "created"})
-    columns.push_back({key, [key](auto& i) { return environment_of(*i.row->run, key); }});
-  for (const std::string& name : summary_names(table))
-    columns.push_back({name, [name](auto& i) { return i.row->value(name); }});
-  columns.push_back({"withheld", [](auto& i) {
-                       const auto& withheld = i.row->run->withheld;
-                       return withheld.empty() ? json() : json(withheld.begin()->second);
-                     }});
+  std::set<std::string> names;  // every summary value that a run has
+  for (const RunRecord& c : table.runs())
+    for (const auto& [name, unused] : c.summary) names.insert(name);
   std::vector<Item> rows;
   for (const Row& r : table.rows())
-    if (r.published < 0) rows.push_back({&r});
+    if (r.published < 0) rows.emplace_back(&r, 0);
   // In the order of the folders.
-  std::sort(rows.begin(), rows.end(), [](const Item& a, const Item& b) { return a.row->run < b.row->run; });
-  return csv(columns, rows);
+  std::sort(rows.begin(), rows.end(), [](const Item& a, const Item& b) { return a.first->run < b.first->run; });
+  return csv(rows, [&](const Row& r, std::size_t) {
+    const Outcome& outcome = r.run->outcome;
+    Fields out = run_fields(r);
+    out.insert(out.begin(), {{"family", r.family}, {"paper_table", at_least(1, r.paper_table)}});
+    out.insert(out.end(), {{"resolution", r.resolution.label()},
+                           {"grid_x", at_least(1, r.resolution.grid[0])},
+                           {"grid_y", at_least(1, r.resolution.grid[1])},
+                           {"status", r.status()},
+                           {"class", outcome.klass},
+                           {"failed_frame", at_least(0, outcome.failed_frame)},
+                           {"message", outcome.message},
+                           {"expect", outcome.expect},
+                           {"verdict", verdict(*r.run)},
+                           {"bounds", bounds_of(*r.run)},
+                           {"offset_min_m", r.offset_m().first},
+                           {"offset_max_m", r.offset_m().second},
+                           {"engine", engine_of(*r.run)}});
+    for (const char* key : {"gpu", "driver", "gpu_is_software", "cpu", "protocol", "git_commit", "git_dirty",
+                            "source_sha256", "build_type", "clock_policy", "created"})
+      out.emplace_back(key, environment_of(*r.run, key));
+    for (const std::string& name : names) out.emplace_back(name, r.value(name));
+    const auto& withheld = r.run->withheld;
+    out.emplace_back("withheld", withheld.empty() ? json() : json(withheld.begin()->second));
+    return out;
+  });
 }
 
 std::string series_csv(const RunTable& table) {
-  Columns columns = run_columns();
-  columns.push_back({"time_s", [](auto& i) { return six_digits(i.row->run->accuracy.time_s[i.index]); }});
-  for (const std::string& name : series_columns())
-    columns.push_back({name, [name](auto& i) -> json {
-                         for (const MetricSeries& m : i.row->run->accuracy.metrics)
-                           if (m.name == name && i.index < m.values.size()) return six_digits(m.values[i.index]);
-                         return "";
-                       }});
   std::vector<Item> frames;
   for (const Row& r : table.rows())
     for (std::size_t k = 0; r.part == Part::Contact && k < r.run->accuracy.time_s.size(); ++k)
-      frames.push_back({&r, k});
-  return csv(columns, frames);
+      frames.emplace_back(&r, k);
+  return csv(frames, [names = series_columns()](const Row& r, std::size_t k) {
+    Fields out = run_fields(r);
+    out.emplace_back("time_s", six_digits(r.run->accuracy.time_s[k]));
+    for (const std::string& name : names) {
+      out.emplace_back(name, "");
+      for (const MetricSeries& m : r.run->accuracy.metrics)
+        if (m.name == name && k < m.values.size()) out.back().second = six_digits(m.values[k]);
+    }
+    return out;
+  });
 }
 
 std::string trials_csv(const RunTable& table) {
-  static const auto trial = [](const Item& i) -> const TimedTrial& { return i.row->run->trials[i.index]; };
-  Columns columns = run_columns();
-  append(columns, {{"trial", [](auto& i) { return trial(i).index; }},
-                   {"frames", [](auto& i) { return trial(i).frames(); }},
-                   {"start_unix_s", [](auto& i) { return trial(i).start_unix_s; }},
-                   {"jobs", [](auto& i) { return trial(i).jobs; }},
-                   {"pipelined_wall_s", [](auto& i) { return trial(i).pipelined_wall_s; }}});
-  for (const auto& [name, series] :
-       {std::pair{"wall", &TimedTrial::frame_wall_s}, {"device", &TimedTrial::frame_device_s}}) {
-    columns.push_back({fmt::format("{}_mean_s", name), [series = series](auto& i) -> json {
-                         const std::vector<double>& s = trial(i).*series;
-                         const double sum = std::accumulate(s.begin(), s.end(), 0.0);
-                         return s.empty() ? json() : json(sum / static_cast<double>(s.size()));
-                       }});
-    for (const auto& [which, q] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}, {"max", 1.0}})
-      columns.push_back({fmt::format("{}_{}_s", name, which),
-                         [series = series, q = q](auto& i) { return json(quantile(sorted(trial(i).*series), q)); }});
-  }
   std::vector<Item> trials;
   for (const Row& r : table.rows())
-    for (std::size_t k = 0; k < r.run->trials.size(); ++k) trials.push_back({&r, k});
-  return csv(columns, trials);
+    for (std::size_t k = 0; k < r.run->trials.size(); ++k) trials.emplace_back(&r, k);
+  return csv(trials, [](const Row& r, std::size_t k) {
+    const TimedTrial& t = r.run->trials[k];
+    Fields out = run_fields(r);
+    out.insert(out.end(), {{"trial", t.index},
+                           {"frames", t.frames()},
+                           {"start_unix_s", t.start_unix_s},
+                           {"jobs", t.jobs},
+                           {"pipelined_wall_s", t.pipelined_wall_s}});
+    for (const auto& [name, times] :
+         {std::pair<std::string, const std::vector<double>&>{"wall", t.frame_wall_s}, {"device", t.frame_device_s}}) {
+      const double sum = std::accumulate(times.begin(), times.end(), 0.0);
+      std::vector<double> sorted = times;
+      std::sort(sorted.begin(), sorted.end());
+      out.emplace_back(name + "_mean_s", times.empty() ? json() : json(sum / static_cast<double>(times.size())));
+      for (const auto& [which, q] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}, {"max", 1.0}})
+        out.emplace_back(fmt::format("{}_{}_s", name, which), quantile(sorted, q));
+    }
+    return out;
+  });
 }
 
 json runs_json(const std::vector<RunRecord>& runs) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "report/run_table.hpp"
@@ -21,73 +23,41 @@ Interval95 percentiles(Series estimates) {
   return {quantile(estimates, 0.025), quantile(estimates, 0.975)};
 }
 
-/// Bootstrap over trials and blocks of their frames.
-class Bootstrap {
- public:
-  explicit Bootstrap(const std::vector<Series>& trials) {
-    for (const Series& t : trials) {
-      if (t.empty()) continue;
-      const std::size_t length = std::clamp<std::size_t>(t.size() / kMinBlocks, 1, kBlock);
-      const std::size_t count = std::max<std::size_t>(1, t.size() / length), first = sum_.size();
-      sum_.resize(first + count);
-      frames_.resize(first + count);
-      for (std::size_t f = 0; f < t.size(); ++f) {
-        const std::size_t block = first + std::min(f / length, count - 1);  // the rest joins the last block
-        pooled_.emplace_back(t[f], block);
-        sum_[block] += t[f];
-        frames_[block] += 1;
+/// The frames of a trial in blocks of consecutive ones; the rest joins the last block.
+std::vector<Series> blocks_of(const Series& trial) {
+  const std::size_t length = std::clamp<std::size_t>(trial.size() / kMinBlocks, 1, kBlock);
+  std::vector<Series> out(trial.size() / length);
+  for (std::size_t f = 0; f < trial.size(); ++f) out[std::min(f / length, out.size() - 1)].push_back(trial[f]);
+  return out;
+}
+
+/// 95 % intervals of the median time and of the median over trials of the rate [1/s], by a bootstrap over trials and
+/// blocks of their frames. No trial is empty.
+std::pair<Interval95, Interval95> intervals(const std::vector<Series>& trials) {
+  std::vector<std::vector<Series>> blocks;
+  for (const Series& t : trials) blocks.push_back(blocks_of(t));
+  std::mt19937_64 random;  // the same numbers on every machine
+  Series medians, rates;
+  for (std::size_t n = 0; n < kResamples; ++n) {
+    Series drawn, rates_drawn;
+    for (std::size_t t = 0; t < blocks.size(); ++t) {
+      const std::vector<Series>& trial = blocks[random() % blocks.size()];
+      const std::size_t before = drawn.size();
+      double sum = 0;
+      for (std::size_t k = 0; k < trial.size(); ++k) {
+        const Series& block = trial[random() % trial.size()];
+        drawn.insert(drawn.end(), block.begin(), block.end());
+        sum += std::accumulate(block.begin(), block.end(), 0.0);
       }
-      trials_.emplace_back(first, count);
+      rates_drawn.push_back(static_cast<double>(drawn.size() - before) / sum);
     }
-    std::sort(pooled_.begin(), pooled_.end());
+    rates.push_back(median(std::move(rates_drawn)));
+    const auto half = drawn.begin() + static_cast<std::ptrdiff_t>((drawn.size() - 1) / 2);
+    std::nth_element(drawn.begin(), half, drawn.end());
+    medians.push_back(*half);
   }
-
-  /// 95 % intervals of the median time and of the median over trials of the rate [1/s].
-  std::pair<Interval95, Interval95> intervals() const {
-    if (pooled_.size() < kMinFrames) return {};
-    std::mt19937_64 random;                        // the same numbers on every machine
-    std::vector<std::size_t> weight(sum_.size());  // of the blocks
-    Series medians, rates, drawn;
-    for (std::size_t n = 0; n < kResamples; ++n) {
-      std::fill(weight.begin(), weight.end(), 0);
-      drawn.clear();
-      for (std::size_t t = 0; t < trials_.size(); ++t) {
-        const auto [first, count] = trials_[random() % trials_.size()];
-        double sum = 0, frames = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-          const std::size_t block = first + random() % count;
-          ++weight[block];
-          sum += sum_[block];
-          frames += frames_[block];
-        }
-        drawn.push_back(frames / sum);
-      }
-      std::sort(drawn.begin(), drawn.end());
-      rates.push_back(middle(drawn));
-      medians.push_back(median(weight));
-    }
-    return {percentiles(std::move(medians)), percentiles(std::move(rates))};
-  }
-
-  Series times() const {
-    Series out;
-    for (const auto& [time, unused] : pooled_) out.push_back(time);
-    return out;
-  }
-
- private:
-  double median(const std::vector<std::size_t>& weight) const {
-    std::size_t all = 0, below = 0;
-    for (const auto& [unused, block] : pooled_) all += weight[block];
-    for (const auto& [time, block] : pooled_)
-      if (below += weight[block]; 2 * below >= all) return time;
-    return kMissing;
-  }
-
-  std::vector<std::pair<double, std::size_t>> pooled_;       ///< (time, block), ascending
-  Series sum_, frames_;                                      ///< by block
-  std::vector<std::pair<std::size_t, std::size_t>> trials_;  ///< first block and their number
-};
+  return {percentiles(std::move(medians)), percentiles(std::move(rates))};
+}
 
 /// Whether the cloth touches something in each frame of the scene, frame 0 included; empty if no metric states it.
 std::vector<bool> frames_with_contact(const RunRecord& c) {
@@ -104,17 +74,19 @@ std::vector<bool> frames_with_contact(const RunRecord& c) {
 
 /// The finite times of all trials. If `contact` is not empty, frames without contact are left out.
 FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::vector<bool>& contact = {}) {
+  FrameTimes out;
   std::vector<Series> trials;
   for (const TimedTrial& t : c.trials) {
     Series kept;
     for (std::size_t f = 0; f < (t.*clock).size(); ++f)
       if (std::isfinite((t.*clock)[f]) && (contact.empty() || (f + 1 < contact.size() && contact[f + 1])))
         kept.push_back((t.*clock)[f]);
-    trials.push_back(std::move(kept));
+    out.sorted.insert(out.sorted.end(), kept.begin(), kept.end());
+    if (!kept.empty()) trials.push_back(std::move(kept));
   }
-  const Bootstrap b(trials);
-  const auto [median, rate] = b.intervals();
-  return {b.times(), median, rate};
+  std::sort(out.sorted.begin(), out.sorted.end());
+  if (out.sorted.size() >= kMinFrames) std::tie(out.median, out.rate) = intervals(trials);
+  return out;
 }
 
 }  // namespace

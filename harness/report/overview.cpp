@@ -1,7 +1,8 @@
-// Four tiles of the first screen, and Table 3 with errors.
+// The first screen: title, facts, warnings and notes of all runs, four tiles, and Table 3 with errors.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -13,15 +14,16 @@
 namespace clothbench {
 namespace {
 
+using nlohmann::json;
+
 constexpr double kFallLimit = 0.01;  // a greater error of free fall makes a rate meaningless
 constexpr double kBudget_ms = 1;     // of wall time per frame
 
 constexpr const char* kTable3Note =
     "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; all other columns are "
-    "for "
-    "the largest mesh. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges in "
-    "the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped at "
-    "72. ";
+    "for the largest mesh. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges "
+    "in the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped "
+    "at 72. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
@@ -37,10 +39,7 @@ const Row* largest(const Group& g) {
 }
 
 ViewColumn at_largest(std::string head, std::function<Cell(const Row&)> cell) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) {
-            const Row* r = largest(g);
-            return r == nullptr ? Cell() : cell(*r);
-          }};
+  return column(std::move(head), std::move(cell), false, largest);
 }
 
 std::string rate_interval(const Row& r) {
@@ -51,10 +50,10 @@ std::string rate_interval(const Row& r) {
 
 /// Names of the solvers that wrap the engine of a published row.
 std::string peers(const Group& runs) {
-  const nlohmann::json published = published_table3();
+  const json published = published_table3();
   std::set<std::string> out;
   for (const Row* r : runs)
-    for (const nlohmann::json& column : published.at("columns"))
+    for (const json& column : published.at("columns"))
       if (const std::string engine = engine_of(*r->run); !engine.empty() && column.value("engine", "") == engine)
         out.insert(r->label() + ": " + column.value("peer", ""));
   return joined(out, " ");
@@ -91,7 +90,7 @@ View speed_and_error() {
   v.columns = {at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
                at_largest("× " + time_baseline(),
                           [](const Row& r) { return number_cell(r.baseline_s / r.value("frame_wall_median_s"), 3); }),
-               at_largest("rank", [](const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }),
+               at_largest("rank", rank_cell),
                at_largest("free-fall error",
                           [](const Row& r) {
                             const double e = r.value("free_fall_error");
@@ -104,7 +103,7 @@ View speed_and_error() {
                             return paired_cell(100 * r.value("stretch_mean_last_second"),
                                                100 * r.value("stretch_max_last_second"), 2);
                           }),
-               at_largest("trials", [](const Row& r) { return trials_column().cell({&r}, {}); })};
+               at_largest("trials", trials_cell)};
   for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));
   v.more = peers;
   v.timed = true;
@@ -175,6 +174,17 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
   return out;
 }
 
+bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) == json(true); }
+
+/// The value of a run's environment as the heading shows it.
+std::string fact(const RunRecord& c, const std::string& key) {
+  const std::string value = environment_text(c, key.c_str());
+  if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
+  if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
+  if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
+  return key == "created" ? value.substr(0, 10) : value;
+}
+
 }  // namespace
 
 std::vector<View> overview_views() { return {speed_and_error()}; }
@@ -199,6 +209,68 @@ std::vector<Tile> tiles_of(const RunTable& table) {
     }
     out.push_back({best.title + ", " + best.solver, best.value, best.interval, joined(others, " · ")});
   }
+  return out;
+}
+
+Heading heading_of(const RunTable& table, const std::vector<std::string>& studies) {
+  static constexpr std::pair<const char*, const char*> kFacts[] = {
+      {"gpu", "GPU"},           {"driver", "driver"},    {"cpu", "CPU"},     {"protocol", "protocol"},
+      {"git_commit", "commit"}, {"build_type", "build"}, {"created", "date"}};
+  Heading h;
+  std::string device;
+  for (const auto& [key, name] : kFacts) {
+    std::set<std::string> values, short_names;  // "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)"
+    for (const RunRecord& c : table.runs())
+      if (const std::string value = fact(c, key); !value.empty()) {
+        values.insert(value);
+        short_names.insert(value.substr(0, value.find(" (")));
+      }
+    if (values.empty()) continue;
+    if (device.empty()) device = joined(short_names);
+    const bool span = std::string(key) == "created" && values.size() > 1;
+    h.facts.emplace_back(name, span ? *values.begin() + " to " + *values.rbegin() : joined(values));
+  }
+  std::set<std::string> trials;
+  for (const RunRecord& c : table.runs())
+    if (!c.trials.empty()) trials.insert(std::to_string(c.trials.size()));
+  h.facts.emplace_back("trials", trials.empty() ? "none timed" : joined(trials));
+  h.title = fmt::format("Cloth solvers on {}: {}", device.empty() ? "an unknown machine" : device,
+                        studies.empty() ? "runs" : joined(studies));
+  return h;
+}
+
+std::vector<std::string> warnings_of(const RunTable& table) {
+  std::set<std::string> software, invalid;
+  std::vector<const Row*> all;
+  for (const Row& r : table.rows()) {
+    const RunRecord& c = *r.run;
+    all.push_back(&r);
+    if (environment_text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(environment_text(c, "gpu"));
+    if (const json s = environment_of(c, "device_samples"); s.is_object() && !s.value("valid", true))
+      for (const json& reason : s.value("reasons", json::array())) invalid.insert(reason.get<std::string>());
+  }
+  std::vector<std::string> out;
+  for (const std::string& device : software)
+    out.push_back(
+        fmt::format("Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.", device));
+  for (const std::string& reason : invalid) out.push_back(fmt::format("Not a valid measurement: {}.", reason));
+  if (const std::string withheld = withheld_note(all); !withheld.empty()) out.push_back(withheld);
+  return out;
+}
+
+std::vector<std::string> notes_of(const RunTable& table) {
+  std::set<std::string> plugins;  // a line for each build of one; two builds differ by the hash
+  for (const RunRecord& c : table.runs()) {
+    const json p = environment_of(c, "plugin");
+    if (!p.is_object()) continue;
+    const auto part = [&](const char* key) { return or_dash(p.value(key, "")); };
+    plugins.insert(fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
+                               or_dash(environment_text(c, "solver_version")), part("summary"),
+                               std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
+  }
+  std::vector<std::string> out(plugins.begin(), plugins.end());
+  if (const VerdictCounts n = count_verdicts(table.runs()); n.runs > 0)
+    out.push_back(n.text() + ", of those whose scene has acceptance criteria.");
   return out;
 }
 

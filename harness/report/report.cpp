@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "report/features.hpp"
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -19,33 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<RunRecord> printable(const std::vector<fs::path>& results) {
-  std::vector<RunRecord> runs = collect(results);
-  withhold_times(runs);
-  return runs;
-}
-
-/// The table of features is no view: its rows are features, not runs.
-ViewTable features_of(const RunTable& table) {
-  const DeclaredFeatures solvers = declared_features(table.runs());
-  if (std::all_of(solvers.begin(), solvers.end(), [](auto& s) { return s.second.is_null(); })) return {};
-  ViewTable t{feature_table(solvers)};
-  t.in_full = true;
-  t.solvers = {""};
-  for (const auto& [solver, unused] : solvers) t.solvers.push_back(solver);
-  return t;
-}
+constexpr std::pair<const char*, const char*> kSections[] = {
+    {"overview", "Overview"},      {"rates", "Frame rates"},
+    {"contact", "Contact"},        {"accuracy", "Error against run time"},
+    {"stability", "Stability"},    {"time", "Frame times"},
+    {"failed", "Failures"},        {"features", "Features"},
+    {"environment", "Environment"}};
 
 /// The sections that have tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
-  for (const Section& s : sections()) {
-    PageSection section{s.id, s.title, {}};
+  for (const auto& [id, title] : kSections) {
+    PageSection section{id, title, {}};
     for (const View& v : views())
-      if (v.section == s.id)
+      if (v.section == id)
         for (ViewTable& t : tables_of(v, table)) section.tables.push_back(std::move(t));
-    if (section.id == "features")
-      if (ViewTable t = features_of(table); !t.rows.empty()) section.tables.push_back(std::move(t));
     if (!section.tables.empty()) out.push_back(std::move(section));
   }
   return out;
@@ -84,7 +68,7 @@ std::string head_markdown(const Page& page) {
 }  // namespace
 
 void write_report(const std::vector<fs::path>& results, const fs::path& out) {
-  const RunTable table(printable(results));
+  const RunTable table(withhold_times(collect(results)));
   const auto write = [&](const std::string& name, const std::string& text) { write_file_atomically(out / name, text); };
   fs::create_directories(out);
   write("runs.csv", runs_csv(table));
@@ -116,7 +100,7 @@ void write_report(const std::vector<fs::path>& results, const fs::path& out) {
 
 void print_console_report(const std::vector<fs::path>& results) {
   constexpr std::size_t kShown = 2, kFew = 24;
-  const RunTable table(printable(results));
+  const RunTable table(withhold_times(collect(results)));
   const Page page = page_of(table, results);
   std::vector<std::string> head = page.warnings;
   head.push_back(facts_of(page.heading));

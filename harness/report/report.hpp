@@ -14,10 +14,10 @@ namespace clothbench {
 std::vector<RunRecord> collect(const std::vector<std::filesystem::path>& results);
 
 /// Maximum number of concurrent clothbench jobs while the run was loaded and timed; NaN if it was not timed.
-double jobs_of(const RunRecord&);
+inline double jobs_of(const RunRecord& c) { return summary_value(c, "jobs"); }
 
-/// Removes the times (trials and summary) of runs that were not timed alone, and stores the reason in `withheld`.
-void withhold_times(std::vector<RunRecord>&);
+/// The runs without the times (trials and summary) of those that were not timed alone; `withheld` has the reason.
+std::vector<RunRecord> withhold_times(std::vector<RunRecord>);
 
 /// A sentence for the note of a table of times: why some of the runs show "–". Empty if no time is withheld.
 std::string withheld_note(const std::vector<const Row*>&);

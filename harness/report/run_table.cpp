@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -24,8 +22,9 @@ json at(const json& j, const char* pointer) {
   return j.is_object() ? j.value(json::json_pointer(pointer), json()) : json();
 }
 
-std::string text_at(const json& scenario, const char* pointer) {
-  return scenario.value(json::json_pointer(pointer), std::string());
+std::string text_at(const json& j, const char* pointer) {
+  const json text = at(j, pointer);
+  return text.is_string() ? text.get<std::string>() : "";
 }
 
 bool touches(const json& scenario) { return !at(scenario, "/colliders").empty() || !at(scenario, "/grips").empty(); }
@@ -63,19 +62,52 @@ std::string read_scenario(Row& row) {
   return family.dump();
 }
 
-int rank_of_sides(const std::string& sides) { return sides == "single" ? 0 : sides == "double-duplicated" ? 1 : 2; }
-
-void take(double& to, double value) {
-  if (!std::isfinite(to)) to = value;
-}
-
 /// Adds what one run knows of its scene's exact solution.
 void add_facts(TruthFacts& t, const Row& r) {
   t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
-  take(t.space_error, r.value("truth_space_error"));
-  take(t.uncertainty, r.value("reference_uncertainty"));
+  if (!std::isfinite(t.space_error)) t.space_error = r.value("truth_space_error");
+  if (!std::isfinite(t.uncertainty)) t.uncertainty = r.value("reference_uncertainty");
   if (r.counts() && r.not_ranked().empty() && !is_baseline(r.solver) && !(t.best_error <= r.error()))
     t.best_error = r.error();
+}
+
+/// At most two scenes, no two of one kind.
+void choose_leading(std::vector<Row>& rows) {
+  constexpr std::size_t kMost = 2;
+  std::map<std::size_t, std::string> leading;
+  for (const Row& r : rows)
+    if (r.part == Part::Contact) leading.try_emplace(place_of_scene(r.scene), r.scene);
+  leading.erase(leading_scenes().size());
+  while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
+  for (Row& r : rows)
+    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
+}
+
+/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
+/// below its own.
+void compare_times(std::vector<Row>& all) {
+  std::map<std::string, std::vector<Row*>> scenes;
+  for (Row& r : all)
+    if (r.published < 0) scenes[r.scene].push_back(&r);
+  for (auto& [unused, rows] : scenes) {
+    double baseline_s = kMissing;
+    std::vector<Row*> ranked;
+    for (Row* r : rows) {
+      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
+      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
+        baseline_s = r->times->wall.at(0.5);
+      const std::string v = verdict(*r->run);
+      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
+          std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
+          !(r->value("stretch_max_last_second") > kTornApart))
+        ranked.push_back(r);
+    }
+    for (Row* r : rows) r->baseline_s = baseline_s;
+    for (Row* r : ranked)
+      r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
+                  return other->times->wall.median.high < r->times->wall.median.low;
+                }));
+  }
 }
 
 }  // namespace
@@ -99,20 +131,12 @@ std::string environment_text(const RunRecord& c, const char* key) {
   return e.is_string() ? e.get<std::string>() : "";
 }
 
-std::string engine_of(const RunRecord& c) {
-  const json plugin = environment_of(c, "plugin");
-  return plugin.is_object() ? plugin.value("engine", std::string()) : "";
-}
+std::string engine_of(const RunRecord& c) { return text_at(c.header.environment, "/plugin/engine"); }
 
 const json& solver_roles() {
   static const json all = json::parse(kSolverRoles);
   return all;
 }
-
-bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
-bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
-
-const json& leading_scenes() { return solver_roles().at("leading_scenes"); }
 
 std::size_t place_of_scene(const std::string& scene) {
   std::size_t place = 0;
@@ -121,21 +145,10 @@ std::size_t place_of_scene(const std::string& scene) {
   return place;
 }
 
-std::string time_baseline() { return solver_roles().at("times_relative_to"); }
-
-std::vector<double> trial_means(const RunRecord& c) {
-  std::vector<double> out;
-  for (const TimedTrial& t : c.trials) {
-    const double sum = std::accumulate(t.frame_wall_s.begin(), t.frame_wall_s.end(), 0.0);
-    if (t.frames() > 0 && sum > 0) out.push_back(sum / t.frames());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-double middle(const std::vector<double>& sorted) {
-  const std::size_t n = sorted.size();
-  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n == 0 ? kMissing : (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 double quantile(const std::vector<double>& sorted, double q) {
@@ -152,8 +165,6 @@ std::string status_with_class(const Outcome& o) {
   return o.status + (o.klass.empty() || o.klass == "ok" ? "" : " (" + o.klass + ")");
 }
 
-std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
-
 std::string label_of(const RunRecord& c) {
   const std::string& setting = c.header.setting;
   return c.header.solver + (setting == "default" || setting.empty() ? "" : " " + setting);
@@ -163,8 +174,6 @@ std::string Resolution::label() const {
   if (grid[0] > 0) return grid[0] == grid[1] ? fmt::format("{}²", grid[0]) : fmt::format("{}×{}", grid[0], grid[1]);
   return vertices > 0 ? fmt::format("{} vertices", vertices) : "–";
 }
-
-double TruthFacts::rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
@@ -193,8 +202,6 @@ double Row::wall_ms_per_s() const {
   const double pipelined = 1e3 * frame_rate_hz() * value("frame_pipelined_median_s");
   return std::isfinite(pipelined) ? pipelined : fenced_ms_per_s();
 }
-
-bool Row::counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
 
 std::string Row::not_ranked() const {
   constexpr double kLeastDependence = 0.01;
@@ -245,11 +252,10 @@ json Row::drawn() const { return at(scenario, "/drawn"); }
 
 bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
 
-json published_table3() { return json::parse(kPublishedTable3); }
-
 RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::map<std::string, std::string> families;
   std::map<std::string, int> names;
+  std::map<std::vector<std::string>, int> repeats;
   std::map<std::string, std::shared_ptr<TruthFacts>> facts;
   std::set<std::string> timed;
   std::map<std::string, std::size_t> scenes;
@@ -264,9 +270,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
       found->second = same_name > 1 ? fmt::format("{} ({})", row.name, same_name) : row.name;
     }
     row.family = families.at(family);
-    for (const Row& r : rows_)
-      row.repeat += r.family == row.family && r.resolution == row.resolution && r.sides == row.sides &&
-                    r.solver == row.solver && r.setting == row.setting && r.scene == row.scene;
+    row.repeat = ++repeats[{row.family, row.scene, row.sides, row.solver, row.setting, row.resolution.label()}];
     if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
     most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
     largest[row.family] = std::max(largest[row.family], row.resolution.size());
@@ -285,52 +289,14 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   }
   add_published();
   const auto key = [&](const Row& r) {
+    const int sides = r.sides == "single" ? 0 : r.sides == "double-duplicated" ? 1 : 2;
     return std::tuple(scenes.at(r.part == Part::Rates ? r.family : r.scene), r.published, r.solver, r.setting, r.repeat,
-                      rank_of_sides(r.sides), r.resolution.size());
+                      sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
-  choose_leading();
-  compare_times();
+  choose_leading(rows_);
+  compare_times(rows_);
   mark_best_points(rows_);
-}
-
-/// At most two scenes, no two of one kind.
-void RunTable::choose_leading() {
-  constexpr std::size_t kMost = 2;
-  std::map<std::size_t, std::string> leading;
-  for (const Row& r : rows_)
-    if (r.part == Part::Contact) leading.try_emplace(place_of_scene(r.scene), r.scene);
-  leading.erase(leading_scenes().size());
-  while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
-  for (Row& r : rows_)
-    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
-}
-
-/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
-/// below its own.
-void RunTable::compare_times() {
-  std::map<std::string, std::vector<Row*>> scenes;
-  for (Row& r : rows_)
-    if (r.published < 0) scenes[r.scene].push_back(&r);
-  for (auto& [unused, rows] : scenes) {
-    double baseline_s = kMissing;
-    std::vector<Row*> ranked;
-    for (Row* r : rows) {
-      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
-      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
-        baseline_s = r->times->wall.at(0.5);
-      const std::string v = verdict(*r->run);
-      if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
-          std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
-          !(r->value("stretch_max_last_second") > kTornApart))
-        ranked.push_back(r);
-    }
-    for (Row* r : rows) r->baseline_s = baseline_s;
-    for (Row* r : ranked)
-      r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
-                  return other->times->wall.median.high < r->times->wall.median.low;
-                }));
-  }
 }
 
 void RunTable::add_published() {

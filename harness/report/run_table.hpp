@@ -1,9 +1,9 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -33,19 +33,17 @@ extern const char* const kSolverRoles;      ///< solvers.json
 /// Roles of solvers in comparisons and colours of figures by label, from solvers.json.
 const nlohmann::json& solver_roles();
 /// The harness without a cloth model: its times are the harness's cost, and its motion proves nothing.
-bool is_floor(const std::string& solver);
+inline bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
 /// The model that errors are compared with; it is not ranked.
-bool is_baseline(const std::string& solver);
+inline bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
 /// The solver that times are relative to, whoever else is present.
-std::string time_baseline();
+inline std::string time_baseline() { return solver_roles().at("times_relative_to"); }
 /// Parts of the names of scenes that lead a report, the first one first, and the place of a scene's name among them.
-const nlohmann::json& leading_scenes();
+inline const nlohmann::json& leading_scenes() { return solver_roles().at("leading_scenes"); }
 std::size_t place_of_scene(const std::string& scene);
 
-/// Mean wall time of a frame in each trial [s], ascending.
-std::vector<double> trial_means(const RunRecord&);
-/// The median of a sorted, non-empty list.
-double middle(const std::vector<double>& sorted);
+/// NaN without values.
+double median(std::vector<double>);
 
 /// Nearest-rank quantile of a sorted list; NaN if it is empty.
 double quantile(const std::vector<double>& sorted, double q);
@@ -55,7 +53,7 @@ std::string ending(const Outcome&);
 /// "diverged (F1)"; only the status if it has no class.
 std::string status_with_class(const Outcome&);
 /// "–" for an empty text.
-std::string or_dash(const std::string&);
+inline std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
 
@@ -86,7 +84,7 @@ struct TruthFacts {
   double best_error = kMissing;   ///< smallest error of all ranked solvers that ended well; NaN if none did
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor; NaN if unknown
   /// Errors below it are not distinguished: the larger of floor() and space_error, where known; 0 if neither is.
-  double rank_floor() const;
+  double rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
   /// Why no solver is ranked: there is no reference, or 3 U_ref is not below the best error. Empty if solvers are.
   std::string refused() const;
 };
@@ -118,7 +116,7 @@ struct Row {
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
   /// " (first 36 frames)" where the run timed fewer frames than another run of its scene; otherwise empty.
   std::string frames_mark() const;
-  double value(const std::string& name) const { return summary_value(*run, name); }
+  double value(const std::string& scalar) const { return summary_value(*run, scalar); }
   std::string status() const { return run->outcome.status; }
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined where the solver supports it.
@@ -128,7 +126,7 @@ struct Row {
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }
   /// The run ended well and has an error and a time.
-  bool counts() const;
+  bool counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
   /// Why this run is shown but not ranked: the scene depends on a stiffness that the solver leaves out. Empty if
   /// ranked.
   std::string not_ranked() const;
@@ -147,7 +145,7 @@ void mark_best_points(std::vector<Row>&);
 bool has_contact(const RunRecord&);
 
 /// results/paper-table3.json, as it was at build time.
-nlohmann::json published_table3();
+inline nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
 /// All runs of a report as typed rows. Rows point into the table, so it must not be copied or moved.
 class RunTable {
@@ -163,8 +161,6 @@ class RunTable {
 
  private:
   void add_published();
-  void choose_leading();
-  void compare_times();
 
   std::vector<RunRecord> runs_;
   std::deque<RunRecord> published_;

@@ -80,11 +80,9 @@ bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& 
 }
 
 std::string note_of(const View& v, const Group& runs) {
-  std::string note = v.note;
-  const auto add = [&](const std::string& more) { note += (note.empty() || more.empty() ? "" : " ") + more; };
-  if (v.more) add(v.more(runs));
-  if (v.timed) add(withheld_note(runs));
-  return note;
+  Texts parts = {v.note, v.more ? v.more(runs) : "", v.timed ? withheld_note(runs) : ""};
+  std::erase(parts, "");
+  return joined(parts, " ");
 }
 
 /// No rows if no cell has a value and no time is withheld.
@@ -138,8 +136,12 @@ Key sides_key() {
   return key("sides", [](const Row& r) { return r.sides; });
 }
 
-ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs) {
-  return {std::move(head), [cell = std::move(cell)](const Group& g, const Keys&) { return cell(*g.front()); },
+ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs, Pick pick) {
+  return {std::move(head),
+          [cell = std::move(cell), pick = std::move(pick)](const Group& g, const Keys&) {
+            const Row* r = pick(g);
+            return r == nullptr ? Cell() : cell(*r);
+          },
           if_differs};
 }
 
@@ -155,11 +157,10 @@ Across by_bands(const std::vector<double>& lows, std::function<double(const Row&
   return {key("", name), std::move(cell), low};
 }
 
-ViewColumn trials_column() {
-  return column("trials", [](const Row& r) {
-    return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
-  });
+Cell trials_cell(const Row& r) {
+  return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
 }
+Cell rank_cell(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
 
 std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   std::vector<std::pair<std::string, Group>> groups;
@@ -207,15 +208,6 @@ Cell verdict_cell(const RunRecord& c) {
   if (c.outcome.status != "ok") return ending_cell(c);
   const std::string v = verdict(c);
   return {v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
-}
-
-const std::vector<Section>& sections() {
-  static const std::vector<Section> all = {{"overview", "Overview"},      {"rates", "Frame rates"},
-                                           {"contact", "Contact"},        {"accuracy", "Error against run time"},
-                                           {"stability", "Stability"},    {"time", "Frame times"},
-                                           {"failed", "Failures"},        {"features", "Features"},
-                                           {"environment", "Environment"}};
-  return all;
 }
 
 }  // namespace clothbench

@@ -67,15 +67,19 @@ struct ViewColumn {
   std::function<Cell(const Group&, const Keys& keys)> cell;
   bool if_differs = false;  ///< left out where all rows have the same value
 };
-/// A column that shows the row's first run.
-ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false);
+using Pick = std::function<const Row*(const Group&)>;
+/// A column that shows the run that `pick` gives, empty where it gives none; by default the row's first run.
+ViewColumn column(
+    std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
+    Pick pick = [](const Group& g) { return g.front(); });
 
-/// The number of timed trials of the row's first run.
-ViewColumn trials_column();
+/// The number of timed trials; the rank by wall time.
+Cell trials_cell(const Row&);
+Cell rank_cell(const Row&);
 
 /// Median with its interval, tails, missed deadlines and real-time factor of the wall time of a frame of the run that
 /// `pick` gives; empty where it gives none.
-std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick);
+std::vector<ViewColumn> tail_columns(Pick pick);
 
 /// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
 struct Across {
@@ -118,12 +122,6 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
-/// Titles of sections by id, in their order: "rates", "contact", …
-struct Section {
-  const char *id, *title;
-};
-const std::vector<Section>& sections();
-
 /// "S01 stiffness" of a scene that stability is judged on.
 std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.
@@ -140,6 +138,10 @@ struct ClaimPoint {
   bool is_near() const { return ended && bounds > 1 && unmet == 1; }
 };
 ClaimPoint claim_point(const Row&);
+
+/// Table 4: features by solver, as runs of these state them (describe_features); "not built" where a build lacks a
+/// solver.
+View feature_view();
 
 // Parts of views(), by file.
 std::vector<View> overview_views();

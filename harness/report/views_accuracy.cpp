@@ -1,12 +1,11 @@
-// Tables of error against run time, stability, failures, violated criteria and machines.
+// Tables of error against run time, stability, failures, violated criteria, machines and features.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
+#include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
@@ -22,44 +21,40 @@ constexpr std::array kBudgets_ms = {0.1, 1.0, 13.9};
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
 using Measure = double (Row::*)() const;
 
-/// The row with the smallest `by` among those that count and satisfy `when`; null without any.
-const Row* best(const Group& g, const std::function<bool(const Row&)>& when, Measure by) {
+/// The row with the smallest `by` among those that count with at most this error and wall time of a frame; null without
+/// any.
+const Row* best(const Group& g, Measure by, double error, double frame_ms = INFINITY) {
   const Row* out = nullptr;
   for (const Row* r : g)
-    if (r->counts() && std::isfinite((r->*by)()) && when(*r) && (out == nullptr || (r->*by)() < (out->*by)())) out = r;
+    if (r->counts() && r->error() <= error && r->wall_ms_per_s() / r->frame_rate_hz() <= frame_ms &&
+        std::isfinite((r->*by)()) && (out == nullptr || (r->*by)() < (out->*by)()))
+      out = r;
   return out;
 }
 
 /// Shortest time to an error of at most `most`, by a clock.
 ViewColumn time_to(const char* head, double most, Measure clock) {
-  return {head, [=](const Group& g, const Keys&) {
-            const Row* r = best(
-                g, [&](const Row& row) { return row.error() <= most; }, clock);
-            return r == nullptr ? Cell() : Cell(fmt::format("{:.3g} ({})", (r->*clock)(), r->setting), (r->*clock)());
-          }};
+  const auto text = [=](const Row& r) {
+    return Cell(fmt::format("{:.3g} ({})", (r.*clock)(), r.setting), (r.*clock)());
+  };
+  return column(head, text, false, [=](const Group& g) { return best(g, clock, most); });
 }
 
-/// Errors are not distinguished below the floor.
-std::string error_text(double error, double floor) {
-  return error <= floor ? fmt::format("≤ {:.2g}", floor) : fmt::format("{:.2g}", error);
-}
-
-/// Smallest error of a setting whose frame takes at most `most_ms` of wall time.
+/// Smallest error of a setting whose frame takes at most `most_ms` of wall time. Below the floor errors are not
+/// distinguished.
 ViewColumn best_error(std::string head, double most_ms) {
-  return {std::move(head), [=](const Group& g, const Keys&) {
-            const auto fits = [&](const Row& row) { return row.wall_ms_per_s() / row.frame_rate_hz() <= most_ms; };
-            const Row* r = best(g, fits, &Row::error);
-            if (r == nullptr) return Cell();
-            return Cell(error_text(r->error(), r->truth->rank_floor()) + " (" + r->setting + ")", r->error());
-          }};
+  const auto text = [](const Row& r) {
+    const double floor = r.truth->rank_floor();
+    return Cell(fmt::format("{}{:.2g} ({})", r.error() <= floor ? "≤ " : "", std::max(floor, r.error()), r.setting),
+                r.error());
+  };
+  return column(std::move(head), text, false, [=](const Group& g) { return best(g, &Row::error, INFINITY, most_ms); });
 }
 
 /// The fastest setting with an error of at most 1 %; without one, the most accurate.
 const Row* representative(const Group& g) {
-  const auto is_close = [](const Row& r) { return r.error() <= 1e-2; };
-  if (const Row* r = best(g, is_close, &Row::wall_ms_per_s)) return r;
-  return best(
-      g, [](const Row&) { return true; }, &Row::error);
+  const Row* r = best(g, &Row::wall_ms_per_s, 1e-2);
+  return r != nullptr ? r : best(g, &Row::error, INFINITY);
 }
 
 Cell failed_cell(const Group& g) {
@@ -94,19 +89,17 @@ std::string ranked_text(const Group& g) {
 }
 
 View work() {
-  View v{
-      "accuracy", "Error against run time",
-      "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
-      "brackets the setting. GPU: by the device's own clock. Errors: against the exact "
-      "solution of the same grid; for triangle meshes, against the continuum's; within: the smallest error of a "
-      "setting whose frame takes at most that wall time. Frame, percentiles, missed deadlines and real-time factor: of "
-      "the fastest setting with an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which "
-      "solvers are not distinguished, which is three times the reference's uncertainty or the error of the mesh. "
-      "Failed: runs without a finite "
-      "error. Not run: settings that need more work than the solver's time on the scene allowed. A refused scene "
-      "ranks no solver; the table of reference cases has the reason. Ranked: the solver has every stiffness that "
-      "the scene depends on, as its plan states; effective stiffness is not measured here.",
-      in_truth};
+  View v{"accuracy", "Error against run time",
+         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
+         "brackets the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; "
+         "for triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at "
+         "most that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with "
+         "an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
+         "distinguished, which is three times the reference's uncertainty or the error of the mesh. Failed: runs "
+         "without a finite error. Not run: settings that need more work than the solver's time on the scene allowed. A "
+         "refused scene ranks no solver; the table of reference cases has the reason. Ranked: the solver has every "
+         "stiffness that the scene depends on, as its plan states; effective stiffness is not measured here.",
+         in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key(
                 "solver", [](const Row& r) { return r.solver; }, true)};
@@ -118,7 +111,7 @@ View work() {
   v.columns.push_back(best_error("best error", INFINITY));
   for (ViewColumn& c : tail_columns(representative)) v.columns.push_back(std::move(c));
   v.columns.push_back({"failed", [](const Group& g, const Keys&) { return failed_cell(g); }});
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back({"ranked", [](const Group& g, const Keys&) { return ranked_text(g); }});
   v.timed = true;
   return v;
@@ -134,13 +127,13 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 }
 
 View reference_cases() {
-  View v{"accuracy", "Reference cases and their reference solutions",
-         "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from "
-         "the continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the "
-         "reference case's quantity, over its scale. On a grid, the distance of the reference solution from the exact "
-         "one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time "
-         "steps agree.",
-         in_truth};
+  View v{
+      "accuracy", "Reference cases and their reference solutions",
+      "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from the "
+      "continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the reference "
+      "case's quantity, over its scale. On a grid, the distance of the reference solution from the exact one must be "
+      "below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time steps agree.",
+      in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
@@ -158,11 +151,6 @@ constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 bool in_stability(const Row& r) { return r.part == Part::Stability; }
 
-std::string class_of(const Row& r) {
-  const std::string& klass = r.run->outcome.klass;
-  return klass == "ok" || klass.empty() ? "F3" : klass;
-}
-
 /// "5/7 stable, 2 failed (F1, F2)".
 Cell tally(const Group& g, const Keys& /*keys*/) {
   std::map<int, std::map<std::string, int>> classes;
@@ -173,29 +161,28 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
     if (grade < 0) continue;
     ++all;
     stable += grade == 0;
-    if (grade > 0) ++classes[grade][class_of(*r)];
+    const std::string& klass = r->run->outcome.klass;
+    if (grade > 0) ++classes[grade][klass == "ok" || klass.empty() ? "F3" : klass];
   }
   if (all == 0) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
   for (const auto& [grade, counts] : classes) {
     int runs = 0;
-    std::string names;
-    for (const auto& [klass, n] : counts) {
-      runs += n;
-      names += (names.empty() ? "" : ", ") + klass + (counts.size() > 1 ? fmt::format(" {}", n) : "");
-    }
-    out += fmt::format(", {} {} ({})", runs, kGrades[grade], names);
+    for (const auto& [unused, n] : counts) runs += n;
+    const auto name = [several = counts.size() > 1](auto& c) {
+      return c.first + (several ? fmt::format(" {}", c.second) : "");
+    };
+    out += fmt::format(", {} {} ({})", runs, kGrades[grade], joined(counts, ", ", name));
   }
   return {out, static_cast<double>(stable) / all};
 }
 
 View robustness() {
-  View v{
-      "stability", "Robustness",
-      "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load (F2). "
-      "Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, "
-      "crash or device.",
-      in_stability};
+  View v{"stability", "Robustness",
+         "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
+         "(F2). Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 "
+         "budget, crash or device.",
+         in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
@@ -258,23 +245,24 @@ View violated() {
   return v;
 }
 
+constexpr std::pair<const char*, const char*> kStated[] = {{"gpu", "GPU"},
+                                                           {"gpu_is_software", "GPU is software"},
+                                                           {"device_profile", "device profile"},
+                                                           {"driver", "driver"},
+                                                           {"cpu", "CPU"},
+                                                           {"shader_compiler", "shader compiler"},
+                                                           {"clock_policy", "clocks"},
+                                                           {"protocol", "protocol"},
+                                                           {"git_commit", "commit"},
+                                                           {"git_dirty", "local changes"},
+                                                           {"source_sha256", "sources"},
+                                                           {"build_type", "build"},
+                                                           {"assets", "assets"}};
+
 View environment() {
-  static constexpr std::pair<const char*, const char*> kKeys[] = {{"gpu", "GPU"},
-                                                                  {"gpu_is_software", "GPU is software"},
-                                                                  {"device_profile", "device profile"},
-                                                                  {"driver", "driver"},
-                                                                  {"cpu", "CPU"},
-                                                                  {"shader_compiler", "shader compiler"},
-                                                                  {"clock_policy", "clocks"},
-                                                                  {"protocol", "protocol"},
-                                                                  {"git_commit", "commit"},
-                                                                  {"git_dirty", "local changes"},
-                                                                  {"source_sha256", "sources"},
-                                                                  {"build_type", "build"},
-                                                                  {"assets", "assets"}};
   View v{"environment", "Machines of the runs", "As stated in each result file.",
          [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
-  for (const auto& [name, head] : kKeys)
+  for (const auto& [name, head] : kStated)
     v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
       const json e = environment_of(*r.run, name);
       if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";
@@ -287,6 +275,32 @@ View environment() {
                 }}};
   v.in_full = true;
   return v;
+}
+
+std::string words(std::string_view text) {
+  std::string name(text);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// The first declaration among the runs.
+Cell declared(const Group& g, const Keys& keys) {
+  json features;
+  for (const Row* r : g)
+    if (features.is_null()) features = environment_of(*r->run, "solver_features");
+  if (features.is_null()) return "not built";
+  const auto has = [&](const char* list) {
+    const json& names = features.at(list);
+    return std::any_of(names.begin(), names.end(),
+                       [&](const json& name) { return words(name.get<std::string>()) == keys.front().text; });
+  };
+  if (has("ignores")) return "ignored";
+  if (!has("supports")) return "no";
+  std::string text = "yes";
+  for (const json& pair : features.at("only_with"))
+    if (words(pair.at(0).get<std::string>()) == keys.front().text)
+      text += " (only with " + words(pair.at(1).get<std::string>()) + ")";
+  return text;
 }
 
 }  // namespace
@@ -302,8 +316,24 @@ int grade_of(const Row& r) {
   return std::isfinite(grade) ? static_cast<int>(grade) : 2;
 }
 
+View feature_view() {
+  View v{"features", "Table 4: features",
+         "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+         [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
+  v.keys = {{"feature", [](const Row&) {
+               Keys out;
+               for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name));
+               return out;
+             }}};
+  v.across = {key(
+                  "", [](const Row& r) { return r.solver; }, true),
+              declared};
+  v.in_full = true;
+  return v;
+}
+
 std::vector<View> accuracy_views() {
-  return {work(), reference_cases(), robustness(), failed(), violated(), environment()};
+  return {work(), reference_cases(), robustness(), failed(), violated(), environment(), feature_view()};
 }
 
 }  // namespace clothbench

@@ -58,17 +58,15 @@ View verdicts() {
 }
 
 View contact() {
-  View v{
-      "contact", "Contact",
-      "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
-      "offsets. Crossings: passages of cloth and colliders through each other between two frames, at most in one "
-      "frame. "
-      "Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the last 0.5 s. "
-      "Depth: how far the cloth is inside a collider, without the margin. Popping: "
-      "maximum displacement of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders "
-      "and grips. Strain: strain of the structural edges. Times: section Frame times. Paper, best: scenes of study "
-      "`reproduction` at the cheapest point at which most claims hold.",
-      [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
+  View v{"contact", "Contact",
+         "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
+         "offsets. Crossings: passages of cloth and colliders through each other between two frames, at most in one "
+         "frame. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the "
+         "last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: maximum displacement "
+         "of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders and grips. Strain: "
+         "strain of the structural edges. Times: section Frame times. Paper, best: scenes of study `reproduction` at "
+         "the cheapest point at which most claims hold.",
+         [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
       column("verdict", [](const Row& r) { return verdict_cell(*r.run); }),
@@ -90,18 +88,18 @@ std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
 }
 
-bool is_judged(const Row& r) {
-  return r.part == Part::Generated && r.status() != "missing" && verdict(*r.run) != kNoVerdict;
-}
-
 View pass_rates() {
-  View v{
-      "contact", "Randomly generated contact scenes: pass rate by speed [m/s]",
-      "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
-      "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: distance "
-      "at which the solver keeps the cloth from colliders.",
-      [](const Row& r) { return r.part == Part::Generated; }};
-  v.keys = {{"solver", [](const Row& r) { return is_judged(r) ? Keys{label_of(*r.run)} : Keys(); }, true},
+  View v{"contact", "Randomly generated contact scenes: pass rate by speed [m/s]",
+         "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
+         "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: "
+         "distance at which the solver keeps the cloth from colliders.",
+         [](const Row& r) { return r.part == Part::Generated; }};
+  v.keys = {{"solver",
+             [](const Row& r) {
+               const bool judged = r.status() != "missing" && verdict(*r.run) != kNoVerdict;
+               return judged ? Keys{label_of(*r.run)} : Keys();
+             },
+             true},
             {"kind", [](const Row& r) {
                return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};
@@ -118,8 +116,8 @@ View pass_rates() {
     const auto missing = std::count_if(g.begin(), g.end(), [](const Row* r) { return r->status() == "missing"; });
     return missing == 0 ? std::string()
                         : fmt::format(
-                              "{} of {} runs are missing. The longest run first, so rates of an unfinished "
-                              "study are biased; --resume completes it.",
+                              "{} of {} runs are missing. The longest run first, so rates of an unfinished study are "
+                              "biased; --resume completes it.",
                               missing, g.size());
   };
   return v;

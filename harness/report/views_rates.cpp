@@ -1,6 +1,4 @@
 // Tables of frame rates, times and memory.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "report/report.hpp"
@@ -48,21 +46,19 @@ Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() 
 
 Cell ratio(const Row& r) { return number_cell(r.times->wall.at(0.5) / r.baseline_s, 3); }
 
-Cell rank(const Row& r) { return r.rank > 0 ? number_cell(r.rank, 1) : Cell(); }
-
 View frame_times() {
-  View v{"time", "Time per frame [ms]",
-         std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp "
-                     "of the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images "
-                     "for both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest "
-                     "rank. Missed: frames longer than one refresh of the display. Real-time factor: simulated time "
-                     "over the median. Pipelined: two frames in flight, median of the trials' means; –: the solver "
-                     "waits for each frame. Load: once, before the first frame. Rank: one more than "
-                     "the number of runs of the scene whose whole interval of wall time is below the run's; runs that "
-                     "failed, and cloths with an edge of more than twice its length, are not ranked. CPU threads: CPU "
-                     "time over wall time. ") +
-             kIntervalMethod,
-         [](const Row& r) { return r.published < 0; }};
+  View v{
+      "time", "Time per frame [ms]",
+      std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
+                  "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
+                  "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
+                  "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
+                  "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
+                  "frame. Load: once, before the first frame. Rank: one more than the number of runs of the scene "
+                  "whose whole interval of wall time is below the run's; runs that failed, and cloths with an edge of "
+                  "more than twice its length, are not ranked. CPU threads: CPU time over wall time. ") +
+          kIntervalMethod,
+      [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto add = [&](const std::string& head, std::function<Cell(const FrameTimes&)> text) {
     v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
@@ -76,7 +72,7 @@ View frame_times() {
                            return keys.back().text == kClocks[0].first ? text(*g.front()) : Cell();
                          }});
   };
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   add("frames", [](auto& t) { return number_cell(static_cast<double>(t.sorted.size()), 1); });
   add("p50 (95 %)", median_cell);
   add("p95 / p99 / worst", tails_cell);
@@ -85,7 +81,7 @@ View frame_times() {
   add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
   add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
   add_wall("× " + time_baseline(), ratio);
-  add_wall("rank", rank);
+  add_wall("rank", rank_cell);
   for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
     v.columns.push_back(column(
         head, [key = key](const Row& r) { return environment_text(*r.run, key); }, true));
@@ -101,8 +97,8 @@ View memory() {
   View v{"time", "Bytes and device memory per frame",
          "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
          "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or "
-         "of the whole trial where it is shorter. "
-         "Memory: device-local buffers. CPU solvers, whose bytes are not known, are left out.",
+         "of the whole trial where it is shorter. Memory: device-local buffers. CPU solvers, whose bytes are not "
+         "known, are left out.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability &&
                   std::isfinite(r.value("device_memory_B"));
@@ -146,21 +142,19 @@ View in_short(std::function<bool(const Row&)> where) {
     const FrameTimes& t = r.times->contact_wall;
     return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
   }));
-  v.columns.push_back(trials_column());
+  v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back(column("× " + time_baseline(), ratio));
-  v.columns.push_back(column("rank", rank));
+  v.columns.push_back(column("rank", rank_cell));
   v.timed = true;
   return v;
 }
 
 }  // namespace
 
-std::vector<ViewColumn> tail_columns(std::function<const Row*(const Group&)> pick) {
+std::vector<ViewColumn> tail_columns(Pick pick) {
   const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {
-    return ViewColumn{head, [pick, cell](const Group& g, const Keys&) {
-                        const Row* r = pick(g);
-                        return r == nullptr || r->times->wall.sorted.empty() ? Cell() : cell(*r);
-                      }};
+    const auto if_timed = [cell](const Row& r) { return r.times->wall.sorted.empty() ? Cell() : cell(r); };
+    return column(head, if_timed, false, pick);
   };
   return {of("frame p50 [ms]",
              [](const Row& r) {

@@ -1,6 +1,7 @@
 // Tables of study `reproduction`: for which values of what the article leaves open its claims hold.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -149,22 +150,19 @@ double particles(const Samples::value_type& sample) {
 }
 
 WorkFit fit_of(const Samples& samples) {
-  WorkFit out;
-  const auto n = static_cast<double>(samples.size());
-  if (n < 3) return out;
-  double x = 0, t = 0, xx = 0, xt = 0, squares = 0;
-  for (const auto& s : samples) x += particles(s) / n, t += s.second / n;
-  for (const auto& s : samples) xx += std::pow(particles(s) - x, 2), xt += (particles(s) - x) * (s.second - t);
-  out.slope_s = xt / xx;
-  out.fixed_s = t - out.slope_s * x;
-  out.residual = 0;
-  for (const auto& s : samples) {
-    const double off = s.second - out.fixed_s - out.slope_s * particles(s);
-    squares += off * off;
-    out.residual = std::max(out.residual, std::abs(off) / s.second);
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  if (n < 3) return {};
+  Eigen::MatrixX2d x(n, 2);
+  Eigen::VectorXd time_s(n);
+  for (Eigen::Index k = 0; const auto& s : samples) {
+    x.row(k) << 1, particles(s);
+    time_s[k++] = s.second;
   }
-  out.slope_error_s = std::sqrt(squares / (n - 2) / xx);
-  return out;
+  const Eigen::Matrix2d inverse = (x.transpose() * x).inverse();
+  const Eigen::Vector2d fit = inverse * (x.transpose() * time_s);
+  const Eigen::VectorXd off = time_s - x * fit;
+  return {fit[0], fit[1], std::sqrt(off.squaredNorm() / static_cast<double>(n - 2) * inverse(1, 1)),
+          off.cwiseQuotient(time_s).cwiseAbs().maxCoeff()};
 }
 
 /// Published rates of PBD below the display's cap; the others bound a time only from above.

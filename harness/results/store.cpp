@@ -144,8 +144,8 @@ void remove_leftovers(const fs::path& dir, const std::string& run) {
 RunRecord read_run(const fs::path& path) { return path.extension() == ".h5" ? read_hdf5(path, 1) : read_part(path); }
 
 RunRecord read_run_summary(const fs::path& path) {
-  if (path.extension() == ".h5") return read_hdf5(path, 0);
-  RunRecord r = read_part(path);
+  RunRecord r = path.extension() == ".h5" ? read_hdf5(path, 0) : read_part(path);
+  r.file = path.string();
   r.accuracy.position = {};
   r.replay = {};
   return r;

@@ -236,7 +236,7 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   std::vector<RunRecord> runs = {fake_run("alone", 8, "single", 0.002), fake_run("crowd", 8, "single", 0.002)};
   runs[1].summary["jobs"] = 11;
   runs[1].trials.resize(1);
-  withhold_times(runs);
+  runs = withhold_times(runs);
   EXPECT_TRUE(runs[1].trials.empty());
   const std::string why = "Times of 1 run are withheld (–) because up to 11 jobs ran side by side.";
   const Table t = table_of(runs, kMemory);

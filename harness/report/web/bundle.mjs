@@ -1,13 +1,47 @@
-// Makes the page without data, template.html, what draws its figures by Node, figures.cjs, and template.cpp which holds
-// both.
-//   node bundle.mjs SRC OUT      run beside node_modules
-import {build} from 'esbuild';
-import {readFileSync, writeFileSync} from 'node:fs';
-import {dirname, join} from 'node:path';
-import {fileURLToPath} from 'node:url';
+// Makes the page without data, template.html, what draws its figures by Node, figures.cjs, and template.cpp which holds both.
+// Installs the packages of package-lock.json beside them first; where that fails, template.cpp says why, and the build goes on.
+//   node bundle.mjs WEB OUT NPM
+import {execFileSync} from 'node:child_process';
+import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {join} from 'node:path';
 
-const [source, out] = process.argv.slice(2);
-const packages = join(dirname(fileURLToPath(import.meta.url)), 'node_modules');
+const [web, out, npm] = process.argv.slice(2), source = join(web, 'src'), packages = join(out, 'node_modules');
+const read = file => readFileSync(file, 'utf8');
+
+/// Installs the packages, unless they are there. The copy of the lock is written last, so an interrupted fetch is started again.
+function install() {
+  const lock = join(web, 'package-lock.json'), fetched = join(out, 'fetched-lock.json');
+  if (existsSync(fetched) && read(fetched) === read(lock)) return;
+  rmSync(fetched, {force: true});
+  mkdirSync(out, {recursive: true});
+  for (const file of ['package.json', 'package-lock.json']) copyFileSync(join(web, file), join(out, file));
+  const options = ['--engine-strict', '--ignore-scripts', '--no-audit', '--no-fund', '--fetch-retries=1', '--fetch-timeout=60000'];
+  execFileSync(npm, ['ci', ...options], {cwd: out, timeout: 420000});
+  copyFileSync(lock, fetched);
+}
+
+function write(html, missing, figures) {
+  const literal = (name, text) => `static const char ${name}[] = R"page_end_7d1f(${text})page_end_7d1f";`;
+  writeFileSync(join(out, 'template.cpp'), `#include "report/web/page.hpp"
+namespace clothbench {
+PageTemplate page_template() {
+  ${literal('html', html)}
+  ${literal('figures', figures)}
+  return {{html, sizeof html - 1}, "${missing}", {figures, sizeof figures - 1}};
+}
+}  // namespace clothbench
+`);
+}
+
+try {
+  install();
+} catch (error) {
+  console.error(`The report's page is left out: ${error.message}. Once that is mended, delete ${out}/template.cpp and build again.`);
+  write('', 'npm ci failed when this was built (it needs Node 18 or later)', '');
+  process.exit();
+}
+const {build} = createRequire(join(packages, 'x.js'))('esbuild');
 
 /// esbuild already escapes "</script" in strings; what begins a comment is left to us.
 const script_safe = text => text.replaceAll('<!--', '\\x3C!--').replaceAll(/<\/(script)/gi, '<\\/$1');
@@ -35,41 +69,20 @@ const escaped = text => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;');
 function licences(inputs) {
   const names = new Set(inputs.map(i => i.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1]).filter(Boolean));
   return [...names].sort().map(name => {
-    const read = file => readFileSync(join(packages, name, file), 'utf8');
-    return `<h4>${name} ${JSON.parse(read('package.json')).version}</h4><pre>${escaped(read('LICENSE').trim())}</pre>`;
+    const {version} = JSON.parse(read(join(packages, name, 'package.json'))), text = read(join(packages, name, 'LICENSE')).trim();
+    return `<h4>${name} ${version}</h4><pre>${escaped(text)}</pre>`;
   }).join('\n');
 }
 
 const program = await bundled('main.js', {format: 'iife'}), viewer = await bundled('viewer.js', {format: 'iife'});
-const script = script_safe(program.text), style = (await bundled('style.css', {})).text.trim();
 const parts = {
-  style,
-  script,
+  style: `<style>${(await bundled('style.css', {})).text.trim()}</style>`,
+  script: `<script>${script_safe(program.text)}</script>`,
   viewer: `<script type="text/plain" id="viewer-program">${script_safe(viewer.text)}</script>`,
   licences: licences([...program.inputs, ...viewer.inputs])
 };
-const html = readFileSync(join(source, 'index.html'), 'utf8').replace(/<!--part:(\w+)-->/g, (mark, name) => {
-  if (!(name in parts)) throw new Error(`index.html: unknown mark ${mark}`);
-  return name === 'script' ? `<script>${parts.script}</script>` :
-      name === 'style' ? `<style>${parts.style}</style>` :
-                         parts[name];
-});
-writeFileSync(join(out, 'template.html'), html);
-
+const html = read(join(source, 'index.html')).replace(/<!--part:(\w+)-->/g, (_, name) => parts[name]);
 const stills = await bundled('stills.js', {format: 'cjs', target: ['node18'], external: ['node:*']});
+writeFileSync(join(out, 'template.html'), html);
 writeFileSync(join(out, 'figures.cjs'), stills.text);
-
-function literal(name, text) {
-  const end = 'page_end_7d1f';
-  if (text.includes(`)${end}"`)) throw new Error('the page holds the mark that ends its literal');
-  return `static const char ${name}[] = R"${end}(${text})${end}";`;
-}
-writeFileSync(join(out, 'template.cpp'), `#include "report/web/page.hpp"
-namespace clothbench {
-PageTemplate page_template() {
-  ${literal('html', html)}
-  ${literal('figures', stills.text)}
-  return {{html, sizeof html - 1}, {}, {figures, sizeof figures - 1}};
-}
-}  // namespace clothbench
-`);
+write(html, '', stills.text);

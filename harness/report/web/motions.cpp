@@ -1,14 +1,11 @@
 // Motions of the page: which runs have one, in how many frames, and how it is packed.
-#include <fmt/format.h>
 #include <zlib.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <optional>
-#include <span>
 #include <tuple>
 
 #include "assets/json_at.hpp"
@@ -45,25 +42,12 @@ std::string deflated(const StoredArray& a) {
   return deflated(words);
 }
 
-struct Box {
-  std::array<double, 3> low = {}, high = {};
-  double extent() const {
-    double most = 0;
-    for (std::size_t a = 0; a < 3; ++a) most = std::max(most, high[a] - low[a]);
-    return most;
-  }
-};
-
-/// The box around the positions of one frame; without a value if one is not finite.
-std::optional<Box> box_of(std::span<const float> position) {
-  Box b;
-  for (std::size_t k = 0; k < position.size(); ++k) {
-    const double x = position[k];
-    if (!std::isfinite(x)) return std::nullopt;
-    b.low[k % 3] = k < 3 ? x : std::min(b.low[k % 3], x);
-    b.high[k % 3] = k < 3 ? x : std::max(b.high[k % 3], x);
-  }
-  return b;
+/// The box around the positions of one frame; empty if one is not finite.
+Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
+  const Eigen::Matrix3Xd x =
+      Eigen::Map<const Eigen::Matrix3Xf>(position, 3, static_cast<Eigen::Index>(vertices)).cast<double>();
+  if (vertices == 0 || !x.allFinite()) return {};
+  return {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
 }
 
 /// Rows with a trajectory in the order in which they get a place on the page: garments with contact, scenes that lead a
@@ -170,23 +154,22 @@ PackedMotion pack_motion(const Replay& replay) {
   PackedMotion out;
   if (replay.frames.empty()) return out;
   const std::size_t vertices = replay.position.size() / 3 / replay.frames.size(), size = 3 * vertices;
-  Box all;
+  Eigen::AlignedBox3d all;
   double first = 0;
   for (std::size_t f = 0; f < replay.frames.size(); ++f) {
-    const std::optional<Box> b = box_of({&replay.position[size * f], size});
-    if (!b || (f > 0 && b->extent() > kMostGrowth * first)) {
+    const Eigen::AlignedBox3d box = box_of(&replay.position[size * f], vertices);
+    if (box.isEmpty() || (f > 0 && box.sizes().maxCoeff() > kMostGrowth * first)) {
       out.cut_at = static_cast<long>(replay.frames[f]);
       break;
     }
-    if (f == 0) first = (all = *b).extent();
-    for (std::size_t a = 0; a < 3; ++a) {
-      all.low[a] = std::min(all.low[a], b->low[a]);
-      all.high[a] = std::max(all.high[a], b->high[a]);
-    }
+    if (f == 0) first = box.sizes().maxCoeff();
+    all.extend(box);
     out.frames.push_back(replay.frames[f]);
   }
-  out.low_m = all.low;
-  out.step_m = all.extent() > 0 ? all.extent() / 65535 : 1;
+  if (out.frames.empty()) return out;
+  for (int a = 0; a < 3; ++a) out.low_m[a] = all.min()[a];
+  const double extent = all.sizes().maxCoeff();
+  out.step_m = extent > 0 ? extent / 65535 : 1;
   std::vector<std::uint16_t> q, residuals;
   for (std::size_t f = 0; f < out.frames.size(); ++f)
     for (std::size_t a = 0; a < 3; ++a)

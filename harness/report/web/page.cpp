@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
+#include "base/child_process.hpp"
 #include "base/files.hpp"
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
-#include "metrics/registry.hpp"
 #include "report/verdict.hpp"
 #include "report/view.hpp"
 #include "results/store.hpp"
@@ -28,16 +28,7 @@ constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandw
                                          "bandwidth_write_peak_B_per_s", "stretch_max_last_second"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
-/// Vertices along one side; for a grid that is no square, the side of the square with as many.
-double width_of(const Resolution& r) { return std::sqrt(r.size()); }
-
-/// [p50, low, high, p95, p99, worst] in seconds; null without frames.
-json times_json(const FrameTimes& t) {
-  if (t.sorted.empty()) return json();
-  return {rounded(t.at(0.5)),  rounded(t.median.low), rounded(t.median.high),
-          rounded(t.at(0.95)), rounded(t.at(0.99)),   rounded(t.at(1))};
-}
-
+/// [p50, low, high, p95, p99, worst] in seconds, of each clock that has frames.
 void add_times(const Row& r, json& out) {
   const RunTimes& t = *r.times;
   if (t.wall.sorted.empty()) return;
@@ -47,7 +38,10 @@ void add_times(const Row& r, json& out) {
                                     {"gpu_time", &t.device},
                                     {"contact_wall", &t.contact_wall},
                                     {"contact_gpu_time", &t.contact_device}})
-    if (!times->sorted.empty()) out[name] = times_json(*times);
+    if (!times->sorted.empty())
+      for (const double s :
+           {times->at(0.5), times->median.low, times->median.high, times->at(0.95), times->at(0.99), times->at(1)})
+        out[name].push_back(rounded(s));
 }
 
 /// What a scene's cloth touches: "2 grips", "hand_capsules". Scenes of one kind may differ in the speed of it.
@@ -96,7 +90,7 @@ json figure_row(const Row& r) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
     out["published"] = r.published >= 0;
-    out["width"] = width_of(r.resolution);
+    out["width"] = std::sqrt(r.resolution.size());  // vertices along one side of the square with as many
     out["resolution"] = r.resolution.label();
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
     out["fps_low"] = finite_or_null(r.times->wall.rate.low);
@@ -155,12 +149,14 @@ json rows_json(const ViewTable& t) {
 }
 
 json table_json(const ViewTable& t, const RunTable& table) {
-  json runs = json::array(), solvers = json::array();
+  json runs = json::array();
   for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
-  for (const std::string& s : t.solvers) solvers.push_back(s);
-  return {
-      {"title", t.title},  {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs}, {"solver_column", t.solver_column},
-      {"solvers", solvers}};
+  return {{"title", t.title},
+          {"note", t.note},
+          {"rows", rows_json(t)},
+          {"runs", runs},
+          {"solver_column", t.solver_column},
+          {"solvers", t.solvers}};
 }
 
 std::string replaced(const std::string& text, const std::map<char, const char*>& by) {
@@ -193,10 +189,9 @@ std::string table_html(const Table& t) {
 
 /// The part that needs no script: title, facts, warnings, tiles and the first table.
 std::string head_html(const Page& page) {
-  std::string out =
-      "<h1>" + escaped(page.heading.title) +
-      "</h1><p>clothbench runs cloth solvers on the same scenes and "
-      "reports their speed together with its cost in error and in contact failures.</p><p class=\"meta\">";
+  std::string out = "<h1>" + escaped(page.heading.title) +
+                    "</h1><p>clothbench runs cloth solvers on the same scenes and reports their speed together with "
+                    "its cost in error and in contact failures.</p><p class=\"meta\">";
   for (const auto& [name, value] : page.heading.facts)
     out += (name == page.heading.facts.front().first ? "" : " · ") + escaped(name) + " <b>" + escaped(value) + "</b>";
   out += "</p>";
@@ -213,8 +208,14 @@ std::string head_html(const Page& page) {
   return out + "</div></div>";
 }
 
-/// Text inside a script element ends at "</script" or changes its meaning at "<!--": neither is left.
-std::string script_safe(const std::string& json_text) { return replaced(json_text, {{'<', "\\u003c"}}); }
+bool run_by_node(const fs::path& script, const fs::path& page, const fs::path& folder) {
+  try {
+    const ChildEnd end = ChildProcess({"node", script.string(), page.string(), folder.string()}).wait();
+    return end.how == ChildEnd::How::Exited && end.code == 0;
+  } catch (const Error&) {
+    return false;  // there is no Node
+  }
+}
 
 }  // namespace
 
@@ -236,8 +237,10 @@ json page_document(const RunTable& table, const Page& page) {
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
   const auto data = [](const char* id, const json& j) {
+    const std::string text = j.dump(-1, ' ', true, json::error_handler_t::replace);
+    // A script element ends at "</script", and changes its meaning at "<!--": neither is left.
     return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
-                       script_safe(j.dump(-1, ' ', true, json::error_handler_t::replace)));
+                       replaced(text, {{'<', "\\u003c"}}));
   };
   std::string all = data("clothbench-data", document) + data("clothbench-motions", motions.document);
   for (std::size_t k = 0; k < motions.blobs.size(); ++k)
@@ -246,16 +249,13 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
   for (const auto& [mark, text] : {std::pair<std::string, std::string>{kDataMark, all},
                                    {kHeadMark, head_html(page)},
                                    {kTitleMark, escaped(page.heading.title)}}) {
-    const std::size_t at = out.find(mark);
-    if (at == std::string::npos)
-      throw Error("the page's template has no place for " + mark + "; build clothbench again", ExitCode::CheckFailed);
-    out.replace(at, mark.size(), text);
+    out.replace(out.find(mark), mark.size(), text);
   }
   return out;
 }
 
 #ifndef CLOTHBENCH_WITH_PAGE
-PageTemplate page_template() { return {"", "this build was made without it (CLOTHBENCH_WITH_PAGE)"}; }
+PageTemplate page_template() { return {"", "this build was made without it, or without Node and npm"}; }
 Motions motions_of(const RunTable&, std::size_t) { return {}; }
 #endif
 
@@ -266,6 +266,25 @@ std::string write_page(const fs::path& out, const RunTable& table, const Page& p
   }
   write_file_atomically(out / "index.html", page_html(from.html, page, page_document(table, page), motions_of(table)));
   return "";
+}
+
+std::pair<std::string, std::string> draw_pictures(const fs::path& out, const PageTemplate& page) {
+  const fs::path folder = out / "figures", script = folder / "figures.cjs", markdown = folder / "figures.md";
+  const auto without = [](const std::string& why) {
+    return std::pair{"Figures were left out: " + why + ".", std::string()};
+  };
+  if (fs::exists(folder))
+    for (const fs::path& file : std::vector<fs::path>(fs::directory_iterator(folder), fs::directory_iterator()))
+      if (contains(std::array{".svg", ".pdf"}, file.extension())) fs::remove(file);
+  if (page.figures.empty()) return without(page.missing);
+  fs::create_directories(folder);
+  write_file_atomically(script, page.figures);
+  const bool drawn = run_by_node(script, out / "index.html", folder);
+  fs::remove(script);
+  if (!drawn) return without("Node 18 or later was not found, or failed (Debian: nodejs)");
+  const std::string shown = content_of(markdown);
+  fs::remove(markdown);
+  return {"", shown};
 }
 
 }  // namespace clothbench

@@ -20,14 +20,9 @@ struct PageTemplate {
 
 PageTemplate page_template();
 
-struct Drawn {
-  std::string fault;     ///< a sentence on what is missing, and why; empty if all was drawn
-  std::string markdown;  ///< shows the new pictures
-};
-
-/// Draws the figures of `out`/index.html into `out`/figures: SVG (by Node) and PDF (by rsvg-convert). Removes the
-/// pictures of an earlier report first.
-Drawn draw_pictures(const std::filesystem::path& out, const PageTemplate&);
+/// Draws the figures of `out`/index.html into `out`/figures by Node (src/stills.js). Removes the pictures of an earlier
+/// report first. Returns a sentence on why there are no pictures, empty if there are, and Markdown that shows them.
+std::pair<std::string, std::string> draw_pictures(const std::filesystem::path& out, const PageTemplate&);
 
 /// A section of the report: the same tables in report.md and on the page.
 struct PageSection {
@@ -42,9 +37,6 @@ struct Page {
   std::vector<std::string> notes;  ///< on plugins, verdicts
   std::vector<PageSection> sections;
 };
-
-/// Maximum size of packed motions and colliders in one page, as base64.
-inline constexpr std::size_t kMotionBudget_B = 3'500'000;
 
 /// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q, q in
 /// [0, 65535]. `bytes`: zlib of q (frame, axis, vertex; 16 bits) less its prediction, modulo 2^16. The prediction is
@@ -68,8 +60,9 @@ struct Motions {
   std::vector<std::string> blobs;
 };
 
-/// Reads trajectories from the runs' files, at most 150 frames of each, in order of interest until the budget is spent.
-Motions motions_of(const RunTable&, std::size_t budget_B = kMotionBudget_B);
+/// Reads trajectories from the runs' files, at most 150 frames of each, in order of interest until the base64 has this
+/// size.
+Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
 
 /// Six digits; null if it is not finite.
 nlohmann::json rounded(double);

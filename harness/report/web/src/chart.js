@@ -1,7 +1,7 @@
 // The one drawing of all figures: a chart becomes the text of an SVG, on the page and on paper.
 //   {panels, columns? of panels, height? or row? (of a band), right? (room for labels), tones? [[tone, meaning]]}
-// Several panels share a band axis y. A panel: {title?, solver?, x, y, marks, lines?, rules?}. An axis: {title, type: 'log', 'linear' or 'band', values? of
-// a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, row (with its solver), kind: 'point', 'cell', 'failed'
+// Several panels share a band axis y. A panel: {title?, solver?, x, y, marks, lines?, rules?}. An axis: {title, type: 'log', 'linear' (states its domain and ticks)
+// or 'band', values? of a band, domain?, ticks?, format?, text? of a band's value}. A mark: {x, y, row (with its solver), kind: 'point', 'cell', 'failed'
 // (at the upper edge) or 'none', open?, low?, high? (interval along `along`, 'x' or 'y'), thick? [low, high], shift? (in bands),
 // tone? and shape? (instead of the solver's), glyph?, note?}. A line: {solver, points: [[x, y]], dash?, label? (at one of its ends)}. Rules: [{x or y, text, zone?}].
 
@@ -10,11 +10,8 @@ export const unique = list => [...new Set(list)];
 export const span = values => [Math.min(...values) / 1.2, Math.max(...values) * 1.2];
 export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
 
-export const paper_widths = {
-  '': 238,
-  '-wide': 493
-};                         // points: 84 mm for one column of text, 174 mm for two
-const kPaperHeight = 311;  // points: 110 mm
+export const paper_widths = {'': 238, '-wide': 493};  // points: 84 mm for one column of text, 174 mm for two
+const kPaperHeight = 311;                             // points: 110 mm
 const kDashes = ['', '6 3', '2 3', '8 3 2 3', '1 2'];
 const kMost = 1e4;  // and least 1e-3: beyond, numbers have a power of ten
 
@@ -35,13 +32,6 @@ function decades(low, high) {
   const step = Math.ceil((last - first) / 8);
   for (let e = first; e <= last; e += step)
     for (const m of last - first > 2 ? [1] : [1, 2, 5]) out.push(Number(`${m}e${e}`));
-  return out.filter(t => t >= low * 0.999 && t <= high * 1.001);
-}
-
-function steps(low, high) {
-  const raw = (high - low) / 4, base = 10 ** Math.floor(Math.log10(raw || 1)), step = base * [1, 2, 5, 10].find(m => m * base >= raw);
-  const out = [];
-  for (let t = Math.ceil(low / step) * step; t <= high + 1e-9 * step; t += step) out.push(Number(t.toPrecision(12)));
   return out;
 }
 
@@ -51,21 +41,13 @@ function scale_of(axis, data, from, to) {
     const step = (to - from) / Math.max(axis.values.length, 1), place = new Map(axis.values.map((v, k) => [v, from + (k + 0.5) * step]));
     return {at: v => place.get(v), ticks: axis.values, text: axis.text ?? String, step: Math.abs(step)};
   }
-  const log = axis.type === 'log', values = data.filter(v => Number.isFinite(v) && (!log || v > 0));
-  let [low, high] = axis.domain ?? (values.length ? [Math.min(...values), Math.max(...values)] : log ? [1, 10] : [0, 1]);
-  if (!axis.domain) {
-    const room = log ? (high / low) ** 0.04 : 0.04 * (high - low);
-    [low, high] = low === high ? (log ? [low / 2, high * 2] : [low - 0.5, high + 0.5]) :
-        log                    ? [low / room, high * room] :
-                                 [low, high + room];
-  }
-  const f = log ? Math.log : v => v, at = v => from + (f(v) - f(low)) / (f(high) - f(low)) * (to - from);
+  const log = axis.type === 'log', values = data.filter(v => v > 0 && v < Infinity);
+  const [least, most] = values.length ? [Math.min(...values), Math.max(...values)] : [1, 10], room = least === most ? 2 : (most / least) ** 0.04;
+  const [low, high] = axis.domain ?? [least / room, most * room], f = log ? Math.log : v => v;
   return {
-    at,
-    low,
-    high,
-    ticks: (axis.ticks ?? (log ? decades(low, high) : steps(low, high))).filter(t => t >= low && t <= high),
-    text: axis.format ?? (t => number(t))
+    at: v => from + (f(v) - f(low)) / (f(high) - f(low)) * (to - from),
+    ticks: (axis.ticks ?? decades(low, high)).filter(t => t >= low && t <= high),
+    text: axis.format ?? number
   };
 }
 
@@ -143,6 +125,9 @@ function draw_rules(look, panel, x, y, {left, right, top, bottom}) {
   return out;
 }
 
+/// Places of a name about the end of its line: side, and rows above or below.
+const kPlaces = [[1, 0], [1, -1.4], [1, 1.4], [-1, 0], [0, -1.7], [0, 1.8], [1, -2.9], [1, 2.9], [-1, -1.7], [-1, 1.7]];
+
 /// Names at the ends of lines, each at the free place nearest to an end.
 function draw_labels(look, lines, taken, {left, right, top, bottom}) {
   let out = '';
@@ -150,18 +135,12 @@ function draw_labels(look, lines, taken, {left, right, top, bottom}) {
       list.filter(b => a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]).length;
   for (const l of lines) {
     if (!l.label || !l.at.length) continue;
-    const width = l.label.length * look.size * 0.6 + 4, height = look.size + 2;
+    const width = l.label.length * look.size * 0.6 + 4, height = look.size + 2, gap = 9 * look.unit;
     let best = null;
     for (const [n, [x, y]] of [l.at.at(-1), l.at[0], l.at[l.at.length >> 1]].entries())
-      for (const [k, [dx, dy]] of [[1, 0], [1, -1.4], [1, 1.4], [-1, 0], [0, -1.7], [0, 1.8], [1, -2.9], [1, 2.9], [-1, -1.7], [-1, 1.7]]
-               .map(
-                   ([side, rows]) =>
-                       [side > 0     ? 9 * look.unit :
-                            side < 0 ? -width - 9 * look.unit :
-                                       -width / 2,
-                        rows * 9 * look.unit])
-               .entries()) {
-        const box = [x + dx, y + dy - height / 2, width, height];
+      for (const [k, [side, rows]] of kPlaces.entries()) {
+        const beside = side > 0 ? gap : side < 0 ? -width - gap : -width / 2;
+        const box = [x + beside, y + rows * gap - height / 2, width, height];
         const out_of = box[0] < left || box[0] + width > right || box[1] < top || box[1] + height > bottom;
         const cost = 10 * overlap(box, taken) + 2 * n + k / 4 + (out_of ? 100 : 0);
         if (best === null || cost < best.cost) best = {cost, box};

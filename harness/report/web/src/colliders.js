@@ -2,31 +2,33 @@
 import * as THREE from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 
-/// The frames f and g around a time, and how far it is from f to g; `rate`: frames per second.
-function around(time, rate, frames) {
-  const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at);
-  return {f, g: Math.min(f + 1, frames - 1), w: at - f};
+/// A function of time that gives an array's values of one frame, interpolated linearly; `rate`: frames per second.
+function sampled({shape: [frames], values}, rate) {
+  const size = values.length / frames, out = new Float32Array(size);
+  return time => {
+    const at = Math.min(Math.max(time * rate, 0), frames - 1), f = Math.floor(at), a = f * size, b = Math.min(f + 1, frames - 1) * size;
+    for (let k = 0; k < size; ++k) out[k] = values[a + k] * (f + 1 - at) + values[b + k] * (at - f);
+    return out;
+  };
 }
 
-/// Ends a and b and radius of each capsule at a time; `rate`: frames per second.
+/// Ends and radius of each capsule at a time: 7 values.
 function capsules(array, rate) {
-  const [frames, count] = array.shape, value = (f, k, j) => array.values[(f * count + k) * 7 + j], group = new THREE.Group();
-  const parts = Array.from({length: count}, (_, k) => {
-    const radius = value(0, k, 6), length = Math.hypot(...[0, 1, 2].map(j => value(0, k, j + 3) - value(0, k, j)));
-    const mesh = new THREE.Mesh(new THREE.CapsuleGeometry(radius, length, 6, 14));
-    group.add(mesh);
-    return {mesh, whole: length + 2 * radius, line: new THREE.Line3(), radius: 0};
-  });
-  const up = new THREE.Vector3(0, 1, 0), nearest = new THREE.Vector3(), axis = new THREE.Vector3();
+  const at = sampled(array, rate), group = new THREE.Group(), up = new THREE.Vector3(0, 1, 0), nearest = new THREE.Vector3(), axis = new THREE.Vector3();
+  const parts = Array.from({length: array.shape[1]}, () => ({line: new THREE.Line3()}));
   const move = time => {
-    const {f, g, w} = around(time, rate, frames);
+    const x = at(time);
     parts.forEach((p, k) => {
-      const at = j => value(f, k, j) * (1 - w) + value(g, k, j) * w;
-      p.line.start.set(at(0), at(1), at(2));
-      p.line.end.set(at(3), at(4), at(5));
-      p.radius = at(6);
-      p.line.getCenter(p.mesh.position);
+      p.line.start.fromArray(x, 7 * k);
+      p.line.end.fromArray(x, 7 * k + 3);
+      p.radius = x[7 * k + 6];
       const length = p.line.delta(axis).length();
+      if (!p.mesh) {
+        p.mesh = new THREE.Mesh(new THREE.CapsuleGeometry(p.radius, length, 6, 14));
+        p.whole = length + 2 * p.radius;
+        group.add(p.mesh);
+      }
+      p.line.getCenter(p.mesh.position);
       if (length > 0) p.mesh.quaternion.setFromUnitVectors(up, axis.divideScalar(length));
       p.mesh.scale.y = (length + 2 * p.radius) / p.whole;
     });
@@ -62,20 +64,16 @@ function triangle_mesh(arrays, rate, convex) {
   const tree = new MeshBVH(geometry);  // sorts the index
   let move = null;
   if (arrays.joint_matrix) {
-    const [frames, joints] = arrays.joint_matrix.shape, m = arrays.joint_matrix.values, index = arrays.joint_index.values,
-                   weight = arrays.joint_weight.values;
+    const matrices = sampled(arrays.joint_matrix, rate), index = arrays.joint_index.values, weight = arrays.joint_weight.values;
     move = time => {
-      const {f, g, w} = around(time, rate, frames);
-      for (let v = 0; v < position.length / 3; ++v)
+      const m = matrices(time);
+      for (let v = 0; v < position.length; v += 3)
         for (let r = 0; r < 3; ++r) {
-          let sum = 0;
+          position[v + r] = 0;
           for (let s = 0; s < 4; ++s) {
-            const share = weight[4 * v + s];
-            if (share === 0) continue;
-            const one = (f * joints + index[4 * v + s]) * 12 + 4 * r, two = (g * joints + index[4 * v + s]) * 12 + 4 * r;
-            for (let c = 0; c < 4; ++c) sum += share * (m[one + c] * (1 - w) + m[two + c] * w) * (c < 3 ? rest[3 * v + c] : 1);
+            const j = 12 * index[4 * v / 3 + s] + 4 * r;
+            position[v + r] += weight[4 * v / 3 + s] * (m[j] * rest[v] + m[j + 1] * rest[v + 1] + m[j + 2] * rest[v + 2] + m[j + 3]);
           }
-          position[3 * v + r] = sum;
         }
       geometry.attributes.position.needsUpdate = true;
       geometry.computeVertexNormals();
@@ -103,19 +101,14 @@ function triangle_mesh(arrays, rate, convex) {
 
 /// Small spheres at the points where hands hold the cloth.
 function grips(arrays, rate) {
-  const [frames, count] = arrays.target_m.shape, x = arrays.target_m.values, held = arrays.held.values, group = new THREE.Group();
-  const balls = Array.from({length: count}, () => new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
-  group.add(...balls);
+  const target = sampled(arrays.target_m, rate), held = sampled(arrays.held, rate), group = new THREE.Group();
+  for (let k = 0; k < arrays.target_m.shape[1]; ++k) group.add(new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
   return {
     object: group,
-    move: time => {
-      const {f, g, w} = around(time, rate, frames);
-      balls.forEach((b, k) => {
-        const value = a => x[3 * (f * count + k) + a] * (1 - w) + x[3 * (g * count + k) + a] * w;
-        b.position.set(value(0), value(1), value(2));
-        b.visible = held[f * count + k] > 0;
-      });
-    }
+    move: time => group.children.forEach((ball, k) => {
+      ball.position.fromArray(target(time), 3 * k);
+      ball.visible = held(time)[k] > 0;
+    })
   };
 }
 

@@ -22,12 +22,6 @@ export function select(label, options, value, changed) {
   return element('label', {}, label, list);
 }
 
-export function download(name, type, content) {
-  const url = URL.createObjectURL(new Blob([content], {type}));
-  element('a', {href: url, download: name}).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
-}
-
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
 

@@ -10,7 +10,6 @@ const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed'
 const kRefresh_Hz = [72, 90];
 const percent = v => v === null || v === undefined ? '–' : `${number(100 * v, 3)} %`;
 const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
-const file_of = name => name.replace(/[^A-Za-z0-9._=-]+/g, '-');
 const by_solver = rows => unique(rows.map(r => r.solver)).map(solver => [solver, rows.filter(r => r.solver === solver)]);
 const choice = (label, values, first, text = String) =>
     ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
@@ -119,7 +118,7 @@ function rates(doc) {
     rows: s => {
       const {field, scale} = kRates[s.Value], mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field], row: r}));
+      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field]}));
     },
     chart: (rows, s, width) => ({
       right: 90,
@@ -182,7 +181,7 @@ function frame_times(doc) {
     ],
     rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => {
       const [p50_s, low_s, high_s, p95_s, p99_s, worst_s] = r[s.Time];
-      return {...r, p50_s, low_s, high_s, p95_s, p99_s, worst_s, row: r};
+      return {...r, p50_s, low_s, high_s, p95_s, p99_s, worst_s};
     }),
     chart: rows => {
       const present = unique(rows.map(r => r.solver)), worst = Math.max(0, ...rows.map(r => 1e3 * r.p99_s));
@@ -237,7 +236,7 @@ function verdicts(doc) {
     hero: true,
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Select a cell for the criteria that a run violates.',
-    rows: () => all.map(r => ({...r, criteria: why(r).join('; '), row: r})),
+    rows: () => all.map(r => ({...r, criteria: why(r).join('; ')})),
     chart: (rows, s, width) => {
       const [across, down] = ['label', 'scene'].map(field => unique(rows.map(r => r[field])));
       const turned = width >= 740 && down.length >= 12;  // in wide windows many scenes become columns
@@ -256,7 +255,7 @@ function verdicts(doc) {
 }
 
 function failure_speed(doc) {
-  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default').map(r => ({...r, row: r}));
+  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default');
   const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)), name = r => `${r.kind} · ${r.solver}`;
   return rows.length && {
     id: 'failure-speed',

@@ -11,12 +11,11 @@ const kMethod = ['features', 'environment'];
 
 function start_theme() {
   const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
-  const dark = () => root.dataset.theme ? root.dataset.theme === 'dark' : system.matches;
+  const dark = () => root.style.colorScheme ? root.style.colorScheme === 'dark' : system.matches;
   const tell = () => $('theme').setAttribute('aria-pressed', String(dark()));
   $('theme').addEventListener('click', () => {
-    root.dataset.theme = dark() ? 'light' : 'dark';
+    root.style.colorScheme = dark() ? 'light' : 'dark';
     tell();
-    dispatchEvent(new Event('theme'));
   });
   system.addEventListener('change', tell);
   tell();
@@ -74,11 +73,7 @@ function start_motions(doc, motions) {
     (0, eval)($('viewer-program').textContent);
     window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);
   };
-  new IntersectionObserver((list, self) => {
-    if (!list.some(e => e.isIntersecting)) return;
-    self.disconnect();
-    load();
-  }, {rootMargin: '300px'}).observe($('motions'));
+  new IntersectionObserver(list => list.some(e => e.isIntersecting) && load(), {rootMargin: '300px'}).observe($('motions'));
   window.clothbench.load_viewer = load;
 }
 
@@ -90,15 +85,7 @@ function start_navigation() {
     const now = end ? all.at(-1) : all.findLast(s => s.getBoundingClientRect().top < edge) ?? all[0];
     links.forEach((l, k) => all[k] === now ? l.setAttribute('aria-current', 'true') : l.removeAttribute('aria-current'));
   };
-  let waiting = false;
-  addEventListener('scroll', () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      spy();
-    });
-  }, {passive: true});
+  addEventListener('scroll', spy, {passive: true});  // at most once in a frame
   addEventListener('resize', bar);
   const open = on => {
     $('contents').classList.toggle('open', on);

@@ -1,4 +1,5 @@
 // Packed motions and colliders back into numbers; layout: harness/report/web/page.hpp.
+import {Box3, Vector3} from 'three';
 
 /// The buffer behind base64 of zlib.
 function words(index) {
@@ -12,6 +13,8 @@ function grid_triangles([columns, rows]) {
     for (let a = j * columns; a + 1 < (j + 1) * columns; ++a) out.push(a, a + 1, a + columns + 1, a, a + columns + 1, a + columns);
   return out;
 }
+
+const distance = (x, a, b) => Math.hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1], x[3 * a + 2] - x[3 * b + 2]);
 
 export class Motion {
   /// `entry`: one of the document's motions.
@@ -27,6 +30,7 @@ export class Motion {
       const frame = Math.floor(k / size), axis = Math.floor(k % size / n);
       m.position[frame * size + 3 * (k % n) + axis] = entry.low_m[axis] + q[k] * entry.step_m;
     }
+    m.box = new Box3().setFromArray(m.position.subarray(0, size));  // of the first frame
     return m;
   }
 
@@ -50,29 +54,16 @@ export class Motion {
       const b = this.triangles[k % 3 === 2 ? k - 2 : k + 1], key = Math.min(a, b) * n + Math.max(a, b), along = Math.abs(a - b);
       if (seen.has(key) || (columns && along !== 1 && along !== columns)) return;
       seen.add(key);
-      out.push([a, b, Math.hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1], x[3 * a + 2] - x[3 * b + 2])]);
+      out.push([a, b, distance(x, a, b)]);
     });
     return out;
   }
 
   /// Place of each vertex in the first frame, along its two longest sides, over the longest.
   places() {
-    const {low, high} = this.box(0), sides = high.map((h, a) => h - low[a]);
-    const [u, v] = [0, 1, 2].sort((a, b) => sides[b] - sides[a]), longest = sides[u] || 1;
-    return Array.from(
-        {length: 2 * this.vertices}, (_, k) => k % 2 ? (this.position[3 * (k >> 1) + v] - low[v]) / longest :
-                                                       (this.position[3 * (k >> 1) + u] - low[u]) / longest);
-  }
-
-  /// Least and greatest corner of one frame.
-  box(frame) {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], size = 3 * this.vertices;
-    for (let k = 0; k < size; ++k) {
-      const x = this.position[frame * size + k], a = k % 3;
-      low[a] = Math.min(low[a], x);
-      high[a] = Math.max(high[a], x);
-    }
-    return {low, high};
+    const sides = this.box.getSize(new Vector3()).toArray(), low = this.box.min.toArray();
+    const along = [0, 1, 2].sort((a, b) => sides[b] - sides[a]), longest = sides[along[0]] || 1;
+    return Array.from({length: 2 * this.vertices}, (_, k) => (this.position[3 * (k >> 1) + along[k % 2]] - low[along[k % 2]]) / longest);
   }
 
   /// A sentence on what was left out of the motion.
@@ -87,11 +78,7 @@ export class Motion {
 export function strain(edges, position, out) {
   out.fill(0);
   for (const [a, b, rest] of edges) {
-    const e = Math.abs(
-        Math.hypot(
-            position[3 * a] - position[3 * b], position[3 * a + 1] - position[3 * b + 1], position[3 * a + 2] - position[3 * b + 2]) /
-            rest -
-        1);
+    const e = Math.abs(distance(position, a, b) / rest - 1);
     out[a] = Math.max(out[a], e);
     out[b] = Math.max(out[b], e);
   }

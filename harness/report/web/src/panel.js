@@ -74,17 +74,17 @@ export class Panel {
   /// The box to view: around the cloth at the start. A cloth that slides off a desk falls for metres; a box around its whole
   /// path would reduce it to a dot.
   view_box() {
-    const {low, high} = this.motion.box(0), box = new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high));
-    return box.expandByScalar(0.25 * Math.max(...box.getSize(new THREE.Vector3()).toArray()));
+    const {box} = this.motion;
+    return box.clone().expandByScalar(0.25 * Math.max(...box.getSize(new THREE.Vector3()).toArray()));
   }
 
   /// The corner from which the cloth is in front of its colliders: signs of x and z.
   side() {
-    const solid = new THREE.Box3(), {low, high} = this.motion.box(0);
+    const solid = new THREE.Box3(), {box} = this.motion;
     for (const c of this.colliders) solid.union(new THREE.Box3().setFromObject(c.object));
     if (solid.isEmpty()) return [1, 1];
-    const from = solid.getCenter(new THREE.Vector3()), slack = 0.02 * Math.hypot(...low.map((x, a) => high[a] - x));
-    return [0, 2].map(a => (low[a] + high[a]) / 2 - from.getComponent(a) < -slack ? -1 : 1);
+    const away = box.getCenter(new THREE.Vector3()).sub(solid.getCenter(new THREE.Vector3())), slack = 0.02 * box.getSize(new THREE.Vector3()).length();
+    return [away.x, away.z].map(x => x < -slack ? -1 : 1);
   }
 
   /// Moves everything to `time` and colours the cloth: by "checks", "strain" (`most`: strain at the ramp's end) or

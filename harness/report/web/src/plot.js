@@ -1,9 +1,9 @@
 // The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
-// its values and downloads as a picture.
-import {draw, draw_on_paper, paper_widths} from './chart.js';
-import {button, download, element, file_name, say, select} from './dom.js';
+// its values.
+import {draw} from './chart.js';
+import {element, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
-import {page_look, paper_look, set_value, shown, state} from './state.js';
+import {page_look, set_value, shown, state} from './state.js';
 import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
@@ -32,13 +32,16 @@ class Figure {
     this.remark = element('p', {class: 'note'});
     this.values = element('div', {});
     this.choices = entry.choices ?? [];
-    this.controls = this.choices.map(c => select(c.label, [], '', v => this.choose(c.label, v)));
+    this.controls = this.choices.map(({label}) => select(label, [], '', v => {
+      set_value(`${entry.id}.${label}`, v);
+      this.redraw();
+    }));
     this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
     this.again = element('span', {});
     this.block = element(
         'figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
         element('figcaption', {}, entry.caption), this.remark,
-        element('div', {class: 'bar small'}, this.details, button('SVG', `${entry.id}: download as SVG`, () => this.save())));
+        element('div', {class: 'bar small'}, this.details));
     this.listen();
     figures.push(this);
   }
@@ -48,7 +51,10 @@ class Figure {
     this.plot.addEventListener('pointermove', e => this.point(mark_of(e), e.clientX, e.clientY));
     this.plot.addEventListener('pointerleave', () => this.point(-1));
     this.plot.addEventListener('blur', () => this.point(-1));
-    this.plot.addEventListener('click', e => this.point(mark_of(e), e.clientX, e.clientY) && this.copy());
+    this.plot.addEventListener('click', e => {
+      this.point(mark_of(e), e.clientX, e.clientY);
+      this.copy();
+    });
     this.plot.addEventListener('keydown', e => {
       const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
       if (step && this.marks.length) {
@@ -71,19 +77,13 @@ class Figure {
       this.plot.querySelector(`[data-i="${at}"]`)?.classList.add('on');
     }
     this.at = at;
-    const row = this.marks[at]?.row, command = row && command_of(this.doc, row.row ?? row);
-    show_tip(row ? [...this.entry.tip(row), row.file, command && `Click: ${command}`] : [], x, y);
-    return row;
+    const row = this.marks[at]?.row;
+    this.command = row && command_of(this.doc, row);
+    show_tip(row ? [...this.entry.tip(row), row.file, this.command && `Click: ${this.command}`] : [], x, y);
   }
 
   copy() {
-    const row = this.marks[this.at]?.row, command = row && command_of(this.doc, row.row ?? row);
-    if (command) copy_command(command);
-  }
-
-  choose(label, value) {
-    set_value(`${this.entry.id}.${label}`, value);
-    this.redraw();
+    if (this.command) copy_command(this.command);
   }
 
   settle() {
@@ -102,7 +102,7 @@ class Figure {
     this.state = this.settle();
     const rows = this.rows = entry.rows(this.state).filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
     this.heading.textContent = entry.title(this.state);
-    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows.map(r => r.row ?? r)) ?? '');
+    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows) ?? '');
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;
     if (!rows.length) {
@@ -122,19 +122,13 @@ class Figure {
     const table = {
       title: `Values: ${entry.title(this.state)}`,
       rows: [entry.columns, ...rows.map(r => entry.columns.map(name => typeof r[name] === 'number' ? [String(r[name]), r[name]] : String(r[name] ?? '')))],
-      runs: rows.map(r => doc.runs.indexOf(r.row ?? r)),
+      runs: [...rows.keys()],
       solver_column: -1,
       solvers: []
     };
-    const values = new ShownTable(doc, this.look, table, `${entry.id}-values`);
+    const values = new ShownTable({...doc, runs: rows}, this.look, table, `${entry.id}-values`);
     values.fill();
     this.values.replaceChildren(values.block);
-  }
-
-  save() {
-    if (!this.drawn) this.redraw();
-    const {svg} = draw_on_paper(this.entry, this.rows, this.state, paper_look(this.look), paper_widths['-wide']);
-    download(`${file_name(this.entry.title(this.state))}.svg`, 'image/svg+xml', svg);
   }
 }
 

@@ -15,7 +15,6 @@ const kReadouts = {
   contact_length_m: v => `contour ${small(1e3 * v)} mm`,
   depth_m: v => `depth ${small(1e3 * v)} mm`
 };
-const is_dark = () => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).every(c => Number(c) < 80);
 
 class Viewer {
   constructor(root, motions, rows) {
@@ -24,15 +23,13 @@ class Viewer {
     this.build();
     const context = this.canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
     if (context)
-      this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context});
+      this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context, alpha: true});
     else
       this.root.prepend(element('p', {class: 'warning'}, 'This browser has no WebGL: motions are drawn slowly, coloured by the direction of the surface.'));
     this.renderer?.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
     this.controls = new OrbitControls(this.camera, this.canvas);
-    const redraw = () => this.stale = true;
-    this.controls.addEventListener('change', redraw);
-    addEventListener('theme', redraw);
+    this.controls.addEventListener('change', () => this.stale = true);
     addEventListener('solvers', () => this.show_scene(this.scene));
     new ResizeObserver(() => this.resize()).observe(this.stage);
     const loop = now => {
@@ -44,12 +41,7 @@ class Viewer {
 
   build() {
     const scenes = unique(this.motions.runs.map(m => m.row.scene)), options = list => list.map(s => ({value: s, text: s}));
-    this.canvas = element('canvas', {
-      role: 'img',
-      tabindex: '0',
-      'aria-label': 'Motions side by side. Space: play or pause. Arrow keys: one frame. Home and End: first and last frame. ' +
-          'Drag: rotate.'
-    });
+    this.canvas = element('canvas', {role: 'img', 'aria-label': 'Motions side by side. Drag: rotate.'});
     this.overlay = element('div', {class: 'panels'});
     this.stage = element('div', {id: 'stage'}, this.canvas, this.overlay);
     this.play_button = button('▶ Play', null, () => this.play(!this.playing));
@@ -57,9 +49,11 @@ class Viewer {
       id: 'scrub',
       type: 'range',
       min: '0',
-      step: 'any',
       'aria-label': 'Time',
-      oninput: () => this.seek(Number(this.scrub.value))
+      oninput: () => {
+        this.play(false);
+        this.seek(this.times[Number(this.scrub.value)]);
+      }
     });
     this.clock = element('output', {id: 'clock'});
     this.legend = element('span', {class: 'bar'});
@@ -70,20 +64,6 @@ class Viewer {
             select('Colour', options(kColours), 'checks', v => this.colour(v)), this.legend),
         this.stage, this.absent = element('p', {class: 'note'}), element('div', {class: 'bar'}, this.play_button, this.scrub, this.clock),
         this.notes = element('ul', {class: 'note'}));
-    this.canvas.addEventListener('keydown', e => this.key(e));
-  }
-
-  key(e) {
-    const keys = {
-      ' ': () => this.play(!this.playing),
-      ArrowLeft: () => this.step(-1),
-      ArrowRight: () => this.step(1),
-      Home: () => this.seek(0),
-      End: () => this.seek(this.end)
-    };
-    if (!keys[e.key]) return;
-    keys[e.key]();
-    e.preventDefault();
   }
 
   async show_scene(scene) {
@@ -94,12 +74,9 @@ class Viewer {
     // Solvers that no run of the report has, such as an engine that is not installed, are named too.
     const {look, floor, baseline} = window.clothbench.document.solvers, known = Object.keys(look).filter(s => ![...floor, ...baseline].includes(s));
     const absent = unique([...this.rows.filter(r => !r.published).map(r => r.solver), ...known]).filter(s => !here.some(m => m.row.solver === s));
-    this.absent.textContent = absent.map(s => `${s}: ${this.why_absent(this.rows.find(r => r.scene === scene && r.solver === s))}`).join('; ');
+    const why = row => !row ? 'not run' : row.status === 'ok' ? 'its motion is not in this page' : row.status;
+    this.absent.textContent = absent.map(s => `${s}: ${why(this.rows.find(r => r.scene === scene && r.solver === s))}`).join('; ');
     say(`${scene}: ${this.panels.length} motions`);
-  }
-
-  why_absent(row) {
-    return !row ? 'not run' : row.status === 'ok' ? 'its motion is not in this page' : row.status;
   }
 
   async set(entries) {
@@ -114,8 +91,9 @@ class Viewer {
 
   /// All panels show the same part of the scene.
   arrange() {
-    this.end = Math.max(0, ...this.panels.map(p => p.motion.time_s.at(-1)));
-    this.scrub.max = String(this.end || 1);
+    [this.times = [0]] = this.panels.map(p => p.motion.time_s).sort((a, b) => b.at(-1) - a.at(-1));
+    this.end = this.times.at(-1);
+    this.scrub.max = String(this.times.length - 1);
     const box = this.panels.reduce((all, p) => all.union(p.view_box()), new THREE.Box3());
     this.radius = box.isEmpty() ? 1 : Math.max(0.1, box.getSize(new THREE.Vector3()).length() / 2);
     this.middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
@@ -182,14 +160,6 @@ class Viewer {
     this.stale = true;
   }
 
-  /// To the next stored frame of the first motion.
-  step(direction) {
-    this.play(false);
-    const t = this.panels[0]?.motion.time_s ?? [0], slack = 1e-9;
-    const next = direction > 0 ? t.find(x => x > this.time + slack) : t.findLast(x => x < this.time - slack);
-    if (next !== undefined) this.seek(next);
-  }
-
   tick(now) {
     const passed = Math.min((now - this.last) / 1000, 0.1);
     this.last = now;
@@ -203,7 +173,7 @@ class Viewer {
   draw() {
     this.stale = false;
     if (!this.panels.length) return;
-    this.scrub.value = String(this.time);
+    this.scrub.value = String(this.times.findLastIndex(t => t <= this.time));
     this.clock.textContent = `${this.time.toFixed(3)} s of ${this.end.toFixed(2)} s`;
     this.scrub.setAttribute('aria-valuetext', this.clock.textContent);
     const width = this.stage.clientWidth / this.columns, height = this.stage.clientHeight / this.rows_of_panels;
@@ -211,7 +181,6 @@ class Viewer {
     this.camera.updateProjectionMatrix();
     this.panels.forEach((p, k) => {
       const shown = p.show(this.time, this.colouring, this.most);
-      p.scene.background = new THREE.Color(is_dark() ? 0x1a2028 : 0xf2f4f6);
       p.readout.textContent = this.readout(p, shown);
       if (!this.renderer) return this.draw_svg(p, width, height);
       const x = (k % this.columns) * width, y = this.stage.clientHeight - (Math.floor(k / this.columns) + 1) * height;
