@@ -39,14 +39,11 @@ struct BadRoom {
 class BadRooms : public testing::TestWithParam<BadRoom> {};
 
 TEST_P(BadRooms, SayWhere) {
-  std::string text = room_text();
-  const std::size_t at = text.find(GetParam().from);
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, std::string(GetParam().from).size(), GetParam().to);
+  const std::string text = replaced(room_text(), GetParam().from, GetParam().to);
   const std::string message = error_of([&] { parse_room(text, "my-room.json", "r"); });
   EXPECT_EQ(message.find("my-room.json: "), 0u) << message;
-  EXPECT_NE(message.find(GetParam().where), std::string::npos) << message;
-  EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
+  EXPECT_PRED2(mentions, message, GetParam().where);
+  EXPECT_PRED2(mentions, message, GetParam().says);
 }
 
 const std::string kVertices = "\"vertices\": \"", kIndices = "\"indices\": \"";
@@ -93,10 +90,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& p) { return p.param.name; });
 
 TEST(RoomText, MissingFileAndFolder) {
-  EXPECT_NE(error_of([] { load_room("/nonexistent/room.json"); }).find("/nonexistent/room.json: no such file"),
-            std::string::npos);
-  EXPECT_NE(error_of([] { load_room(CLOTHBENCH_SOURCE_DIR); }).find("folder"), std::string::npos);
+  EXPECT_PRED2(mentions, error_of([] { load_room("/nonexistent/room.json"); }), "/nonexistent/room.json: no such file");
+  EXPECT_PRED2(mentions, error_of([] { load_room(CLOTHBENCH_SOURCE_DIR); }), "folder");
 }
+
+struct Edit {
+  std::string from, to, says;
+};
 
 fs::path right_hand(const AssetSource& source) {
   return source.root / "@webxr-input-profiles/assets/dist/profiles/generic-hand/right.glb";
@@ -105,30 +105,21 @@ fs::path right_hand(const AssetSource& source) {
 TEST(Glb, WrongJsonIsAnError) {
   NEED_NPM_ASSETS(source);
   const std::string text = content_of(right_hand(source));
-  struct Edit {
-    std::string from, to, says;
-  };
   for (const Edit& e : {Edit{"\"ring-finger-tip\"", "\"ring-finger-top\"", "not a WebXR hand joint"},
                         Edit{"\"count\":1360", "\"count\":9999", "no more than its buffer view holds"},
                         Edit{"\"WEIGHTS_0\"", "\"WEIGHTS_9\"", "\"WEIGHTS_0\" is missing"},
                         Edit{"\"bufferView\":4", "\"bufferView\":9", "edited.glb: "},
                         Edit{"\"inverseBindMatrices\":6", "\"inverseBindMatrices\":0", "/accessors/0"}}) {
-    std::string edited = text;
-    const std::size_t at = edited.find(e.from);
-    ASSERT_NE(at, std::string::npos) << e.from;
     ASSERT_EQ(e.to.size(), e.from.size()) << "the chunk's length is in the header";
-    edited.replace(at, e.from.size(), e.to);
+    const std::string edited = replaced(text, e.from, e.to);
     const std::string message = error_of([&] { parse_hand_glb(edited, "edited.glb"); });
-    EXPECT_NE(message.find(e.says), std::string::npos) << message;
+    EXPECT_PRED2(mentions, message, e.says);
   }
 }
 
 TEST(PoseModule, Damage) {
   NEED_NPM_ASSETS(source);
   const std::string text = content_of(source.root / "iwer/lib/device/configs/hand/relaxed.js");
-  struct Edit {
-    std::string from, to, says;
-  };
   for (const Edit& e :
        {Edit{"'thumb-tip'", "'thumb-top'", "/jointTransforms: \"thumb-tip\" is missing"},
         Edit{"radius:", "radios:", "/jointTransforms/wrist: \"radius\" is missing"},
@@ -138,13 +129,10 @@ TEST(PoseModule, Damage) {
         Edit{"offsetMatrix: [", "offsetMatrix: [Math.PI * ", "not valid JSON"},
         Edit{"offsetMatrix: [", "offsetMatrix: [NaN, ", "not valid JSON"},
         Edit{"'thumb-tip'", "'thumb-tip", "not valid JSON"}, Edit{"=", "", "expected a module"}}) {
-    std::string edited = text;
-    const std::size_t at = edited.find(e.from);
-    ASSERT_NE(at, std::string::npos) << e.from;
-    edited.replace(at, e.from.size(), e.to);
+    const std::string edited = replaced(text, e.from, e.to);
     const std::string message = error_of([&] { parse_pose_js(edited, "pose.js"); });
     EXPECT_EQ(message.find("pose.js"), 0u) << message;
-    EXPECT_NE(message.find(e.says), std::string::npos) << message;
+    EXPECT_PRED2(mentions, message, e.says);
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include "assets/assets.hpp"
 #include "assets/json_at.hpp"
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 
 namespace clothbench::assets {
 

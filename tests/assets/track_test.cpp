@@ -41,7 +41,7 @@ TEST(HandTrack, StandsStillOutsideItsKeys) {
   EXPECT_TRUE(sample(track, hand, 2.999).grip);
   EXPECT_FALSE(sample(track, hand, 3).grip);
   EXPECT_NE(error_of([&] { sample(track, hand, std::numeric_limits<double>::quiet_NaN()); }), "");
-  EXPECT_NE(error_of([&] { sample(track, open_hand(AssetSource{}, Side::Left), 0); }).find("right"), std::string::npos);
+  EXPECT_PRED2(mentions, error_of([&] { sample(track, open_hand(AssetSource{}, Side::Left), 0); }), "right");
 }
 
 TEST(HandTrack, RotationTurnsAboutXThenYThenZ) {
@@ -72,15 +72,11 @@ struct Bad {
 class BadTracks : public testing::TestWithParam<Bad> {};
 
 TEST_P(BadTracks, SayWhere) {
-  std::string text = kTwoKeys;
-  const std::string from = GetParam().from;
-  const std::size_t at = text.find(from);
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, from.size(), GetParam().to);
+  const std::string text = replaced(kTwoKeys, GetParam().from, GetParam().to);
   const std::string message = error_of([&] { parse_hand_track(text, "my-track.json"); });
   EXPECT_EQ(message.find("my-track.json: "), 0u) << message;
-  EXPECT_NE(message.find(GetParam().pointer), std::string::npos) << message;
-  EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
+  EXPECT_PRED2(mentions, message, GetParam().pointer);
+  EXPECT_PRED2(mentions, message, GetParam().says);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -106,9 +102,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& p) { return p.param.name; });
 
 TEST(HandTrack, NeedsAKey) {
-  EXPECT_NE(
-      error_of([] { parse_hand_track(R"({"hand": "left", "keys": []})", "t"); }).find("/keys: expected at least one"),
-      std::string::npos);
+  EXPECT_PRED2(mentions, error_of([] { parse_hand_track(R"({"hand": "left", "keys": []})", "t"); }),
+               "/keys: expected at least one");
 }
 
 TEST(HandTrack, AllOfTheScenariosLoad) {

@@ -22,11 +22,7 @@ double winding_number(const Point<3>& p, const TriangleTree& mesh) {
 TEST(Inside, AgreesWithSolidAngles) {
   const Mesh ball = bumpy_ball(10, 0.2);
   // A second one through the first: the winding number is 2 where both are.
-  Mesh both = ball;
-  const Mesh other = ball.moved({0.15, 0.02, 0.01});
-  both.positions.insert(both.positions.end(), other.positions.begin(), other.positions.end());
-  const auto shift = static_cast<std::uint32_t>(ball.positions.size() / 3);
-  for (const auto& t : other.triangles) both.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  const Mesh both = together(ball, ball.moved({0.15, 0.02, 0.01}));
   const TriangleTree tree(both.view());
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-0.3, 0.4);

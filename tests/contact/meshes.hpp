@@ -104,4 +104,16 @@ inline ContactSample against(const Mesh& cloth, const Mesh& object, bool has_ins
   return mesh_contact(cloth.view(), edges_of(cloth.triangles), TriangleTree(object.view()), has_inside);
 }
 
+/// Both in one mesh.
+inline Mesh together(const Mesh& a, const Mesh& b) {
+  Mesh all = a;
+  const auto first = static_cast<std::uint32_t>(a.positions.size() / 3);
+  all.positions.insert(all.positions.end(), b.positions.begin(), b.positions.end());
+  for (auto t : b.triangles) {
+    for (std::uint32_t& v : t) v += first;
+    all.triangles.push_back(t);
+  }
+  return all;
+}
+
 }  // namespace clothbench::contact

@@ -10,18 +10,6 @@
 namespace clothbench::contact {
 namespace {
 
-/// Both in one mesh.
-Mesh together(const Mesh& a, const Mesh& b) {
-  Mesh all = a;
-  const auto first = static_cast<std::uint32_t>(a.positions.size() / 3);
-  all.positions.insert(all.positions.end(), b.positions.begin(), b.positions.end());
-  for (auto t : b.triangles) {
-    for (std::uint32_t& v : t) v += first;
-    all.triangles.push_back(t);
-  }
-  return all;
-}
-
 TEST(SelfContour, TwoStripsCrossAlongTheirCommonLine) {
   // Level, 1 m x 0.2 m; upright at x = 0.37 from z = 0.05 to 0.5: they cross from z = 0.05 to 0.2.
   const Mesh level = sheet(9, 3, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 0.2));

@@ -4,18 +4,12 @@ import json
 import os
 import pathlib
 import shutil
-import sys
-import unittest
 
 import h5py
 
-from command import PluginTest
+from command import EXAMPLE, SOURCE, PluginTest, main
 
-CLOTHBENCH, EXAMPLE, LIBRARIES, SOURCE = sys.argv[1:5]
 RULES = {"frames": 12, "max_wall_s": 0.1, "min_frames": 12, "warmup_s": 0}
-
-
-PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, LIBRARIES, SOURCE
 
 
 class Authors(PluginTest):
@@ -103,4 +97,4 @@ class Authors(PluginTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
+    main()

@@ -1,20 +1,14 @@
-"""usage: check_interface.py CLOTHBENCH LIBRARIES SOURCE: a plugin that uses the whole interface."""
+"""usage: check_interface.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: a plugin that uses the whole interface."""
 import json
 import os
 import pathlib
 import shutil
-import sys
-import unittest
 
 import h5py
 
-from command import PluginTest
+from command import PluginTest, main
 
-CLOTHBENCH, LIBRARIES, SOURCE = sys.argv[1:4]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
-
-
-PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, LIBRARIES, SOURCE
 
 
 class Interface(PluginTest):
@@ -111,4 +105,4 @@ class Interface(PluginTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
+    main()

@@ -3,15 +3,19 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
+# The program, the example's library, the folder of the test plugins, the source tree.
+CLOTHBENCH, EXAMPLE, LIBRARIES, SOURCE = sys.argv[1:5]
+
+
+def main():
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
+
 
 class PluginTest(unittest.TestCase):
-    """`clothbench`, `libraries` and `source` are set by the script: program, folder of the test plugins, source tree."""
-
-    clothbench = libraries = source = ""
-
     def setUp(self):
         self.home = tempfile.mkdtemp(prefix="clothbench-plugin-")
         self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
@@ -19,12 +23,12 @@ class PluginTest(unittest.TestCase):
         self.log = os.path.join(self.home, "log.txt")
 
     def library(self, name):
-        return "plugin:" + os.path.join(self.libraries, name + ".so")
+        return "plugin:" + os.path.join(LIBRARIES, name + ".so")
 
     def start(self, *words, **environment):
         env = {k: v for k, v in os.environ.items() if k != "CLOTHBENCH_PLUGINS"}
-        env |= {"CLOTHBENCH_SCENARIOS": os.path.join(self.source, "scenarios"), "LOG": self.log, **environment}
-        return subprocess.Popen([self.clothbench, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        env |= {"CLOTHBENCH_SCENARIOS": os.path.join(SOURCE, "scenarios"), "LOG": self.log, **environment}
+        return subprocess.Popen([CLOTHBENCH, *words], env=env, cwd=self.home, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def command(self, *words, **environment):
         process = self.start(*words, **environment)

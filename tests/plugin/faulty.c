@@ -55,9 +55,6 @@ static void follow(Solver* s, const ClothbenchFrame* frame) {
 
 static int32_t step(void* self, const ClothbenchFrame* frame) {
   chatter();
-  const char* log = getenv("FRAME_LOG");
-  FILE* lines = log ? fopen(log, "a") : NULL;
-  if (lines) fprintf(lines, "%d %.17g %.17g\n", (int)frame->index, frame->time_s, frame->dt_s), fclose(lines);
   follow(self, frame);
   const char* fault = getenv("FAULT");
   const char* at = fault ? strchr(fault, ':') : NULL;

@@ -40,11 +40,19 @@ std::unique_ptr<Folder> RenderCommand::folder_;
 
 TEST_F(RenderCommand, WritesPicturesOfAFile) {
   const Answer a = command("--json render " + runs() +
-                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 200x150 -o " + out());
+                           "/sphere-drop__xpbd__default.h5 --frames 0:-1:2 --no-movie --size 320x240 -o " + out());
   ASSERT_EQ(a.code, 0) << a.text;
   const auto reported = nlohmann::json::parse(a.text);
   ASSERT_EQ(reported["pictures"].size(), 4u) << "frames 0, 2, 4, 6";
-  for (const auto& p : reported["pictures"]) EXPECT_EQ(read_png(p.get<std::string>()).width, 200);
+  for (const auto& p : reported["pictures"]) {
+    const Picture picture = read_png(p.get<std::string>());
+    EXPECT_EQ(picture.width, 320);
+    EXPECT_EQ(picture.height, 240);
+    int coloured = 0;
+    for (std::size_t k = 0; k < picture.rgb.size(); k += 3)
+      coloured += std::abs(picture.rgb[k] - picture.rgb[k + 2]) > 40 ? 1 : 0;
+    EXPECT_GT(coloured, 500) << "the cloth";
+  }
   EXPECT_TRUE(reported["movies"].empty());
 }
 

@@ -5,10 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <random>
 
-#include "clothbench/error.hpp"
+#include "base/files.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
 
@@ -43,11 +42,6 @@ void work(const fs::path& dir, int pipe_out) {
   writer.finish(r.outcome, r.summary);
 }
 
-std::string bytes(const fs::path& p) {
-  std::ifstream in(p, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
   const fs::path root = fs::temp_directory_path() / ("clothbench-kill-" + std::to_string(getpid()));
   const std::string run = run_name(sample_run().header);
@@ -75,7 +69,7 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     for (unsigned char k = 0; read(ends[0], &k, 1) == 1;) reported.push_back(k);
     close(ends[0]);
     if (run_finished(dir, run)) {
-      EXPECT_EQ(bytes(dir / (run + ".h5")), bytes(root / "whole" / (run + ".h5"))) << "kill " << kill_number;
+      EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(root / "whole" / (run + ".h5"))) << "kill " << kill_number;
       ++completed;
       fs::remove_all(dir);
       dir = root / std::to_string(kill_number + 1);
@@ -96,7 +90,7 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     for (const TimedTrial& t : kept.trials) EXPECT_TRUE(same(t, trial(t.index)));
   }
   work(dir, -1);
-  EXPECT_EQ(bytes(dir / (run + ".h5")), bytes(root / "whole" / (run + ".h5")));
+  EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(root / "whole" / (run + ".h5")));
   std::printf("killed %d times in mid-run, %d runs completed in between\n", interrupted, completed);
   EXPECT_GT(interrupted, 50) << "the kills must meet runs in progress";
   fs::remove_all(root);

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "refusal.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
@@ -53,10 +54,6 @@ class Trajectory : public WithFolder {
   RunRecord run_;
 };
 
-void expect_named(const std::string& fault, const std::string& what) {
-  EXPECT_NE(fault.find(what), std::string::npos) << "\"" << fault << "\"";
-}
-
 TEST_F(Trajectory, AWholeFileHasNoFault) {
   EXPECT_EQ(trajectory_fault(file()), "");
   EXPECT_EQ(read_hdf5(file(), 0).outcome.trajectory_sha256, trajectory_sha256(run_.accuracy));
@@ -68,7 +65,7 @@ TEST_F(Trajectory, ANumberThatIsNoneIsFound) {
     std::vector<float> x = run_.accuracy.position;
     x[3 * (6 * 2 + 4) + 1] = wrong;
     overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-    expect_named(trajectory_fault(file()), "vertex 4 in frame 2 is not finite");
+    EXPECT_PRED2(mentions, trajectory_fault(file()), "vertex 4 in frame 2 is not finite");
   }
 }
 
@@ -76,7 +73,7 @@ TEST_F(Trajectory, ANumberThatIsNoneIsFound) {
 TEST_F(Trajectory, ANumberThatIsNoneIsFoundAlsoWithItsHash) {
   run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
   write();
-  expect_named(trajectory_fault(file()), "is not finite");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "is not finite");
   run_.outcome.status = "not_finite";
   write();
   EXPECT_EQ(trajectory_fault(file()), "") << "that is what the outcome says";
@@ -86,34 +83,34 @@ TEST_F(Trajectory, AnotherMotionIsFound) {
   std::vector<float> x = run_.accuracy.position;
   x[5] += 1e-6f;
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
   run_.outcome.status = "diverged";
   write();
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
 }
 
 TEST_F(Trajectory, OtherTimesAreFound) {
   std::vector<double> t = run_.accuracy.time_s;
   for (double& v : t) v *= 2;
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
-  expect_named(trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
   t[3] = t[2];
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
-  expect_named(trajectory_fault(file()), "the time of frame 3");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "the time of frame 3");
 }
 
 TEST_F(Trajectory, MissingFramesAreFound) {
   cut("trajectory/position", H5T_IEEE_F32LE, 2 * 6, 3);
-  expect_named(trajectory_fault(file()), "expected 90 coordinates of 5 frames with 6 vertices; found 36");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "expected 90 coordinates of 5 frames with 6 vertices; found 36");
   cut("metrics/time_s", H5T_IEEE_F64LE, 2, 1);
-  expect_named(trajectory_fault(file()), "2 frames have positions, 5 have");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "2 frames have positions, 5 have");
 }
 
 TEST_F(Trajectory, NoMotionAtAllIsFoundWhereThereMustBeOne) {
   run_.accuracy = {};
   write();
-  expect_named(trajectory_fault(file()), "no positions");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "no positions");
   run_.outcome.status = "unsupported";
   write();
   EXPECT_EQ(trajectory_fault(file()), "");
@@ -123,7 +120,7 @@ TEST_F(Trajectory, ACborFileIsLookedAtToo) {
   RunWriter writer(dir_, run_.header, Finish::Cbor);
   run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
   writer.write_accuracy(run_.accuracy);
-  expect_named(trajectory_fault(writer.finish({}, {})), "is not finite");
+  EXPECT_PRED2(mentions, trajectory_fault(writer.finish({}, {})), "is not finite");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(ReferenceCache, FindsWhatIsOfTheSameKeyAlone) {
   int computed = 0;
   const auto value = [&](const ReferenceRules& rules) {
     return references(
-               {&s}, fs::path(folder.path()) / "cache", [&](const std::string&) { ++computed; }, rules)
+               {&s, &s}, fs::path(folder.path()) / "cache", [&](const std::string&) { ++computed; }, rules)
         .at(s.sha256)
         .value;
   };

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -29,13 +29,8 @@ class DataFolderTest : public testing::Test {
     fs::remove_all(home_);
   }
 
-  std::string refusal() const {
-    try {
-      find_data(kFolder, roots_);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "found";
+  std::string why() const {
+    return refusal([&] { find_data(kFolder, roots_); });
   }
 
   fs::path home_;
@@ -63,11 +58,10 @@ TEST_F(DataFolderTest, OneErrorNamesEveryPlace) {
   std::ofstream(source) << "a file is no folder";
   for (const std::string& place :
        {std::string("CLOTHBENCH_DATA_FOLDER_TEST"), installed.string(), source.string(), std::string("test files")})
-    EXPECT_NE(refusal().find(place), std::string::npos) << place << " in: " << refusal();
+    EXPECT_PRED2(mentions, why(), place);
   fs::create_directories(installed);
   setenv(kFolder.variable, named.c_str(), 1);  // a wrong variable is not passed over
-  for (const fs::path& place : {named, installed, source})
-    EXPECT_NE(refusal().find(place.string()), std::string::npos) << place << " in: " << refusal();
+  for (const fs::path& place : {named, installed, source}) EXPECT_PRED2(mentions, why(), place.string());
 }
 
 TEST_F(DataFolderTest, AProgramOfUnknownPlaceStillHasItsSourceTree) {

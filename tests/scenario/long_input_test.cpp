@@ -180,9 +180,8 @@ TEST(ManyRuns, AreRefusedBeforeAnyIsMade) {
   for (const char* key : {"material.damping_per_s", "cloth.areal_density_kg_per_m2", "time.duration_s"})
     j["scenes"][0]["axes"].push_back({{"key", key}, {"values", values}, {"labels", labels}});
   const std::string why = refusal([&] { load_study(folder.file("study.json", j.dump())); });
-  EXPECT_NE(why.find("study.json: /scenes/0/axes: they make 1000000000 scenes; a study may have at most 100000 runs"),
-            std::string::npos)
-      << why;
+  EXPECT_PRED2(mentions, why,
+               "study.json: /scenes/0/axes: they make 1000000000 scenes; a study may have at most 100000 runs");
 }
 
 TEST(Recording, ZeroRadiiOfCapsulesAreNamed) {
@@ -196,11 +195,9 @@ TEST(Recording, ZeroRadiiOfCapsulesAreNamed) {
   EXPECT_EQ(why("hand_capsules", 0.01f, true), "");
   EXPECT_EQ(why("hand_capsules", 0.01f, false), "");
   EXPECT_EQ(why("hand_mesh", 0, false), "") << "a mesh has no use for radii";
-  EXPECT_NE(why("hand_capsules", 0, true).find("hand.json: /recording/capsules: frame 1: capsule 3 of 19 has a radius"),
-            std::string::npos)
-      << why("hand_capsules", 0, true);
-  EXPECT_NE(why("hand_capsules", 0, false).find("hand.json: /recording/joints: frame 1: capsule "), std::string::npos)
-      << why("hand_capsules", 0, false);
+  EXPECT_PRED2(mentions, why("hand_capsules", 0, true),
+               "hand.json: /recording/capsules: frame 1: capsule 3 of 19 has a radius");
+  EXPECT_PRED2(mentions, why("hand_capsules", 0, false), "hand.json: /recording/joints: frame 1: capsule ");
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ TEST(Polygon, IsCutInside) {
     expect_cut(draw.anywhere(draw.star(corners)));
     const std::size_t columns = 1 + draw.below(8);
     expect_cut(draw.skyline(columns));
+    expect_cut(draw.anywhere(draw.skyline(columns)));
     Polygon twice = draw.anywhere(draw.star(corners));
     expect_cut(draw.repeated(twice));
     std::reverse(twice.begin(), twice.end());
@@ -135,15 +136,6 @@ TEST(Polygon, NeedNotBeFlat) {
   }
 }
 
-TEST(Polygon, TurnedCornersOnOneSideStayInTheirPlace) {
-  for (unsigned seed = 1; seed <= 300; ++seed) {
-    SCOPED_TRACE(seed);
-    Draw draw(seed);
-    const std::size_t columns = 1 + draw.below(8);
-    expect_cut(draw.anywhere(draw.skyline(columns)));
-  }
-}
-
 TEST(Polygon, ADartHasItsOwnArea) { expect_cut({{0, -3, 0}, {0.5, 1, 0}, {0, 0.5, 0}, {-0.5, 1, 0}}); }
 
 TEST(Polygon, ThatIsNoneIsRefused) {
@@ -157,7 +149,7 @@ TEST(Polygon, ThatIsNoneIsRefused) {
   EXPECT_EQ(why({{0, 0, 0}, {2, 0, 0}, {3, 0, 0}, {2, 0, 0}, {2, 2, 0}}).find(crosses), 0u) << "a spike";
   EXPECT_EQ(why({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {-1, 0, 0}, {-1, -1, 0}}).find(crosses), 0u);
   Draw draw(1);
-  EXPECT_NE(why(draw.star(kMostCorners + 1)).find("1001 corners; expected at most 1000"), std::string::npos);
+  EXPECT_PRED2(mentions, why(draw.star(kMostCorners + 1)), "1001 corners; expected at most 1000");
   for (unsigned seed = 1; seed <= 300; ++seed) {
     // Two neighbouring corners on a circle change places: the sides before and after them cross.
     Draw other(seed);

@@ -2,31 +2,22 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 
 namespace clothbench {
 
-/// Test name of a table row from its words; without one GoogleTest prints the row's addresses.
-inline std::string test_name(const std::string& words) {
-  std::string out;
-  for (char c : words) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return out;
-}
-
-/// The message of the Error that `call` throws; empty if it throws none.
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+/// A scene of a cloth that is a mesh.
+inline nlohmann::json mesh_scenario(nlohmann::json mesh) {
+  return {{"name", "mesh"},
+          {"why", "a mesh for the tests"},
+          {"cloth", {{"mesh", std::move(mesh)}, {"areal_density_kg_per_m2", 0.3}, {"sides", "single"}}},
+          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
 }
 
 /// A folder only for this process and test, gone afterwards: tests of two builds may run at once.

@@ -13,7 +13,7 @@ namespace {
 TEST(Dependence, IsMeasuredOnEveryTruth) {
   const auto needs = [](const std::string& name, const std::vector<std::string>& set = {}) {
     const auto found = truth_dependence(load_scene("validation/" + name, set));
-    const auto at_least = [&](const char* name) { return found.contains(name) && found.at(name) >= 0.01; };
+    const auto at_least = [&](const char* key) { return found.contains(key) && found.at(key) >= 0.01; };
     return std::string(at_least("truth_dependence_Y") ? "Y" : "") + (at_least("truth_dependence_B") ? "B" : "");
   };
   EXPECT_EQ(needs("heavy-strip"), "Y");

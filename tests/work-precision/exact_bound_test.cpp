@@ -6,6 +6,7 @@
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
+#include "refusal.hpp"
 #include "runner/expect.hpp"
 #include "scenario/study.hpp"
 
@@ -113,14 +114,8 @@ auto scenes_with_a_solution(const std::vector<std::string>& folders) {
   return ::testing::ValuesIn(out);
 }
 
-std::string test_name(const ::testing::TestParamInfo<std::string>& i) {
-  std::string name = i.param;
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, ExactBound, scenes_with_a_solution({"validation", "stability"}), test_name);
+INSTANTIATE_TEST_SUITE_P(Every, ExactBound, scenes_with_a_solution({"validation", "stability"}),
+                         [](const auto& i) { return test_name(i.param); });
 
 TEST_P(ExactBound, TheSolutionPassesAndWhatIsOffOnEitherSideFails) { expect_two_sided(load_scene(GetParam())); }
 

@@ -5,9 +5,9 @@
 #include <cstdlib>
 
 #include "clothbench/error.hpp"
-#include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
-#include "metrics/truth_errors.hpp"
+#include "refusal.hpp"
+#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -30,34 +30,17 @@ std::vector<std::string> names() {
   return out;
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Order, ::testing::ValuesIn(names()), [](const auto& i) {
-  std::string name = i.param;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Every, Order, ::testing::ValuesIn(names()), [](const auto& i) { return test_name(i.param); });
 
 double truth_error(const Scene& s, const SolverEntry& entry, int substeps) {
   nlohmann::json given = {{"substeps", substeps}};
   if (has(entry.info, "iterations")) given["iterations"] = kIterations;
   if (has(entry.info, "implicit")) given["implicit"] = true;
-  const nlohmann::json settings = complete_settings(entry.info, given);
-  const auto solver = entry.make(settings, {});
-  solver->load(s);
-  const MetricContext context{s, entry, settings};
-  MetricPass metrics(context);
-  AccuracyPass pass;
-  ClothState state;
-  const double dt = s.time.dt();
-  for (int f = 0; f <= s.time.frames(); ++f) {
-    if (f > 0) {
-      EXPECT_EQ(solver->step({f - 1, f * dt, dt, s.motion_after(f - 1)}), StepStatus::Ok);
-    }
-    solver->read_state(state);
-    metrics.add(state);
-    pass.time_s.push_back(f * dt);
-  }
-  pass.metrics = metrics.take();
+  SolverRun run({&s, &entry, complete_settings(entry.info, given)}, {}, "test");
+  TrialRules rules;
+  rules.accuracy_duration_s = s.time.duration_s;
+  const AccuracyPass pass = run.run_accuracy(rules);
+  EXPECT_EQ(run.outcome().status, "ok");
   return scalars_of({s, pass}).at("truth_error");
 }
 

@@ -33,7 +33,6 @@ class Sessions : public ::testing::Test {
     o.entry = &find_solver("xpbd");
     o.settings = complete_settings(o.entry->info, nlohmann::json::object());
     o.frames = frames;
-    o.timeout_s = 20;
     o.out = folder_ / "out";
     return o;
   }

@@ -1,22 +1,16 @@
-"""usage: check_plugin.py CLOTHBENCH EXAMPLE FAULTY_FOLDER SOURCE: solvers from elsewhere through the command."""
+"""usage: check_command.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: solvers from elsewhere through the command."""
 import json
 import os
 import shutil
 import signal
 import subprocess
-import sys
 import time
-import unittest
 
 import h5py
 
-from command import PluginTest
+from command import CLOTHBENCH, EXAMPLE, SOURCE, PluginTest, main
 
-CLOTHBENCH, EXAMPLE, FAULTY, SOURCE = sys.argv[1:5]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single"]
-
-
-PluginTest.clothbench, PluginTest.libraries, PluginTest.source = CLOTHBENCH, FAULTY, SOURCE
 
 
 class Plugin(PluginTest):
@@ -200,4 +194,4 @@ class Plugin(PluginTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
+    main()
