@@ -1,6 +1,7 @@
 #include "report/frame_times.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -61,11 +62,10 @@ std::pair<Interval95, Interval95> intervals(const std::vector<Series>& trials) {
 
 /// Whether the cloth touches something in each frame of the scene, frame 0 included; empty if no metric states it.
 std::vector<bool> frames_with_contact(const RunRecord& c) {
+  constexpr std::array kTold = {"touching_fraction", "contact_length_m", "depth_m", "self_contact_length_m"};
   std::vector<bool> out;
   for (const MetricSeries& m : c.accuracy.metrics) {
-    if (m.name != "touching_fraction" && m.name != "contact_length_m" && m.name != "depth_m" &&
-        m.name != "self_contact_length_m")
-      continue;
+    if (!contains(kTold, m.name)) continue;
     out.resize(std::max(out.size(), m.values.size()));
     for (std::size_t f = 0; f < m.values.size(); ++f) out[f] = out[f] || m.values[f] > 0;
   }

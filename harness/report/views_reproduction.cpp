@@ -75,8 +75,6 @@ ViewColumn at_best(const char* head, std::function<Cell(const Point&)> cell) {
           }};
 }
 
-Cell dispatches_where_all_hold(const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }
-
 /// Generates the scenes of the point and runs them; states how many claims hold if not all do.
 Cell command_of(const Point& p) {
   const auto seed = [](const Row* r) { return r->scenario.value("seed", std::uint64_t{0}); };
@@ -109,12 +107,6 @@ Cell options_of(const Point& p) {
   return joined(out, " ");
 }
 
-/// Iterations of a frame, over all substeps. All claims of a point have the same, because they share the settings.
-double iterations_of_point(const Row& r) {
-  const ClaimPoint p = claim_point(r);
-  return p.iterations * p.substeps;
-}
-
 View claims() {
   View v{"contact", "Claims of the article, over what it leaves open",
          "Share of the points of the box at which a claim holds, with Wilson's 95 % interval, also by iterations × "
@@ -130,10 +122,13 @@ View claims() {
              }}};
   v.columns = {{"reading", reading},
                {"holds", share},
-               at_best("fewest dispatches", dispatches_where_all_hold),
+               at_best("fewest dispatches",
+                       [](const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }),
                at_best("paper, best", command_of),
                at_best("values of paper, best", options_of)};
-  v.across = by_bands({1, 10, 30, 100, 300}, iterations_of_point, share, 1, " iterations");
+  // Iterations of a frame, over all substeps. All claims of a point have the same, because they share the settings.
+  const auto iterations = [](const Row& r) { return claim_point(r).iterations * claim_point(r).substeps; };
+  v.across = by_bands({1, 10, 30, 100, 300}, iterations, share, 1, " iterations");
   v.by_key = true;
   return v;
 }

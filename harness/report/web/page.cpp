@@ -24,8 +24,7 @@ constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothb
                kTitleMark[] = "<!--clothbench:title-->";
 
 /// Summary values that a figure shows.
-constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
-                                         "bandwidth_write_peak_B_per_s", "stretch_max_last_second"};
+constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
 /// [p50, low, high, p95, p99, worst] in seconds, of each clock that has frames.

@@ -81,9 +81,7 @@ function error_time(doc) {
 
 const kRates = {
   fps: {text: 'Fig. 4: frame rate', unit: 'frames per second', field: 'fps_median', scale: 1, still: 'fig4', is_rate: true},
-  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'},
-  write: {text: 'peak write bandwidth', unit: 'GB/s', field: 'bandwidth_write_peak_B_per_s', scale: 1e-9},
-  stretch: {text: 'maximum stretch', unit: '%', field: 'stretch_max_last_second', scale: 100}
+  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'}
 };
 
 /// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
@@ -124,24 +122,14 @@ function rates(doc) {
       right: 90,
       height: Math.max(240, Math.min(340, 0.5 * width)),
       panels: [{
-        x: {
-          type: 'log',
-          title: 'vertices along one side',
-          ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b),
-          format: t => String(Number(t.toPrecision(4)))
-        },
+        x: {type: 'log', title: 'vertices along one side', ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b), format: t => String(Number(t.toPrecision(4)))},
         y: {type: 'log', title: kRates[s.Value].unit},
         rules: kRates[s.Value].is_rate ? [{y: 72, text: '72 Hz', optional: true}] : [],
         lines: lines_of(rows),
-        marks: rows.map(r => ({
-                          kind: 'point',
-                          x: r.width,
-                          y: r.value,
-                          ...(kRates[s.Value].is_rate ? {low: r.fps_low, high: r.fps_high} : {}),
-                          along: 'y',
-                          open: r.free_fall_error > 0.01,
-                          row: r
-                        }))
+        marks: rows.map(r => {
+          const interval = kRates[s.Value].is_rate ? {low: r.fps_low, high: r.fps_high} : {};
+          return {kind: 'point', x: r.width, y: r.value, ...interval, along: 'y', open: r.free_fall_error > 0.01, row: r};
+        })
       }]
     }),
     tip: r =>

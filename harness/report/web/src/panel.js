@@ -45,15 +45,8 @@ export class Panel {
     this.unlit = new THREE.MeshBasicMaterial(shared);
     this.cloth = new THREE.Mesh(g, this.lit);
     this.cloth.frustumCulled = false;
-    this.solid = new THREE.MeshStandardMaterial({
-      color: 0xb9a58c,
-      side: THREE.DoubleSide,
-      roughness: 1,
-      metalness: 0,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1
-    });  // so that a cloth on the surface is visible
+    const behind = {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};  // a cloth on the surface is visible
+    this.solid = new THREE.MeshStandardMaterial({color: 0xb9a58c, side: THREE.DoubleSide, roughness: 1, metalness: 0, ...behind});
     this.colliders = make_colliders(colliders);
     for (const c of this.colliders) {
       c.object.traverse(o => {
