@@ -1,11 +1,12 @@
 #pragma once
 #include <cstddef>
+#include <limits>
 
 namespace clothbench {
 
-/// Bounds of a share, both in [0, 1].
+/// Bounds of a value; NaN where they are not known.
 struct Interval {
-  double low = 0, high = 1;
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
 };
 
 /// Wilson's score interval at 95 % for the probability behind `passed` of `drawn` independent trials; [0, 1] without

@@ -19,7 +19,7 @@ constexpr double kMeasurable_s = 2e-5;  // in shorter frames, reading the clock 
 
 using Series = std::vector<double>;
 
-Interval95 percentiles(Series estimates) {
+Interval percentiles(Series estimates) {
   std::sort(estimates.begin(), estimates.end());
   return {quantile(estimates, 0.025), quantile(estimates, 0.975)};
 }
@@ -34,7 +34,7 @@ std::vector<Series> blocks_of(const Series& trial) {
 
 /// 95 % intervals of the median time and of the median over trials of the rate [1/s], by a bootstrap over trials and
 /// blocks of their frames. No trial is empty.
-std::pair<Interval95, Interval95> intervals(const std::vector<Series>& trials) {
+std::pair<Interval, Interval> intervals(const std::vector<Series>& trials) {
   std::vector<std::vector<Series>> blocks;
   for (const Series& t : trials) blocks.push_back(blocks_of(t));
   std::mt19937_64 random;  // the same numbers on every machine
@@ -93,7 +93,8 @@ FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::ve
 
 const char* const kIntervalMethod =
     "In brackets: 95 % interval of the median, by a bootstrap over trials and blocks of at most 16 consecutive frames "
-    "(400 resamples); one trial has no variation between trials in it. ~: the interval is wider than 20 % of the "
+    "(400 resamples); with one trial it covers only the variation between frames. ~: the interval is wider than 20 % "
+    "of the "
     "median, so the run is not ranked.";
 
 double FrameTimes::at(double q) const { return quantile(sorted, q); }

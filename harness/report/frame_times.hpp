@@ -1,20 +1,16 @@
 #pragma once
 #include <vector>
 
+#include "base/interval.hpp"
 #include "clothbench/record.hpp"
 
 namespace clothbench {
 
-/// A 95 % interval; NaN where it is not known.
-struct Interval95 {
-  double low = kMissing, high = kMissing;
-};
-
-/// Frame times [s] of all timed trials of a run.
+/// Frame times [s] of all timed trials of a run. Intervals: 95 %.
 struct FrameTimes {
   std::vector<double> sorted;  ///< ascending
-  Interval95 median;
-  Interval95 rate;  ///< of the median over trials of the frames per second
+  Interval median;
+  Interval rate;  ///< of the median over trials of the frames per second
   /// Nearest-rank quantile; NaN without frames.
   double at(double q) const;
   /// Share of the frames that are longer than one refresh of a display.

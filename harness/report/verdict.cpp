@@ -73,19 +73,19 @@ std::string VerdictCounts::text() const {
   return out;
 }
 
-void count_verdict(const RunRecord& c, VerdictCounts& out) {
+void VerdictCounts::add(const RunRecord& c) {
   if (c.outcome.status == "missing" || bounds_of(c) == 0) return;
-  ++out.runs;
+  ++runs;
   const std::string v = verdict(c);
-  out.passed += v == "pass";
-  out.ignored += v == "ignored";
-  out.unsupported += v == "unsupported";
-  out.not_measured += v == "not measured" || v == kNoVerdict || v == "over_budget";
+  passed += v == "pass";
+  ignored += v == "ignored";
+  unsupported += v == "unsupported";
+  not_measured += v == "not measured" || v == kNoVerdict || v == "over_budget";
 }
 
 VerdictCounts count_verdicts(const std::vector<RunRecord>& runs) {
   VerdictCounts out;
-  for (const RunRecord& c : runs) count_verdict(c, out);
+  for (const RunRecord& c : runs) out.add(c);
   return out;
 }
 

@@ -26,11 +26,10 @@ struct VerdictCounts {
   std::size_t failed() const { return runs - passed - ignored - unsupported - not_measured; }
   /// "3 of 5 runs passed, 1 failed, 1 unsupported"; what there is none of is left out.
   std::string text() const;
+  void add(const RunRecord&);
 };
 
 /// The one count of passed runs: consoles, tables and JSON take it from here.
 VerdictCounts count_verdicts(const std::vector<RunRecord>&);
-/// Adds a run to the counts.
-void count_verdict(const RunRecord&, VerdictCounts&);
 
 }  // namespace clothbench

@@ -190,7 +190,8 @@ View robustness() {
 }
 
 View failed() {
-  View v{"failed", "Runs that failed", "In brackets: the class of a failure, and the first frame of it.",
+  View v{"failed", "Runs that failed",
+         "In brackets: the class of a failure (section Stability), and the first frame with it.",
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
   v.keys = {solver_key(), key("status", [](const Row& r) { return status_with_class(r.run->outcome); }),
             key("message", [](const Row& r) { return r.run->outcome.message; })};
@@ -230,7 +231,8 @@ View violated() {
     if (out.empty() && r.run->outcome.expect.starts_with("fail")) out.emplace_back(r.run->outcome.expect, true);
     return out;
   };
-  View v{"failed", "Acceptance criteria that are violated", "",
+  View v{"failed", "Acceptance criteria that are violated",
+         "Motion: the check, in every run, of whether forces, collisions and attachments explain the positions.",
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability; }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
   v.columns = {{"expected", [](const Group& g, const Keys& k) { return criterion(*g.front(), k[2].text); }},

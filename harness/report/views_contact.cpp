@@ -39,7 +39,7 @@ std::string offset_of(const Row& r) {
 /// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
 Cell pass_rate(const Group& g, const Keys& /*keys*/) {
   VerdictCounts n;
-  for (const Row* r : g) count_verdict(*r->run, n);
+  for (const Row* r : g) n.add(*r->run);
   return share_cell(n.passed, n.runs);
 }
 
@@ -60,8 +60,9 @@ View verdicts() {
 View contact() {
   View v{"contact", "Contact",
          "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
-         "offsets. Crossings: passages of cloth and colliders through each other between two frames, at most in one "
-         "frame. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in the "
+         "offsets. Crossings: how often cloth and colliders pass through each other between two frames, the "
+         "maximum of all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the "
+         "maximum in the "
          "last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: maximum displacement "
          "of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders and grips. Strain: "
          "strain of the structural edges. Times: section Frame times. Paper, best: scenes of study `reproduction` at "
@@ -90,6 +91,8 @@ std::string with_assets(const std::string& kind, const Row& r) {
 
 View pass_rates() {
   View v{"contact", "Randomly generated contact scenes: pass rate by speed [m/s]",
+         "Each seed draws a scene of one kind: positions, directions, poses, speeds and cloth, from the ranges in the "
+         "study's file, scenarios/studies/contact.json. Fast, default, accurate: substeps of `xpbd`. "
          "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
          "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: "
          "distance at which the solver keeps the cloth from colliders.",

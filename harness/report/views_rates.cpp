@@ -44,7 +44,7 @@ Cell missed_cell(const FrameTimes& t) { return paired_cell(100 * t.missed(72), 1
 
 Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
 
-Cell ratio(const Row& r) { return number_cell(r.times->wall.at(0.5) / r.baseline_s, 3); }
+Cell ratio(const Row& r) { return number_cell(r.baseline_s / r.times->wall.at(0.5), 3); }
 
 View frame_times() {
   View v{
@@ -54,9 +54,10 @@ View frame_times() {
                   "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
                   "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
                   "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
-                  "frame. Load: once, before the first frame. Rank: one more than the number of runs of the scene "
-                  "whose whole interval of wall time is below the run's; runs that failed, and cloths with an edge of "
-                  "more than twice its length, are not ranked. CPU threads: CPU time over wall time. ") +
+                  "frame. Load: once, before the first frame, in ms. × bullet-soft: how many times as fast. Rank 1: no "
+                  "ranked run of the scene is certainly faster (has its whole interval below the run's); runs that "
+                  "failed, and cloths with an edge of more than twice its length, are not ranked. CPU threads: CPU "
+                  "time over wall time. ") +
           kIntervalMethod,
       [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};

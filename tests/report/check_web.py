@@ -43,7 +43,7 @@ static_text = re.sub(r'<(script|style|svg)\b.*?</\1>|<section id="overview">.*?<
 assert not re.search(r"\d+ of \d+|\d\s?(ms|µs|%)(?! interval)|results/reference", static_text), "a result in static text"
 title = re.search(r"<title>(.*?)</title>", html)[1]
 assert "table3" in title and re.search(rf"<h1>{re.escape(title.split(' · ')[0])}</h1>", html), title
-assert "trials <b>1</b>" in html and "commit <b>" in html and "date <b>" in html
+assert "trials per run <b>1</b>" in html and "commit <b>" in html and "date <b>" in html
 assert not re.search(r"\b(nan|inf)\b", html.split('id="clothbench-motions"')[0].split('id="clothbench-data"')[0].split("<body>")[1]), "not a number in prose"
 
 # Tables: those of report.md, run by run.

@@ -37,7 +37,7 @@ TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   };
   EXPECT_EQ(facts(),
             "GPU Fake GPU · driver 1.2 · CPU Fake CPU · protocol short · commit 0123456789ab · build Release · date "
-            "2026-01-01 · trials none timed");
+            "2026-01-01 · trials per run none timed");
   EXPECT_TRUE(warnings_of(RunTable(runs)).empty());
   for (RunRecord& c : runs)
     if (c.header.environment["gpu"] != "CPU") c.header.environment["gpu_is_software"] = true;
@@ -50,7 +50,7 @@ TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   EXPECT_NE(facts().find("(with local changes)"), std::string::npos);
   EXPECT_NE(facts().find("2026-01-01 to 2026-01-02"), std::string::npos);
   for (RunRecord& c : runs) c.header.environment = {{"gpu", nullptr}, {"git_dirty", "?"}};
-  EXPECT_EQ(facts(), "trials none timed");
+  EXPECT_EQ(facts(), "trials per run none timed");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(InShort, HasOutcomeTimesRatioAndRankOfEachRun) {
                               "1.00", "2"}));
   EXPECT_EQ(t.rows[2], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "–", "–"}));
   EXPECT_EQ(t.rows[3],
-            (Cells{"drop", "quick", "ok", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0.00 / 0.00", "3", "0.500", "1"}));
+            (Cells{"drop", "quick", "ok", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0.00 / 0.00", "3", "2.00", "1"}));
   EXPECT_EQ(t.rows[4][2] + " " + t.rows[4][8], "fail –");
 }
 

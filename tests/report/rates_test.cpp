@@ -31,7 +31,7 @@ TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
   std::string heads, rows;
   for (const std::string& head : t.rows[0]) heads += head + "|";
   for (const auto& row : t.rows) rows += row[0] + "|";
-  EXPECT_EQ(heads, "solver|8²|16²|32²|64²|128²|free-fall error|");
+  EXPECT_EQ(heads, "solver|8²|16²|32²|64²|128²|device|free-fall error|");
   EXPECT_EQ(rows,
             "solver|bullet-soft|xpbd|xpbd, double|published: Unity Cloth|published: PBD single-sided|"
             "published: PBD double-sided|")
@@ -192,7 +192,7 @@ TEST(Intervals, RanksAreNoFinerThanThem) {
   EXPECT_EQ(value("near-a", "rank") + value("near-b", "rank"), "11") << "their intervals overlap";
   EXPECT_EQ(value("bullet-soft", "rank"), "3");
   EXPECT_EQ(value("shaky", "rank"), "–");
-  EXPECT_EQ(value("near-a", "× bullet-soft"), "0.250") << "relative to a fixed solver, whoever is fastest";
+  EXPECT_EQ(value("near-a", "× bullet-soft"), "4.00") << "relative to a fixed solver, whoever is fastest";
   EXPECT_EQ(value("bullet-soft", "× bullet-soft"), "1.00");
 }
 

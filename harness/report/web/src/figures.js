@@ -165,7 +165,7 @@ function frame_times(doc) {
     caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
     choices: [
       choice('Time', clocks, clocks.includes('contact_wall') ? 'contact_wall' : 'wall', c => kClocks[c]),
-      choice('Solver', s => [...(few ? ['all'] : []), ...unique(all.filter(r => r[s.Time]).map(r => r.solver))])
+      choice('Solver', s => [...(few ? ['all'] : []), ...unique(without_floor(doc, all.filter(r => r[s.Time])).map(r => r.solver))])
     ],
     rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => {
       const [p50_s, low_s, high_s, p95_s, p99_s, worst_s] = r[s.Time];
@@ -180,17 +180,10 @@ function frame_times(doc) {
           x: {type: 'log', title: 'time per frame [ms]'},
           y: {type: 'band', values: unique(rows.map(r => r.scene))},
           rules: kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({x: 1e3 / hz, text: `${hz} Hz`, optional: worst < 1e3 / hz / 3})),
-          marks: rows.map(r => ({
-                            kind: 'point',
-                            x: 1e3 * r.p50_s,
-                            y: r.scene,
-                            shift: shift_of(r.solver, present),
-                            thick: [1e3 * r.p50_s, 1e3 * r.p95_s],
-                            low: 1e3 * r.p50_s,
-                            high: 1e3 * r.p99_s,
-                            along: 'x',
-                            row: r
-                          }))
+          marks: rows.map(r => {
+            const [p50, p95, p99] = [r.p50_s, r.p95_s, r.p99_s].map(s => 1e3 * s), shift = shift_of(r.solver, present);
+            return {kind: 'point', x: p50, y: r.scene, shift, thick: [p50, p95], low: p50, high: p99, along: 'x', row: r};
+          })
         }]
       };
     },
@@ -223,7 +216,7 @@ function verdicts(doc) {
     section: 'contact',
     hero: true,
     title: () => 'Verdicts by scene and solver',
-    caption: 'Passed: the run meets every acceptance criterion of its scene. Select a cell for the criteria that a run violates.',
+    caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; ')})),
     chart: (rows, s, width) => {
       const [across, down] = ['label', 'scene'].map(field => unique(rows.map(r => r[field])));
@@ -293,7 +286,7 @@ function shares(runs, field, is_good, more) {
         return {
           title: label,
           solver: mine[0].solver,
-          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => `${100 * t} %`, title: ''},
+          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => t < 1 ? `${100 * t} %` : '', title: ''},
           y: {type: 'band', values: unique(rows.map(r => r[field]))},
           marks: mine.map(
               r => r.unsupported === r.runs ? {kind: 'none', x: 0.02, y: r[field], note: 'unsupported', row: r} :
@@ -373,10 +366,12 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The command that makes one run again, and the file that holds it.
+/// The command of a study without the folder of its results; empty if it is not known.
+export const plain_command = study =>
+    (study?.command ?? '').replace(/^\S*clothbench/, 'clothbench').replace(/ (--out|-o)[ =]\S+/, '').replace(/ --resume/, '');
+
+/// The command that makes one run again.
 export function command_of(doc, r) {
-  const study = doc.studies[r.study];
-  if (!study?.command) return null;
-  const plain = study.command.replace(/^\S*clothbench/, 'clothbench').replace(/ (--out|-o)[ =]\S+/, '').replace(/ --resume/, '');
-  return r.job === undefined || !/ study /.test(plain) ? plain : `${plain} --out again --job ${r.job}`;
+  const plain = plain_command(doc.studies[r.study]);
+  return !plain || r.job === undefined || !/ study /.test(plain) ? plain : `${plain} --out again --job ${r.job}`;
 }

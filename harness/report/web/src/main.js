@@ -1,7 +1,7 @@
 // Builds the page from its document: figures and tables by section, the filter of solvers, contents, theme and motions.
 import {symbol, unique} from './chart.js';
 import {button, element, say} from './dom.js';
-import {make_figures} from './figures.js';
+import {make_figures, plain_command} from './figures.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
 import {start_tables, table_block} from './tables.js';
@@ -23,8 +23,7 @@ function start_theme() {
 
 function chips(doc, look) {
   const known = Object.keys(doc.solvers.look), place = s => known.includes(s) ? known.indexOf(s) : known.length;
-  const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b)),
-        plugins = new Set(doc.runs.filter(r => r.plugin).map(r => r.solver));
+  const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b));
   $('chips').append(...solvers.map(s => {
     const chip = button('', null, () => {
       toggle_solver(s);
@@ -32,7 +31,7 @@ function chips(doc, look) {
       say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
     }, {'aria-pressed': String(shown(s))});
     chip.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(look), s, 0, 0)}</svg>`;
-    chip.append(s + (plugins.has(s) ? '†' : ''));
+    chip.append(s);
     return chip;
   }));
 }
@@ -116,7 +115,7 @@ function start() {
   $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
   $('commands')
       .append(
-          ...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));
+          ...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, plain_command(s)))));
   start_figures();
   start_tables();
   start_navigation();
