@@ -60,7 +60,7 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   alone.scenario = "paper/gravity";
   alone.overrides = {"cloth.grid=[12,12]", "pins=[{\"edge\":\"v0\"}]",
                      "cloth.pose={\"center_m\":[0,0,0],\"axis_u\":[1,0,0],\"axis_v\":[0,-1,0]}"};
-  alone.out = folder_ / "alone";
+  alone.out = dir_ / "alone";
   EXPECT_GT(furthest(run(alone, "clock=virtual,blind=1").final_position_m, r.final_position_m), 0.02)
       << "the hand has pushed the cloth";
 }

@@ -95,9 +95,7 @@ TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
 }
 
 TEST_F(Sessions, ACpuSolverIsUploaded) {
-  LoopOptions o = options("paper/gravity", 10);
-  o.entry = &find_solver("ballistic");
-  o.settings = complete_settings(o.entry->info, nlohmann::json::object());
+  const LoopOptions o = options("paper/gravity", 10, "ballistic");
   const LoopResult r = run(o, "clock=virtual,look=10");
   EXPECT_GT(reported_["drawn"][1].get<double>(), 0.02);
   EXPECT_EQ(replayed(r, o), r.final_position_m);

@@ -103,9 +103,7 @@ TEST_F(Loss, WhereverInAFrame) {
 }
 
 TEST_F(Loss, OfPicturesAlone) {
-  LoopOptions o = options("paper/gravity", 60);
-  o.entry = &find_solver("ballistic");
-  o.settings = complete_settings(o.entry->info, nlohmann::json::object());
+  const LoopOptions o = options("paper/gravity", 60, "ballistic");
   const LoopResult r = lost_after(o, 40, "clock=virtual");
   expect_stored(r, o);
   EXPECT_EQ(replayed(r, o), r.final_position_m) << "a solver on the CPU has lost nothing";
