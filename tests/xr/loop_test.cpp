@@ -9,7 +9,7 @@ namespace {
 TEST_F(Sessions, StepsAndShowsEveryFrame) {
   LoopOptions o = options("paper/capsule-sweep", 30);
   o.device.validation = true;
-  const LoopResult r = run(o, "clock=virtual,look=25");
+  const LoopResult r = run(o, "look=25");
   ASSERT_EQ(r.log.rows().size(), 30u);
   EXPECT_EQ(reported_["android"], false);
   EXPECT_EQ(reported_["rate_hz"], 72.0) << "asked for, where the display began with 90";
@@ -41,8 +41,7 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
 /// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
 /// second.
 TEST_F(Sessions, LateFramesAreDividedRates) {
-  const LoopResult r =
-      run(options("paper/capsule-sweep", 40), "clock=virtual,blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
+  const LoopResult r = run(options("paper/capsule-sweep", 40), "blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
   int twice = 0, thrice = 0;
   for (const double p : r.log.periods()) {
     twice += p == 2 ? 1 : 0;
@@ -57,7 +56,7 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
 
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   const LoopOptions o = options("paper/capsule-sweep", 12);
-  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,rate=0,look=10");
+  const LoopResult r = run(o, "hands=0,capsules=0,rate=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.05);
@@ -68,7 +67,7 @@ TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
 
 TEST_F(Sessions, TheUserMayEndIt) {
   const LoopOptions o = options("paper/capsule-sweep", 500);
-  const LoopResult r = run(o, "clock=virtual,blind=1,quit=40");
+  const LoopResult r = run(o, "blind=1,quit=40");
   EXPECT_LT(r.log.rows().size(), 41u);
   EXPECT_GT(r.log.rows().size(), 10u);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
@@ -80,7 +79,7 @@ TEST_F(Sessions, ClothMayBeAMesh) {
   LoopOptions o = options("garments/sleeve", 12);
   o.overrides = {R"(cloth.mesh.file="assets/sleeve-small.obj")"};
   o.device.validation = true;
-  const LoopResult r = run(o, "clock=virtual,look=10");
+  const LoopResult r = run(o, "look=10");
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.02);
   EXPECT_TRUE(std::filesystem::exists(r.scenario.parent_path() / "sleeve-small.obj"));
   EXPECT_TRUE(load_scene(r.scenario.string()).cloth.mesh);
@@ -89,14 +88,14 @@ TEST_F(Sessions, ClothMayBeAMesh) {
 
 TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
   const LoopOptions o = options("paper/desk-flat-low", 8);
-  const LoopResult r = run(o, "clock=virtual,blind=1");
+  const LoopResult r = run(o, "blind=1");
   EXPECT_EQ(load_scene(r.scenario.string()).assets, "procedural");
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
 TEST_F(Sessions, ACpuSolverIsUploaded) {
   const LoopOptions o = options("paper/gravity", 10, "ballistic");
-  const LoopResult r = run(o, "clock=virtual,look=10");
+  const LoopResult r = run(o, "look=10");
   EXPECT_GT(reported_["drawn"][1].get<double>(), 0.02);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
@@ -118,10 +117,10 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   setenv("XR_RUNTIME_JSON", "/no/such/runtime.json", 1);
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("no OpenXR runtime"), std::string::npos);
   setenv("XR_RUNTIME_JSON", CLOTHBENCH_NULL_RUNTIME, 1);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,unseen=0:100000000", 1);
+  setenv("CLOTHBENCH_NULL_XR", "unseen=0:100000000", 1);
   o.timeout_s = 0.5;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::CheckFailed).find("no hand was seen"), std::string::npos);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual", 1);
+  setenv("CLOTHBENCH_NULL_XR", "", 1);
   o.scenario = "garments/sleeve";
   o.overrides = {R"(cloth.mesh.file="none.obj")"};
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("/cloth/mesh/file"), std::string::npos);
@@ -129,7 +128,7 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   o.frames = 9000;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("1 to 8640"), std::string::npos);
   o = options("paper/capsule-sweep", 10);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,vulkan=0", 1);
+  setenv("CLOTHBENCH_NULL_XR", "vulkan=0", 1);
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("XR_KHR_vulkan_enable2"), std::string::npos);
 }
 

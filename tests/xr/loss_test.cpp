@@ -83,7 +83,7 @@ class Loss : public Sessions {
 
 TEST_F(Loss, InAFrameThatIsNotShown) {
   const LoopOptions o = options("paper/capsule-sweep", 60);
-  const LoopResult r = lost_after(o, 40, "clock=virtual,blind=1");
+  const LoopResult r = lost_after(o, 40, "blind=1");
   expect_stored(r, o);
   EXPECT_TRUE(std::isnan(r.final_position_m.at(0))) << "the device had them";
 }
@@ -94,7 +94,7 @@ TEST_F(Loss, WhereverInAFrame) {
   std::set<std::string> failed;
   for (int calls = 40; calls < 44; ++calls) {
     SCOPED_TRACE(calls);
-    const LoopResult r = lost_after(o, calls, "clock=virtual");
+    const LoopResult r = lost_after(o, calls, "");
     expect_stored(r, o);
     failed.insert(failed_);
     std::filesystem::remove_all(o.out);
@@ -104,7 +104,7 @@ TEST_F(Loss, WhereverInAFrame) {
 
 TEST_F(Loss, OfPicturesAlone) {
   const LoopOptions o = options("paper/gravity", 60, "ballistic");
-  const LoopResult r = lost_after(o, 40, "clock=virtual");
+  const LoopResult r = lost_after(o, 40, "");
   expect_stored(r, o);
   EXPECT_EQ(replayed(r, o), r.final_position_m) << "a solver on the CPU has lost nothing";
 }
