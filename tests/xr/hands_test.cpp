@@ -16,7 +16,8 @@ double time_of(const assets::RecordedHand& hand, bool right) {
   return (0.3 - (right ? x : -x)) / 0.6;
 }
 
-void expect_at(const std::array<float, 3>& found, const null_xr::V& expected, const char* what) {
+template <class Place>
+void expect_at(const Place& found, const null_xr::V& expected, const char* what) {
   EXPECT_NEAR(static_cast<double>(found[0]) + kPlace_m[0], expected.x, kFloat_m) << what;
   EXPECT_NEAR(static_cast<double>(found[1]) + kPlace_m[1], expected.y, kFloat_m) << what;
   EXPECT_NEAR(static_cast<double>(found[2]) + kPlace_m[2], expected.z, kFloat_m) << what;
@@ -49,10 +50,7 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
     ASSERT_EQ(capsules.size(), 19u);
     for (std::size_t c = 0; c < capsules.size(); ++c) {
       EXPECT_NEAR(capsules[c].radius_m, null_xr::kCapsuleRadius_m, 1e-9);
-      const null_xr::V a = palm + joints[static_cast<std::size_t>(ends[c][0])];
-      EXPECT_NEAR(capsules[c].a_m[0] + kPlace_m[0], a.x, kFloat_m);
-      EXPECT_NEAR(capsules[c].a_m[1] + kPlace_m[1], a.y, kFloat_m);
-      EXPECT_NEAR(capsules[c].a_m[2] + kPlace_m[2], a.z, kFloat_m);
+      expect_at(capsules[c].a_m, palm + joints[static_cast<std::size_t>(ends[c][0])], "a capsule's end");
     }
   }
   EXPECT_EQ(replayed(r, o), r.final_position_m) << "bit for bit";

@@ -1,6 +1,5 @@
 // Session, clock and composition.
 #include <algorithm>
-#include <cstring>
 #include <sstream>
 
 #include "runtime.hpp"
@@ -170,8 +169,6 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
-#define NULL_XR(text, function) \
-  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
   NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
   NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
   NULL_XR("xrBeginSession", begin_session)

@@ -161,8 +161,6 @@ Runtime::Runtime() {
   }
 }
 
-Runtime::~Runtime() = default;
-
 double Runtime::number(const std::string& key, double otherwise) const {
   const auto found = options.find(key);
   return found == options.end() ? otherwise : std::strtod(found->second.c_str(), nullptr);

@@ -31,7 +31,6 @@ struct Swapchain {
 
 struct Runtime {
   Runtime();
-  ~Runtime();
   std::map<std::string, std::string> options;
   double number(const std::string& key, double otherwise) const;
   bool offers(const std::string& key) const { return number(key, 1) != 0; }
@@ -50,7 +49,6 @@ struct Runtime {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
-  std::uint32_t family = 0;
 
   // Clock.
   double rate_hz = 90, next_rate_hz = 90;
@@ -88,12 +86,13 @@ XrPosef as_xr(const Pose&);
 Pose from_xr(const XrPosef&);
 
 /// A function of the file that has it; null if it has none of that name.
+#define NULL_XR(text, function) \
+  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
 PFN_xrVoidFunction frame_function(const std::string& name);
 PFN_xrVoidFunction input_function(const std::string& name);
 PFN_xrVoidFunction graphics_function(const std::string& name);
 
 /// Fraction of the pixels of the last released image that are neither white nor transparent.
 double drawn_share(Runtime&, const Swapchain&);
-void destroy(Runtime&, Swapchain&);
 
 }  // namespace null_xr
