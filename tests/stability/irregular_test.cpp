@@ -12,12 +12,12 @@ namespace {
 
 using nlohmann::json;
 
-json base() {
-  return json::parse(
+Scene load(const std::vector<std::string>& set) {
+  static const json base = json::parse(
       R"({"name": "uneven", "why": "an uneven sheet in a test", "cloth": {"grid": [5, 3], "size_m": [1, 0.5],
     "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000}, "time": {"frame_rate_hz": 60, "duration_s": 0.5}})");
+  return scene_from_json(base, "test", set);
 }
-Scene load(const std::vector<std::string>& set) { return scene_from_json(base(), "test", set); }
 double total(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
 TEST(Regular, NeedsNothingNew) {
