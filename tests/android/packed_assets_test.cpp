@@ -1,17 +1,15 @@
 #include "android/packed_assets.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <map>
 
 #include "base/files.hpp"
 #include "base/sha256.hpp"
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench::android {
 namespace {
@@ -22,16 +20,11 @@ std::optional<std::string> file_text(const fs::path& file) {
   return fs::exists(file) ? std::optional(content_of(file)) : std::nullopt;
 }
 
-class PackedAssets : public ::testing::Test {
+class PackedAssets : public WithFolder {
  protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() / ("clothbench-assets-" + std::to_string(getpid()) + "-" +
-                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
   void TearDown() override {
     unsetenv("CLOTHBENCH_SCENARIOS");
-    fs::remove_all(dir_);
+    WithFolder::TearDown();
   }
   AssetReader reader() {
     return [this](const std::string& path) -> std::optional<std::string> {
@@ -45,16 +38,10 @@ class PackedAssets : public ::testing::Test {
     packed_[path] = content;
     packed_["index.txt"] += sha256(content) + " " + path + "\n";
   }
-  std::string refusal() {
-    try {
-      unpack_assets(reader(), dir_ / "to");
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+  std::string complaint() {
+    return refusal([&] { unpack_assets(reader(), dir_ / "to"); });
   }
 
-  fs::path dir_;
   std::map<std::string, std::string> packed_;
   int reads_ = 0;
 };
@@ -62,29 +49,29 @@ class PackedAssets : public ::testing::Test {
 TEST_F(PackedAssets, UnpackOnceAndAgainWhenTheyChange) {
   add("scenarios/a.json", "{}");
   add("assets/room with blanks.bin", std::string("\0\1\2", 3));
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(complaint(), "");
   EXPECT_EQ(file_text(dir_ / "to/assets/room with blanks.bin"), std::string("\0\1\2", 3));
   reads_ = 0;
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(complaint(), "");
   EXPECT_EQ(reads_, 1) << "only the index";
   packed_.clear();
   add("scenarios/b.json", "[]");
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(complaint(), "");
   EXPECT_FALSE(fs::exists(dir_ / "to/scenarios/a.json")) << "what is no longer packed is gone";
   // Interrupted before its end: no index, so all of it is done again.
   fs::remove(dir_ / "to/index.txt");
   fs::remove(dir_ / "to/scenarios/b.json");
-  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(complaint(), "");
   EXPECT_TRUE(fs::exists(dir_ / "to/scenarios/b.json"));
 }
 
 TEST_F(PackedAssets, FaultsNameTheFile) {
-  EXPECT_NE(refusal().find("index.txt"), std::string::npos);
+  EXPECT_NE(complaint().find("index.txt"), std::string::npos);
   add("scenarios/a.json", "{}");
   packed_["scenarios/a.json"] = "[]";
-  EXPECT_NE(refusal().find("scenarios/a.json: differs"), std::string::npos) << "same size, other bytes";
+  EXPECT_NE(complaint().find("scenarios/a.json: differs"), std::string::npos) << "same size, other bytes";
   packed_.erase("scenarios/a.json");
-  EXPECT_NE(refusal().find("scenarios/a.json: missing"), std::string::npos) << refusal();
+  EXPECT_NE(complaint().find("scenarios/a.json: missing"), std::string::npos) << complaint();
 }
 
 TEST_F(PackedAssets, WhatTheScriptPacksIsWhatTheProgramNeeds) {

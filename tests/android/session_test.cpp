@@ -1,18 +1,15 @@
 // The life of the activity with a fake system around it: arguments, order of life-cycle calls, RESULT line.
 #include "android/session.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
 #include <random>
 #include <thread>
 
 #include "runner/interrupt.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench::android {
 namespace {
@@ -99,24 +96,18 @@ int frames(int count) {
   return 0;
 }
 
-class SessionTest : public ::testing::Test {
+class SessionTest : public WithFolder {
  protected:
-  void SetUp() override {
-    files_ = fs::temp_directory_path() / ("clothbench-session-" + std::to_string(getpid()) + "-" +
-                                          ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(files_);
-    fs::create_directories(files_);
-  }
   void TearDown() override {
     sessions_.clear();
-    fs::remove_all(files_);
+    WithFolder::TearDown();
     clear_interrupt();
     hold_runs(false);
   }
   /// An activity that lives until it is destroyed, or the test ends.
   Session* start(const std::string& extra) {
     sessions_.push_back(std::make_unique<Session>(
-        Activity{files_, extra, [system = system_](const std::string& line) { system->log(line); },
+        Activity{dir_, extra, [system = system_](const std::string& line) { system->log(line); },
                  [system = system_] { system->finish(); },
                  [commands = commands_](const std::vector<std::string>& words) { return commands->run(words); }}));
     return sessions_.back().get();
@@ -124,7 +115,6 @@ class SessionTest : public ::testing::Test {
   /// Another activity of the same or a later process: a log of its own.
   void renew() { system_ = std::make_shared<FakeSystem>(); }
 
-  fs::path files_;
   std::shared_ptr<FakeSystem> system_ = std::make_shared<FakeSystem>();
   std::shared_ptr<Commands> commands_ = std::make_shared<Commands>();
   std::vector<std::unique_ptr<Session>> sessions_;
@@ -152,7 +142,7 @@ TEST_F(SessionTest, TheLastLineIsTheResultAndThenTheActivityEnds) {
   ASSERT_TRUE(system_->wait_for_finish());
   const std::string out = value_after(commands_->all().at(0), "--out");
   EXPECT_EQ(commands_->all()[0][0], "run") << "the program's own name may stand before";
-  EXPECT_EQ(fs::path(out).parent_path(), files_ / "runs");
+  EXPECT_EQ(fs::path(out).parent_path(), dir_ / "runs");
   EXPECT_EQ(system_->last(), "RESULT PASS " + out);
   EXPECT_EQ(system_->finishes(), 1);
   session->pause();
@@ -170,15 +160,11 @@ TEST_F(SessionTest, WhatIsWrongBeforeTheRunIsAResultToo) {
   commands_->body = [](const auto&) -> int { throw std::runtime_error("thrown"); };
   start("list solvers");
   ASSERT_TRUE(system_->wait_for_result());
-  EXPECT_EQ(system_->last(), "RESULT FAIL " + files_.string());
+  EXPECT_EQ(system_->last(), "RESULT FAIL " + dir_.string());
   renew();
-  // A file where the folder should be.
-  files_ /= "file";
-  std::ofstream(files_) << "x";
   start("study a");
   ASSERT_TRUE(system_->wait_for_result());
-  EXPECT_TRUE(system_->last().starts_with("RESULT FAIL " + files_.string())) << system_->last();
-  files_ = files_.parent_path();
+  EXPECT_TRUE(system_->last().starts_with("RESULT FAIL " + (dir_ / "runs").string())) << system_->last();
 }
 
 TEST_F(SessionTest, DestroyedItStopsAndSaysHowToGoOn) {

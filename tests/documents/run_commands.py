@@ -81,7 +81,7 @@ def run_document(name, commands, arguments):
         copy_of_tree(tree, arguments.clothbench, ASIDE_OF_RESULTS if name.startswith("results/reference/") else ASIDE)
         script = SHELL + "".join(f"{text}\nended $? {k}\n" for k, (_, text) in enumerate(commands))
         environment = {**os.environ, "PATH": f"{tree}/.bin:{os.environ['PATH']}", "CLOTHBENCH_SCENARIOS": str(tree / "scenarios"),
-                       "CLOTHBENCH_ASSETS": "procedural", "CLOTHBENCH_NULL_XR": "clock=virtual", "XR_RUNTIME_JSON": str(arguments.runtime),
+                       "CLOTHBENCH_ASSETS": "procedural", "XR_RUNTIME_JSON": str(arguments.runtime),
                        "LC_ALL": "C.UTF-8", "ENDED": f"{folder}/ended"}
         start, log, ends = time.time(), Path(folder) / "log", Path(folder) / "ended"
         with open(log, "w", encoding="utf-8") as out:

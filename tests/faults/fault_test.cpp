@@ -2,7 +2,6 @@
 // error that names what failed, what was finished before stays, no object is left over, and going on gives the very
 // same bits. With CLOTHBENCH_ALL_FAULTS every call with every result, else every fifth call with one of them.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -18,6 +17,7 @@
 #include "scenario/load.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan_faults.hpp"
+#include "with_folder.hpp"
 
 // The driver's own: LLVM keeps what it compiled.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libvulkan_lvp\nleak:libLLVM\nleak:libvulkan.so\n"; }
@@ -31,7 +31,7 @@ constexpr VkResult kResults[] = {VK_ERROR_DEVICE_LOST, VK_ERROR_OUT_OF_DEVICE_ME
                                  VK_TIMEOUT};
 constexpr int kTrials = 2;
 
-class Faults : public ::testing::TestWithParam<const char*> {
+class Faults : public WithFolder, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
     try {
@@ -41,7 +41,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
       if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
       FAIL() << e.what();
     }
-    root_ = fs::temp_directory_path() / ("clothbench-faults-" + std::to_string(getpid()));
+    WithFolder::SetUp();
     plan_.protocol = "test";
     plan_.rules.trials = kTrials;
     plan_.rules.frames = 2;
@@ -53,7 +53,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
   }
   void TearDown() override {
     faults::disarm();
-    fs::remove_all(root_);
+    WithFolder::TearDown();
   }
 
   /// Without a device from before, so that making one is part of the run.
@@ -61,7 +61,7 @@ class Faults : public ::testing::TestWithParam<const char*> {
 
   RunResult run(const std::string& folder, bool resume = false) {
     RunOptions options;
-    options.out = root_ / folder;
+    options.out = dir_ / folder;
     options.resume = resume;
     fs::create_directories(options.out);
     return execute_runs(plan_, options);
@@ -113,8 +113,8 @@ class Faults : public ::testing::TestWithParam<const char*> {
     forget_device();
     vulkan::Device::get({});
     EXPECT_EQ(faults::alive(), alive_before);
-    fs::remove_all(root_ / folder);
-    fs::remove_all(root_ / (folder + "_again"));
+    fs::remove_all(dir_ / folder);
+    fs::remove_all(dir_ / (folder + "_again"));
   }
 
   /// Calls of a whole run, and what comes of it.
@@ -128,7 +128,6 @@ class Faults : public ::testing::TestWithParam<const char*> {
   const Scene scene_ = load_scene(
       "paper/gravity", {"cloth.grid=[5,4]", "time.frame_rate_hz=60", "pins=[{\"edge\":\"u0\"}]", "cloth.sides=single"});
   RunPlan plan_;
-  fs::path root_;
 };
 
 TEST_P(Faults, EveryCallThatFailsOnceIsARowOrANamedError) {

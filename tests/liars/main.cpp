@@ -59,9 +59,7 @@ nlohmann::json cost_of(const std::string& name, const std::string& solver) {
 
 int main(int argc, char** argv) {
   using namespace clothbench::liars;
-  CLI::App app{
-      "Wrong motions, and which of them the check of motions fails: a "
-      "line of JSON each."};
+  CLI::App app{"Wrong motions, and which of them the check of motions fails: a line of JSON each."};
   Matrix matrix;
   std::string cost;
   app.add_option("--seed", matrix.seed, "of the first motion; each motion has the next");

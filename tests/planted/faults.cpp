@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <type_traits>
 
 #include "trial.hpp"
 
@@ -40,208 +40,162 @@ std::function<void(AccuracyPass&)> series(const std::string& name, std::function
   };
 }
 
-void add_kernels(std::vector<Fault>& f) {
-  const auto kernel = [&](const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
-    Fault fault{name, stage};
-    fault.shader = ShaderFault{file, is, is_to_be};
-    f.push_back(std::move(fault));
-  };
-  kernel("one family of lines skipped", "pulled", "xpbd/lines/line_frame.comp", "colour = colours - 1u - turn;",
-         "colour = max(colours - 1u - turn, 1u);");
-  kernel("stretch compliance of the border as inside", "heavy", "xpbd/lines/grid_lines.glsl",
-         "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;");
-  kernel("bending with the wrong sign", "cantilever", "xpbd/lines/grid_lines.glsl",
-         "w[k] * (last - 2.0 * lambda[k] + next)", "w[k] * (2.0 * lambda[k] - last - next)");
-  kernel("damping halved in the kernel", "fall", "xpbd/time/substep.glsl",
-         "gain -= p.damping_fraction * (velocity + change);",
-         "gain -= 0.5 * p.damping_fraction * (velocity + change);");
-  kernel("gravity 1 % weak in the kernel", "fall", "xpbd/time/substep.glsl", "vec3 gain = p.gravity_h.xyz,",
-         "vec3 gain = 0.99 * p.gravity_h.xyz,");
-  kernel("grips forgotten by the kernel", "pulled", "xpbd/lines/line_frame.comp", "if (GRIPS > 0u) move_held(s);",
-         "if (GRIPS > 999999u) move_held(s);");
+void a_frame_late(std::vector<double>& v) {
+  std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
+  v[0] = 0;
 }
 
-/// A fault in every phase of contact. Where planes hold ("struck") responses may be wrong and nothing is
-/// passed; only they decide a rope's friction on a drum ("wrapped").
-void add_planes(std::vector<Fault>& f) {
-  const auto kernel = [&](const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
-    Fault fault{name, stage};
-    fault.shader = ShaderFault{file, is, is_to_be};
-    f.push_back(std::move(fault));
-  };
-  kernel("points of pieces stand still within the frame", "struck",
-         "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)");
-  kernel("a hundredth of the motion bound", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
-         "motion_bounds[i] = vec4(at.xyz, bound);", "motion_bounds[i] = vec4(at.xyz, 0.01 * bound);");
-  kernel("one pair in three not listed", "struck", "xpbd/contact/broad_phase/contact_broad_phase.glsl", "return n;",
-         "return n - n / 3u;");
-  kernel("half of each element's pairs not found again", "struck", "xpbd/contact/broad_phase/prefix_sum.comp",
-         "min(count, room), 0u", "min(count, room) / 2u, 0u");
-  kernel("start of the substep not what it was", "struck", "xpbd/contact/displacement_filter/contact_vertex_step.glsl",
-         "at.xyz += p.h * (vel ", "at.xyz += -9.0 * p.h * (vel ");
-  kernel("no friction on half-spaces", "ramp", "xpbd/contact/response/contact_accumulate.glsl",
-         "at.xyz - start, s.friction)", "at.xyz - start, 0.0)");
-  kernel("normal of the nearest points flipped", "struck", "xpbd/contact/narrow_phase/contact_nearest_points.glsl",
-         "s.normal = vec4(r.n, gap);", "s.normal = vec4(-r.n, gap);");
-  kernel("friction along the slip", "wrapped", "xpbd/contact/response/friction.glsl", "by -= min(1.0, friction",
-         "by += min(1.0, friction");
-  kernel("what was struck fixed in the lines", "struck", "xpbd/contact/response/contact_accumulate.glsl",
-         "at.w / (1.0 + held)", "0.0");
-  kernel("a hull that misses a corner", "struck", "xpbd/contact/narrow_phase/contact_distance.glsl",
-         "uint first = 0u; first < shape.count;", "uint first = 1u; first < shape.count;");
-  kernel("planes a millimetre inside the piece", "struck", "xpbd/contact/displacement_filter/contact_select_plane.glsl",
-         "dot(n, around) + smallest);", "dot(n, around) + smallest - 1e-3);");
-  kernel("planes forgotten", "struck", "xpbd/contact/displacement_filter/contact_project.glsl",
-         "if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);", "");
+/// A fault in the place that a member of Fault names.
+template <class Place>
+Fault in(Place Fault::*place, const char* name, const char* stage, std::type_identity_t<Place> what) {
+  Fault f{name, stage};
+  f.*place = std::move(what);
+  return f;
 }
 
-/// The same of the cloth's contact with itself.
-void add_self_planes(std::vector<Fault>& f) {
-  const auto kernel = [&](const char* name, const char* file, const char* is, const char* is_to_be) {
-    Fault fault{name, "heaped"};
-    fault.shader = ShaderFault{file, is, is_to_be};
-    f.push_back(std::move(fault));
-  };
-  kernel("boxes of a tenth of the size", "xpbd/contact/broad_phase/self_aabb.glsl", "return b.low_0.xyz +",
-         "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +");
-  kernel("triangles whose numbers differ by few not paired", "xpbd/contact/broad_phase/self_broad_phase.comp",
-         "if (a[c] == b.x ", "if (abs(int(a[c]) - int(b.x)) < 60 ");
-  kernel("half of each triangle's pairs lost", "xpbd/contact/narrow_phase/self_active_pairs.comp",
-         "end = range.x + range.y;", "end = range.x + range.y / 2u;");
-  kernel("contacts pushed a centimetre too far", "xpbd/contact/response/self_correction.glsl",
-         "s.normal.w - dot(n, apart)", "s.normal.w + 0.01 - dot(n, apart)");
-  kernel("normal of the nearest points flipped", "xpbd/contact/narrow_phase/self_nearest_points.comp",
-         "self_active[k].plane = normal;", "self_active[k].plane = vec4(-normal.xyz, normal.w);");
-  kernel("planes of the second triangle on its wrong side", "xpbd/contact/displacement_filter/self_select_plane.comp",
-         "vec4(-n, half_m - offset)", "vec4(-n, half_m - offset - 0.01)");
-  kernel("planes of the cloth with itself forgotten", "xpbd/contact/displacement_filter/contact_project.glsl",
-         "if (!has_plane[m]) continue;", "if (true) continue;");
-}
-
-void add_inputs(std::vector<Fault>& f) {
-  const auto scene = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
-    Fault fault{name, stage};
-    fault.scene = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  const auto input = [&](const char* name, const char* stage, std::function<void(const Scene&, FrameInput&)> change) {
-    Fault fault{name, stage};
-    fault.input = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  scene("gravity 9.7", "swing", [](Scene& s) { s.gravity_m_per_s2 = {0, -9.7, 0}; });
-  scene("friction skipped", "slope", colliders([](Collider& c) { c.friction = 0; }));
-  scene("every 100th triangle ignored", "tiles", mesh(without_every_100th));
-  scene("bending a fifth too soft", "cantilever", [](Scene& s) { s.material.bending_rigidity_N_m *= 0.8; });
-  scene("one pin lost", "swing", [](Scene& s) { s.pins.vertices.pop_back(); });
-  scene("one vertex ten times as heavy", "heavy", [](Scene& s) {
-    s.cloth.mass_factors.assign(s.cloth.vertex_count(), 1);
-    s.cloth.mass_factors[s.cloth.vertex_count() / 2] = 10;
-  });
-  scene("collider 1 cm elsewhere", "ball", colliders([](Collider& c) { c.center_m[1] -= 0.01; }));
-  scene("one grip never held", "pulled", [](Scene& s) {
-    for (FrameMotion& m : s.motion) m.grip_held.back() = 0;
-  });
-  input("collider a frame late", "pushed",
-        [](const Scene& s, FrameInput& i) { i.motion = s.motion_after(i.index - 1); });
-  input("frames 1 % too long", "swing", [](const Scene&, FrameInput& i) { i.dt_s *= 1.01; });
-}
-
-void add_outputs(std::vector<Fault>& f) {
-  const auto state = [&](const char* name, const char* stage, std::function<void(int, ClothState&)> change) {
-    Fault fault{name, stage};
-    fault.state = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  state("NaN in one vertex at frame 50", "fall", [](int frame, ClothState& s) {
-    if (frame == 50) s.position[30] = std::numeric_limits<double>::quiet_NaN();
-  });
-  state("one vertex stays where it was", "swing", [first = std::vector<double>()](int frame, ClothState& s) mutable {
-    if (frame == 0) first = s.position;
-    std::copy_n(first.begin() + 300, 3, s.position.begin() + 300);
-  });
-  state("state read a frame late", "swing", [before = ClothState()](int, ClothState& s) mutable {
-    std::swap(before, s);
-    if (s.position.empty()) s = before;
-  });
-  state("positions in whole millimetres", "fall", [](int, ClothState& s) {
-    for (double& x : s.position) x = std::round(x * 1e3) / 1e3;
-  });
-  state("velocities not written", "undamped",
-        [](int, ClothState& s) { std::fill(s.velocity.begin(), s.velocity.end(), 0.0); });
-  Fault gave_up{"gives up at frame 10", "fall"};
-  gave_up.status = [](int frame) { return frame == 10 ? StepStatus::Diverged : StepStatus::Ok; };
-  f.push_back(std::move(gave_up));
-  Fault extra{"a kernel that the scene does not need", "fall"};
-  extra.plan = [](Plan& p) { p.stages.push_back({"mesh contact", {Feature::StaticMesh}, 1, 0, 0}); };
-  f.push_back(std::move(extra));
-  Fault twice{"every dispatch recorded twice", "fall"};
-  twice.plan = [](Plan& p) {
-    for (StagePlan& s : p.stages) s.dispatches *= 2;
-  };
-  f.push_back(std::move(twice));
-  Fault left_out{"a feature of the scene left out", "ball"};
-  left_out.plan = [](Plan& p) {
-    for (StagePlan& s : p.stages) s.serves = s.serves - FeatureSet{Feature::Friction};
-  };
-  f.push_back(std::move(left_out));
-  Fault lazy{"a quarter of the substeps", "swing"};
-  lazy.settings = [](nlohmann::json& s) { s["substeps"] = std::max(1, s["substeps"].get<int>() / 4); };
-  f.push_back(std::move(lazy));
-}
-
-void add_metrics(std::vector<Fault>& f) {
-  const auto metric = [&](const char* name, const char* stage, std::function<void(AccuracyPass&)> change) {
-    Fault fault{name, stage};
-    fault.metrics = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  const auto in_metrics = [&](const char* name, const char* stage, std::function<void(Scene&)> change) {
-    Fault fault{name, stage};
-    fault.metric_scene = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  metric("a stale metric: contour of the frame before", "pressed",
-         series("contact_length_m", [](std::vector<double>& v) {
-           std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
-           v[0] = 0;
-         }));
-  metric("depth not measured", "rising",
-         series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); }));
-  metric("self-contact of the frame before", "crossed", series("self_contact_length_m", [](std::vector<double>& v) {
-           std::rotate(v.rbegin(), v.rbegin() + 1, v.rend());
-           v[0] = 0;
-         }));
-  in_metrics("metric sees the collider a frame late", "rising", [](Scene& s) {
-    s.motion.insert(s.motion.begin(), s.motion.front());
-    s.motion.pop_back();
-  });
-}
-
-void add_records(std::vector<Fault>& f) {
-  const auto record = [&](const char* name, const char* stage, std::function<void(RunRecord&)> change) {
-    Fault fault{name, stage};
-    fault.record = std::move(change);
-    f.push_back(std::move(fault));
-  };
-  record("a trial repeated", "fall", [](RunRecord& r) { r.trials[1] = r.trials[0]; });
-  record("another scene under the same name", "fall", [](RunRecord& r) { r.header.scenario_sha256[3] ^= 1; });
-  record("a value lost on the way to the file", "swing", [](RunRecord& r) { r.summary.erase("stretch_max"); });
-  record("a failed expectation not reported", "ball", [](RunRecord& r) { r.summary["expect.depth_max_m"] = kMissing; });
+Fault kernel(const char* name, const char* stage, const char* file, const char* is, const char* is_to_be) {
+  return in(&Fault::shader, name, stage, ShaderFault{file, is, is_to_be});
 }
 
 }  // namespace
 
 std::vector<Fault> faults() {
-  std::vector<Fault> out;
-  add_kernels(out);
-  add_planes(out);
-  add_self_planes(out);
-  add_inputs(out);
-  add_outputs(out);
-  add_metrics(out);
-  add_records(out);
-  return out;
+  return {
+      kernel("one family of lines skipped", "pulled", "xpbd/lines/line_frame.comp", "colour = colours - 1u - turn;",
+             "colour = max(colours - 1u - turn, 1u);"),
+      kernel("stretch compliance of the border as inside", "heavy", "xpbd/lines/grid_lines.glsl",
+             "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;"),
+      kernel("bending with the wrong sign", "cantilever", "xpbd/lines/grid_lines.glsl",
+             "w[k] * (last - 2.0 * lambda[k] + next)", "w[k] * (2.0 * lambda[k] - last - next)"),
+      kernel("damping halved in the kernel", "fall", "xpbd/time/substep.glsl",
+             "gain -= p.damping_fraction * (velocity + change);",
+             "gain -= 0.5 * p.damping_fraction * (velocity + change);"),
+      kernel("gravity 1 % weak in the kernel", "fall", "xpbd/time/substep.glsl", "vec3 gain = p.gravity_h.xyz,",
+             "vec3 gain = 0.99 * p.gravity_h.xyz,"),
+      kernel("grips forgotten by the kernel", "pulled", "xpbd/lines/line_frame.comp", "if (GRIPS > 0u) move_held(s);",
+             "if (GRIPS > 999999u) move_held(s);"),
+      // A fault in every phase of contact. Where planes hold ("struck") responses may be wrong and nothing is
+      // passed; only they decide a rope's friction on a drum ("wrapped").
+      kernel("points of pieces stand still within the frame", "struck",
+             "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)"),
+      kernel("a hundredth of the motion bound", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
+             "motion_bounds[i] = vec4(at.xyz, bound);", "motion_bounds[i] = vec4(at.xyz, 0.01 * bound);"),
+      kernel("one pair in three not listed", "struck", "xpbd/contact/broad_phase/contact_broad_phase.glsl", "return n;",
+             "return n - n / 3u;"),
+      kernel("half of each element's pairs not found again", "struck", "xpbd/contact/broad_phase/prefix_sum.comp",
+             "min(count, room), 0u", "min(count, room) / 2u, 0u"),
+      kernel("start of the substep not what it was", "struck",
+             "xpbd/contact/displacement_filter/contact_vertex_step.glsl", "at.xyz += p.h * (vel ",
+             "at.xyz += -9.0 * p.h * (vel "),
+      kernel("no friction on half-spaces", "ramp", "xpbd/contact/response/contact_accumulate.glsl",
+             "at.xyz - start, s.friction)", "at.xyz - start, 0.0)"),
+      kernel("normal of the nearest points flipped", "struck", "xpbd/contact/narrow_phase/contact_nearest_points.glsl",
+             "s.normal = vec4(r.n, gap);", "s.normal = vec4(-r.n, gap);"),
+      kernel("friction along the slip", "wrapped", "xpbd/contact/response/friction.glsl", "by -= min(1.0, friction",
+             "by += min(1.0, friction"),
+      kernel("what was struck fixed in the lines", "struck", "xpbd/contact/response/contact_accumulate.glsl",
+             "at.w / (1.0 + held)", "0.0"),
+      kernel("a hull that misses a corner", "struck", "xpbd/contact/narrow_phase/contact_distance.glsl",
+             "uint first = 0u; first < shape.count;", "uint first = 1u; first < shape.count;"),
+      kernel("planes a millimetre inside the piece", "struck",
+             "xpbd/contact/displacement_filter/contact_select_plane.glsl", "dot(n, around) + smallest);",
+             "dot(n, around) + smallest - 1e-3);"),
+      kernel("planes forgotten", "struck", "xpbd/contact/displacement_filter/contact_project.glsl",
+             "if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);", ""),
+      // The same of the cloth's contact with itself.
+      kernel("boxes of a tenth of the size", "heaped", "xpbd/contact/broad_phase/self_aabb.glsl",
+             "return b.low_0.xyz +", "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +"),
+      kernel("triangles whose numbers differ by few not paired", "heaped",
+             "xpbd/contact/broad_phase/self_broad_phase.comp", "if (a[c] == b.x ",
+             "if (abs(int(a[c]) - int(b.x)) < 60 "),
+      kernel("half of each triangle's pairs lost", "heaped", "xpbd/contact/narrow_phase/self_active_pairs.comp",
+             "end = range.x + range.y;", "end = range.x + range.y / 2u;"),
+      kernel("contacts pushed a centimetre too far", "heaped", "xpbd/contact/response/self_correction.glsl",
+             "s.normal.w - dot(n, apart)", "s.normal.w + 0.01 - dot(n, apart)"),
+      kernel("normal of the nearest points flipped", "heaped", "xpbd/contact/narrow_phase/self_nearest_points.comp",
+             "self_active[k].plane = normal;", "self_active[k].plane = vec4(-normal.xyz, normal.w);"),
+      kernel("planes of the second triangle on its wrong side", "heaped",
+             "xpbd/contact/displacement_filter/self_select_plane.comp", "vec4(-n, half_m - offset)",
+             "vec4(-n, half_m - offset - 0.01)"),
+      kernel("planes of the cloth with itself forgotten", "heaped",
+             "xpbd/contact/displacement_filter/contact_project.glsl", "if (!has_plane[m]) continue;",
+             "if (true) continue;"),
+      in(&Fault::scene, "gravity 9.7", "swing",
+         [](Scene& s) {
+           s.gravity_m_per_s2 = {0, -9.7, 0};
+         }),
+      in(&Fault::scene, "friction skipped", "slope", colliders([](Collider& c) { c.friction = 0; })),
+      in(&Fault::scene, "every 100th triangle ignored", "tiles", mesh(without_every_100th)),
+      in(&Fault::scene, "bending a fifth too soft", "cantilever",
+         [](Scene& s) { s.material.bending_rigidity_N_m *= 0.8; }),
+      in(&Fault::scene, "one pin lost", "swing", [](Scene& s) { s.pins.vertices.pop_back(); }),
+      in(&Fault::scene, "one vertex ten times as heavy", "heavy",
+         [](Scene& s) {
+           s.cloth.mass_factors.assign(s.cloth.vertex_count(), 1);
+           s.cloth.mass_factors[s.cloth.vertex_count() / 2] = 10;
+         }),
+      in(&Fault::scene, "collider 1 cm elsewhere", "ball", colliders([](Collider& c) { c.center_m[1] -= 0.01; })),
+      in(&Fault::scene, "one grip never held", "pulled",
+         [](Scene& s) {
+           for (FrameMotion& m : s.motion) m.grip_held.back() = 0;
+         }),
+      in(&Fault::input, "collider a frame late", "pushed",
+         [](const Scene& s, FrameInput& i) { i.motion = s.motion_after(i.index - 1); }),
+      in(&Fault::input, "frames 1 % too long", "swing", [](const Scene&, FrameInput& i) { i.dt_s *= 1.01; }),
+      in(&Fault::state, "NaN in one vertex at frame 50", "fall",
+         [](int frame, ClothState& s) {
+           if (frame == 50) s.position[30] = std::numeric_limits<double>::quiet_NaN();
+         }),
+      in(&Fault::state, "one vertex stays where it was", "swing",
+         [first = std::vector<double>()](int frame, ClothState& s) mutable {
+           if (frame == 0) first = s.position;
+           std::copy_n(first.begin() + 300, 3, s.position.begin() + 300);
+         }),
+      in(&Fault::state, "state read a frame late", "swing",
+         [before = ClothState()](int, ClothState& s) mutable {
+           std::swap(before, s);
+           if (s.position.empty()) s = before;
+         }),
+      in(&Fault::state, "positions in whole millimetres", "fall",
+         [](int, ClothState& s) {
+           for (double& x : s.position) x = std::round(x * 1e3) / 1e3;
+         }),
+      in(&Fault::state, "velocities not written", "undamped",
+         [](int, ClothState& s) { std::fill(s.velocity.begin(), s.velocity.end(), 0.0); }),
+      in(&Fault::status, "gives up at frame 10", "fall",
+         [](int frame) { return frame == 10 ? StepStatus::Diverged : StepStatus::Ok; }),
+      in(&Fault::plan, "a kernel that the scene does not need", "fall",
+         [](Plan& p) {
+           p.stages.push_back({"mesh contact", {Feature::StaticMesh}, 1, 0, 0});
+         }),
+      in(&Fault::plan, "every dispatch recorded twice", "fall",
+         [](Plan& p) {
+           for (StagePlan& s : p.stages) s.dispatches *= 2;
+         }),
+      in(&Fault::plan, "a feature of the scene left out", "ball",
+         [](Plan& p) {
+           for (StagePlan& s : p.stages) s.serves = s.serves - FeatureSet{Feature::Friction};
+         }),
+      in(&Fault::settings, "a quarter of the substeps", "swing",
+         [](nlohmann::json& s) { s["substeps"] = std::max(1, s["substeps"].get<int>() / 4); }),
+      in(&Fault::metrics, "a stale metric: contour of the frame before", "pressed",
+         series("contact_length_m", a_frame_late)),
+      in(&Fault::metrics, "depth not measured", "rising",
+         series("depth_m", [](std::vector<double>& v) { std::fill(v.begin(), v.end(), 0.0); })),
+      in(&Fault::metrics, "self-contact of the frame before", "crossed", series("self_contact_length_m", a_frame_late)),
+      in(&Fault::metric_scene, "metric sees the collider a frame late", "rising",
+         [](Scene& s) {
+           s.motion.insert(s.motion.begin(), s.motion.front());
+           s.motion.pop_back();
+         }),
+      in(&Fault::record, "a trial repeated", "fall", [](RunRecord& r) { r.trials[1] = r.trials[0]; }),
+      in(&Fault::record, "another scene under the same name", "fall",
+         [](RunRecord& r) { r.header.scenario_sha256[3] ^= 1; }),
+      in(&Fault::record, "a value lost on the way to the file", "swing",
+         [](RunRecord& r) { r.summary.erase("stretch_max"); }),
+      in(&Fault::record, "a failed expectation not reported", "ball",
+         [](RunRecord& r) { r.summary["expect.depth_max_m"] = kMissing; }),
+  };
 }
 
 }  // namespace clothbench

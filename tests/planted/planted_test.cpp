@@ -45,10 +45,8 @@ std::string caught_by(const RunRecord& was, const RunRecord& is) {
   }
 }
 
-class Planted : public ::testing::Test {};
-
 // One test, because both halves need the healthy runs.
-TEST_F(Planted, AHealthyRunPassesTwiceAndEveryFaultIsCaught) {
+TEST(Planted, AHealthyRunPassesTwiceAndEveryFaultIsCaught) {
   for (const Stage& s : stages()) {
     if (left_to_slow_tier(s.name)) continue;
     EXPECT_EQ(healthy(s.name).outcome.status, "ok") << s.name << ": " << healthy(s.name).outcome.message;
@@ -76,7 +74,7 @@ TEST_F(Planted, AHealthyRunPassesTwiceAndEveryFaultIsCaught) {
   EXPECT_GE(planted, 35);
 }
 
-TEST_F(Planted, AFaultThatIsNowhereIsAnError) {
+TEST(Planted, AFaultThatIsNowhereIsAnError) {
   Fault gone{"gone", "fall"};
   gone.shader = ShaderFault{"lines.glsl", "no such text", ""};
   EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "base/json_text.hpp"
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
@@ -100,12 +100,8 @@ TEST_P(BadInput, IsSimulatedSanely) {
   EXPECT_GE(ran, 1) << "no solver ran this";
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, BadInput, ::testing::Range<std::size_t>(0, cases().size()), [](const auto& p) {
-  std::string name = cases()[p.param].name;
-  for (char& ch : name)
-    if (std::isalnum(static_cast<unsigned char>(ch)) == 0) ch = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Cases, BadInput, ::testing::Range<std::size_t>(0, cases().size()),
+                         [](const auto& p) { return test_name(cases()[p.param].name); });
 
 }  // namespace
 }  // namespace clothbench

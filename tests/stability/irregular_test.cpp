@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -12,19 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-json base() {
-  return json::parse(
+Scene load(const std::vector<std::string>& set) {
+  static const json base = json::parse(
       R"({"name": "uneven", "why": "an uneven sheet in a test", "cloth": {"grid": [5, 3], "size_m": [1, 0.5],
     "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000}, "time": {"frame_rate_hz": 60, "duration_s": 0.5}})");
-}
-Scene load(const std::vector<std::string>& set) { return scene_from_json(base(), "test", set); }
-std::string complaint(const std::vector<std::string>& set) {
-  try {
-    load(set);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return scene_from_json(base, "test", set);
 }
 double total(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
@@ -45,15 +37,12 @@ TEST(Columns, FillTheWidthAndKeepTheMass) {
   EXPECT_NEAR(narrow.rest_m, 0.001 / 3.001, 1e-12);
   const std::vector<double> x = initial_positions(s);
   EXPECT_NEAR(x[3 * narrow.b] - x[3 * narrow.a], narrow.rest_m, 1e-12);
-  EXPECT_NE(complaint({R"(cloth.column_factors=[{"column": 4, "factor": 2}])"}).find("/cloth/column_factors/0/column"),
-            std::string::npos);
 }
 
 TEST(Columns, OfWidthZeroHaveNoLength) {
   const Scene s = load({R"(cloth.column_factors=[{"column": 1, "factor": 0}])"});
   EXPECT_EQ(edges(s.cloth, EdgeKind::Structural)[1].rest_m, 0);
   for (double m : vertex_masses(s)) EXPECT_GT(m, 0);
-  EXPECT_NE(complaint({R"(cloth.column_factors=[{"column": 0, "factor": 0}])"}).find("no mass"), std::string::npos);
 }
 
 TEST(Masses, AreScaledWhereTold) {
@@ -62,12 +51,6 @@ TEST(Masses, AreScaledWhereTold) {
   const auto a = vertex_masses(even), b = vertex_masses(s);
   for (std::size_t v = 0; v < a.size(); ++v)
     EXPECT_DOUBLE_EQ(b[v], a[v] * (v % 5 == 4 ? 1000 : v == 6 ? 1e-4 : 1)) << v;
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"edge": "u1", "factor": 0}])"}).find("/cloth/mass_factors/0/factor"),
-            std::string::npos);
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}).find("vertex 15 of 15"),
-            std::string::npos);
-  EXPECT_NE(complaint({R"(cloth.mass_factors=[{"factor": 2}])"}).find("expected \"edge\", \"group\" or \"vertices\""),
-            std::string::npos);
 }
 
 TEST(Regions, ChangeTheStiffnessOfTheirColumns) {
@@ -80,9 +63,6 @@ TEST(Regions, ChangeTheStiffnessOfTheirColumns) {
     if (e.b == e.a + 5 && e.a == 2) {  // on the line between both
       EXPECT_EQ(membrane_stiffness(s, e), (1000 + 1e6) / 2);
     }
-  EXPECT_NE(complaint({R"(material.regions=[{"columns": [2, 4], "membrane_stiffness_N_per_m": 1}])"})
-                .find("/material/regions/0/columns"),
-            std::string::npos);
 }
 
 TEST(Starts, AreSeededAndLeaveWhatIsPinned) {
@@ -137,7 +117,6 @@ TEST(Frames, OneHitchMovesAllThatFollow) {
   EXPECT_DOUBLE_EQ(s.time.dt_after(1), 1.0 / 60);
   EXPECT_DOUBLE_EQ(s.time.dt_after(2), 0.25);
   EXPECT_NEAR(s.time.at(s.time.frames()), 0.5 + 0.25 - 1.0 / 60, 1e-12);
-  EXPECT_NE(complaint({R"(time.hitch={"frame": 30, "dt_s": 0.25})"}).find("/time/hitch/frame"), std::string::npos);
 }
 
 TEST(Frames, JitterStaysInItsShare) {
@@ -179,16 +158,27 @@ TEST(Capsules, MoveJumpAndTurn) {
   EXPECT_NEAR(end.a_m[2], 2, 1e-12);
 }
 
-TEST(Pins, OfOneVertexTwiceAreOneOrRefused) {
+TEST(Pins, OfOneVertexTwiceAreOne) {
   EXPECT_EQ(load({R"(pins=[{"vertices": [0, 0]}, {"edge": "u0"}])"}).pins.vertices.size(), 3u);
-  EXPECT_NE(complaint({R"(pins=[{"edge": "u0"}])", R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}])"})
-                .find("is pinned as well"),
-            std::string::npos);
-  EXPECT_NE(
-      complaint(
-          {R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}, {"edge": "v0", "velocity_m_per_s": [0, 1, 0]}])"})
-          .find("held by two hands"),
-      std::string::npos);
+}
+
+TEST(Irregular, WhatIsWrongIsNamed) {
+  const struct {
+    std::vector<std::string> set;
+    const char* complaint;
+  } refused[] = {
+      {{R"(cloth.column_factors=[{"column": 4, "factor": 2}])"}, "/cloth/column_factors/0/column"},
+      {{R"(cloth.column_factors=[{"column": 0, "factor": 0}])"}, "no mass"},
+      {{R"(cloth.mass_factors=[{"edge": "u1", "factor": 0}])"}, "/cloth/mass_factors/0/factor"},
+      {{R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}, "vertex 15 of 15"},
+      {{R"(cloth.mass_factors=[{"factor": 2}])"}, "expected \"edge\", \"group\" or \"vertices\""},
+      {{R"(material.regions=[{"columns": [2, 4], "membrane_stiffness_N_per_m": 1}])"}, "/material/regions/0/columns"},
+      {{R"(time.hitch={"frame": 30, "dt_s": 0.25})"}, "/time/hitch/frame"},
+      {{R"(pins=[{"edge": "u0"}])", R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}])"}, "is pinned as well"},
+      {{R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}, {"edge": "v0", "velocity_m_per_s": [0, 1, 0]}])"},
+       "held by two hands"},
+  };
+  for (const auto& r : refused) EXPECT_PRED2(mentions, refusal([&] { load(r.set); }), r.complaint);
 }
 
 }  // namespace

@@ -35,10 +35,6 @@ class Judge : public ::testing::Test {
     next_ = 0;
   }
   StabilityFrame add(const ClothState& s) { return judge_->judge(next_++, s, nullptr); }
-  /// Rest, up to before frame `frame`.
-  void rest_until(int frame) {
-    while (next_ < frame) add(rest_);
-  }
   ClothState stretched(double factor) const {
     ClothState s = rest_;
     for (std::size_t v = 0; v < s.position.size() / 3; ++v)
@@ -137,10 +133,7 @@ TEST_F(Judge, F2AllowsWhatTheLoadsDo) {
 TEST_F(Judge, WaitsForTheClothToRelax) {
   load({R"(stability={"case": "S15", "judged": ["F0", "F1", "F2"], "from": "relaxed", "relax_s": 0.2})",
         R"(cloth.start={"shape": "sphere", "radius_m": 3})"});
-  ClothState ball;
-  ball.position = rest_.position;
-  ball.velocity = rest_.velocity;
-  rest_.position = stretched(1).position;
+  const ClothState ball = rest_;
   for (int j = 0; j < 9; ++j)
     for (int i = 0; i < 9; ++i) {
       const Vec3 x = scene_.rest_position(i, j);
@@ -155,7 +148,7 @@ TEST_F(Judge, WaitsForTheClothToRelax) {
 TEST_F(Judge, AJumpStartsTheWaitAnew) {
   load({R"(stability={"case": "S08", "judged": ["F0", "F1", "F2"], "from": "relaxed"})", "pins=[]",
         R"(grips=[{"edge": "v0", "velocity_m_per_s": [0, 0, 0], "jumps": [{"time_s": 0.1, "by_m": [0.5, 0, 0]}]}])"});
-  rest_until(7);
+  while (next_ < 7) add(rest_);
   ClothState fast = stretched(1.5);
   fast.velocity[100] = 9 * 0.5 * 60;  // under 10 times the jump's speed
   EXPECT_EQ(add(fast).classes, 0u);

@@ -20,59 +20,54 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class StabilityStudy : public WithFolder {
- protected:
-  void SetUp() override {
-    WithFolder::SetUp();
-    // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
-    write("thrown.json", {{"name", "thrown"},
-                          {"why", "thrown ever faster in a test"},
-                          {"cloth",
-                           {{"grid", {3, 3}},
-                            {"size_m", {1, 1}},
-                            {"areal_density_kg_per_m2", 0.2},
-                            {"sides", "single"},
-                            {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
-                          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
-                          {"gravity_m_per_s2", {0, -1, 0}},
-                          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
-                          {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2"}}}}});
-    write("thrown-study.json", {{"name", "thrown"},
-                                {"why", "thrown in a test"},
-                                {"protocol", "stability-map"},
-                                {"scenes", {{{"file", "thrown.json"}}}},
-                                {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
-                                {"trials", 1},
-                                {"run_limit_s", 20},
-                                {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}});
-  }
-  /// Runs a study whose solvers only the child has.
-  static void execute(const Study& study, const RunOptions& o) {
-    static std::map<std::string, SolverEntry> entries;
-    const RunPlan plan = plan_study(study, [](const std::string& name) -> const SolverEntry* {
-      SolverEntry& e = entries[name];
-      e.info.name = name;
-      e.make = [](const json&, const DeviceOptions&) -> std::unique_ptr<ClothSolver> { return nullptr; };
-      return &e;
-    });
-    execute_in_worker(plan, o);
-  }
-  void write(const char* name, const json& j) const { std::ofstream(dir_ / name) << j.dump(); }
-  RunOptions options(bool resume) const {
-    RunOptions o;
-    o.out = dir_ / "out";
-    o.program = FAULTY_CHILD;
-    o.resume = resume;
-    fs::create_directories(o.out);
-    return o;
-  }
-};
+using StabilityStudy = WithFolder;
+
+void write(const fs::path& file, const json& j) { std::ofstream(file) << j.dump(); }
+
+/// Runs a study whose solvers only the child has.
+void execute(const Study& study, const RunOptions& o) {
+  static std::map<std::string, SolverEntry> entries;
+  const RunPlan plan = plan_study(study, [](const std::string& name) -> const SolverEntry* {
+    SolverEntry& e = entries[name];
+    e.info.name = name;
+    e.make = [](const json&, const DeviceOptions&) -> std::unique_ptr<ClothSolver> { return nullptr; };
+    return &e;
+  });
+  execute_in_worker(plan, o);
+}
 
 TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
+  // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
+  write(dir_ / "thrown.json", {{"name", "thrown"},
+                               {"why", "thrown ever faster in a test"},
+                               {"cloth",
+                                {{"grid", {3, 3}},
+                                 {"size_m", {1, 1}},
+                                 {"areal_density_kg_per_m2", 0.2},
+                                 {"sides", "single"},
+                                 {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
+                               {"material", {{"membrane_stiffness_N_per_m", 1000}}},
+                               {"gravity_m_per_s2", {0, -1, 0}},
+                               {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
+                               {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2"}}}}});
+  write(dir_ / "thrown-study.json",
+        {{"name", "thrown"},
+         {"why", "thrown in a test"},
+         {"protocol", "stability-map"},
+         {"scenes", {{{"file", "thrown.json"}}}},
+         {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
+         {"trials", 1},
+         {"run_limit_s", 20},
+         {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}});
   const Study study = load_study((dir_ / "thrown-study.json").string());
-  execute(study, options(false));
-  EXPECT_THROW(execute(study, options(false)), Error);
-  execute(study, options(true));
+  RunOptions o;
+  o.out = dir_ / "out";
+  o.program = FAULTY_CHILD;
+  fs::create_directories(o.out);
+  execute(study, o);
+  EXPECT_THROW(execute(study, o), Error);
+  o.resume = true;
+  execute(study, o);
   std::vector<RunRecord> runs;
   for (const auto& entry : fs::directory_iterator(dir_ / "out"))
     if (entry.path().extension() == ".h5" || entry.path().extension() == ".cbor")

@@ -2,6 +2,7 @@
 
 #include "sessions.hpp"
 #include "xr/instance.hpp"
+#include "xr/painter.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 TEST_F(Sessions, StepsAndShowsEveryFrame) {
   LoopOptions o = options("paper/capsule-sweep", 30);
   o.device.validation = true;
-  const LoopResult r = run(o, "clock=virtual,look=25");
+  const LoopResult r = run(o, "look=25");
   ASSERT_EQ(r.log.rows().size(), 30u);
   EXPECT_EQ(reported_["android"], false);
   EXPECT_EQ(reported_["rate_hz"], 72.0) << "asked for, where the display began with 90";
@@ -41,8 +42,7 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
 /// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
 /// second.
 TEST_F(Sessions, LateFramesAreDividedRates) {
-  const LoopResult r =
-      run(options("paper/capsule-sweep", 40), "clock=virtual,blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
+  const LoopResult r = run(options("paper/capsule-sweep", 40), "blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
   int twice = 0, thrice = 0;
   for (const double p : r.log.periods()) {
     twice += p == 2 ? 1 : 0;
@@ -57,7 +57,7 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
 
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   const LoopOptions o = options("paper/capsule-sweep", 12);
-  const LoopResult r = run(o, "clock=virtual,hands=0,capsules=0,rate=0,look=10");
+  const LoopResult r = run(o, "hands=0,capsules=0,rate=0,look=10");
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.05);
@@ -68,7 +68,7 @@ TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
 
 TEST_F(Sessions, TheUserMayEndIt) {
   const LoopOptions o = options("paper/capsule-sweep", 500);
-  const LoopResult r = run(o, "clock=virtual,blind=1,quit=40");
+  const LoopResult r = run(o, "blind=1,quit=40");
   EXPECT_LT(r.log.rows().size(), 41u);
   EXPECT_GT(r.log.rows().size(), 10u);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
@@ -80,7 +80,7 @@ TEST_F(Sessions, ClothMayBeAMesh) {
   LoopOptions o = options("garments/sleeve", 12);
   o.overrides = {R"(cloth.mesh.file="assets/sleeve-small.obj")"};
   o.device.validation = true;
-  const LoopResult r = run(o, "clock=virtual,look=10");
+  const LoopResult r = run(o, "look=10");
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.02);
   EXPECT_TRUE(std::filesystem::exists(r.scenario.parent_path() / "sleeve-small.obj"));
   EXPECT_TRUE(load_scene(r.scenario.string()).cloth.mesh);
@@ -89,16 +89,14 @@ TEST_F(Sessions, ClothMayBeAMesh) {
 
 TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
   const LoopOptions o = options("paper/desk-flat-low", 8);
-  const LoopResult r = run(o, "clock=virtual,blind=1");
+  const LoopResult r = run(o, "blind=1");
   EXPECT_EQ(load_scene(r.scenario.string()).assets, "procedural");
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
 TEST_F(Sessions, ACpuSolverIsUploaded) {
-  LoopOptions o = options("paper/gravity", 10);
-  o.entry = &find_solver("ballistic");
-  o.settings = complete_settings(o.entry->info, nlohmann::json::object());
-  const LoopResult r = run(o, "clock=virtual,look=10");
+  const LoopOptions o = options("paper/gravity", 10, "ballistic");
+  const LoopResult r = run(o, "look=10");
   EXPECT_GT(reported_["drawn"][1].get<double>(), 0.02);
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
@@ -120,10 +118,10 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   setenv("XR_RUNTIME_JSON", "/no/such/runtime.json", 1);
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("no OpenXR runtime"), std::string::npos);
   setenv("XR_RUNTIME_JSON", CLOTHBENCH_NULL_RUNTIME, 1);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,unseen=0:100000000", 1);
+  setenv("CLOTHBENCH_NULL_XR", "unseen=0:100000000", 1);
   o.timeout_s = 0.5;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::CheckFailed).find("no hand was seen"), std::string::npos);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual", 1);
+  setenv("CLOTHBENCH_NULL_XR", "", 1);
   o.scenario = "garments/sleeve";
   o.overrides = {R"(cloth.mesh.file="none.obj")"};
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("/cloth/mesh/file"), std::string::npos);
@@ -131,8 +129,34 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   o.frames = 9000;
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::BadInput).find("1 to 8640"), std::string::npos);
   o = options("paper/capsule-sweep", 10);
-  setenv("CLOTHBENCH_NULL_XR", "clock=virtual,vulkan=0", 1);
+  setenv("CLOTHBENCH_NULL_XR", "vulkan=0", 1);
   EXPECT_NE(message_of([&] { run_loop(o); }, ExitCode::NoDevice).find("XR_KHR_vulkan_enable2"), std::string::npos);
+}
+
+/// A point seen by an eye lies where the field of view's tangents say.
+TEST(Views, AnEyesClipSpace) {
+  using render::operator*;
+  const XrFovf fov{-0.9f, 0.6f, 0.8f, -0.7f};
+  const float h = std::sqrt(0.5f);
+  const XrPosef pose{{0, h, 0, h}, {1, 2, 3}};  // turned left: it looks along -x
+  const Vec3 origin = {0.5, 0, 0};
+  const render::Mat4 m = projection_of(fov, 0.1, 50) * view_of(pose, origin);
+  const auto clip = [&](Vec3 p) {
+    std::array<double, 4> c{};
+    for (std::size_t row = 0; row < 4; ++row)
+      c[row] =
+          m[row] * (p[0] - origin[0]) + m[4 + row] * (p[1] - origin[1]) + m[8 + row] * (p[2] - origin[2]) + m[12 + row];
+    return std::array<double, 3>{c[0] / c[3], c[1] / c[3], c[2] / c[3]};
+  };
+  const double d = 2;
+  const auto at = [&](double right, double up) { return Vec3{1 - d, 2 + d * up, 3 - d * right}; };  // its right is -z
+  const auto low_left = clip(at(std::tan(-0.9), std::tan(-0.7))), high_right = clip(at(std::tan(0.6), std::tan(0.8)));
+  EXPECT_NEAR(low_left[0], -1, 1e-6);
+  EXPECT_NEAR(low_left[1], 1, 1e-6) << "y is down";
+  EXPECT_NEAR(high_right[0], 1, 1e-6);
+  EXPECT_NEAR(high_right[1], -1, 1e-6);
+  EXPECT_NEAR(clip({1 - 0.1, 2, 3})[2], 0, 1e-5);
+  EXPECT_NEAR(clip({1 - 50, 2, 3})[2], 1, 1e-5);
 }
 
 }  // namespace

@@ -1,45 +1,38 @@
 #pragma once
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/json_text.hpp"
 #include "scenario/load.hpp"
+#include "with_folder.hpp"
 #include "xr/loop.hpp"
 
 namespace clothbench::xr {
 
 /// Sessions on the null runtime in a folder that goes with the test.
-class Sessions : public ::testing::Test {
+class Sessions : public WithFolder {
  protected:
-  Sessions() : folder_(std::filesystem::temp_directory_path() / ("clothbench-xr-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
+  Sessions() {
     setenv("CLOTHBENCH_ASSETS", "procedural", 1);  // the same everywhere
     setenv("XR_RUNTIME_JSON", CLOTHBENCH_NULL_RUNTIME, 1);
   }
-  ~Sessions() override {
-    std::error_code ec;
-    std::filesystem::remove_all(folder_, ec);
-  }
 
-  LoopOptions options(const std::string& scenario, int frames) const {
+  LoopOptions options(const std::string& scenario, int frames, const std::string& solver = "xpbd") const {
     LoopOptions o;
     o.scenario = scenario;
     o.overrides = {"cloth.grid=[12,12]"};
-    o.entry = &find_solver("xpbd");
+    o.entry = &find_solver(solver);
     o.settings = complete_settings(o.entry->info, nlohmann::json::object());
     o.frames = frames;
-    o.out = folder_ / "out";
+    o.timeout_s = 20;
+    o.out = dir_ / "out";
     return o;
   }
 
   /// `script` as in tests/xr/null_runtime/runtime.hpp.
   LoopResult run(const LoopOptions& o, const std::string& script) {
-    const std::string log = (folder_ / "runtime.json").string();
+    const std::string log = (dir_ / "runtime.json").string();
     setenv("CLOTHBENCH_NULL_XR", (script + ",log=" + log).c_str(), 1);
     LoopResult r = run_loop(o);
     reported_ = parse_json(read_text(log), log);
@@ -62,7 +55,6 @@ class Sessions : public ::testing::Test {
     return state.position;
   }
 
-  std::filesystem::path folder_;
   nlohmann::json reported_;  ///< by the runtime, when its instance ended
 };
 

@@ -1,8 +1,6 @@
 // Session, clock and composition.
 #include <algorithm>
-#include <cstring>
 #include <sstream>
-#include <thread>
 
 #include "runtime.hpp"
 
@@ -77,11 +75,8 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   if (r.waited) return r.fault("xrWaitFrame: the frame before was not begun", XR_ERROR_CALL_ORDER_INVALID);
   if (r.frames == 4) r.rate_hz = r.next_rate_hz;  // not at once
   const XrDuration period = r.period_ns();
-  XrDuration took = std::max<XrDuration>(r.end_ns - r.wake_ns, 1) + static_cast<XrDuration>(stall_s(r, r.ended) * 1e9);
-  if (const XrDuration late = r.now_ns() - r.wake_ns; late > took) took = late;
+  const XrDuration took = 1 + static_cast<XrDuration>(stall_s(r, r.ended) * 1e9);
   r.wake_ns += (took + period - 1) / period * period;
-  if (r.now_ns() < r.wake_ns)
-    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(r.wake_ns)));
   r.waited = true;
   ++r.frames;
   out->predictedDisplayTime = r.wake_ns + 2 * period;
@@ -137,7 +132,6 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
     const XrResult result = judge_projection(r, *reinterpret_cast<const XrCompositionLayerProjection*>(layer));
     if (XR_FAILED(result)) return result;
   }
-  r.end_ns = r.now_ns();
   return XR_SUCCESS;
 }
 
@@ -175,8 +169,6 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
-#define NULL_XR(text, function) \
-  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
   NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
   NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
   NULL_XR("xrBeginSession", begin_session)

@@ -1,6 +1,4 @@
 // Vulkan: instance, device, swapchains, and a look at what was drawn.
-#include <cstring>
-
 #include "runtime.hpp"
 
 namespace null_xr {
@@ -44,7 +42,6 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
     return r.fault("xrCreateSession: no Vulkan", XR_ERROR_GRAPHICS_DEVICE_INVALID);
   r.physical = binding->physicalDevice;
   r.device = binding->device;
-  r.family = binding->queueFamilyIndex;
   vkGetDeviceQueue(r.device, binding->queueFamilyIndex, binding->queueIndex, &r.queue);
   r.session = true;
   r.go(XR_SESSION_STATE_IDLE);
@@ -109,7 +106,8 @@ XrResult XRAPI_CALL destroy_swapchain(XrSwapchain s) {
   Runtime& r = *runtime();
   const auto found = r.swapchains.find(number_of(s));
   if (found == r.swapchains.end()) return r.fault("xrDestroySwapchain: no such swapchain", XR_ERROR_HANDLE_INVALID);
-  destroy(r, *found->second);
+  for (const VkImage image : found->second->images) vkDestroyImage(r.device, image, nullptr);
+  for (const VkDeviceMemory memory : found->second->memory) vkFreeMemory(r.device, memory, nullptr);
   r.swapchains.erase(found);
   return XR_SUCCESS;
 }
@@ -170,14 +168,7 @@ double drawn_share(Runtime& r, const Swapchain& c) {
   return static_cast<double>(drawn) / (static_cast<double>(c.extent.width) * c.extent.height);
 }
 
-void destroy(Runtime& r, Swapchain& c) {
-  for (const VkImage image : c.images) vkDestroyImage(r.device, image, nullptr);
-  for (const VkDeviceMemory memory : c.memory) vkFreeMemory(r.device, memory, nullptr);
-}
-
 PFN_xrVoidFunction graphics_function(const std::string& name) {
-#define NULL_XR(text, function) \
-  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
   NULL_XR("xrGetVulkanGraphicsRequirements2KHR", requirements)
   NULL_XR("xrCreateVulkanInstanceKHR", create_vulkan_instance)
   NULL_XR("xrGetVulkanGraphicsDevice2KHR", graphics_device)

@@ -1,7 +1,4 @@
 // Spaces and hands.
-#include <algorithm>
-#include <cstring>
-
 #include "runtime.hpp"
 
 namespace null_xr {
@@ -71,8 +68,6 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
 }  // namespace
 
 PFN_xrVoidFunction input_function(const std::string& name) {
-#define NULL_XR(text, function) \
-  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
   NULL_XR("xrCreateReferenceSpace", create_reference_space)
   NULL_XR("xrDestroySpace", destroy_space)
   NULL_XR("xrCreateHandTrackerEXT", create_tracker)

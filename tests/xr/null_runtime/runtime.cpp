@@ -159,21 +159,11 @@ Runtime::Runtime() {
     const auto eq = item.find('=');
     if (eq != std::string::npos) options[item.substr(0, eq)] = item.substr(eq + 1);
   }
-  begin_ns = wake_ns = end_ns = now_ns();
 }
-
-Runtime::~Runtime() = default;
 
 double Runtime::number(const std::string& key, double otherwise) const {
   const auto found = options.find(key);
   return found == options.end() ? otherwise : std::strtod(found->second.c_str(), nullptr);
-}
-
-XrTime Runtime::now_ns() const {
-  const auto clock = options.find("clock");
-  if (clock != options.end() && clock->second == "virtual") return wake_ns != 0 ? wake_ns : 1'000'000'000;
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
 }
 
 void Runtime::go(XrSessionState to) {

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -11,9 +10,8 @@
 #include "script.hpp"
 #include "xr/openxr.hpp"
 
-/// An OpenXR runtime without a headset: a clock, a script instead of a user, real Vulkan images. Checks every
-/// call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
-///   clock=virtual  time counts only frames; otherwise the clock of the machine
+/// An OpenXR runtime without a headset: a clock that only frames advance, a script instead of a user, real Vulkan
+/// images. Checks every call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
 ///   hands|capsules|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
@@ -33,7 +31,6 @@ struct Swapchain {
 
 struct Runtime {
   Runtime();
-  ~Runtime();
   std::map<std::string, std::string> options;
   double number(const std::string& key, double otherwise) const;
   bool offers(const std::string& key) const { return number(key, 1) != 0; }
@@ -52,16 +49,15 @@ struct Runtime {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
-  std::uint32_t family = 0;
 
   // Clock.
   double rate_hz = 90, next_rate_hz = 90;
   XrDuration period_ns() const { return static_cast<XrDuration>(1e9 / rate_hz + 0.5); }
-  XrTime now_ns() const;
-  XrTime begin_ns = 0, wake_ns = 0, end_ns = 0;
+  static constexpr XrTime kBegin_ns = 1'000'000'000;
+  XrTime wake_ns = kBegin_ns;
   bool waited = false, begun = false;
   int frames = 0, ended = 0;
-  double seconds(XrTime t) const { return static_cast<double>(t - begin_ns) * 1e-9; }
+  double seconds(XrTime t) const { return static_cast<double>(t - kBegin_ns) * 1e-9; }
 
   // Requests.
   int projection_frames = 0;
@@ -90,12 +86,13 @@ XrPosef as_xr(const Pose&);
 Pose from_xr(const XrPosef&);
 
 /// A function of the file that has it; null if it has none of that name.
+#define NULL_XR(text, function) \
+  if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
 PFN_xrVoidFunction frame_function(const std::string& name);
 PFN_xrVoidFunction input_function(const std::string& name);
 PFN_xrVoidFunction graphics_function(const std::string& name);
 
 /// Fraction of the pixels of the last released image that are neither white nor transparent.
 double drawn_share(Runtime&, const Swapchain&);
-void destroy(Runtime&, Swapchain&);
 
 }  // namespace null_xr
