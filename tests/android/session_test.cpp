@@ -1,6 +1,7 @@
 // The life of the activity with a fake system around it: arguments, order of life-cycle calls, RESULT line.
 #include "android/session.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -17,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+bool is_result(const std::string& line) { return line.starts_with("RESULT "); }
+
 class FakeSystem {
  public:
   void log(const std::string& line) {
@@ -31,7 +34,7 @@ class FakeSystem {
   }
   bool wait_for_result() {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, 20s, [&] { return result_line() != ""; });
+    return changed_.wait_for(lock, 20s, [&] { return std::any_of(lines_.begin(), lines_.end(), is_result); });
   }
   bool wait_for_finish() {
     std::unique_lock lock(mutex_);
@@ -51,11 +54,6 @@ class FakeSystem {
   }
 
  private:
-  std::string result_line() const {
-    for (const std::string& l : lines_)
-      if (l.rfind("RESULT ", 0) == 0) return l;
-    return "";
-  }
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::string> lines_;
@@ -225,28 +223,23 @@ TEST_F(SessionTest, AnyOrderOfCallsEndsInOneResult) {
     Session* session = start("study table3");
     bool destroyed = false;
     for (int call = 0; call < 8; ++call) {
-      switch (random() % 5) {
-        case 0:
-          session->pause();
-          break;
-        case 1:
-          session->resume();
-          break;
-        case 2:
-          session->destroy();
-          destroyed = true;
-          break;
-        default:
-          std::this_thread::sleep_for(std::chrono::milliseconds(random() % 4));
-      }
+      const auto next = random() % 5;
+      destroyed = destroyed || next == 2;
+      if (next == 0)
+        session->pause();
+      else if (next == 1)
+        session->resume();
+      else if (next == 2)
+        session->destroy();
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 4));
     }
     if (!destroyed) session->resume();
     ASSERT_TRUE(system_->wait_for_result()) << "life " << life;
     session->destroy();
-    int results = 0;
-    for (const std::string& line : system_->lines()) results += line.rfind("RESULT ", 0) == 0 ? 1 : 0;
-    EXPECT_EQ(results, 1) << "life " << life;
-    EXPECT_EQ(system_->last().rfind("RESULT ", 0), 0u) << "life " << life << ": " << system_->last();
+    const auto lines = system_->lines();
+    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), is_result), 1) << "life " << life;
+    EXPECT_PRED1(is_result, lines.back()) << "life " << life;
     EXPECT_LE(system_->finishes(), 1);
   }
 }

@@ -43,11 +43,7 @@ def must(command, **options):
     return text
 
 
-class Folder:
+class Folder(tempfile.TemporaryDirectory):
     """A temporary folder that goes when the check ends."""
     def __enter__(self):
-        self.path = pathlib.Path(tempfile.mkdtemp(prefix="clothbench-device-"))
-        return self.path
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.path, ignore_errors=True)
+        return pathlib.Path(self.name)

@@ -127,6 +127,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
 
   const Scene scene_ = load_scene(
       "paper/gravity", {"cloth.grid=[5,4]", "time.frame_rate_hz=60", "pins=[{\"edge\":\"u0\"}]", "cloth.sides=single"});
+  const bool all_ = std::getenv("CLOTHBENCH_ALL_FAULTS") != nullptr;
   RunPlan plan_;
 };
 
@@ -137,16 +138,15 @@ TEST_P(Faults, EveryCallThatFailsOnceIsARowOrANamedError) {
   ASSERT_GT(calls, 50);
   std::printf("%d calls\n", calls);
   RecordProperty("calls", calls);
-  const bool all = std::getenv("CLOTHBENCH_ALL_FAULTS") != nullptr;
-  for (int call = 0; call < calls; call += all ? 1 : 5)
+  for (int call = 0; call < calls; call += all_ ? 1 : 5)
     for (std::size_t k = 0; k < std::size(kResults); ++k)
-      if (all || k == static_cast<std::size_t>(call / 5) % std::size(kResults)) inject(call, kResults[k], false, right);
+      if (all_ || k == static_cast<std::size_t>(call / 5) % std::size(kResults))
+        inject(call, kResults[k], false, right);
 }
 
 TEST_P(Faults, ADeviceThatStaysLostIsARowOrANamedError) {
   const auto [calls, right] = undisturbed();
-  const bool all = std::getenv("CLOTHBENCH_ALL_FAULTS") != nullptr;
-  for (int call = 0; call < calls; call += all ? 1 : 23)
+  for (int call = 0; call < calls; call += all_ ? 1 : 23)
     inject(call, kResults[static_cast<std::size_t>(call) % 2], true, right);
 }
 

@@ -7,8 +7,6 @@
 #include <limits>
 
 #include "metrics/registry.hpp"
-#include "metrics/truth_errors.hpp"
-#include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -1,14 +1,12 @@
 // A run whose process fails becomes a row with its reason, and the study goes on.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
 
-#include "clothbench/error.hpp"
 #include "results/store.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"

@@ -52,5 +52,4 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
     assert told["summary"]["xr_frames"] == 5 and told["status"] == "ok", told
     text = run("xr", "paper/capsule-sweep", "--out", top / "none", code=3, XR_RUNTIME_JSON="/nowhere")
     assert "OpenXR" in text, text
-    text = run("xr", "paper/capsule-sweep", "--frames", 9000, code=2)
     print("ok: as JSON, without a runtime")

@@ -74,7 +74,7 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
       (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))
     return XR_ERROR_VALIDATION_FAILURE;
   made->android = android != nullptr;
-  set_runtime(std::move(made));
+  held() = std::move(made);
   *out = handle<XrInstance>(1);
   return XR_SUCCESS;
 }
@@ -91,7 +91,7 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
                               {"drawn", r.drawn},  {"android", r.android}, {"faults", r.faults}};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }
-  set_runtime(nullptr);
+  held() = nullptr;
   return XR_SUCCESS;
 }
 
@@ -150,7 +150,6 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrV
 }  // namespace
 
 Runtime* runtime() { return held().get(); }
-void set_runtime(std::unique_ptr<Runtime> r) { held() = std::move(r); }
 
 Runtime::Runtime() {
   const char* text = std::getenv("CLOTHBENCH_NULL_XR");

@@ -71,7 +71,6 @@ struct Runtime {
 };
 
 Runtime* runtime();
-void set_runtime(std::unique_ptr<Runtime>);
 
 template <class Handle>
 Handle handle(std::uint64_t n) {

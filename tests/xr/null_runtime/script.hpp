@@ -10,10 +10,8 @@ struct V {
   double x = 0, y = 0, z = 0;
 };
 inline V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline V operator*(double s, V a) { return {s * a.x, s * a.y, s * a.z}; }
 inline V cross(V a, V b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline double dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// x, y, z, w.
 struct Q {
