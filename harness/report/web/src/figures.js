@@ -206,8 +206,7 @@ const kVerdicts = {
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
 const why = r => r.violated?.map(([name, found]) => `${name} = ${found === null ? 'not met' : number(found)}`) ?? [];
-const kNoVerdict = '–';
-const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== kNoVerdict);
+const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–');
 
 function verdicts(doc) {
   const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));

@@ -6,6 +6,7 @@ import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
 import {number, unique} from './chart.js';
 import {button, element, say, select} from './dom.js';
 import {crossing_css, Panel, ramp_css} from './panel.js';
+import {reproduce} from './tables.js';
 
 const kColours = ['checks', 'strain', 'penetration'];
 const kStrains = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1], kDepth_m = 5e-3;  // ends of the ramp
@@ -63,6 +64,7 @@ class Viewer {
             'div', {class: 'bar'}, this.scene_list,
             select('Colour', options(kColours), 'checks', v => this.colour(v)), this.legend),
         this.stage, this.absent = element('p', {class: 'note'}), element('div', {class: 'bar'}, this.play_button, this.scrub, this.clock),
+        reproduce(window.clothbench.document, 'the motions', this.motions.runs.map(m => m.row)) ?? '',
         this.notes = element('ul', {class: 'note'}));
   }
 
