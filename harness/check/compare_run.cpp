@@ -25,7 +25,7 @@ constexpr double kFailedFrameRelativeSlack = 0.1;
 
 constexpr const char* kNotMeasured = "not measured";
 
-/// Sides of the cloth [m], those of its mesh where it has one; none if the result file has neither.
+/// Sides of the cloth [m], or of its mesh where it has one; none if the result file has neither.
 std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
   const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
   const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");

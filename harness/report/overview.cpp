@@ -21,11 +21,9 @@ constexpr double kBudget_ms = 1;     // of wall time per frame
 
 constexpr const char* kTable3Note =
     "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; the columns after the "
-    "resolutions are for the largest mesh. Device: where the solver runs; a CPU solver uses one core. × bullet-soft: "
-    "how many times as fast. An error of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural "
-    "edges "
-    "in the last second; edges shorter than at rest count as 0 in the mean. Published: Quest 3, with rendering, capped "
-    "at 72. ";
+    "resolutions are for the largest mesh. × bullet-soft: how many times as fast. An error of free fall above 1 % (!) "
+    "makes a rate meaningless. Stretch: of structural edges in the last second; edges shorter than at rest count as 0 "
+    "in the mean. Published: Quest 3, with rendering, capped at 72. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
