@@ -30,7 +30,7 @@ struct ShapeBuffer {
   bool friction = false;  ///< at least one shape has friction
 };
 
-/// Colliders on the device: one buffer for each kind of collider in the scene (common/README.md).
+/// Colliders on the device: one buffer for each kind of collider in the scene (pbd-gpu/README.md).
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
