@@ -44,16 +44,13 @@ void add_compare(CLI::App& app, Console& console) {
   auto& given = console.arguments<CompareArguments>();
   CLI::App* cmd = app.add_subcommand(
       "compare",
-      "Compare two results of the same study: which runs are faster or slower beyond noise, and which "
-      "results differ");
+      "Compare two builds on the same runs: which runs are faster or slower beyond noise, and which results differ");
   const std::string several = fmt::format(
-      "; for a statement about times {} or more of separate processes, run in random order: A,B,C,D,E or the folder "
-      "that "
-      "holds "
-      "them",
+      "Results of one build: a study folder or result file. To compare times, {} or more, each of its own process, run "
+      "in random order: A,B,C,D,E or the folder that holds them",
       kMinProcesses);
-  cmd->add_option("a", given.a, "Study folder or result file: before" + several)->required();
-  cmd->add_option("b", given.b, "Study folder or result file: after; likewise")->required();
+  cmd->add_option("a", given.a, several)->required();
+  cmd->add_option("b", given.b, "Results of the other build, likewise")->required();
   cmd->add_option("--allow", given.allowed, "Compare although these differ, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember(condition_kinds()));

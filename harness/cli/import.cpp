@@ -6,7 +6,8 @@ namespace clothbench {
 void add_import(CLI::App& app, Console& console) {
   auto& folders = console.arguments<std::vector<std::string>>();
   auto& samples_file = console.arguments<std::string>();
-  CLI::App* cmd = app.add_subcommand("import", "Convert the CBOR files of a device without HDF5 to HDF5 files");
+  CLI::App* cmd =
+      app.add_subcommand("import", "Convert the CBOR files of a headset, whose program has no HDF5, to HDF5 files");
   cmd->add_option("folder", folders, "Study folders or .cbor files")->required();
   cmd->add_option("--samples", samples_file,
                   "Readings of the device during the run: samples.json of scripts/quest_run.py");

@@ -99,7 +99,7 @@ void add_plan(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand(
       "plan",
       "Print how a solver simulates one frame of a scene: stages, dispatches, buffers, bytes and disabled features");
-  cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
+  cmd->add_option("scene", a.scenes, "Scene files or names")->required();
   a.with.add_to(*cmd, "--solver", "Solvers; default: all", "Override: cloth.grid=[64,64], solver.substeps=20");
   a.with.device.add_to(*cmd);
   cmd->footer(

@@ -17,7 +17,7 @@ void add_run(CLI::App& app, Console& console) {
   RunArguments& a = console.arguments<RunArguments>();
   CLI::App* cmd =
       app.add_subcommand("run", "Run scenes with solvers: one accuracy pass over the whole scene, then timed trials");
-  cmd->add_option("scene", a.scenes, "Scenario files or names")->required();
+  cmd->add_option("scene", a.scenes, "Scene files or names")->required();
   a.with.add_to(*cmd, "--solver", "Solvers (default xpbd)", "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");

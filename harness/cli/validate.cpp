@@ -16,7 +16,7 @@ void validate(const std::string& file) {
 
 void add_validate(CLI::App& app, Console& console) {
   auto& files = console.arguments<std::vector<std::string>>();
-  CLI::App* cmd = app.add_subcommand("validate", "Check scenario and study files");
+  CLI::App* cmd = app.add_subcommand("validate", "Check scene and study files");
   cmd->add_option("file", files, "Files or names")->required();
   cmd->footer(
       "Examples: clothbench validate my-scene.json\n"

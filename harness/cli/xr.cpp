@@ -20,8 +20,7 @@ void add_xr(CLI::App& app, Console& console) {
   a.solver = "xpbd";
   CLI::App* cmd = app.add_subcommand(
       "xr", "Run a live session in a headset (OpenXR): the cloth is drawn and touches the user's hands");
-  cmd->add_option("scene", a.scene, "Scenario file or name; the user's hands replace the hands of the scene")
-      ->required();
+  cmd->add_option("scene", a.scene, "Scene file or name; the user's hands replace the hands of the scene")->required();
   cmd->add_option("--solver", a.solver, "Solver")->capture_default_str();
   cmd->add_option("--set", a.set, "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--frames", a.frames,
@@ -33,8 +32,7 @@ void add_xr(CLI::App& app, Console& console) {
   cmd->add_option("--timeout", a.timeout, "The session ends after this time without tracked hands [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cmd->add_option("--out", a.out,
-                  "Folder for the result file and the recorded scenario; default results/runs/xr-<UTC>");
+  cmd->add_option("--out", a.out, "Folder for the result file and the recorded scene; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720");
   cmd->callback([&console, &a] {
