@@ -30,7 +30,7 @@ struct TimeRatio {
 /// `a`, `b`: frame time [s] of each process, positive. Throws Error if a side has more than kMaxProcesses.
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Frame times [s] of one run in several processes: of each that has trials the median of the trials' means.
+/// Frame times [s] of one run, one per process that has trials: the median over its trials of their mean frame time.
 std::vector<double> process_times(const std::vector<const RunRecord*>&);
 
 /// Whether the processes of the two sides ran mixed, by the start of their trials: from one side to the other at least
@@ -93,9 +93,9 @@ std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
 /// One element per process: the runs of its folder.
 using Processes = std::vector<std::vector<RunRecord>>;
 
-/// Compares two builds, run by run: results of the first process of each side, times of all processes. Runs in the
-/// order of A, then those that only B has. Throws Error if paired runs, or processes of one side, differ in a condition
-/// whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
+/// Compares two builds run by run: the results of each side's first process, and the times of all processes. The runs
+/// of A come first, then the runs that only B has. Throws Error if paired runs, or processes of one side, differ in a
+/// condition whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline without a result fails, and so does a planned run without a

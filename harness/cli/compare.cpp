@@ -13,7 +13,7 @@ struct CompareArguments {
 
 namespace fs = std::filesystem;
 
-/// One folder of results, or the folders in a folder that has no results itself, by name.
+/// A folder of results as it is. For a folder that contains only such folders: these, in order of their names.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
   if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};

@@ -114,7 +114,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat co
 SceneRenderer::~SceneRenderer() = default;
 
 std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const void* data, std::size_t bytes) const {
-  // A buffer has at least a byte; shaders read none of one that is there for its binding's sake.
+  // Vulkan forbids empty buffers. One that only fills a binding has bytes that no shader reads.
   auto buffer =
       std::make_unique<vulkan::Buffer>(device_, name, std::max<std::size_t>(bytes, 16), vulkan::Buffer::Place::Host);
   if (data != nullptr && bytes > 0) std::memcpy(buffer->mapped(), data, bytes);

@@ -30,7 +30,7 @@ Cell number_cell(double v, int digits);
 /// "12.3 / 4.50", sorted by the first.
 Cell paired_cell(double a, double b, int digits);
 
-/// "53/58 (81–96 %)" of the runs that `passed`, with Wilson's 95 % interval; empty without runs.
+/// How many runs passed, with Wilson's 95 % interval: "53/58 (81–96 %)". Empty without runs.
 Cell share_cell(std::size_t passed, std::size_t all);
 
 /// The verdict on a run; how it ended.
