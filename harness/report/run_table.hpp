@@ -105,6 +105,7 @@ struct Row {
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
   int published = -1;    ///< column of the paper's table, for a published value; -1 for a measured run
   bool largest = false;  ///< finest resolution of its family
+  bool scaled = false;   ///< a figure may show it against the resolutions of its family
   int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
