@@ -92,19 +92,18 @@ void compare_times(std::vector<Row>& all) {
   for (Row& r : all)
     if (r.published < 0) scenes[r.scene].push_back(&r);
   for (auto& [unused, rows] : scenes) {
-    double baseline_s = kMissing;
+    const FrameTimes* baseline = nullptr;
     std::vector<Row*> ranked;
     for (Row* r : rows) {
       const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
-      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
-        baseline_s = r->times->wall.at(0.5);
+      if (good && r->solver == time_baseline() && r->setting == "default" && !baseline) baseline = &r->times->wall;
       const std::string v = verdict(*r->run);
       if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
           std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
           !(r->value("stretch_max_last_second") > kTornApart))
         ranked.push_back(r);
     }
-    for (Row* r : rows) r->baseline_s = baseline_s;
+    for (Row* r : rows) r->baseline = baseline;
     for (Row* r : ranked)
       r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
                   return other->times->wall.median.high < r->times->wall.median.low;

@@ -109,9 +109,9 @@ struct Row {
   int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
-  double baseline_s = kMissing;  ///< median wall time of a frame of time_baseline() in the same scene
-  bool is_best = false;          ///< settings of the cheapest point of `reproduction` where most claims hold
-  int rank = 0;                  ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
+  const FrameTimes* baseline = nullptr;             ///< wall times of time_baseline() in the same scene
+  bool is_best = false;  ///< settings of the cheapest point of `reproduction` where most claims hold
+  int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
