@@ -79,6 +79,17 @@ stage_ticker() {
 # The last count that ninja printed; nothing for other programs.
 stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
 
+# side_by_side COMMAND…: runs each in a process of its own, which an error ends, and fails where one fails.
+side_by_side() {
+  local command processes=() process
+  for command in "$@"; do
+    "$command" &
+    processes+=($!)
+  done
+  trap wait EXIT
+  for process in "${processes[@]}"; do wait "$process"; done
+}
+
 # Prints the time of every stage. With `enforce`, in CI, a stage that took three times its budget is a failure: the same work was seen
 # to take twice as long on a machine with other work beside it, and that is no fault of the change.
 print_budget() {

@@ -125,17 +125,6 @@ installed() {
   scripts/package_test.sh "$folder"/packages/*.deb "$folder/installed"
 }
 
-# Each keeps one core busy, most of the time with packages. In processes of their own: an error in them ends them.
-side_by_side() {
-  local command processes=() process
-  for command in "$@"; do
-    "$command" &
-    processes+=($!)
-  done
-  trap wait EXIT
-  for process in "${processes[@]}"; do wait "$process"; done
-}
-
 stage bare 3 bare
 stage set-up 4 set_up
 [ -z "$prepare" ] || exit 0

@@ -72,7 +72,7 @@ case ${1:-} in
     tier=short packages=(--short)
     targets=(clothbench "${short[@]}")
     # Without cases that take long and show nothing else on another system, or that judge speed.
-    selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce')
+    selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce|AThinSheet|AShortList|TriangleMesh')
     ;;
   *) echo "usage: scripts/test.sh [--full | --short]" >&2; exit 2 ;;
 esac

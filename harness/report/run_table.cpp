@@ -57,6 +57,8 @@ std::string read_scenario(Row& row) {
     cloth.erase(grid);
   } else {
     row.resolution.vertices = c.header.vertices;
+    for (const char* key : {"copies", "apart_m"})
+      if (cloth.contains("mesh") && cloth["mesh"].contains("drawn")) cloth["mesh"]["drawn"].erase(key);
   }
   if (cloth.is_object()) cloth.erase("sides");
   return family.dump();
@@ -90,19 +92,18 @@ void compare_times(std::vector<Row>& all) {
   for (Row& r : all)
     if (r.published < 0) scenes[r.scene].push_back(&r);
   for (auto& [unused, rows] : scenes) {
-    double baseline_s = kMissing;
+    const FrameTimes* baseline = nullptr;
     std::vector<Row*> ranked;
     for (Row* r : rows) {
       const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
-      if (good && r->solver == time_baseline() && r->setting == "default" && !std::isfinite(baseline_s))
-        baseline_s = r->times->wall.at(0.5);
+      if (good && r->solver == time_baseline() && r->setting == "default" && !baseline) baseline = &r->times->wall;
       const std::string v = verdict(*r->run);
       if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
           std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
           !(r->value("stretch_max_last_second") > kTornApart))
         ranked.push_back(r);
     }
-    for (Row* r : rows) r->baseline_s = baseline_s;
+    for (Row* r : rows) r->baseline = baseline;
     for (Row* r : ranked)
       r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
                   return other->times->wall.median.high < r->times->wall.median.low;
@@ -260,7 +261,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   std::set<std::string> timed;
   std::map<std::string, std::size_t> scenes;
   std::map<std::string, int> most_frames;
-  std::map<std::string, double> largest;
+  std::map<std::string, std::set<double>> sizes;
   for (const RunRecord& c : runs_) {
     Row row{&c};
     row.times = std::make_shared<RunTimes>(times_of(c));
@@ -273,13 +274,14 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     row.repeat = ++repeats[{row.family, row.scene, row.sides, row.solver, row.setting, row.resolution.label()}];
     if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
     most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
-    largest[row.family] = std::max(largest[row.family], row.resolution.size());
+    sizes[row.family].insert(row.resolution.size());
     scenes.try_emplace(row.part == Part::Rates ? row.family : row.scene, scenes.size());
     rows_.push_back(std::move(row));
   }
   for (Row& r : rows_) {
     r.most_frames = most_frames[r.scene];
-    r.largest = r.resolution.size() >= largest[r.family];
+    r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
+    r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
     // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
     if (text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene)) r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

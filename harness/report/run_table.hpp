@@ -105,12 +105,13 @@ struct Row {
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
   int published = -1;    ///< column of the paper's table, for a published value; -1 for a measured run
   bool largest = false;  ///< finest resolution of its family
+  bool scaled = false;   ///< a figure may show it against the resolutions of its family
   int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
-  double baseline_s = kMissing;  ///< median wall time of a frame of time_baseline() in the same scene
-  bool is_best = false;          ///< settings of the cheapest point of `reproduction` where most claims hold
-  int rank = 0;                  ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
+  const FrameTimes* baseline = nullptr;             ///< wall times of time_baseline() in the same scene
+  bool is_best = false;  ///< settings of the cheapest point of `reproduction` where most claims hold
+  int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }

@@ -73,9 +73,11 @@ ViewColumn column(
     std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
     Pick pick = [](const Group& g) { return g.front(); });
 
-/// The number of timed trials; the rank by wall time.
+/// The number of timed trials; the rank by wall time; how many times as fast as time_baseline(), with the least and the
+/// greatest ratio of values within both intervals.
 Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
+Cell times_as_fast_cell(const Row&);
 
 /// Median with its interval, tails, missed deadlines and real-time factor of the wall time of a frame of the run that
 /// `pick` gives; empty where it gives none.

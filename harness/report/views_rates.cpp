@@ -44,8 +44,6 @@ Cell missed_cell(const FrameTimes& t) { return paired_cell(100 * t.missed(72), 1
 
 Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
 
-Cell ratio(const Row& r) { return number_cell(r.baseline_s / r.times->wall.at(0.5), 3); }
-
 View frame_times() {
   View v{
       "time", "Time per frame [ms]",
@@ -54,7 +52,8 @@ View frame_times() {
                   "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
                   "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
                   "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
-                  "frame. Load: once, before the first frame, in ms. × bullet-soft: how many times as fast. Rank 1: no "
+                  "frame. Load: once, before the first frame, in ms. × bullet-soft: how many times as fast, the two "
+                  "intervals combined. Rank 1: no "
                   "ranked run of the scene is certainly faster (has its whole interval below the run's); runs that "
                   "failed, and cloths with an edge of more than twice its length, are not ranked. CPU threads: CPU "
                   "time over wall time. ") +
@@ -81,7 +80,7 @@ View frame_times() {
   add_wall("real-time factor", real_time_factor);
   add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
   add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
-  add_wall("× " + time_baseline(), ratio);
+  add_wall("× " + time_baseline(), times_as_fast_cell);
   add_wall("rank", rank_cell);
   for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
     v.columns.push_back(column(
@@ -144,13 +143,22 @@ View in_short(std::function<bool(const Row&)> where) {
     return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
   }));
   v.columns.push_back(column("trials", trials_cell));
-  v.columns.push_back(column("× " + time_baseline(), ratio));
+  v.columns.push_back(column("× " + time_baseline(), times_as_fast_cell));
   v.columns.push_back(column("rank", rank_cell));
   v.timed = true;
   return v;
 }
 
 }  // namespace
+
+Cell times_as_fast_cell(const Row& r) {
+  const FrameTimes& mine = r.times->wall;
+  if (!r.baseline || mine.sorted.empty()) return {};
+  const double ratio = r.baseline->at(0.5) / mine.at(0.5), low = r.baseline->median.low / mine.median.high,
+               high = r.baseline->median.high / mine.median.low;
+  const std::string span = " (" + significant(low, 3) + "–" + significant(high, 3) + ")";
+  return {significant(ratio, 3) + (std::isfinite(low) && &mine != r.baseline ? span : ""), ratio};
+}
 
 std::vector<ViewColumn> tail_columns(Pick pick) {
   const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {

@@ -104,11 +104,21 @@ std::vector<Point> drawn_points(const DrawnSheet& d) {
 ClothMesh drawn_mesh(const DrawnSheet& d) {
   const std::vector<Point> p = drawn_points(d);
   const double cell = d.width_m / d.cells;
+  const std::vector<Triangle> sheet = delaunay(p, cell);
   std::vector<Vec3> at;
-  for (const auto& [x, y] : p) at.push_back({x, y, 0});
-  ClothMesh mesh = cloth_mesh(std::move(at), delaunay(p, cell), "a drawn sheet");
-  for (std::uint32_t v = 0; v < p.size(); ++v) {
-    const auto& [x, y] = p[v];
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < d.copies[0]; ++i)
+    for (int j = 0; j < d.copies[1]; ++j) {
+      const auto first = static_cast<std::uint32_t>(at.size());
+      const double right = (i - 0.5 * (d.copies[0] - 1)) * d.apart_m[0],
+                   forward = (j - 0.5 * (d.copies[1] - 1)) * d.apart_m[1];
+      for (const auto& [x, y] : p) at.push_back({x + right, y, forward});
+      for (const auto& [a, b, c] : sheet) triangles.push_back({first + a, first + b, first + c});
+    }
+  const auto vertices = static_cast<std::uint32_t>(at.size());
+  ClothMesh mesh = cloth_mesh(std::move(at), std::move(triangles), "a drawn sheet");
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    const auto& [x, y] = p[v % p.size()];
     if (d.clamp && x <= cell) mesh.groups["clamp"].push_back(v);
     if (x == 0) mesh.groups["u0"].push_back(v);
     if (x == d.width_m) mesh.groups["u1"].push_back(v);
@@ -119,7 +129,7 @@ ClothMesh drawn_mesh(const DrawnSheet& d) {
 }
 
 ClothMesh read_drawn_mesh(const nlohmann::json& j, const std::string& source) {
-  constexpr double kMost = 20000;
+  constexpr double kMost = 20000, kMostOfAll = 2e6;
   DrawnSheet d;
   d.width_m = j["size_m"][0].get<double>();
   d.height_m = j["size_m"][1].get<double>();
@@ -128,10 +138,19 @@ ClothMesh read_drawn_mesh(const nlohmann::json& j, const std::string& source) {
   d.share = j.value("share", 0.0);
   d.seed = j.value("seed", 1u);
   d.clamp = j.value("clamp", false);
+  d.copies = j.value("copies", d.copies);
+  d.apart_m = j.value("apart_m", d.apart_m);
+  if ((d.copies[0] > 1 && !(d.apart_m[0] > d.width_m)) || (d.copies[1] > 1 && !(d.apart_m[1] > 0)))
+    refuse(source, "/cloth/mesh/drawn/apart_m",
+           fmt::format("expected more than the width ({} m) between copies along u, and more than 0 along the normal",
+                       d.width_m));
   const double vertices = (d.cells + 1.0) * (d.height_m / d.width_m * d.cells + 1);
   if (!(vertices <= kMost))
     refuse(source, "/cloth/mesh/drawn/cells",
            fmt::format("expected a sheet of at most {:.0f} vertices; it would have {:.0f}", kMost, vertices));
+  if (const double all = vertices * d.copies[0] * d.copies[1]; !(all <= kMostOfAll))
+    refuse(source, "/cloth/mesh/drawn/copies",
+           fmt::format("expected at most {:.0f} vertices in all copies; there would be {:.0f}", kMostOfAll, all));
   ClothMesh mesh = drawn_mesh(d);
   for (Vec3& at : mesh.vertices) {
     at[0] -= d.width_m / 2;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -16,6 +17,8 @@ struct DrawnSheet {
   std::uint32_t seed = 1;  ///< of those moves
   bool clamp =
       false;  ///< a second line of vertices, a cell from x = 0: attached together with the line x = 0, it is a clamp
+  std::array<int, 2> copies = {1, 1};      ///< equal sheets along x and along z, centred on the first sheet's place
+  std::array<double, 2> apart_m = {0, 0};  ///< between neighbours
 };
 
 /// Delaunay triangles (Bowyer 1981; Watson 1981) of a sheet in the plane z = 0, x from 0 to width_m and y from 0 to
@@ -24,7 +27,7 @@ struct DrawnSheet {
 ClothMesh drawn_mesh(const DrawnSheet&);
 
 /// Reads `cloth.mesh.drawn`: the same sheet with its middle in the origin. Throws Error with the JSON pointer where it
-/// would have more than 20 000 vertices.
+/// would have more than 20 000 vertices, or all copies more than 2 000 000.
 ClothMesh read_drawn_mesh(const nlohmann::json& drawn, const std::string& source);
 
 }  // namespace clothbench

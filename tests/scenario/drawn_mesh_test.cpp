@@ -39,6 +39,26 @@ TEST(DrawnMesh, IsTheSameForTheSameNumbers) {
   EXPECT_NE(drawn_mesh(one).vertices, drawn_mesh(other).vertices);
 }
 
+TEST(DrawnMesh, CopiesAreTheSameSheetElsewhere) {
+  DrawnSheet sheet{1, 0.5, 6, 0.5, 0.2, 3};
+  const ClothMesh one = drawn_mesh(sheet);
+  sheet.copies = {3, 2};
+  sheet.apart_m = {1.5, 0.25};
+  const ClothMesh all = drawn_mesh(sheet);
+  const std::size_t n = one.vertices.size();
+  ASSERT_EQ(all.vertices.size(), 6 * n);
+  EXPECT_EQ(all.triangles.size(), 6 * one.triangles.size());
+  EXPECT_EQ(all.edges.size(), 6 * one.edges.size());
+  EXPECT_EQ(all.groups.at("v1").size(), 6 * one.groups.at("v1").size());
+  for (std::size_t copy = 0; copy < 6; ++copy)
+    for (std::size_t v = 0; v < n; ++v) {
+      const Vec3 &a = one.vertices[v], &b = all.vertices[copy * n + v];
+      EXPECT_NEAR(b[0] - a[0], 1.5 * (static_cast<double>(copy / 2) - 1), 1e-12);
+      EXPECT_EQ(b[1], a[1]);
+      EXPECT_NEAR(b[2] - a[2], copy % 2 == 0 ? -0.125 : 0.125, 1e-12);
+    }
+}
+
 TEST(DrawnMesh, HasAClampOfTwoStraightLinesIfAsked) {
   DrawnSheet sheet{1, 0.25, 16, 0.5, 0.3, 3};
   EXPECT_EQ(drawn_mesh(sheet).groups.count("clamp"), 0u);

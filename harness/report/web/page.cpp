@@ -24,7 +24,8 @@ constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothb
                kTitleMark[] = "<!--clothbench:title-->";
 
 /// Summary values that a figure shows.
-constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s"};
+constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
+                                         "device_memory_B"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
 /// [p50, low, high, p95, p99, worst] in seconds, of each clock that has frames.
@@ -85,7 +86,7 @@ json figure_row(const Row& r) {
                                         : "fails"},
                 {"dispatches", finite_or_null(r.value("dispatches"))}});
   }
-  if (r.part == Part::Rates) {
+  if (r.scaled) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
     out["published"] = r.published >= 0;

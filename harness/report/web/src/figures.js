@@ -80,8 +80,10 @@ function error_time(doc) {
 // Frame rates ----------------------------------------------------------------
 
 const kRates = {
-  fps: {text: 'Fig. 4: frame rate', unit: 'frames per second', field: 'fps_median', scale: 1, still: 'fig4', is_rate: true},
-  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', field: 'bandwidth_read_peak_B_per_s', scale: 1e-9, still: 'fig5'}
+  fps: {text: 'Fig. 4: frame rate', unit: 'frames per second', of: r => r.fps_median, still: 'fig4', is_rate: true},
+  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', of: r => 1e-9 * r.bandwidth_read_peak_B_per_s, still: 'fig5'},
+  tail: {text: 'Slow frames (95th percentile)', unit: 'wall time [ms]', of: r => 1e3 * (r.contact_wall ?? r.wall)?.[3]},
+  memory: {text: 'Device memory per vertex', unit: 'kB', of: r => 1e-3 * r.device_memory_B / (r.width * r.width)}
 };
 
 /// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
@@ -96,10 +98,10 @@ function lines_of(rows) {
 }
 
 function rates(doc) {
-  const all = doc.runs.filter(r => r.part === 'rates' && !r.published && r.fps_median > 0);
+  const all = doc.runs.filter(r => r.family && !r.published && r.fps_median > 0);
   if (!all.length) return null;
   const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
-  const of = s => all.filter(r => r.family === s.Scene), has = ({field}) => r => r[field] > 0;
+  const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
   return {
     id: 'rates',
     section: 'rates',
@@ -107,16 +109,16 @@ function rates(doc) {
     title: s => `${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
-        'above 1 %, so the rate has no meaning. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
+        'above 1 %, so the rate has no meaning. Slow frames: among frames with contact, where there are any. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
         'per second of wall time; the bytes of CPU solvers are not known.',
     choices: [
       choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v]))), undefined, v => kRates[v].text),
       choice('Show', ['plain', 'all'], 'plain', v => ({plain: 'one layer, default settings', all: 'all layers and settings'})[v])
     ],
     rows: s => {
-      const {field, scale} = kRates[s.Value], mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
+      const mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: scale * r[field]}));
+      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: kRates[s.Value].of(r)}));
     },
     chart: (rows, s, width) => ({
       right: 90,
@@ -137,7 +139,10 @@ function rates(doc) {
          ...(r.fps_low ? [`frames per second, 95 %: ${number(r.fps_low)} to ${number(r.fps_high)}`] : []),
          ...(r.free_fall_error ? [`free-fall error ${percent(r.free_fall_error)}`] : [])],
     columns: ['label', 'sides', 'resolution', 'fps_median', 'fps_low', 'fps_high', 'free_fall_error', 'value'],
-    stills: Object.entries(kRates).filter(([, v]) => v.still).map(([Value, v]) => ({file: v.still, state: {Scene: main, Value}}))
+    stills: [
+      ...Object.entries(kRates).filter(([, v]) => v.still).map(([Value, v]) => ({file: v.still, state: {Scene: main, Value}})),
+      ...unique(all.filter(r => r.part === 'contact').map(r => r.family)).map(f => ({file: `scale-${f}`, state: {Scene: f, Value: 'tail'}}))
+    ]
   };
 }
 
