@@ -23,6 +23,8 @@ gpu       penetration       study penetration --trials 1 --require-assets --solv
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
+gpu       scale             study scale --trials 3
+gpu       many-cloths       study many-cloths --trials 3
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS
