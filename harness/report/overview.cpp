@@ -24,7 +24,8 @@ constexpr const char* kTable3Note =
     "resolutions are for the largest mesh. × bullet-soft: how many times as fast, the two intervals combined. An error "
     "of free fall above 1 % (!) "
     "makes a rate meaningless. Stretch: of structural edges in the last second; edges shorter than at rest count as 0 "
-    "in the mean. Published: Quest 3, with rendering, capped at 72. ";
+    "in the mean. Published: Kim, Ma and Hong (Appl. Sci. 2025, 15, 6611), Table 3, Quest 3, with rendering, capped at "
+    "72. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";

@@ -206,8 +206,8 @@ View failed() {
 
 /// " m"; nothing of a value without a unit.
 std::string unit_of(const std::string& name) {
-  const auto at = std::find_if(scalars().begin(), scalars().end(), [&](auto& s) { return s.name == name; });
-  return at == scalars().end() || at->units == "1" ? "" : " " + at->units;
+  const Scalar* s = find_scalar(name);
+  return s == nullptr || s->units == "1" ? "" : " " + s->units;
 }
 
 /// The criterion of the scene for a summary value, as text: "at most 0.001 m".
@@ -236,13 +236,18 @@ View violated() {
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability; }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
   v.columns = {{"expected", [](const Group& g, const Keys& k) { return criterion(*g.front(), k[2].text); }},
-               {"found", [](const Group& g, const Keys& k) {
+               {"found",
+                [](const Group& g, const Keys& k) {
                   if (k[2].text == "outcome") return ending_cell(*g.front()->run);
                   if (k[2].text == "motion") return Cell(g.front()->run->outcome.expect);  // which of its laws
                   if (k[2].all) return Cell("fail", kMissing, "bad");
                   const double found = g.front()->value(k[2].text);
                   return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(k[2].text)), found)
                                               : Cell();
+                }},
+               {"meaning", [](const Group&, const Keys& k) {
+                  const Scalar* s = find_scalar(k[2].text);
+                  return Cell(s == nullptr ? "" : s->doc);
                 }}};
   return v;
 }
