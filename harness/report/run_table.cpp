@@ -319,6 +319,7 @@ void RunTable::add_published() {
       row.times = std::make_shared<RunTimes>();
       row.name = name;
       row.family = family;
+      row.scaled = true;
       row.solver = c.header.solver;
       row.setting = "default";
       row.sides = column.value("sides", "");

@@ -5,6 +5,7 @@
 
 #include "clothbench/feature.hpp"
 #include "fake_runs.hpp"
+#include "metrics/registry.hpp"
 #include "report/verdict.hpp"
 
 namespace clothbench {
@@ -65,7 +66,8 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
   const Table broken = table_of(runs, "Acceptance criteria that are violated");
   ASSERT_EQ(broken.rows.size(), 3u);
-  EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "at most 0", "34"}));
+  EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "at most 0", "34",
+                                                      find_scalar("crossings_max")->doc}));
   EXPECT_EQ(broken.rows[2][4], "0.012 m") << "with its unit";
 }
 
