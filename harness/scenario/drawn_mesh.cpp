@@ -23,9 +23,13 @@ double twice_area(const std::vector<Point>& p, const Triangle& t) {
   return (p[t[1]][0] - p[t[0]][0]) * (p[t[2]][1] - p[t[0]][1]) - (p[t[1]][1] - p[t[0]][1]) * (p[t[2]][0] - p[t[0]][0]);
 }
 
-/// Whether the circle round a triangle has point v inside.
-bool circle_holds(const std::vector<Point>& p, const Triangle& t, std::uint32_t v) {
-  double m[3][3];
+/// Coordinates in whole units, so that the test below is exact: on a lattice four points often lie on one circle.
+using Exact = __int128;
+using Place = std::array<std::int64_t, 2>;
+
+/// Whether the circle round a triangle has point v inside. Places below 2^29 do not overflow.
+bool circle_holds(const std::vector<Place>& p, const Triangle& t, std::uint32_t v) {
+  Exact m[3][3];
   for (std::size_t k = 0; k < 3; ++k) {
     m[k][0] = p[t[k]][0] - p[v][0];
     m[k][1] = p[t[k]][1] - p[v][1];
@@ -38,18 +42,21 @@ bool circle_holds(const std::vector<Point>& p, const Triangle& t, std::uint32_t 
 
 /// Delaunay triangles of points that are not all on one line, wound alike. Triangles flatter than a thousandth of a
 /// square of side `cell` are left out: they lie along straight borders.
-std::vector<Triangle> delaunay(std::vector<Point> p, double cell) {
+std::vector<Triangle> delaunay(const std::vector<Point>& p, double cell) {
   const auto n = static_cast<std::uint32_t>(p.size());
+  constexpr std::int64_t kLongest = 1 << 22, kFar = 64 * kLongest;
   double longest = 0;
   for (const Point& at : p) longest = std::max({longest, at[0], at[1]});
-  const double far = 1e4 * longest;
-  for (const auto& corner : {Point{-far, -far}, {far, -far}, {0.0, far}}) p.push_back(corner);
+  const auto place = [&](double x) { return std::llround(x / longest * kLongest); };
+  std::vector<Place> places;
+  for (const auto& [x, y] : p) places.push_back({place(x), place(y)});
+  for (const auto& corner : {Place{-kFar, -kFar}, {kFar, -kFar}, {0, kFar}}) places.push_back(corner);
   std::vector<Triangle> all = {{n, n + 1, n + 2}};
   for (std::uint32_t v = 0; v < n; ++v) {
     std::vector<std::array<std::uint32_t, 2>> rim;  // directed edges of the hole
     std::vector<Triangle> left;
     for (const Triangle& t : all) {
-      if (!circle_holds(p, t, v)) {
+      if (!circle_holds(places, t, v)) {
         left.push_back(t);
         continue;
       }

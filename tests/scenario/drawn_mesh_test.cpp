@@ -30,6 +30,16 @@ TEST(DrawnMesh, FillsItsRectangleAtAnyAngle) {
     }
 }
 
+TEST(DrawnMesh, IsFilledWhereFourPointsLieOnOneCircle) {
+  for (const double width : {0.1, 0.6, 1.0, 3.7})
+    for (const double angle : {0.0, 0.35})
+      for (const int cells : {7, 31, 60}) {
+        const ClothMesh m = drawn_mesh({width, width, cells, angle, 0, 1});
+        const double corners = std::accumulate(m.areas_m2.begin(), m.areas_m2.end(), 0.0);
+        EXPECT_NEAR(corners / 3, width * width, 1e-3 * width * width) << cells << " " << angle;
+      }
+}
+
 TEST(DrawnMesh, IsTheSameForTheSameNumbers) {
   const DrawnSheet one{1, 0.25, 8, 0.5, 0.2, 3};
   DrawnSheet other = one;
