@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Runs clothbench's app on a Quest from a computer, and fetches and imports its results. See scripts/quest/README.md.
 
-  scripts/quest_run.py install APK | push FILE... | run "study table3" | pull | logs | restore
+  scripts/quest_run.py run "study table3" | pull | restore
 
 Exit codes: 0 ok, 1 the run failed or is not valid, 2 bad input, 3 no headset, 130 interrupted.
 """
 import argparse
+import base64
 import contextlib
 import datetime
 import os
@@ -18,13 +19,15 @@ import subprocess
 import sys
 import time
 
-from quest import samples
+from quest import perfetto, samples
 
 PACKAGE = "org.clothbench.quest"
 FILES = f"/sdcard/Android/data/{PACKAGE}/files"
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PROPERTIES = ("debug.oculus.cpuLevel", "debug.oculus.gpuLevel", "debug.oculus.refreshRate", "debug.oculus.clockStateLogLevel")
 LOG = ("logcat", "-v", "epoch", "-T", "1", "-s", "clothbench", "VrApi", "XrPerformanceManager")
+STAMP = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
+TRACE = "/data/misc/perfetto-traces/clothbench.pftrace"
 # What adb says when the headset is missing, not when the command fails.
 NO_ANSWER = re.compile("no devices|device offline|device ('.*' )?not found|error: closed|protocol fault|connection reset|cannot connect")
 
@@ -126,6 +129,23 @@ def fixed_settings(adb, a):
         listen(signal.default_int_handler)
 
 
+@contextlib.contextmanager
+def traced(adb, into):
+    """Perfetto's GPU counters while the block runs, as the file `into`. Yields whether the device offers them."""
+    source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
+    chosen = [ids[name] for name in samples.WANTED if name in ids]
+    start = f"echo {shlex.quote(perfetto.config(source, chosen))} | perfetto --txt -c - --background -o {TRACE}"
+    pid = "".join(re.findall(r"^\d+$", adb.shell(start, check=False), re.M)[:1]) if chosen else ""
+    try:
+        yield bool(pid)
+    finally:
+        if pid:  # it writes the rest of the trace before it ends
+            adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done")
+    if pid:
+        adb.call("pull", TRACE, into, timeout=1800)
+        adb.shell(f"rm -f {TRACE}")
+
+
 class Run:
     """One run of the app: log and counters, by the device's clock."""
 
@@ -137,11 +157,11 @@ class Run:
             raise Problem("the headset does not report its time (date +%s.%N)")
         # How far the device's clock is ahead of this computer's, good to half the duration of the command.
         self.offset_s = reported - (before + time.time()) / 2
-        self.vrapi, self.log, self.counters, self.result = [], [], samples.Counters(), None
+        self.vrapi, self.changes, self.log, self.counters, self.result = [], [], [], samples.Counters(), None
 
-    def follow(self):
-        """Starts the app and returns when it has logged its result."""
-        ids = samples.counter_ids(self.adb.shell("ovrgpuprofiler -m", check=False))
+    def follow(self, is_traced):
+        """Starts the app and returns when it has logged its result. Counters come from ovrgpuprofiler if nothing else traces them."""
+        ids = {} if is_traced else samples.counter_ids(self.adb.shell("ovrgpuprofiler -m", check=False))
         chosen = ",".join(str(ids[name]) for name in samples.WANTED if name in ids)
         self.adb.shell(f"am force-stop {PACKAGE}")
         log = Stream(self.adb.words(*LOG))
@@ -154,7 +174,6 @@ class Run:
                 raise Problem(f"the app did not start: {said.strip()}")
             self._until_result(log, profiler)
         finally:
-            self.ended = time.time() + self.offset_s
             [stream.stop() for stream in (log, profiler) if stream]
 
     def _until_result(self, log, profiler):
@@ -177,8 +196,11 @@ class Run:
         for line in log.take():
             stamp, tag, message = samples.logcat(line) or (0, "", "")
             self.log.append(line)
+            if tag == "XrPerformanceManager" and (change := samples.level_change(message)):
+                self.changes.append(change)
             if tag == "VrApi" and (values := samples.vrapi(message)):
-                self.vrapi.append((stamp, values))
+                self.vrapi.append((stamp, {**values, "changes": self.changes}))
+                self.changes = []
             if tag == "clothbench" and stamp >= self.started:
                 print(f"  {message}", flush=True)
                 self.result = samples.result(message) or self.result
@@ -187,56 +209,60 @@ class Run:
 
 
 def pull(adb, a, source, several=False):
-    """Fetches a result folder, or a folder of `several`, and imports them as HDF5 files."""
+    """Fetches a result folder, or a folder of `several`, and imports them as HDF5 files. Whether all trials are valid."""
     os.makedirs(a.out, exist_ok=True)
     adb.call("pull", source, a.out, timeout=1800)
     fetched = os.path.join(a.out, os.path.basename(source.rstrip("/")))
     folders = [entry.path for entry in os.scandir(fetched)] if several else [fetched]
     readings = os.path.join(a.out, "samples.json")
     options = ["--samples", readings] if os.path.exists(readings) else []
-    if subprocess.run([a.clothbench, "import", *folders, *options], check=False).returncode != 0:
+    code = subprocess.run([a.clothbench, "import", *folders, *options], check=False).returncode
+    if code not in (0, 1):
         raise Problem(f"clothbench import failed; the CBOR files are in {fetched}")
+    return code == 0
 
 
 def run(adb, a):
     if not adb.shell(f"pm path {PACKAGE}", check=False).strip():
-        raise Problem(f"{PACKAGE} is not installed: quest_run.py install build/android-arm64/clothbench.apk", 2)
+        raise Problem(f"{PACKAGE} is not installed: adb install build/android-arm64/clothbench.apk", 2)
+    if a.gpu_level == 5:
+        why = "CPU level 5 and GPU level 5 exclude each other" if a.cpu_level == 5 else "the headset grants it only with dynamic resolution, which this app lacks"
+        raise Problem(f"--gpu-level 5: {why}; use 4", 2)
     if os.path.exists(a.out) and os.listdir(a.out):
         raise Problem(f"--out {a.out}: expected a new or empty folder", 2)
     os.makedirs(a.out, exist_ok=True)
     requested = {"cpu_level": a.cpu_level, "gpu_level": a.gpu_level, "refresh_rate": a.refresh_hz}
     device = {"serial": adb.serial, "asked": {**requested, "command": a.command}, "model": adb.shell("getprop ro.product.model").strip(), "build": adb.shell("getprop ro.build.display.id").strip()}
-    one = Run(adb, a.command, a.timeout_s)
-    with fixed_settings(adb, a):
-        one.follow()
-    reasons = samples.reasons_against(one.vrapi, requested, one.started + a.settle_s, one.ended)
-    samples.write(os.path.join(a.out, "samples.json"), device, reasons, samples.groups(one.vrapi, one.counters.samples))
+    folder = f"{FILES}/runs/{re.sub('[^A-Za-z0-9]+', '-', a.command)[:40]}-{STAMP}"
+    one = Run(adb, f"{a.command} --out {folder}", a.timeout_s)
+    trace = pathlib.Path(a.out, "counters.pftrace")
+    with fixed_settings(adb, a), traced(adb, trace) as is_traced:
+        one.follow(is_traced)
+    try:
+        counters = perfetto.samples(trace.read_bytes()) if is_traced else one.counters.samples
+    except ValueError as e:
+        counters = print(f"quest_run: no counters: {trace}: {e}", file=sys.stderr) or []
+    samples.write(os.path.join(a.out, "samples.json"), device, samples.groups(one.vrapi, counters, "perfetto" if is_traced else "ovrgpuprofiler", requested))
     pathlib.Path(a.out, "logcat.txt").write_text("\n".join(one.log), encoding="utf-8")
-    passed, folder = one.result
-    pull(adb, a, folder)
-    print("".join(f"NOT VALID: {reason}\n" for reason in reasons) + f"{'passed' if passed else 'FAILED'}{', not valid' if reasons else ''}: {a.out}")
-    return 0 if passed and not reasons else 1
+    valid = pull(adb, a, folder)
+    print(f"{one.result}{'' if valid else ', not valid'}: {a.out}")
+    return 0 if one.result == "PASS" and valid else 1
 
 
 def arguments():
-    stamp = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
     p = argparse.ArgumentParser(prog="quest_run.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--serial", help="serial number of the headset, if several are plugged in")
     p.add_argument("--clothbench", default=os.path.join(ROOT, "build/release/clothbench"), help="the program that imports the results")
     actions = p.add_subparsers(dest="action", required=True)
-    actions.add_parser("install", help="install the app").add_argument("file")
-    actions.add_parser("push", help="copy scenes to the app's folder").add_argument("file", nargs="+")
-    actions.add_parser("logs", help="print the app's log until Ctrl-C")
     actions.add_parser("restore", help="reset clock levels, refresh rate and proximity sensor to the headset's own")
     for name, what in (("run", "run one command, sample the headset, fetch and import the results"), ("pull", "fetch and import all results on the headset")):
         action = actions.add_parser(name, help=what)
-        action.add_argument("--out", default=f"results/runs/quest-{stamp}", help="folder for what is fetched (default results/runs/quest-<UTC>)")
+        action.add_argument("--out", default=f"results/runs/quest-{STAMP}", help="folder for what is fetched (default results/runs/quest-<UTC>)")
     action = actions.choices["run"]
-    action.add_argument("command", help="command of clothbench: 'study table3'")
+    action.add_argument("command", help="study, run or xr with its arguments: 'study table3'")
     action.add_argument("--cpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
     action.add_argument("--gpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
     action.add_argument("--refresh-hz", type=float, default=72)
-    action.add_argument("--settle-s", type=float, default=3, help="seconds after the app's start in which clocks may change (default %(default)s)")
     action.add_argument("--timeout-s", type=float, default=4 * 3600)
     return p.parse_args()
 
@@ -247,10 +273,7 @@ def main():
     try:
         adb = Adb(a.serial)
         return {
-            "install": lambda: print(adb.call("install", "-r", a.file, timeout=300)),
-            "push": lambda: print(adb.call("push", *a.file, FILES + "/", timeout=1800)),
-            "pull": lambda: pull(adb, a, FILES + "/runs", several=True),
-            "logs": lambda: subprocess.call(adb.words(*LOG)),
+            "pull": lambda: 0 if pull(adb, a, FILES + "/runs", several=True) else 1,
             "restore": lambda: restore(adb, dict.fromkeys(PROPERTIES, "")),
             "run": lambda: run(adb, a),
         }[a.action]() or 0

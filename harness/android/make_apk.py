@@ -26,32 +26,22 @@ def missing(what):
     sys.exit(MISSING)
 
 
-def versions(folder):
-    """Sub-folders with numbers in their names, newest last."""
-    key = lambda p: [int(n) for n in "".join(c if c.isdigit() else " " for c in p.name).split()]
-    return sorted((p for p in folder.glob("*") if key(p)), key=key)
+def in_sdk(kind, name):
+    """The file `name` of the newest version in $ANDROID_HOME/<kind>; None if there is none."""
+    number = lambda p: [int(n) for n in "".join(c if c.isdigit() else " " for c in p.parent.name).split()]
+    found = sorted(pathlib.Path(os.environ.get("ANDROID_HOME", "/nowhere"), kind).glob("*/" + name), key=number)
+    return str(found[-1]) if found else None
 
 
 def find_tool(name):
-    for variable in ("ANDROID_HOME", "ANDROID_SDK_ROOT"):
-        for folder in reversed(versions(pathlib.Path(os.environ.get(variable, "/nowhere")) / "build-tools")):
-            if (folder / name).is_file():
-                return str(folder / name)
-    found = shutil.which(name)
-    if not found:
-        missing(f"{name} is neither in $ANDROID_HOME/build-tools nor on PATH (Debian: aapt zipalign apksigner default-jre-headless)")
-    return found
+    return in_sdk("build-tools", name) or shutil.which(name) or missing(
+        f"{name} is neither in $ANDROID_HOME/build-tools nor on PATH (Debian: aapt zipalign apksigner default-jre-headless)")
 
 
 def find_framework():
-    for variable in ("ANDROID_HOME", "ANDROID_SDK_ROOT"):
-        for folder in reversed(versions(pathlib.Path(os.environ.get(variable, "/nowhere")) / "platforms")):
-            if (folder / "android.jar").is_file():
-                return str(folder / "android.jar")
     debian = "/usr/share/android-framework-res/framework-res.apk"
-    if not os.path.isfile(debian):
-        missing("no $ANDROID_HOME/platforms/*/android.jar and no Debian android-framework-res")
-    return debian
+    return in_sdk("platforms", "android.jar") or (debian if os.path.isfile(debian) else missing(
+        "no $ANDROID_HOME/platforms/*/android.jar and no Debian android-framework-res"))
 
 
 def run(*command, **options):
@@ -79,8 +69,8 @@ def add_files(apk, libraries, assets):
     """Libraries stored, assets compressed, in a fixed order with a fixed date."""
     with zipfile.ZipFile(apk, "a") as z:
         entries = [(f"lib/arm64-v8a/{l.name}", l, zipfile.ZIP_STORED) for l in libraries]
-        entries += [(f"assets/{f.relative_to(assets).as_posix()}", f, zipfile.ZIP_DEFLATED)
-                    for f in sorted(assets.rglob("*")) if f.is_file()]
+        packed = [line.split(" ", 1)[1] for line in (assets / "index.txt").read_text(encoding="utf-8").splitlines()]
+        entries += [(f"assets/{name}", assets / name, zipfile.ZIP_DEFLATED) for name in sorted([*packed, "index.txt"])]
         for name, file, how in entries:
             info = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             info.compress_type = how

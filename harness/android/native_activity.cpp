@@ -147,14 +147,13 @@ extern "C" __attribute__((visibility("default"))) void ANativeActivity_onCreate(
   using namespace clothbench::android;
   const char* external = activity->externalDataPath;
   Activity a;
-  a.files = external != nullptr && *external != '\0' ? external : activity->internalDataPath;
   a.arguments = intent_extra(activity, "args");
   a.log = print_line;
   a.finish = [activity] { ANativeActivity_finish(activity); };
   a.command = command_of(activity);
   try {
     send_output_to_log();
-    prepare(activity, a.files);
+    prepare(activity, external != nullptr && *external != '\0' ? external : activity->internalDataPath);
   } catch (const std::exception& e) {
     to_log(std::string("error: ") + e.what());
     a.command = [](const std::vector<std::string>&) { return 1; };

@@ -5,16 +5,13 @@ usage: pack_assets.py OUT [--assets FOLDER]
 
 FOLDER is where scripts/fetch-assets.sh puts them (build/assets/node_modules); without it the device uses the procedural
 stand-ins. OUT then holds scenarios/, assets/ and index.txt, one line per file: SHA-256 and path. SPIR-V and the published
-values are inside the program already. The same input gives the same bytes; OUT is replaced whole."""
+values are inside the program already. The same input gives the same bytes; files that index.txt does not name are not
+packed."""
 import argparse
 import hashlib
 import pathlib
-import shutil
-import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
-
-
 # What harness/assets reads of the packages, and their licences.
 PACKED = {
     "scenarios": ["**/*.json"],
@@ -25,34 +22,18 @@ PACKED = {
 }
 
 
-def files_under(folder, patterns):
-    return sorted({p for pattern in patterns for p in folder.glob(pattern) if p.is_file()})
-
-
 def pack(out, assets):
-    """Copies into `out` and returns the index's lines."""
-    sources = {"scenarios": SOURCE / "scenarios"}
-    if assets.is_dir():
-        sources["assets"] = assets
-    if out.exists():
-        if any(out.iterdir()) and not (out / "index.txt").is_file():
-            sys.exit(f"pack_assets.py: {out}: not a folder of packed assets (no index.txt); give another")
-        shutil.rmtree(out)
     lines = []
-    for name, folder in sources.items():
-        size = 0
-        for file in files_under(folder, PACKED[name]):
+    for name, folder in {"scenarios": SOURCE / "scenarios", "assets": assets}.items():
+        files = sorted({p for pattern in PACKED[name] for p in folder.glob(pattern) if p.is_file()})
+        print(f"packed {len(files)} files of {folder}")
+        for file in files:
             content = file.read_bytes()
             target = out / name / file.relative_to(folder)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
-            size += len(content)
             lines.append(f"{hashlib.sha256(content).hexdigest()} {target.relative_to(out).as_posix()}")
-        print(f"packed {name}: {size} B of {folder}")
-    if "assets" not in sources:
-        print(f"packed no assets: no {assets}; the device will use procedural ones")
     (out / "index.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return lines
 
 
 if __name__ == "__main__":

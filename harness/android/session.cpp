@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <condition_variable>
 #include <iomanip>
 #include <mutex>
@@ -11,38 +10,15 @@
 #include <thread>
 
 #include "clothbench/error.hpp"
-#include "runner/environment.hpp"
 #include "runner/interrupt.hpp"
 
 namespace clothbench::android {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Locked by the session that runs: the log and the interrupt are the process's.
 std::mutex& running_session() {
   static auto* const mutex = new std::mutex;  // outlives every thread
   return *mutex;
-}
-
-std::string option_value(const std::vector<std::string>& words, const std::string& option) {
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (words[k] == option && k + 1 < words.size()) return words[k + 1];
-    if (words[k].rfind(option + "=", 0) == 0) return words[k].substr(option.size() + 1);
-  }
-  return "";
-}
-
-bool writes_results(const std::string& command) { return command == "study" || command == "run" || command == "xr"; }
-
-/// "runs/<study or command>-<UTC>".
-fs::path fresh_folder(const fs::path& files, const std::vector<std::string>& words) {
-  std::string name = words[0] == "study" && words.size() > 1 ? fs::path(words[1]).stem().string() : words[0];
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_') c = '-';
-  std::string stamp = utc_now();
-  std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
-  return files / "runs" / (name + "-" + stamp);
 }
 
 }  // namespace
@@ -61,16 +37,11 @@ struct Session::Shared {
   bool running = false;  ///< it is this session's turn
   bool paused = false, destroyed = false, ended = false;
 
-  /// Runs the command; true if it passed. `where` receives the folder of its results.
-  bool run(fs::path& where) {
+  /// Runs the command; true if it passed.
+  bool run() {
     std::vector<std::string> words = split_words(activity.arguments);
     if (words.empty()) words = {"study", "table3"};
     if (words[0] == "clothbench") words.erase(words.begin());
-    if (writes_results(words.at(0))) {
-      const std::string given = option_value(words, "--out");
-      where = given.empty() ? fresh_folder(activity.files, words) : fs::path(given);
-      if (given.empty()) words.insert(words.end(), {"--out", where.string()});
-    }
     const std::string text = fmt::format("{}", fmt::join(words, " "));
     activity.log("running " + text);
     const int code = activity.command(words);
@@ -93,14 +64,13 @@ struct Session::Shared {
       running = true;
     }
     bool pass = false;
-    fs::path where = activity.files;
     try {
-      pass = starts && run(where);
+      pass = starts && run();
     } catch (const std::exception& e) {
       activity.log(std::string("error: ") + e.what());
     }
     const std::lock_guard lock(mutex);
-    activity.log(fmt::format("RESULT {} {}", pass ? "PASS" : "FAIL", where.string()));
+    activity.log(pass ? "RESULT PASS" : "RESULT FAIL");
     hold_runs(false);
     running = false;
     ended = true;

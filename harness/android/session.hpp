@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,8 +8,7 @@ namespace clothbench::android {
 
 /// The activity as a session needs it; called from the session's thread.
 struct Activity {
-  std::filesystem::path files;  ///< folder of the results
-  std::string arguments;        ///< command line; empty: study table3
+  std::string arguments;  ///< command line; empty: study table3
   /// Writes one line to the device's log, after everything printed before; works until the end of the process.
   std::function<void(const std::string& line)> log;
   /// Asks the system to end the activity. Not called after `Session::destroy`.
@@ -23,11 +21,9 @@ struct Activity {
 std::vector<std::string> split_words(const std::string& line);
 
 /// Life cycle of an activity, independent of the operating system. Its command runs in a separate thread:
-///   - `study`, `run` and `xr` without --out write to `<files>/runs/<name>-<UTC>`;
 ///   - a paused run waits between frames; a destroyed run stops after its frame and keeps all finished trials, and the
 ///     log names the command that continues it;
-///   - the last line logged is "RESULT PASS <path>" if the command exited with 0, else "RESULT FAIL <path>"; the path
-///     is the folder of its results (or `files`).
+///   - the last line logged is "RESULT PASS" if the command exited with 0, else "RESULT FAIL".
 /// Member functions may be called in any order and from any thread. A second session of a process waits for the first.
 class Session {
  public:

@@ -24,6 +24,9 @@ void add_import(CLI::App& app, Console& console) {
         if (!console.json) fmt::print("{}\n", file.string());
       }
     if (console.json) Console::print(rows);
+    const std::set<std::string> reasons = samples ? samples->reasons() : std::set<std::string>();
+    for (const std::string& reason : reasons) fmt::print(stderr, "NOT VALID: {}\n", reason);
+    if (!reasons.empty()) console.exit_code = ExitCode::CheckFailed;
     if (rows.empty()) fmt::print(stderr, "nothing to import: these folders have no .cbor files\n");
   });
 }

@@ -46,18 +46,10 @@ Offscreen::~Offscreen() {
 
 template <class Record>
 void Offscreen::submit(Record&& record) {
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  vulkan::begin(commands_);
   record();
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
-  VkSubmitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  info.commandBufferCount = 1;
-  info.pCommandBuffers = &commands_;
-  check(vkQueueSubmit(device_->queue(), 1, &info, fence_), "vkQueueSubmit");
+  vulkan::submit(*device_, commands_, fence_);
   check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kPatience_ns), "vkWaitForFences");
   check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
 }

@@ -118,6 +118,7 @@ std::string trials_csv(const RunTable& table) {
                            {"start_unix_s", t.start_unix_s},
                            {"jobs", t.jobs},
                            {"pipelined_wall_s", t.pipelined_wall_s}});
+    out.emplace_back("not_trusted", environment_of(*r.run, "distrusted_trials")[std::to_string(t.index)]);
     for (const auto& [name, times] :
          {std::pair<std::string, const std::vector<double>&>{"wall", t.frame_wall_s}, {"device", t.frame_device_s}}) {
       const double sum = std::accumulate(times.begin(), times.end(), 0.0);

@@ -250,8 +250,7 @@ std::vector<std::string> warnings_of(const RunTable& table) {
     const RunRecord& c = *r.run;
     all.push_back(&r);
     if (environment_text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(environment_text(c, "gpu"));
-    if (const json s = environment_of(c, "device_samples"); s.is_object() && !s.value("valid", true))
-      for (const json& reason : s.value("reasons", json::array())) invalid.insert(reason.get<std::string>());
+    for (const json& reasons : environment_of(c, "distrusted_trials")) invalid.insert(reasons);
   }
   std::vector<std::string> out;
   for (const std::string& device : software)

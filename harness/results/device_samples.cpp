@@ -12,15 +12,15 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMargin_s = 5;
+constexpr double kLogged = 0.8;  // fraction of a trial whose state must be logged
+constexpr int kMinSamples = 5;   // fewer samples do not give a mean bandwidth
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 30;
 
 constexpr char kSchema[] = R"({
-  "type": "object", "required": ["format", "format_version", "valid", "reasons", "device", "groups"],
+  "type": "object", "required": ["format", "format_version", "device", "groups"],
   "properties": {
     "format": {"enum": ["clothbench-device-samples"]},
-    "format_version": {"enum": [1]},
-    "valid": {"type": "boolean"},
-    "reasons": {"type": "array", "items": {"type": "string"}},
+    "format_version": {"enum": [2]},
     "device": {"type": "object"},
     "groups": {"type": "array", "items": {
       "type": "object", "required": ["name", "source", "period_s", "time_unix_s", "series"],
@@ -29,6 +29,7 @@ constexpr char kSchema[] = R"({
         "source": {"type": "string"},
         "period_s": {"type": "number", "exclusiveMinimum": 0},
         "time_unix_s": {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}},
+        "reasons": {"type": "array", "items": {"type": "string"}},
         "series": {"type": "array", "items": {
           "type": "object", "required": ["name", "units", "long_name", "values"],
           "properties": {
@@ -53,6 +54,8 @@ void check_group(const std::string& file, const std::string& at, const json& g) 
   for (std::size_t k = 1; k < times.size(); ++k)
     if (!(times[k - 1].get<double>() < times[k].get<double>()))
       refuse(file, fmt::format("{}/time_unix_s/{}", at, k), "expected a time after the one before");
+  if (g.contains("reasons") && g["reasons"].size() != times.size())
+    refuse(file, at + "/reasons", fmt::format("expected {} texts, one per time", times.size()));
   for (std::size_t k = 0; k < g["series"].size(); ++k)
     if (g["series"][k]["values"].size() != times.size())
       refuse(file, fmt::format("{}/series/{}/values", at, k),
@@ -65,7 +68,14 @@ struct Taken {
   std::vector<double> time_unix_s, trial;
 };
 
-Taken take(const json& group, const RunRecord& r) {
+/// What the device logged of its state during a trial: for how long, and the reasons not to trust the trial's times.
+struct StateLog {
+  double logged_s = 0;
+  std::set<std::string> reasons;
+};
+using StateLogs = std::map<int, StateLog>;  // by trial index
+
+Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
   double first = kMissing, last = kMissing;
   for (const TimedTrial& t : r.trials) {
     if (!std::isfinite(t.start_unix_s)) continue;
@@ -80,20 +90,30 @@ Taken take(const json& group, const RunRecord& r) {
     out.index.push_back(k);
     out.time_unix_s.push_back(t);
     out.trial.push_back(-1);
-    // A sample covers the period before it.
-    for (const TimedTrial& trial : r.trials)
+    // A sample covers the period before it. A line of state that comes late speaks for up to two periods.
+    const double since = k > 0 ? std::max(t - 2 * period, group["time_unix_s"][k - 1].get<double>()) : t - period;
+    for (const TimedTrial& trial : r.trials) {
       if (t - period >= trial.start_unix_s && t <= trial.end_unix_s) out.trial.back() = trial.index;
+      const double overlap_s = std::min(t, trial.end_unix_s) - std::max(since, trial.start_unix_s);
+      if (!group.contains("reasons") || !(overlap_s > 0)) continue;
+      logs[trial.index].logged_s += overlap_s;
+      logs[trial.index].reasons.insert(group["reasons"][k]);
+    }
   }
   return out;
 }
 
-/// Adds the scalar of a series with a role: the mean within trials, or the maximum of a temperature.
+/// Adds the scalar of a series with a role: the mean within trials, or the maximum of a temperature. Bandwidths come
+/// only from trials with at least kMinSamples samples.
 void summarise(const std::string& role, double scale, const Taken& taken, const std::vector<double>& values,
                std::map<std::string, double>& summary) {
+  std::map<double, int> samples;
+  for (std::size_t k = 0; k < values.size(); ++k) samples[taken.trial[k]] += std::isfinite(values[k]) ? 1 : 0;
+  const int required = role == "read" || role == "write" ? kMinSamples : 1;
   double sum = 0, greatest = kMissing;
   int count = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (taken.trial[k] < 0 || !std::isfinite(values[k])) continue;
+    if (taken.trial[k] < 0 || !std::isfinite(values[k]) || samples[taken.trial[k]] < required) continue;
     sum += scale * values[k];
     ++count;
     if (!(greatest >= scale * values[k])) greatest = scale * values[k];
@@ -105,8 +125,9 @@ void summarise(const std::string& role, double scale, const Taken& taken, const 
   if (role == "temperature") summary["sampled_temperature_max_C"] = greatest;
 }
 
-StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::string, double>& summary) {
-  const Taken taken = take(group, r);
+StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::string, double>& summary,
+                        StateLogs& logs) {
+  const Taken taken = take(group, r, logs);
   const std::uint64_t count = taken.index.size();
   StoredGroup out;
   out.path = "device_samples/" + group["name"].get<std::string>();
@@ -132,23 +153,28 @@ DeviceSamples::DeviceSamples(const std::filesystem::path& path) {
   const std::string file = path.string();
   all_ = parse_json(read_text(path, kMaxBytes), file);
   validate_json(all_, kSchema, file);
-  if (all_["valid"].get<bool>() != all_["reasons"].empty())
-    refuse(file, "/valid", "expected true without reasons against it, false with some");
   for (std::size_t k = 0; k < all_["groups"].size(); ++k)
     check_group(file, fmt::format("/groups/{}", k), all_["groups"][k]);
 }
 
-void DeviceSamples::attach_to(RunRecord& r) const {
-  StoredGroup top;
-  top.path = "device_samples";
-  top.attributes = {{"valid", all_["valid"].get<bool>() ? 1 : 0},
-                    {"reasons", joined(all_["reasons"].get<std::vector<std::string>>(), "; ")},
-                    {"device_json", all_["device"].dump()}};
-  r.samples = {std::move(top)};
-  for (const json& group : all_["groups"]) r.samples.push_back(store_group(group, r, r.summary));
-  r.summary["sampled_valid"] = all_["valid"].get<bool>() ? 1 : 0;
-  r.header.environment["device_samples"] = {
-      {"valid", all_["valid"]}, {"reasons", all_["reasons"]}, {"device", all_["device"]}};
+void DeviceSamples::attach_to(RunRecord& r) {
+  StateLogs logs;
+  r.samples.assign(1, {});
+  for (const json& group : all_["groups"]) r.samples.push_back(store_group(group, r, r.summary, logs));
+  json reasons = json::object();
+  for (const TimedTrial& trial : r.trials) {
+    StateLog& log = logs[trial.index];
+    if (!(log.logged_s >= kLogged * (trial.end_unix_s - trial.start_unix_s)))
+      log.reasons.insert("the device did not log its state throughout");
+    log.reasons.erase("");
+    reasons_.insert(log.reasons.begin(), log.reasons.end());
+    if (!log.reasons.empty()) reasons[std::to_string(trial.index)] = joined(log.reasons, "; ");
+  }
+  r.samples[0].path = "device_samples";
+  r.samples[0].attributes = {
+      {"valid", reasons.empty() ? 1 : 0}, {"reasons", reasons.dump()}, {"device_json", all_["device"].dump()}};
+  r.summary["sampled_valid"] = reasons.empty() ? 1 : 0;
+  r.header.environment["distrusted_trials"] = std::move(reasons);
 }
 
 }  // namespace clothbench

@@ -202,7 +202,7 @@ std::string trajectory_fault(const std::filesystem::path& path) {
                      found.substr(0, 12), stored.empty() ? "none" : stored.substr(0, 12));
 }
 
-std::vector<fs::path> import_runs(const fs::path& file_or_folder, const DeviceSamples* samples) {
+std::vector<fs::path> import_runs(const fs::path& file_or_folder, DeviceSamples* samples) {
   if (!kWithHdf5) throw Error("import: this build has no HDF5; run it on another machine");
   std::vector<fs::path> found, files;
   if (file_or_folder.extension() == ".part")

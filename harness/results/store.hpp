@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,7 +91,7 @@ class DeviceSamples;
 /// `samples`: the device's samples to store with them. Returns the new files. Throws Error if `file_or_folder` is a
 /// part file: it is not finished.
 std::vector<std::filesystem::path> import_runs(const std::filesystem::path& file_or_folder,
-                                               const DeviceSamples* samples = nullptr);
+                                               DeviceSamples* samples = nullptr);
 
 /// `<dir>/study.json`: the study of the folder and its planned runs. Written by tmp + fsync + rename.
 struct StudyManifest {
@@ -102,7 +103,7 @@ void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);
 
 /// Values that a device reported during runs: frame rate, bandwidth, clocks, temperature. Each series has the sampling
-/// rate and the name of its source. `samples.json` of scripts/quest_run.py, format 1 (results/README.md).
+/// rate and the name of its source. `samples.json` of scripts/quest_run.py, format 2 (results/README.md).
 class DeviceSamples {
  public:
   /// Throws Error naming the file and the JSON pointer.
@@ -110,11 +111,14 @@ class DeviceSamples {
 
   /// Stores as /device_samples the samples from 5 s before the run's first trial to 5 s after its last (all samples if
   /// the trials' times are not known), each with the trial that contains its whole period. Samples inside trials give
-  /// `sampled_…` in the summary. The environment gets whether the run is valid, and if not, why.
-  void attach_to(RunRecord&) const;
+  /// `sampled_…` in the summary. The environment gets the reasons against trials, by their index.
+  void attach_to(RunRecord&);
+  /// The reasons against trials of all runs so far.
+  const std::set<std::string>& reasons() const { return reasons_; }
 
  private:
   nlohmann::json all_;
+  std::set<std::string> reasons_;
 };
 
 }  // namespace clothbench

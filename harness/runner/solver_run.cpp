@@ -251,7 +251,6 @@ TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) 
 void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) {
   const int jobs_before = jobs_now();
   warm_up(rules);
-  const std::size_t stages = plan_.stages.size();
   const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
   trial.start_unix_s = trial.end_unix_s = unix_now();
   solver_->reset();
@@ -259,13 +258,8 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   timed.cpu_clock = !spec_.entry->info.on_gpu;
   FrameLoop loop(*solver_, *spec_.scene, timed);
   while (loop.next()) {
-    const FrameCost cost = solver_->last_cost();
-    trial.frame_wall_s.push_back(loop.wall_s());
+    add_frame(trial, solver_->last_cost(), loop.wall_s(), plan_.stages.size());
     if (timed.cpu_clock) trial.frame_cpu_s.push_back(loop.cpu_s());
-    trial.frame_device_s.push_back(cost.device_s);
-    trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
-    trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
-    trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
   }
   fail(loop.status(), loop.index());
   trial.end_unix_s = unix_now();
@@ -335,10 +329,7 @@ void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
     counted_ = {};
     FrameLoop loop(*twin, *spec_.scene, frame_rules(rules, trial.frames()));
     while (loop.next()) {
-      const FrameCost cost = twin->last_cost();
-      counted_.frame_wall_s.push_back(loop.wall_s());
-      counted_.stage_read_B.insert(counted_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
-      counted_.stage_write_B.insert(counted_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+      add_frame(counted_, twin->last_cost(), loop.wall_s(), 0);
     }
     fail(loop.status(), loop.index());
     counted_messages_ += twin->validation_messages();
@@ -346,6 +337,14 @@ void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
   }
   trial.stage_read_B = counted_.stage_read_B;
   trial.stage_write_B = counted_.stage_write_B;
+}
+
+void add_frame(TimedTrial& trial, const FrameCost& cost, double wall_s, std::size_t stages) {
+  trial.frame_wall_s.push_back(wall_s);
+  trial.frame_device_s.push_back(cost.device_s);
+  trial.stage_device_s.insert(trial.stage_device_s.end(), stages, kMissing);
+  trial.stage_read_B.insert(trial.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
+  trial.stage_write_B.insert(trial.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
 }
 
 std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, const RunRecord& record) {

@@ -115,6 +115,9 @@ class SolverRun {
   int counted_messages_ = 0;               ///< validation messages of that twin
 };
 
+/// Adds a frame's cost to a trial. The device times of its `stages` are unknown.
+void add_frame(TimedTrial&, const FrameCost&, double wall_s, std::size_t stages);
+
 /// Every scalar of the tables, from the record of one run. NaN where not applicable.
 std::map<std::string, double> summarise(const RunSpec&, const Plan&, const RunRecord&);
 

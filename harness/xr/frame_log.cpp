@@ -4,7 +4,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/quantile.hpp"
 #include "runner/environment.hpp"
+#include "runner/solver_run.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -25,14 +27,6 @@ constexpr Column kColumns[] = {
     {"right_seen", "1", "1 if the right hand was tracked", &FrameRow::right_seen},
 };
 
-/// Quantile by rank (0 to 1) of the finite values; NaN if there are none.
-double quantile(std::vector<double> v, double q) {
-  std::erase_if(v, [](double x) { return !std::isfinite(x); });
-  if (v.empty()) return kMissing;
-  std::sort(v.begin(), v.end());
-  return v[static_cast<std::size_t>(std::lround(q * static_cast<double>(v.size() - 1)))];
-}
-
 }  // namespace
 
 void FrameLog::add_step(const FrameCost& cost, double step_s) {
@@ -40,11 +34,7 @@ void FrameLog::add_step(const FrameCost& cost, double step_s) {
   if (trial_.frames() == 0) trial_.jobs = jobs_now();
   if (trial_.frames() == 0) trial_.start_unix_s = now - step_s;
   trial_.end_unix_s = now;
-  trial_.frame_wall_s.push_back(step_s);
-  trial_.frame_device_s.push_back(cost.device_s);
-  trial_.stage_device_s.insert(trial_.stage_device_s.end(), cost.stage_read_B.size(), kMissing);
-  trial_.stage_read_B.insert(trial_.stage_read_B.end(), cost.stage_read_B.begin(), cost.stage_read_B.end());
-  trial_.stage_write_B.insert(trial_.stage_write_B.end(), cost.stage_write_B.begin(), cost.stage_write_B.end());
+  add_frame(trial_, cost, step_s, cost.stage_read_B.size());
 }
 
 std::vector<double> FrameLog::periods() const {

@@ -43,8 +43,7 @@ LiveScene::LiveScene(const std::string& scenario, const std::vector<std::string>
   document_["why"] = "Recorded from a headset. " + document_["why"].get<std::string>();
   fs::create_directories(folder_);
   if (live_hands) find_live(source.string());
-  keep_mesh(source.string());
-  keep_tracks(source.string());
+  keep_files(source.string());
 }
 
 void LiveScene::find_live(const std::string& source) {
@@ -64,33 +63,22 @@ void LiveScene::find_live(const std::string& source) {
       throw Error(
           fmt::format("{}: /colliders/{}: a second {} hand; a user has one", source, k, assets::name_of(hand.side)));
     hands_.push_back(std::move(hand));
-    for (const char* key : {"speed_m_per_s", "offset_m"}) list[k].erase(key);
+    for (const char* key : {"track", "speed_m_per_s", "offset_m"}) list[k].erase(key);
   }
 }
 
-/// The file of a mesh travels with the scenario.
-void LiveScene::keep_mesh(const std::string& source) {
-  json& cloth = document_["cloth"];
-  if (!cloth.contains("mesh") || !cloth["mesh"].contains("file")) return;
-  const fs::path from = file_of_scene(cloth["mesh"]["file"].get<std::string>(), source).value();
-  write_file_atomically(folder_ / from.filename(), read_text(from));
-  cloth["mesh"]["file"] = from.filename().string();
-}
-
-/// Tracks that stay scripted travel with the scenario.
-void LiveScene::keep_tracks(const std::string& source) {
-  for (const char* kind : {"colliders", "grips"}) {
-    if (!document_.contains(kind)) continue;
-    for (json& item : document_[kind]) {
-      if (!item.contains("track") || item["track"].is_object()) continue;
-      const fs::path from = file_of_scene(item["track"].get<std::string>(), source).value();
-      if (std::any_of(hands_.begin(), hands_.end(),
-                      [&](const LiveHand& h) { return &document_[kind][h.collider] == &item; }))
-        continue;
-      write_file_atomically(folder_ / from.filename(), read_text(from));
-      item["track"] = from.filename().string();
-    }
-  }
+/// The file of a mesh and the tracks that stay scripted travel with the scenario.
+void LiveScene::keep_files(const std::string& source) {
+  const auto keep = [&](json& owner, const char* key) {
+    if (!owner.contains(key) || !owner[key].is_string()) return;
+    const fs::path from = file_of_scene(owner[key].get<std::string>(), source).value();
+    write_file_atomically(folder_ / from.filename(), read_text(from));
+    owner[key] = from.filename().string();
+  };
+  if (document_["cloth"].contains("mesh")) keep(document_["cloth"]["mesh"], "file");
+  for (const char* kind : {"colliders", "grips"})
+    for (std::size_t k = 0; document_.contains(kind) && k < document_[kind].size(); ++k)
+      keep(document_[kind][k], "track");
 }
 
 bool LiveScene::wants(Side side) const {
@@ -143,8 +131,11 @@ const FrameMotion* LiveScene::next(int index, const HandsNow& now) {
 }
 
 void LiveScene::write_hand(const LiveHand& h) const {
-  write_file_atomically(folder_ / h.file, assets::to_json(h.recording, fmt::format("The {} hand of a live session.",
-                                                                                   assets::name_of(h.side))));
+  const char* capsules = h.recording.has_capsules ? "XR_FB_hand_tracking_capsules" : "XR_EXT_hand_tracking's joints";
+  write_file_atomically(
+      folder_ / h.file,
+      assets::to_json(h.recording, fmt::format("The {} hand of a live session. Capsules come from {}.",
+                                               assets::name_of(h.side), capsules)));
 }
 
 fs::path LiveScene::save() {

@@ -62,8 +62,7 @@ class LiveScene {
     std::optional<assets::Hand> mesh;  ///< only if `as_mesh`
   };
   void find_live(const std::string& source);
-  void keep_mesh(const std::string& source);
-  void keep_tracks(const std::string& source);
+  void keep_files(const std::string& source);
   void write_hand(const LiveHand&) const;
   ColliderPose pose(const LiveHand&, const assets::RecordedHand&) const;
   std::string file() const { return (folder_ / "scenario.json").string(); }

@@ -157,8 +157,8 @@ class Loop {
     b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
     for (const Side side : {Side::Left, Side::Right})
       if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
-    if (!rate_settled()) return;
-    b.frame_rate_hz = session_.frame_rate_hz(state);
+    b.frame_rate_hz = std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));  // it is in whole ns
+    if (!rate_settled(b.frame_rate_hz)) return;
     b.frames =
         o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
     frames_ = b.frames;
@@ -182,12 +182,10 @@ class Loop {
   }
 
   /// A display changes its rate some frames after it was asked to, if it has that rate.
-  bool rate_settled() {
+  bool rate_settled(double rate_hz) {
     constexpr double kTimeout_s = 1, kSame_hz = 0.5;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
-    const double rate_hz = session_.refresh_rate_hz();
-    return rate_hz == 0 || std::abs(rate_hz - o_.rate_hz) <= kSame_hz ||
-           seconds(first_frame_, Clock::now()) > kTimeout_s;
+    return std::abs(rate_hz - o_.rate_hz) <= kSame_hz || seconds(first_frame_, Clock::now()) > kTimeout_s;
   }
 
   /// The vertex shader reads a GPU solver's positions where they lie.

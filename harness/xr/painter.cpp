@@ -94,11 +94,7 @@ void Painter::paint(const std::vector<XrView>& views) {
     xr.check(xr.xr().xrWaitSwapchainImage(images, &wait), "xrWaitSwapchainImage");
   }
   record(index[0], index[1], views);
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands_;
-  check(vkQueueSubmit(device_->queue(), 1, &submit, fence_), "vkQueueSubmit");
+  vulkan::submit(*device_, commands_, fence_);
   in_flight_ = true;
   for (const Eye& eye : session_.eyes()) {
     auto release = blank<XrSwapchainImageReleaseInfo>(XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
@@ -107,11 +103,7 @@ void Painter::paint(const std::vector<XrView>& views) {
 }
 
 void Painter::record(std::uint32_t left, std::uint32_t right, const std::vector<XrView>& views) {
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  vulkan::begin(commands_);
   if (queries_ != VK_NULL_HANDLE) {
     vkCmdResetQueryPool(commands_, queries_, 0, 2);
     vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries_, 0);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace clothbench::xr {
 namespace {
@@ -117,19 +116,6 @@ void Session::request_rate(double rate_hz) const {
   // A rate that the display does not have is not an error: the log records the actual rate.
   xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
                                                                                    static_cast<float>(rate_hz));
-}
-
-double Session::frame_rate_hz(const XrFrameState& state) const {
-  const double rate_hz = refresh_rate_hz();
-  return rate_hz > 0 ? rate_hz : std::round(1e9 / static_cast<double>(state.predictedDisplayPeriod));
-}
-
-double Session::refresh_rate_hz() const {
-  float rate = 0;
-  if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME) ||
-      XR_FAILED(xr_.function<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB")(session_, &rate)))
-    return 0;
-  return static_cast<double>(rate);
 }
 
 bool Session::pump() {

@@ -46,9 +46,6 @@ class Session {
   VkFormat format() const { return format_; }
   VkExtent2D extent() const { return extent_; }
   const std::array<Eye, 2>& eyes() const { return eyes_; }
-  double refresh_rate_hz() const;  ///< current rate of the display; 0 if unknown
-  /// The same; by the runtime's prediction, which is in whole ns, if unknown.
-  double frame_rate_hz(const XrFrameState&) const;
 
  private:
   void create_session();

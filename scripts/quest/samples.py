@@ -8,6 +8,7 @@ import statistics
 READ, WRITE = "Read Total (Bytes/sec)", "Write Total (Bytes/sec)"
 # Counters of ovrgpuprofiler by name: their numbers are list positions, which differ between devices and systems.
 WANTED = (READ, WRITE, "Clocks / Second", "GPU Frequency", "GPU % Bus Busy", "GPU % Utilization", "% Stalled on System Memory")
+COUNTER_SOURCES = {"perfetto": "Perfetto's gpu.counters", "ovrgpuprofiler": "ovrgpuprofiler -r, the computer's time of arrival moved to the device's clock"}
 CLOCK_TOLERANCE = 0.02  # relative to the median: steps between clock levels are 8 % and more
 # VrApi's line of every second: series -> (pattern, units, role in the summary, factor to the role's SI unit).
 VRAPI = {
@@ -19,10 +20,20 @@ VRAPI = {
     "gpu_clock_MHz": (r",\d+/(\d+)MHz", "MHz", "gpu_clock", 1e6),
     "memory_clock_MHz": (r"Mem=(\d+)MHz", "MHz", "", 1),
     "power_level_state": (r"PLS=(\d+)", "1", "", 1),
+    "battery_saver": (r",LP=(\d+)", "1", "", 1),
+    "voltage_scaling": (r"DVFS=(\d+)", "1", "", 1),
     "temperature_C": (r"Temp=(-?[\d.]+)C", "degC", "temperature", 1),
     "stale_frames": (r"Stale=(\d+)", "1", "", 1),
+    "stale_runs_of_2": (r"Stale2/5/10/max=(\d+)", "1", "", 1),
+    "stale_runs_of_5": (r"Stale2/5/10/max=\d+/(\d+)", "1", "", 1),
+    "stale_runs_of_10": (r"Stale2/5/10/max=\d+/\d+/(\d+)", "1", "", 1),
+    "stale_run_max": (r"Stale2/5/10/max=\d+/\d+/\d+/(\d+)", "1", "", 1),
     "app_gpu_time_ms": (r"App=(-?[\d.]+)ms", "ms", "", 1),
     "gpu_utilization": (r"GPU%=([\d.]+)", "1", "", 1),
+    "compositor_latency_min_ms": (r"CFL=(-?[\d.]+)/", "ms", "", 1),
+    "compositor_latency_max_ms": (r"CFL=-?[\d.]+/(-?[\d.]+)", "ms", "", 1),
+    "compositor_latency_p95_ms": (r"ICFLp95=(-?[\d.]+)", "ms", "", 1),
+    "framebuffer_scale": (r",SF=([\d.]+)", "1", "", 1),
 }
 
 
@@ -75,10 +86,16 @@ def vrapi(message):
     return {name: number((re.findall(pattern, message) or [None])[0]) for name, (pattern, *_) in VRAPI.items()}
 
 
+def level_change(message):
+    """XrPerformanceManager's line of a change -> "4,3 -> 3,3" (CPU and GPU level); None for its other lines."""
+    found = re.search(r"SetClockLevels: .*: (\d+,\d+ -> \d+,\d+)", message)
+    return found[1] if found else None
+
+
 def result(message):
-    """The app's last line -> (passed, folder on the device); None for its other lines."""
-    found = re.match(r"^RESULT (PASS|FAIL) (.+?)\s*$", message)
-    return (found[1] == "PASS", found[2]) if found else None
+    """The app's last line -> "PASS" or "FAIL"; None for its other lines."""
+    found = re.match(r"^RESULT (PASS|FAIL)\s*$", message)
+    return found[1] if found else None
 
 
 def dataset_name(name):
@@ -86,8 +103,8 @@ def dataset_name(name):
     return re.sub(r"\W+", "_", name.replace("/", " per ").replace("%", " percent "), flags=re.ASCII).strip("_")
 
 
-def group(name, source, rows, described):
-    """One group of samples.json. rows: [(time [s], {series: value})] in any order; described: {series: (units, role, factor)}."""
+def group(name, source, rows, described, reasons=None):
+    """One group of samples.json. rows: [(time [s], {series: value})] in any order; described: {series: (units, role, factor)}; reasons: {time: text}."""
     kept = sorted({when: values for when, values in rows}.items())
     times = [when for when, _ in kept]
     steps = [b - a for a, b in zip(times, times[1:])]
@@ -96,38 +113,38 @@ def group(name, source, rows, described):
         values = [row.get(key) for _, row in kept]
         if any(v is not None for v in values):
             series.append({"name": dataset_name(key), "units": units, "long_name": key.replace("_", " "), "values": values, **({"role": role, "scale": factor} if role else {})})
-    return {"name": name, "source": source, "period_s": statistics.median(steps) if steps else 1.0, "time_unix_s": times, "series": series}
+    stated = {"reasons": [reasons[when] for when in times]} if reasons is not None else {}
+    return {"name": name, "source": source, "period_s": statistics.median(steps) if steps else 1.0, "time_unix_s": times, "series": series, **stated}
 
 
-def groups(vrapi_rows, counter_rows):
+def groups(vrapi_rows, counter_rows, counter_source, requested):
     names = sorted({name for _, values in counter_rows for name in values})
     counters = {n: ("B s-1" if "Bytes/sec" in n else "%" if "%" in n else "1", {READ: "read", WRITE: "write"}.get(n, ""), 1) for n in names}
-    out = [group("vrapi", "VrApi lines of logcat", vrapi_rows, {name: rest for name, (_, *rest) in VRAPI.items()}),
-           group("ovrgpuprofiler", "ovrgpuprofiler -r, the computer's time of arrival moved to the device's clock", counter_rows, counters)]
+    out = [group("vrapi", "VrApi lines of logcat", vrapi_rows, {name: rest for name, (_, *rest) in VRAPI.items()}, doubts(vrapi_rows, requested)),
+           group(counter_source, COUNTER_SOURCES[counter_source], counter_rows, counters)]
     return [g for g in out if g["series"]]
 
 
-def reasons_against(vrapi_rows, requested, since, until):
-    """Why the run is not valid, in words; empty if it is. `requested`: {series: value}; times in seconds since 1970."""
-    inside = [values for when, values in vrapi_rows if since <= when <= until]
-    of = lambda name: [row[name] for row in inside if row.get(name) is not None]
-    shown = lambda values: " to ".join(f"{v:g}" for v in sorted({min(values), max(values)}))
-    out = []
-    for name, wanted in {**requested, "power_level_state": 0}.items():
-        values, what = of(name), name.replace("_", " ")
-        if not values:
-            out.append(f"{what}: the device did not report it; {wanted:g} was requested")
-        elif any(v != wanted for v in values):
-            out.append(f"{what}: {shown(values)}; {wanted:g} was requested")
-    for name in ("cpu_clock_MHz", "gpu_clock_MHz"):
-        values = of(name)
-        if values and not max(values) - min(values) <= CLOCK_TOLERANCE * statistics.median(values):
-            out.append(f"{name.replace('_', ' ')}: {shown(values)}; expected within {CLOCK_TOLERANCE:.0%} of the median")
+def doubts(vrapi_rows, requested):
+    """{time of VrApi's line: why frames of the second before it are not valid, empty if they are}. requested: {series: value}."""
+    clocks = {name: [row[name] for _, row in vrapi_rows if row[name] is not None] for name in ("cpu_clock_MHz", "gpu_clock_MHz")}
+    medians = {name: statistics.median(values or [0]) for name, values in clocks.items()}
+    out = {}
+    for when, row in vrapi_rows:
+        found = [f"levels changed {change}" for change in row["changes"]]
+        for name, wanted in {**requested, "power_level_state": 0}.items():
+            if row[name] != wanted:
+                found.append(f"{name.replace('_', ' ')} {'unknown' if row[name] is None else format(row[name], 'g')}, not {wanted:g}")
+        found += ["battery saver on"] if row["battery_saver"] else []
+        for name, median in medians.items():
+            if row[name] is not None and not abs(row[name] - median) <= CLOCK_TOLERANCE * median:
+                found.append(f"{name.replace('_', ' ')} {row[name]:g}, usually {median:g}")
+        out[when] = ", ".join(found)
     return out
 
 
-def write(path, device, reasons, found):
-    record = {"format": "clothbench-device-samples", "format_version": 1, "valid": not reasons, "reasons": reasons, "device": device, "groups": found}
+def write(path, device, found):
+    record = {"format": "clothbench-device-samples", "format_version": 2, "device": device, "groups": found}
     with open(path + ".tmp", "w", encoding="utf-8") as out:
         json.dump(record, out, allow_nan=False, indent=0)
     os.replace(path + ".tmp", path)  # whole or not at all

@@ -1,7 +1,10 @@
 #include "assets/hand.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 
+#include "base/quantile.hpp"
 #include "support.hpp"
 
 namespace clothbench::assets {
@@ -94,6 +97,34 @@ TEST(Capsules, RadiiAndLengths) {
   // Bone lengths of the headset's own hand, millimetres.
   EXPECT_NEAR(1000 * (found[4].b - found[4].a).norm(), 32.5, 0.6);
   EXPECT_NEAR(1000 * (found[8].b - found[8].a).norm(), 24.3, 0.6);
+}
+
+/// Distances from another program (numpy, on the files of iwer 2.5.0 and assets 1.0.20), in millimetres.
+TEST(Capsules, LieCloseToTheSkinOfTheRecordedPoses) {
+  NEED_NPM_ASSETS(source);
+  const Hand hand = open_hand(source, Side::Left);
+  for (const auto& [name, mean_mm, p95_mm] :
+       {std::tuple{"relaxed", 2.50, 7.53}, std::tuple{"pinch", 2.61, 8.32}, std::tuple{"point", 2.93, 8.21}}) {
+    const HandPose& pose = hand.pose(name);
+    const std::vector<double> x = skinned(hand.mesh, pose.joints);
+    std::vector<double> distance_mm;
+    for (std::size_t v = 0; v < hand.mesh.rest.vertex_count(); ++v) {
+      double of_wrist = 0, nearest = 1;
+      for (std::size_t k = 0; k < 4; ++k)
+        if (hand.mesh.joints[v][k] == kWrist) of_wrist += hand.mesh.weights[v][k];
+      if (of_wrist >= 0.5) continue;
+      for (const Capsule& c : capsules(pose)) {
+        const Vector from_a = Vector::Map(&x[3 * v]) - c.a, axis = c.b - c.a;
+        const double t = std::clamp(from_a.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (from_a - t * axis).norm() - c.radius_m);
+      }
+      distance_mm.push_back(1000 * std::abs(nearest));
+    }
+    const double count = static_cast<double>(distance_mm.size());
+    EXPECT_EQ(count, 1043) << name;
+    EXPECT_NEAR(std::accumulate(distance_mm.begin(), distance_mm.end(), 0.0) / count, mean_mm, 0.01) << name;
+    EXPECT_NEAR(quantile(distance_mm, 0.95), p95_mm, 0.01) << name;
+  }
 }
 
 TEST(Capsules, DistalOneEndsAtANearerTip) {

@@ -4,7 +4,7 @@ import time
 
 from device import *
 
-ARGS = "study small.json"
+ARGS = "study small.json --out runs/small"
 STUDY = {
     "name": "small", "why": "A test.", "protocol": "fps",
     "scenes": [{"file": "paper/gravity.json", "axes": [{"key": "cloth.grid", "values": [[8, 8], [9, 7]], "labels": ["8", "9x7"]}]}],
@@ -31,7 +31,7 @@ def result_of(text):
     lines = [l for l in text.splitlines() if l.startswith("I clothbench: ")]
     assert lines and lines[-1].startswith("I clothbench: RESULT "), f"the last line is not the result:\n{text}"
     assert sum(": RESULT " in l for l in lines) == 1, text
-    return lines[-1].split()[3:5]
+    return lines[-1].split()[3]
 
 
 def trials(out):
@@ -49,42 +49,41 @@ with Folder() as top:
 
     # One undisturbed life, arguments by intent extra.
     f = fresh(top, "plain")
-    verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "pause", "destroy")))
-    assert verdict == "PASS" and pathlib.Path(out).parent == f / "files/runs", text
+    verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "pause", "destroy"))), f / "files/runs/small"
+    assert verdict == "PASS", text
     assert "runs ok" in text, "what the command prints stands in the log:\n" + text
-    assert len(trials(pathlib.Path(out))) == 4 and set(trials(pathlib.Path(out)).values()) == {3}, trials(pathlib.Path(out))
+    assert len(trials(out)) == 4 and set(trials(out).values()) == {3}, trials(out)
     if HOST_COMMAND.exists():
         assert len(must([HOST_COMMAND, "import", out]).split()) == 4
     print("ok: undisturbed", out)
 
     # A command that fails.
     f = fresh(top, "wrong")
-    verdict, _ = result_of(text := call(host(f, "run no-such-scene", "create", "resume", "finish", "destroy")))
+    verdict = result_of(text := call(host(f, "run no-such-scene", "create", "resume", "finish", "destroy")))
     assert verdict == "FAIL" and "no-such-scene: no such file" in text, text
     print("ok: failure")
 
     # Paused, resumed; destroyed in mid-run; created again in the same process.
     f = fresh(top, "lives")
     text = call(host(f, ARGS, "create", "resume", "150", "pause", "100", "resume", "200", "destroy"))
-    verdict, out = result_of(text)
+    result_of(text)
     assert "paused" in text, text
-    text = call(host(f, ARGS, "create", "pause", "destroy", "create", "resume", "finish", "pause", "resume", "destroy"))
+    text = call(host(f, ARGS + " --resume", "create", "pause", "destroy", "create", "resume", "finish", "pause", "resume", "destroy"))
     assert text.count(": RESULT ") == 2 and text.rstrip().splitlines()[-1].startswith("I clothbench: RESULT PASS"), text
     print("ok: pause, resume, destroy, create again")
 
     # Killed at some moments; with --resume it ends whole.
     f = fresh(top, "killed")
-    start = f"{ARGS} --out {f / 'files/runs/small'}"
     for least, more in ((1, ""), (2, " --resume"), (7, " --resume")):  # trials finished before the kill
-        child = subprocess.Popen(host(f, start + more, "create", "resume", "finish", "destroy"), env=environment,
+        child = subprocess.Popen(host(f, ARGS + more, "create", "resume", "finish", "destroy"), env=environment,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while done(f) < least and child.poll() is None:
             time.sleep(0.01)
         child.kill()
         child.wait()
     before = done(f)
-    verdict, out = result_of(text := call(host(f, start + " --resume", "create", "resume", "finish", "destroy")))
-    assert verdict == "PASS" and set(trials(pathlib.Path(out)).values()) == {3}, text
+    verdict = result_of(text := call(host(f, ARGS + " --resume", "create", "resume", "finish", "destroy")))
+    assert verdict == "PASS" and set(trials(f / "files/runs/small").values()) == {3}, text
     print(f"ok: killed three times, the last with {before} of 12 trials done, then whole")
 
     # Damaged assets are a result too.
@@ -92,6 +91,6 @@ with Folder() as top:
     shutil.copytree(BUILD / "packed-assets", f / "packed")
     (f / "packed/scenarios/paper/gravity.json").write_text("{}")
     environment["FAKE_ASSETS"] = str(f / "packed")
-    verdict, _ = result_of(text := call(host(f, ARGS, "create", "finish", "destroy")))
+    verdict = result_of(text := call(host(f, ARGS, "create", "finish", "destroy")))
     assert verdict == "FAIL" and "gravity.json" in text, text
     print("ok: damaged assets")

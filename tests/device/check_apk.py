@@ -21,7 +21,7 @@ import make_apk
 aapt2, zipalign, apksigner = make_apk.find_tool("aapt2"), make_apk.find_tool("zipalign"), make_apk.find_tool("apksigner")
 badging = must([aapt2, "dump", "badging", apk])
 for wanted in ["package: name='org.clothbench.quest'", "sdkVersion:'29'", "targetSdkVersion:'32'",
-               "uses-permission: name='com.oculus.permission.HAND_TRACKING'",
+               "uses-permission: name='com.oculus.permission.HAND_TRACKING'", "uses-permission: name='android.permission.HAND_TRACKING'",
                "launchable-activity: name='android.app.NativeActivity'", "uses-permission: name='android.permission.INTERNET'"]:
     assert wanted in badging, (wanted, badging)
 # aapt2 takes any "lib/" in an asset's path for an ABI's folder too.

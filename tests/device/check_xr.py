@@ -56,11 +56,8 @@ with Folder() as top:
     folder = top / "activity"
     (folder / "files").mkdir(parents=True)
     (folder / "internal").mkdir()
-    text = must(qemu(BUILD / "fake_host", BUILD / "libclothbench_quest.so", folder / "files", folder / "internal", " ".join(WORDS),
+    text = must(qemu(BUILD / "fake_host", BUILD / "libclothbench_quest.so", folder / "files", folder / "internal", " ".join([*WORDS, "--out", "runs/live"]),
                      "create", "resume", "finish", "pause", "destroy"), env=environment(folder), timeout=240)
-    result = [l for l in text.splitlines() if ": RESULT " in l][-1].split()
-    assert result[3] == "PASS", text
+    assert [l for l in text.splitlines() if ": RESULT " in l][-1].endswith("RESULT PASS"), text
     told(folder, android=True)
-    out = pathlib.Path(result[4])
-    assert out.parent == folder / "files/runs" and out.name.startswith("xr-"), out
-    print(f"ok: the activity; replayed here to {replays(out, folder):.1e} of the width")
+    print(f"ok: the activity; replayed here to {replays(folder / 'files/runs/live', folder):.1e} of the width")

@@ -2,8 +2,10 @@
 
 usage: check_driver.py CLOTHBENCH MAKE_SAMPLE
 """
+import csv
 import json
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -17,7 +19,7 @@ DRIVER = os.path.join(HERE, "..", "..", "scripts", "quest_run.py")
 CLOTHBENCH, MAKE_SAMPLE = sys.argv[1:3]
 NAMES = [f"debug.oculus.{name}" for name in ("cpuLevel", "gpuLevel", "refreshRate", "clockStateLogLevel")]
 BEFORE, FIXED, RESET = (dict(zip(NAMES, values)) for values in (("", "2", "90", ""), ("4", "4", "72", "1"), ("", "", "", "")))
-RUNS = "/sdcard/Android/data/org.clothbench.quest/files/runs/table3-20260101T000000Z"
+RUNS = "/sdcard/Android/data/org.clothbench.quest/files/runs"
 
 
 class Driver(unittest.TestCase):
@@ -30,7 +32,7 @@ class Driver(unittest.TestCase):
 
     def start(self, *words, **plan):
         with open(os.path.join(self.home, "plan.json"), "w", encoding="utf-8") as out:
-            json.dump({"props": BEFORE, "make_sample": MAKE_SAMPLE, "run_s": 2.2, "runs": RUNS, **plan}, out)
+            json.dump({"props": BEFORE, "make_sample": MAKE_SAMPLE, "run_s": 2.2, **plan}, out)
         env = {**os.environ, "FAKE_ADB": self.home, "PATH": os.path.join(self.home, "bin") + ":" + os.environ["PATH"]}
         return subprocess.Popen([sys.executable, "-S", DRIVER, "--clothbench", CLOTHBENCH, *words], env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
@@ -40,7 +42,10 @@ class Driver(unittest.TestCase):
         return process.returncode
 
     def run_app(self, *words, **plan):
-        return self.drive("run", "study table3", "--out", self.out, "--settle-s", "0.2", *words, **plan)
+        return self.drive("run", "study table3", "--out", self.out, *words, **plan)
+
+    def result(self):
+        return next(pathlib.Path(self.out).glob("study-table3*/*.h5"))
 
     def world(self):
         with open(os.path.join(self.home, "world.json"), encoding="utf-8") as text:
@@ -61,26 +66,59 @@ class Driver(unittest.TestCase):
     def test_a_run_from_end_to_end(self):
         import h5py
 
-        self.assertEqual(self.drive("install", "x.apk"), 0, self.text)
-        self.assertEqual(self.drive("push", "a.json", "b.json"), 0, self.text)
-        self.assertEqual(self.drive("run", "study table3 --set 'a b'", "--out", self.out, "--settle-s", "0.2", clock_ahead_s=3.5), 0, self.text)
-        self.assert_restored()
-        self.assertEqual(self.world()["extra"], "'study table3 --set '\"'\"'a b'\"'\"''", "the device's shell hands on one argument")
-        with open(os.path.join(self.home, "calls.log"), encoding="utf-8") as text:
-            sets = [call[-1].split()[1:] for call in map(json.loads, text) if call[-1].startswith("setprop")]
-        self.assertEqual(sets[:4], [[k, v] for k, v in FIXED.items()])
-        with h5py.File(os.path.join(self.out, "table3-20260101T000000Z", "sample__none__readback=blocking.h5")) as f:
-            group, summary = f["device_samples"], f["summary"].attrs
-            self.assertEqual((group.attrs["valid"], group.attrs["reasons"]), (1, ""))
-            read, trial = (group["ovrgpuprofiler"][name][:] for name in ("Read_Total_Bytes_per_sec", "trial"))
-            self.assertGreater((trial >= 0).sum(), 2, "trials of 0.4 s contain samples of 0.1 s")
-            self.assertTrue((trial < 0).any(), "a sample between trials counts for none")
-            self.assertEqual((read[0], summary["sampled_read_mean_B_per_s"], summary["sampled_write_mean_B_per_s"]), (2.8e9, 2.8e9, 1.9e9))
-            self.assertEqual((summary["sampled_fps_mean"], summary["sampled_gpu_clock_mean_Hz"]), (72, 545e6))
-            start, end = f["timing/trial_start_unix_s"][0], f["timing/trial_end_unix_s"][2]
-            for name in group:
-                t = group[name]["time_unix_s"][:]
-                self.assertTrue((t[1:] > t[:-1]).all() and t[0] > start - 5 and t[-1] < end + 5, name)
+        for source in ("ovrgpuprofiler", "perfetto"):
+            self.out = os.path.join(self.home, source)
+            plan = {"clock_ahead_s": 3.5, "perfetto": source == "perfetto"}
+            self.assertEqual(self.drive("run", "study table3 --set 'a b'", "--out", self.out, **plan), 0, self.text)
+            self.assert_restored()
+            self.assertRegex(self.world()["extra"], f"""^'study table3 --set '"'"'a b'"'"' --out {RUNS}/study-table3-set-a-b--20[0-9]{{6}}T[0-9]{{6}}Z'$""", "one argument for the device's shell")
+            with open(os.path.join(self.home, "calls.log"), encoding="utf-8") as text:
+                sets = [call[-1].split()[1:] for call in map(json.loads, text) if call[-1].startswith("setprop")]
+            self.assertEqual(sets[:4], [[k, v] for k, v in FIXED.items()])
+            with h5py.File(self.result()) as f:
+                group, summary = f["device_samples"], f["summary"].attrs
+                self.assertEqual((group.attrs["valid"], group.attrs["reasons"]), (1, "{}"))
+                self.assertEqual(set(group), {"vrapi", source})
+                read, trial = (group[source][name][:] for name in ("Read_Total_Bytes_per_sec", "trial"))
+                self.assertGreater((trial >= 0).sum(), 90 if source == "perfetto" else 5, "three trials of 0.4 s contain samples of 0.01 or 0.05 s")
+                self.assertTrue((trial < 0).any(), "a sample between trials counts for none")
+                self.assertEqual((read[0], summary["sampled_read_mean_B_per_s"], summary["sampled_write_mean_B_per_s"]), (2.8e9, 2.8e9, 1.9e9))
+                self.assertEqual((summary["sampled_fps_mean"], summary["sampled_gpu_clock_mean_Hz"]), (72, 545e6))
+                start, end = f["timing/trial_start_unix_s"][0], f["timing/trial_end_unix_s"][2]
+                for name in group:
+                    t = group[name]["time_unix_s"][:]
+                    self.assertTrue((t[1:] > t[:-1]).all() and t[0] > start - 5 and t[-1] < end + 5, name)
+            os.rename(os.path.join(self.home, "world.json"), os.path.join(self.home, source + ".json"))
+        with open(os.path.join(self.home, "perfetto.json"), encoding="utf-8") as text:
+            self.assertEqual(json.load(text)["removed"], "/data/misc/perfetto-traces/clothbench.pftrace")
+
+    def test_a_refused_trace_leaves_the_profiler_and_a_damaged_one_loses_only_counters(self):
+        import h5py
+
+        for plan, groups in (({"perfetto": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"perfetto": True, "trace_bytes": 1000}, {"vrapi"})):
+            self.out = os.path.join(self.home, f"out{len(groups)}")
+            self.assertEqual(self.run_app(**plan), 0, self.text)
+            self.assertEqual("no counters" in self.text, groups == {"vrapi"}, self.text)
+            with h5py.File(self.result()) as f:
+                self.assertEqual(set(f["device_samples"]), groups)
+            os.remove(os.path.join(self.home, "world.json"))
+
+    def test_trials_of_fewer_than_five_samples_have_no_bandwidth(self):
+        import h5py
+
+        for count, expected in ((4, None), (5, 3.0)):
+            raw, file = os.path.join(self.home, f"raw{count}"), os.path.join(self.home, "samples.json")
+            subprocess.run([MAKE_SAMPLE, raw, "1.7e9"], check=True, stdout=subprocess.DEVNULL)
+            # Whole samples of 0.05 s in the first trial, which lasts from 0.2 to 0.6 s, and one beside it.
+            times = [1.7e9 + 0.3 + 0.05 * k for k in range(count)] + [1.7e9 + 0.65]
+            series = [{"name": role, "units": "1", "long_name": role, "role": role, "values": [3] * count + [9]} for role in ("read", "fps")]
+            group = {"name": "g", "source": "s", "period_s": 0.05, "time_unix_s": times, "series": series}
+            with open(file, "w", encoding="utf-8") as out:
+                json.dump({"format": "clothbench-device-samples", "format_version": 2, "device": {}, "groups": [group]}, out)
+            subprocess.run([CLOTHBENCH, "import", raw, "--samples", file], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            with h5py.File(next(pathlib.Path(raw).glob("*.h5"))) as f:
+                summary = {name: v for name, v in f["summary"].attrs.items() if v == v}
+            self.assertEqual((summary.get("sampled_read_mean_B_per_s"), summary["sampled_fps_mean"]), (expected, 3.0))
 
     def test_the_import_says_what_is_wrong_with_samples(self):
         raw, file = os.path.join(self.home, "raw"), os.path.join(self.home, "samples.json")
@@ -88,7 +126,7 @@ class Driver(unittest.TestCase):
         series = {"name": "a", "units": "1", "long_name": "a", "values": [1, None]}
         for pointer, top, group, column in (
             ("/format", {"format": "x"}, {}, {}),
-            ("/valid", {"valid": False}, {}, {}),
+            ("/groups/0/reasons", {}, {"reasons": [""]}, {}),
             ("/groups/0/name", {}, {"name": "a/b"}, {}),
             ("/groups/0/period_s", {}, {"period_s": 0}, {}),
             ("/groups/0/time_unix_s/1", {}, {"time_unix_s": [2, 1]}, {}),
@@ -98,25 +136,37 @@ class Driver(unittest.TestCase):
         ):
             group = {"name": "g", "source": "s", "period_s": 1, "time_unix_s": [1, 2], "series": [{**series, **column}], **group}
             with open(file, "w", encoding="utf-8") as out:
-                json.dump({"format": "clothbench-device-samples", "format_version": 1, "valid": True, "reasons": [], "device": {}, "groups": [group], **top}, out)
+                json.dump({"format": "clothbench-device-samples", "format_version": 2, "device": {}, "groups": [group], **top}, out)
             done = subprocess.run([CLOTHBENCH, "import", raw, "--samples", file], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-            self.assertEqual(done.returncode, 0 if pointer is None else 2, done.stdout)
+            self.assertEqual(done.returncode, 1 if pointer is None else 2, done.stdout)
             self.assertIn(f"samples.json: {pointer}: expected" if pointer else ".h5", done.stdout)
 
-    def test_clocks_that_moved_are_in_the_report(self):
-        self.assertEqual(self.run_app(moves_after_s=1.0), 1, self.text)
+    def trials(self, **plan):
+        """Runs the app; the reason against each of its three trials, "" if it is trusted."""
+        self.code = self.run_app(**plan)
         self.assert_restored()
-        self.assertIn("NOT VALID: gpu clock MHz: 456 to 545; expected within 2% of the median", self.text)
+        path = self.result()
         report = os.path.join(self.home, "report")
-        path = os.path.join(self.out, "table3-20260101T000000Z", "sample__none__readback=blocking.h5")
         subprocess.run([CLOTHBENCH, "report", path, "-o", report], check=True, capture_output=True)
         with open(os.path.join(report, "report.md"), encoding="utf-8") as text:
-            self.assertRegex(text.read(), r"\*\*Not a valid measurement: .*gpu clock MHz: 456 to 545")
+            self.report = text.read()
+        with open(os.path.join(report, "trials.csv"), encoding="utf-8") as text:
+            return [row["not_trusted"] for row in csv.DictReader(text)]
 
-    def test_no_profiler_and_no_log_of_clocks(self):
-        self.assertEqual(self.run_app(profiler=False, vrapi=False), 1, self.text)
-        self.assertIn("gpu level: the device did not report it", self.text)
-        self.assert_restored()
+    def test_only_the_trials_whose_clocks_moved_are_not_trusted(self):
+        first, _, last = self.trials(moves_after_s=1.2)
+        self.assertEqual((first, self.code), ("", 1), self.text)
+        self.assertRegex(last, "gpu level 2, not 4")
+        self.assertIn("NOT VALID: gpu level 2, not 4", self.text)
+        self.assertRegex(self.report, r"\*\*Not a valid measurement: .*gpu level 2, not 4")
+
+    def test_a_level_change_between_two_lines_is_not_trusted(self):
+        trials = self.trials(announces_after_s=0.75)
+        self.assertEqual((trials, self.code), (["", "levels changed 4,4 -> 4,2", ""], 1), self.text)
+
+    def test_a_trial_whose_state_was_not_logged_is_not_trusted(self):
+        trials = self.trials(log_ends_after_s=1.3, profiler=False)
+        self.assertEqual((trials[0], trials[2]), ("", "the device did not log its state throughout"))
 
     def test_what_ends_a_run_before_it_starts(self):
         two = [["A1", "device"], ["B2", "device"]]
@@ -129,9 +179,13 @@ class Driver(unittest.TestCase):
             self.assertEqual(self.run_app(**plan), code, self.text)
             self.assertIn(words, self.text)
             self.assertFalse(os.path.exists(os.path.join(self.home, "world.json")), "no setting was changed")
-        self.assertEqual(self.drive("--serial", "C3", "logs", devices=two), 3, self.text)
-        self.assertEqual(self.drive("install", "x.apk", install_fails=True), 1)
-        self.assertIn("INSUFFICIENT_STORAGE", self.text)
+        self.assertEqual(self.drive("--serial", "C3", "restore", devices=two), 3, self.text)
+
+    def test_levels_that_are_never_granted_are_refused(self):
+        for cpu, words in (("4", "--gpu-level 5: the headset grants it only with dynamic resolution"), ("5", "CPU level 5 and GPU level 5 exclude each other")):
+            self.assertEqual(self.run_app("--gpu-level", "5", "--cpu-level", cpu), 2, self.text)
+            self.assertIn(words, self.text)
+            self.assertFalse(os.path.exists(os.path.join(self.home, "world.json")), "no setting was changed")
 
     def test_what_ends_a_run_early(self):
         for words, plan, options in (
@@ -140,7 +194,7 @@ class Driver(unittest.TestCase):
             ("the app did not start", {"start_fails": True}, ()),
             ("did not end within 1.5 s", {"run_s": 1e9}, ("--timeout-s", "1.5")),
             ("Failed to set property", {"refused_props": ["debug.oculus.refreshRate"]}, ()),
-            ("FAILED: ", {"result": "FAIL"}, ()),
+            ("FAIL: ", {"result": "FAIL"}, ()),
         ):
             self.assertEqual(self.run_app(*options, **plan), 1, self.text)
             self.assertIn(words, self.text)

@@ -4,17 +4,22 @@
 $FAKE_ADB names a folder: plan.json says what goes wrong, world.json what the headset's state is, calls.log what was asked.
 Formats: `adb devices -l` of Android 14; ovrgpuprofiler and VrApi as Meta's documentation and public logs of Quest 2 and 3 show them.
 """
+import base64
 import json
 import os
 import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+from protobuf import message  # noqa: E402
+
 HOME = os.environ["FAKE_ADB"]
 PLAN = json.load(open(os.path.join(HOME, "plan.json"), encoding="utf-8"))
-TICK_S = 0.1  # of counters and log; a headset's is 1 s
+TICK_S = 0.05  # of counters and log; a headset's is 1 s
 VRAPI = ("FPS=72/72,Prd=38ms,Tear=0,Early=0,Stale=0,Stale2/5/10/max=0/0/0/0,VSnc=1,Lat=-1,Fov=0,CPU4/GPU=4/{gpu},1171/{mhz}MHz,OC=FF,TA=0/0/0,"
-         "SP=N/N/N,Mem=2092MHz,Free=2975MB,PLS=0,Temp=32.2C/0.0C,TW=1.25ms,App=4.49ms,GD=0.00ms,CPU&GPU=12.96ms,LCnt=2(DR72,LM2),GPU%=0.43,CPU%=0.37(W0.50),DSF=1.00")
+         "SP=N/N/N,Mem=2092MHz,Free=2975MB,PLS=0,Temp=32.2C/0.0C,TW=1.25ms,App=4.49ms,GD=0.00ms,CPU&GPU=12.96ms,LCnt=2(DR72,LM2),GPU%=0.43,CPU%=0.37(W0.50),DSF=1.00,"
+         "CFL=19.79/21.54,ICFLp95=20.94,LD=0,SF=1.00,LP=0,DVFS=0")
 COUNTERS = {"Clocks / Second": 427468384.0, "GPU % Bus Busy": 40.0, "Read Total (Bytes/sec)": 2.8e9, "Write Total (Bytes/sec)": 1.9e9}
 PATH = os.path.join(HOME, "world.json")
 
@@ -55,15 +60,18 @@ def running():
 def logcat(words):
     if "-b" in words:
         return print("F libc    : Fatal signal 11 (SIGSEGV), code 1, fault addr 0x10 in tid 4242 (clothbench)")
-    reported = False
-    print(f"--------- beginning of main\n     {clock() - 100:.3f}  4000  4001 I clothbench: RESULT FAIL /an/older/run", flush=True)
+    reported, announced = False, False
+    print(f"--------- beginning of main\n     {clock() - 100:.3f}  4000  4001 I clothbench: RESULT FAIL", flush=True)
     while True:
         leave_if_unplugged()
         moved = since_start() >= PLAN.get("moves_after_s", 1e9)
-        if PLAN.get("vrapi", True):
+        if not announced and since_start() >= PLAN.get("announces_after_s", 1e9):
+            print(f"     {clock():.3f}  2817  3566 I XrPerformanceManager: perfmgr: SetClockLevels: Apply pending clock request change: 4,4 -> 4,2")
+            announced = True
+        if PLAN.get("vrapi", True) and since_start() < PLAN.get("log_ends_after_s", 1e9):
             print(f"     {clock():.3f}  4242  4250 I VrApi   : " + VRAPI.format(**({"gpu": 2, "mhz": 456} if moved else {"gpu": 4, "mhz": 545})))
         if not reported and since_start() >= PLAN["run_s"]:
-            print(f"     {clock():.3f}  4242  4251 I clothbench: RESULT {PLAN.get('result', 'PASS')} {PLAN['runs']}")
+            print(f"     {clock():.3f}  4242  4251 I clothbench: RESULT {PLAN.get('result', 'PASS')}")
             reported = True
         sys.stdout.flush()
         time.sleep(TICK_S)
@@ -82,7 +90,36 @@ def profiler(words):
         time.sleep(TICK_S)
 
 
+def specs():
+    return message(*((1, message((1, at), (2, name.encode()))) for at, name in enumerate(COUNTERS, 100)))
+
+
+def perfetto(command):
+    if "--query-raw" in command:
+        source = message((1, b"gpu.counters.adreno"), (5, specs()))
+        return print(base64.encodebytes(message((2, message((1, source), (2, 7))))).decode())
+    if PLAN["perfetto"] == "refused":
+        die("perfetto: Service error: the data source is in use")
+    assert "counter_ids: 102 counter_ids: 103" in command and "--background" in command, command
+    change(tracing=clock())
+    print(777)
+
+
+def trace():
+    """A sample every 10 ms from the trace's beginning to its end, by a clock that began 1000 s ago."""
+    begin, end = world()["tracing"], world()["traced"]
+    boot_ns = 1_000_000_000_000
+    clocks = message(*((1, message((1, at), (2, t))) for at, t in ((6, boot_ns), (1, int(begin * 1e9)))))
+    counters = [(2, message((1, at), (3, value))) for at, value in enumerate(COUNTERS.values(), 100)]
+    events = [message((1, message((8, boot_ns + k * 10_000_000), (52, message((1, specs()), *counters))))) for k in range(int((end - begin) * 100))]
+    return message((1, message((6, clocks)))) + b"".join(events)
+
+
 def pull(source, into):
+    if source.endswith(".pftrace"):
+        with open(into, "wb") as out:
+            out.write(trace()[:PLAN.get("trace_bytes", 1 << 30)])
+        return
     if PLAN.get("pull_fails"):
         die(f"adb: error: cannot write '{into}': No space left on device")
     to = os.path.join(into, os.path.basename(source), *(["one"] if source.endswith("/runs") else []))
@@ -93,7 +130,13 @@ def pull(source, into):
 
 def shell(command):
     words = command.split()
-    if words[0] == "getprop":
+    if "perfetto --" in command:
+        perfetto(command) if PLAN.get("perfetto") else die("/system/bin/sh: perfetto: inaccessible or not found", 127)
+    elif words[0] == "kill":
+        change(traced=clock())
+    elif words[0] == "rm":
+        change(removed=words[-1])
+    elif words[0] == "getprop":
         print({"ro.product.model": "Quest 3", "ro.build.display.id": "UP1A.231005.007.A1"}.get(words[1], world()["props"].get(words[1], "")))
     elif words[0] == "setprop":
         if words[1] in PLAN.get("refused_props", []):
@@ -129,10 +172,8 @@ def main():
     action, rest = words[2], words[3:]  # after -s SERIAL
     if action == "shell":
         profiler(rest[-1].split(None, 1)[1]) if "ovrgpuprofiler" in rest[-1] else shell(rest[-1])
-    elif action == "install" and PLAN.get("install_fails"):
-        die("adb: failed to install: Failure [INSTALL_FAILED_INSUFFICIENT_STORAGE]")
     else:
-        {"logcat": logcat, "pull": lambda w: pull(*w), "install": lambda w: print("Success"), "push": lambda w: print(f"{len(w) - 1} files pushed")}[action](rest)
+        {"logcat": logcat, "pull": lambda w: pull(*w)}[action](rest)
 
 
 if __name__ == "__main__":

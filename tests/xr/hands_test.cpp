@@ -29,11 +29,16 @@ double furthest(const std::vector<double>& a, const std::vector<double>& b) {
   return most;
 }
 
+std::string why_of(const LoopResult& r) {
+  return parse_json(read_text(r.scenario.parent_path() / "right-hand.json"), "right-hand.json")["why"];
+}
+
 TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   const LoopOptions o = options("paper/capsule-sweep", 50);
   const LoopResult r = run(o, "blind=1");
   const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
   EXPECT_TRUE(hand.has_capsules);
+  EXPECT_NE(why_of(r).find("Capsules come from XR_FB_hand_tracking_capsules"), std::string::npos) << why_of(r);
   ASSERT_EQ(hand.frames.size(), 51u);
   const double first = time_of(hand.frames[0], true);
   const auto joints = null_xr::joints(true);
@@ -68,6 +73,7 @@ TEST_F(Sessions, WithoutThemCapsulesAreMadeOfJointsAndRadii) {
   const LoopResult r = run(o, "blind=1,capsules=0");
   const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
   EXPECT_FALSE(hand.has_capsules);
+  EXPECT_NE(why_of(r).find("Capsules come from XR_EXT_hand_tracking's joints"), std::string::npos) << why_of(r);
   const Scene scene = load_scene(r.scenario.string());
   for (const Capsule& c : scene.motion.back().colliders.at(0).capsules)
     EXPECT_NEAR(c.radius_m, null_xr::kJointRadius_m, 1e-9);

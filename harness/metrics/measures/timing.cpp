@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/quantile.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {
@@ -11,15 +12,6 @@ namespace {
 
 constexpr double kDisplayHz = 72;
 constexpr double kBandwidthWindow_s = 5;  // the paper's Fig. 5
-
-double quantile(std::vector<double> v, double q) {
-  v.erase(std::remove_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); }), v.end());
-  if (v.empty()) return kMissing;
-  std::sort(v.begin(), v.end());
-  const double at = q * (static_cast<double>(v.size()) - 1);
-  const auto i = static_cast<std::size_t>(at);
-  return i + 1 < v.size() ? v[i] + (at - static_cast<double>(i)) * (v[i + 1] - v[i]) : v.back();
-}
 
 double median(const std::vector<double>& v) { return quantile(v, 0.5); }
 using Values = std::vector<double>;

@@ -349,6 +349,21 @@ VkFence make_fence(const Device& device) {
   return fence;
 }
 
+void begin(VkCommandBuffer commands) {
+  check(vkResetCommandBuffer(commands, 0), "vkResetCommandBuffer");
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer");
+}
+
+void submit(const Device& device, VkCommandBuffer commands, VkFence fence) {
+  VkSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
+  check(vkQueueSubmit(device.queue(), 1, &info, fence), "vkQueueSubmit");
+}
+
 VkQueryPool make_timestamps(const Device& device, std::uint32_t count) {
   VkQueryPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;

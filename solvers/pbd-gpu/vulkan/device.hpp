@@ -134,6 +134,11 @@ VkCommandBuffer make_commands(const Device&);
 VkFence make_fence(const Device&);
 VkQueryPool make_timestamps(const Device&, std::uint32_t count);
 
+/// Begins to record anew.
+void begin(VkCommandBuffer);
+/// Submits commands whose recording has ended.
+void submit(const Device&, VkCommandBuffer, VkFence);
+
 /// One set of storage buffers, with its layout and the pool that it lies in. Handles are filled in as they are made.
 void make_storage_set(const Device&, const std::vector<VkDescriptorSetLayoutBinding>&, VkDescriptorSetLayout&,
                       VkDescriptorPool&, VkDescriptorSet&);

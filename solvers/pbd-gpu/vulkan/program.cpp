@@ -110,10 +110,7 @@ void Program::record_copy(std::size_t k) {
 
 void Program::record_steps(Copy& copy) {
   commands_ = copy.commands;
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
-  VkCommandBufferBeginInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+  begin(commands_);
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
   // Reads and writes of earlier submissions come before any of this one. Later submissions see host writes.
   barrier(kWork, kWork, kWrites, kAll);
@@ -162,11 +159,7 @@ void Program::wait(std::size_t k, double timeout_s) {
 
 void Program::submit(std::size_t k) {
   Copy& copy = copies_.at(k);
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &copy.commands;
-  check(vkQueueSubmit(device_->queue(), 1, &submit, copy.fence), "vkQueueSubmit");
+  vulkan::submit(*device_, copy.commands, copy.fence);
   copy.in_flight = true;
 }
 

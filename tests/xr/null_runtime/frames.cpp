@@ -152,11 +152,6 @@ XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrView
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL get_rate(XrSession, float* rate) {
-  *rate = static_cast<float>(runtime()->rate_hz);
-  return XR_SUCCESS;
-}
-
 XrResult XRAPI_CALL request_rate(XrSession, float rate) {
   for (const float there : {72.f, 80.f, 90.f, 120.f})
     if (rate == there) {
@@ -178,7 +173,6 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrBeginFrame", begin_frame)
   NULL_XR("xrEndFrame", end_frame)
   NULL_XR("xrLocateViews", locate_views)
-  NULL_XR("xrGetDisplayRefreshRateFB", get_rate)
   NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
   return nullptr;
 }
