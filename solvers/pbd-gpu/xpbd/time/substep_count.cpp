@@ -28,8 +28,7 @@ TravelLimit travel_limit(const Scene& scene, std::size_t quality) {
     margin = std::min(margin, std::max(c.margin_m, rules::kMinMarginOfCell * cell));
   const bool impact = impact_speed_m_per_s(scene) > 0;
   if (impact) margin = std::min(margin, rules::kMaxTravelOnImpact * cell);
-  TravelLimit rule{rules::kTravelMargins.value[quality] * margin, impact ? rules::kFasterOnImpact.value[quality] : 1,
-                   kInfinity};
+  TravelLimit rule{rules::kTravelMargins[quality] * margin, impact ? rules::kFasterOnImpact[quality] : 1, kInfinity};
   // Two layers may come towards each other.
   if (scene.needs.has(Feature::SelfCollision))
     rule.layers_m = rules::kMaxLayerApproach / 2 * scene.cloth.self_collision.thickness_m;
@@ -52,14 +51,13 @@ double substeps_by_margins(const Scene& scene, std::size_t quality) {
 
 double substeps_for_speed(const Scene& scene, std::size_t quality) {
   const auto& most = impact_speed_m_per_s(scene) > 0 ? rules::kMaxForImpact : rules::kMaxForSpeed;
-  return std::min(most.value[quality], substeps_by_margins(scene, quality));
+  return std::min(most[quality], substeps_by_margins(scene, quality));
 }
 
 double substeps_for_sliding_strip(const Scene& scene, std::size_t quality) {
   const double longer = std::max(scene.cloth.width_m, scene.cloth.height_m);
-  return std::ceil(scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer) /
-                       rules::kMaxSlidingStep.value[quality] -
-                   1e-9);
+  return std::ceil(
+      scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer) / rules::kMaxSlidingStep[quality] - 1e-9);
 }
 
 /// Frames that a frame in which gravity takes the cloth far stands for: substeps grow with the square root of gravity.
@@ -108,19 +106,18 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
   // The first that applies.
-  const LinkRule& rule = !touched        ? rules::kNoContact.value
-                         : driven        ? (needs_chain_solver(scene) ? rules::kKinematicContactChains.value
-                                            : touches                 ? rules::kKinematicContact.value
-                                                                      : rules::kReleased.value)
-                         : tethered      ? (stiff ? rules::kTetheredStiff.value : rules::kTethered.value)
-                         : laid          ? (shears ? rules::kResting.value : rules::kRestingStrip.value)
-                         : !shears       ? rules::kStrip.value
-                         : grips.empty() ? rules::kPinnedSheet.value
-                                         : rules::kAttachedSheet.value;
+  const LinkRule& rule = !touched        ? rules::kNoContact
+                         : driven        ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
+                                            : touches                 ? rules::kKinematicContact
+                                                                      : rules::kReleased)
+                         : tethered      ? (stiff ? rules::kTetheredStiff : rules::kTethered)
+                         : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
+                         : !shears       ? rules::kStrip
+                         : grips.empty() ? rules::kPinnedSheet
+                                         : rules::kAttachedSheet;
   const double links_a_substep = rule.links_a_substep[k];
   // With few substeps the error is largest in the links at the pins, which carry more the finer the cloth is.
-  const bool fine =
-      k == 0 && links_a_substep == rules::kTetheredStiff.value.links_a_substep[0] && links > rules::kManyLinks;
+  const bool fine = k == 0 && links_a_substep == rules::kTetheredStiff.links_a_substep[0] && links > rules::kManyLinks;
   const double short_links = needs_chain_solver(scene) ? substeps_for_short_links(scene) : 1;
   double per_frame = short_links * frames_for_gravity(scene) *
                      std::max(rule.smallest[k], (fine ? rules::kManyLinksFactor : 1.0) * links / links_a_substep);
@@ -129,7 +126,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   if (scene.needs.has(Feature::SelfCollision) && fast) per_frame = std::max(per_frame, substeps_for_layers(scene));
   if (may_correct_splitting(scene, settings).enabled)
     if (const double needed = std::ceil(substeps_for_splitting(scene));
-        needed <= std::max(rules::kMaxSplittingSubsteps.value[k], links / 6))
+        needed <= std::max(rules::kMaxSplittingSubsteps[k], links / 6))
       per_frame = std::max(per_frame, needed);
   const double for_speed = fast ? substeps_for_speed(scene, k) : 1;
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
@@ -185,7 +182,7 @@ void SubstepController::halve_if_quiescent(double cloth_m) {
   if (!(cells <= rules::kMoves))
     halvings_ = 0;
   else if (quiescent_frames_ == rules::kQuiescentFrames) {
-    halvings_ = std::min<int>(halvings_ + 1, rules::kMaxHalvings);
+    halvings_ = std::min(halvings_ + 1, rules::kMaxHalvings);
     quiescent_frames_ = 0;
   }
 }
