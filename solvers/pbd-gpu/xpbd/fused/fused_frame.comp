@@ -6,16 +6,8 @@
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
-layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
-layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
-
 #include "xpbd/lines/grid_lines.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
-vec3 anchor(uvec2 at, uint k) {
-  return x[index_of(at)].xyz;
-}
-#include "xpbd/lines/integrate_lines.glsl"
 #include "xpbd/lines/line_colour.glsl"
 #include "common/grip.glsl"
 // Chains and cloth that touches itself have one kernel per pass.
@@ -39,7 +31,6 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #endif
 
 #include "common/grid_barrier.glsl"
-#define GRID_BARRIER_OR_RETURN if (!grid_barrier()) return
 #define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
 #define CLOTH_LOW frame_state.cloth_low
 #define CLOTH_HIGH frame_state.cloth_high
@@ -166,7 +157,6 @@ bool narrow_phase() {
   return true;
 }
 
-
 /// Responses before (round 0) and after the lines.
 bool respond_to_contact(out uint active_count) {
   active_count = 0u;
@@ -223,16 +213,12 @@ bool frame() {
 #endif
 
 void main() {
-  set_thread();
-  lane = thread / BESIDE % LANES;
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  set_place(group);
   global_thread = group * THREADS + thread;
   grid_stride = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
   if (p.passes == 0u) {  // only a probe whether all can run
-    GRID_BARRIER_OR_RETURN;
-    leave_grid_barrier();
+    if (grid_barrier()) leave_grid_barrier();
     return;
   }
 #ifndef CONTACT_FREE

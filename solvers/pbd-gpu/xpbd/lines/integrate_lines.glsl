@@ -4,8 +4,6 @@
 vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
 vec3 last_pos[K], last_vel[K];  // before the last substep, if kUsesBdf2
 
-#include "xpbd/time/substep.glsl"
-
 /// The nearest vertex of a rectangle of pinned ones.
 uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
