@@ -24,8 +24,7 @@ class Mirror final : public GpuSolver {
   void build() override {
     const int stage = add_stage("Mirror", {});
     add_colliders(origin_, as_convex_shapes_);
-    const vulkan::Buffer& state = add_buffer(BIND_POSITIONS, "state", vec4s(scene().cloth.vertex_count()));
-    set_state(state, state, {});
+    add_state(initial_positions(scene()), inverse_masses(scene()), {}, 1);
     sources_ = {colliders()->capsules.buffer, colliders()->kinematic_meshes.positions};
     if (as_convex_shapes_) sources_.push_back(colliders()->kinematic_meshes.start_positions);
     for (const vulkan::Buffer* b : sources_) hosts_.push_back(&add_host_buffer(b->name(), b->bytes()));

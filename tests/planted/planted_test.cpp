@@ -78,7 +78,7 @@ TEST(Planted, AFaultThatIsNowhereIsAnError) {
   Fault gone{"gone", "fall"};
   gone.shader = ShaderFault{"lines.glsl", "no such text", ""};
   EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error);
-  gone.shader = ShaderFault{"satisfy_mesh_collisions.comp", "void main() {", "void main() { return;"};
+  gone.shader = ShaderFault{"paper/collision_pass.comp", "void main() {", "void main() { return;"};
   EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error) << "no kernel of the run has it";
 }
 

@@ -14,20 +14,17 @@ void write_to(const Buffer& host, const std::vector<T>& items) {
   std::memcpy(host.mapped(), items.data(), items.size() * sizeof(T));
 }
 
-vec4 relative(const Vec3& at, const Vec3& origin, float w) {
-  return {static_cast<float>(at[0] - origin[0]), static_cast<float>(at[1] - origin[1]),
-          static_cast<float>(at[2] - origin[2]), w};
-}
+float number(double x) { return static_cast<float>(x); }
 
-vec4 direction(const Vec3& d, double w) {
-  return {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2]), static_cast<float>(w)};
+vec4 relative(const Vec3& at, const Vec3& origin, double w) {
+  return {number(at[0] - origin[0]), number(at[1] - origin[1]), number(at[2] - origin[2]), number(w)};
 }
+vec4 direction(const Vec3& d, double w) { return relative(d, {}, w); }
 
 }  // namespace
 
 ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_convex_shapes)
     : frame_(frame), scene_(scene), origin_m_(origin_m), as_convex_shapes_(as_convex_shapes) {
-  const auto number = [](double v) { return static_cast<float>(v); };
   planes = add_shapes<PlaneShape>(Collider::Shape::Plane, BIND_PLANES, "collider planes", [&](const Collider& c) {
     double offset = 0;
     for (std::size_t k = 0; k < 3; ++k) offset += c.normal[k] * (c.center_m[k] - origin_m_[k]);
@@ -46,7 +43,6 @@ ColliderBuffers::ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 o
 }
 
 void ColliderBuffers::add_static_meshes() {
-  const auto number = [](double v) { return static_cast<float>(v); };
   spheres = add_shapes<SphereShape>(Collider::Shape::Sphere, BIND_SPHERES, "collider spheres", [&](const Collider& c) {
     return SphereShape{relative(c.center_m, origin_m_, 0), number(c.radius_m), number(c.margin_m), number(c.friction)};
   });
@@ -91,8 +87,8 @@ MeshBuffers ColliderBuffers::add_meshes(const std::string& kind, bool kinematic)
     for (const auto& t : c.mesh->triangles)
       triangles.push_back({first_vertex + t[0], first_vertex + t[1], first_vertex + t[2], static_cast<uint>(k)});
     result.ranges.push_back({k, first_vertex, static_cast<std::uint32_t>(c.mesh->vertex_count()), first_triangle,
-                             static_cast<std::uint32_t>(c.mesh->triangles.size()), static_cast<float>(c.margin_m),
-                             static_cast<float>(c.friction)});
+                             static_cast<std::uint32_t>(c.mesh->triangles.size()), number(c.margin_m),
+                             number(c.friction)});
   }
   if (result.ranges.empty()) return result;
   result.positions =
@@ -111,10 +107,8 @@ std::vector<CapsuleShape> ColliderBuffers::capsules_between(const FrameMotion& s
     if (c.shape != Collider::Shape::Capsules) continue;
     for (std::size_t i = 0; i < c.capsules.size(); ++i) {
       const Capsule &s = start.colliders.at(k).capsules.at(i), &e = end.colliders.at(k).capsules.at(i);
-      all.push_back({relative(s.a_m, origin_m_, static_cast<float>(e.radius_m)),
-                     relative(s.b_m, origin_m_, static_cast<float>(c.margin_m)),
-                     relative(e.a_m, origin_m_, static_cast<float>(e.radius_m + c.margin_m)),
-                     relative(e.b_m, origin_m_, static_cast<float>(c.friction))});
+      all.push_back({relative(s.a_m, origin_m_, e.radius_m), relative(s.b_m, origin_m_, c.margin_m),
+                     relative(e.a_m, origin_m_, e.radius_m + c.margin_m), relative(e.b_m, origin_m_, c.friction)});
     }
   }
   return all;
@@ -224,7 +218,7 @@ void GripBuffer::record_upload() { frame_.copy(stage_upload_, *host_, *grips_); 
 
 void GripBuffer::record_move(const FrameKernel& kernel, double fraction, double frame_s) {
   const auto n = static_cast<std::uint32_t>(layers_ * scene_.grips.vertices.size());
-  frame_.dispatch(kernel, n, GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s), 0});
+  frame_.dispatch(kernel, n, GripConstants{n, static_cast<float>(fraction), static_cast<float>(1 / frame_s)});
 }
 
 void GripBuffer::reset() {

@@ -35,15 +35,26 @@ GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const Devi
   take_messages();
 }
 
-void GpuSolver::set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m) {
+void GpuSolver::add_state(const std::vector<double>& start, const std::vector<float>& inverse_mass, Vec3 origin_m,
+                          int layers) {
+  const std::vector<double> start_velocity = initial_velocities(scene());
+  std::vector<vec4> position, velocity;
+  for (int layer = 0; layer < layers; ++layer)
+    for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+      const float w = inverse_mass[i];
+      const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin_m[k]); };
+      const auto speed = [&](std::size_t k) { return w > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
+      position.push_back({at(0), at(1), at(2), w});
+      velocity.push_back({speed(0), speed(1), speed(2), w});
+    }
   origin_m_ = origin_m;
-  position_ = &position;
-  velocity_ = &velocity;
+  position_ = &add_buffer(BIND_POSITIONS, "positions", position);
+  velocity_ = &add_buffer(BIND_VELOCITIES, "velocities", velocity);
   const std::uint64_t bytes = scene().cloth.vertex_count() * sizeof(vec4);
   read_position_ = &add_host_buffer("read position", bytes);
   read_velocity_ = &add_host_buffer("read velocity", bytes);
-  download_->copy(0, position, *read_position_);
-  download_->copy(0, velocity, *read_velocity_);
+  download_->copy(0, *position_, *read_position_);
+  download_->copy(0, *velocity_, *read_velocity_);
 }
 
 void GpuSolver::add_colliders(Vec3 origin_m, bool as_convex_shapes) {

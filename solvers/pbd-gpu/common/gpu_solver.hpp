@@ -39,7 +39,6 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
  protected:
   FrameBuilder& frame() { return *this; }
-  using vec4s = std::vector<vec4>;
 
   /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
@@ -48,17 +47,16 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
   /// Whether the next frame is to be recorded anew though its duration is the last one's. Asked once before each frame.
   virtual bool update_substep_count(double /*dt_s*/) { return false; }
-  /// For a method whose frames depend on what the host reads of the frame before: one frame in flight.
-  void set_reads_back() { reads_back_ = true; }
-  /// For a method that predicts from the last substep: its frames depend on the frame before.
-  void set_uses_bdf2(bool uses_bdf2) { uses_bdf2_ = uses_bdf2; }
-  bool uses_bdf2() const { return uses_bdf2_; }
+  bool reads_back_ = false;  ///< frames depend on what the host reads of the frame before: one frame in flight
+  bool uses_bdf2_ = false;   ///< a method that predicts from the last substep: its frames depend on the frame before
 
-  /// Sets what read_state reads back: the first `vertex_count` vec4 of each buffer.
-  void set_state(const vulkan::Buffer& position, const vulkan::Buffer& velocity, Vec3 origin_m);
+  /// Adds the buffers of positions, relative to `origin_m` so that a scene far from the world's origin loses no digits,
+  /// and velocities; .w of both: inverse mass. `layers` copies of the vertices; read_state reads back the first.
+  void add_state(const std::vector<double>& start, const std::vector<float>& inverse_mass, Vec3 origin_m, int layers);
   /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
   void add_colliders(Vec3 origin_m, bool as_convex_shapes);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
+  const vulkan::Buffer& velocity_buffer() const { return *velocity_; }
   ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
   GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none
 
@@ -75,7 +73,6 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
-  bool uses_bdf2_ = false, reads_back_ = false;
   double dt_s_ = 0, last_dt_s_ = 0;    ///< of the recorded frame, and of the one that it follows
   double done_dt_s_ = 0;               ///< of the last frame done; 0: none that a prediction may go on from
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset

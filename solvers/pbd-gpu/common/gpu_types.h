@@ -36,16 +36,14 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // has bending. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: number of rectangles of pinned vertices; TETHER_n
 // and TETHER_n_LAST: column and row << 16 of the first and last vertex. SUBGROUP: threads that exchange by shuffles.
 // BESIDE: neighbouring chains whose threads alternate, so that columns too are read by whole sectors. EXACT: all
-// vertices of all threads are on chains. REGULAR: bit mask of the chains of each colour that need regularisation.
-// PERSISTENT: all workgroups run at once and synchronise by barriers.
+// vertices of all threads are on chains. PERSISTENT: all workgroups run at once and synchronise by barriers.
 // clang-format off
 #define LINE_CONSTANTS(C) \
   C(1, uint, LANES, 8u) C(2, uint, K, 4u) C(3, uint, COLUMNS, 2u) C(4, uint, ROWS, 2u) C(5, uint, THREADS, 64u) \
   C(6, uint, FEATURES, 0u) C(7, uint, TETHERS, 0u) C(8, uint, TETHER_0, 0u) C(9, uint, TETHER_0_LAST, 0u) \
   C(10, uint, TETHER_1, 0u) C(11, uint, TETHER_1_LAST, 0u) C(12, uint, TETHER_2, 0u) C(13, uint, TETHER_2_LAST, 0u) \
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
-  C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(20, uint, REGULAR_0, 0u) C(21, uint, REGULAR_1, 0u) \
-  C(22, uint, REGULAR_2, 0u) C(23, uint, REGULAR_3, 0u) C(24, bool, PERSISTENT, false)
+  C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(24, bool, PERSISTENT, false)
 // Chain kernel of `xpbd`. TETHERS: entries per vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
@@ -59,12 +57,11 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
 // Only in the passes. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, ACTIVE_CAPACITY,
 // CONTACT_CAPACITY: pairs, active pairs and those with contacts that its lists have place for; THICKNESS_BITS,
-// SELF_FRICTION_BITS: floats. FILL: pairs are written, not counted. OF_SELF: the list is of the cloth with itself.
-// GRIPS: vertices that hands may hold, under the number that lines have it.
+// SELF_FRICTION_BITS: floats. GRIPS: vertices that hands may hold, under the number that lines have it.
 #define CONTACT_PASS_CONSTANTS(C) \
   C(1, uint, SELF, 0u) C(2, uint, SELF_CAPACITY, 0u) C(3, uint, ACTIVE_CAPACITY, 0u) C(4, uint, CONTACT_CAPACITY, 0u) \
   C(5, uint, THICKNESS_BITS, 0u) C(6, uint, SELF_FRICTION_BITS, 0u) C(7, bool, SECOND_SOLVE, false) \
-  C(8, bool, FILL, false) C(9, bool, OF_SELF, false) C(19, uint, GRIPS, 0u)
+  C(19, uint, GRIPS, 0u)
 // clang-format on
 // Collision kernels of `paper`.
 // FRICTION: 0 none, 1 takes tangential displacement off the position, 2 off the velocity.
@@ -129,7 +126,6 @@ struct PaperContactConstants {
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
-#define LINES_LIMIT_SPEED 16u
 #define LINES_REGULARISED 32u  // chains pulled over-constrained between two attached vertices
 #define LINES_BDF2 64u         // BDF2; else backward Euler
 #define LINES_TENSION 128u     // implicit tension
@@ -140,13 +136,11 @@ struct LineConstants {
   vec4 gravity_h;                   // g h keep [m/s]; w: tether_spread_m
   float h;                          // implicit step, h' of TimeStep [s]
   float damping_fraction;           // of velocity by damping
-  float speed_limit;                // [m/s]
   float tether_stretch;             // 1 + slack
   float rest_u, rest_v, rest_d;     // rest lengths of links [m]
   float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
   float bend_u, bend_v;             // the same for bending
   float inverse_mass;               // of an inner vertex [1/kg]
-  float regularisation;             // least ratio of alpha to inverse mass, for chains that need it
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
   float substep_part;            // of a frame
@@ -177,7 +171,6 @@ struct TetherEnd {
 /// Range of a colour's entries, in blocks of a workgroup each.
 struct ChainRange {
   uint first_entry, blocks, rounds;
-  uint unused0;
 };
 
 /// Rows of a slice of the bending matrix of a mesh: one subgroup's rows, or a part of them.
@@ -208,7 +201,6 @@ struct ChainConstants {
   vec4 gravity_h;          // g h keep [m/s]; w: tether_spread_m
   float h;                 // implicit step, h' of TimeStep [s]
   float damping_fraction;  // of velocity by damping
-  float speed_limit;       // [m/s]
   float per_h;             // 1/h
   uint first_entry;        // of the colour, if a dispatch solves only one
   uint rounds;             // of cyclic reduction: 2^rounds is at least the links of its longest chain
@@ -275,7 +267,6 @@ struct GripConstants {
   uint count;
   float fraction;     // of the path through the frame
   float per_frame_s;  // 1 / frame [1/s]
-  uint unused0;
 };
 
 #include "xpbd/contact/contact_types.h"

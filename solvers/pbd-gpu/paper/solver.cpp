@@ -21,7 +21,9 @@ class Paper final : public GpuSolver {
   void build() override {
     refuse_mesh_bending(scene());
     layers_ = scene().needs.has(Feature::DuplicatedLayer) ? 2 : 1;
-    build_particles();
+    add_state(initial_positions(scene()), inverse_masses(scene()), {}, layers_);
+    q_ = &add_buffer(BIND_PREDICTED, "predicted positions", position_buffer().bytes());
+    add_buffer(BIND_DELTAS, "constraint deltas", q_->bytes());
     build_constraints();
     add_colliders({}, false);
     add_grips({}, static_cast<std::uint32_t>(layers_));
@@ -30,47 +32,17 @@ class Paper final : public GpuSolver {
 
   std::uint64_t particles() const { return layers_ * scene().cloth.vertex_count(); }
 
-  void build_particles() {
-    const std::vector<double> start = initial_positions(scene());
-    const std::vector<float> w = inverse_masses(scene());
-    const std::vector<double> start_velocity = initial_velocities(scene());
-    vec4s position, velocity;
-    for (int layer = 0; layer < layers_; ++layer)
-      for (std::size_t i = 0; i < w.size(); ++i) {
-        const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k]); };
-        const auto speed = [&](std::size_t k) {
-          return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f;
-        };
-        position.push_back({at(0), at(1), at(2), w[i]});
-        velocity.push_back({speed(0), speed(1), speed(2), w[i]});
-      }
-    x_ = &add_buffer(BIND_POSITIONS, "positions", position);
-    v_ = &add_buffer(BIND_VELOCITIES, "velocities", velocity);
-    q_ = &add_buffer(BIND_PREDICTED, "predicted positions", position.size() * sizeof(vec4));
-    add_buffer(BIND_DELTAS, "constraint deltas", position.size() * sizeof(vec4));
-    set_state(*x_, *v_, {});
-  }
-
-  /// Calls fn(a, b, rest length, kind) for each constraint, in the order of the buffer.
-  template <class Fn>
-  void for_each_constraint(Fn fn) const {
+  void build_constraints() {
     const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
     std::vector<EdgeKind> kinds = {EdgeKind::Structural};
     if (scene().needs.has(Feature::Shear)) kinds.push_back(EdgeKind::Shear);
     if (scene().needs.has(Feature::Bend)) kinds.push_back(EdgeKind::SkipOne);
+    std::vector<DistanceConstraint> all;
     for (std::uint32_t layer = 0; layer < static_cast<std::uint32_t>(layers_); ++layer)
       for (EdgeKind kind : kinds)
         for (const Edge& e : edges(scene().cloth, kind))
-          fn(layer * n + e.a, layer * n + e.b, e.rest_m, static_cast<std::uint32_t>(kind));
-    if (layers_ == 2)
-      for (std::uint32_t i = 0; i < n; ++i) fn(i, n + i, 0.0, 3u);
-  }
-
-  void build_constraints() {
-    std::vector<DistanceConstraint> all;
-    for_each_constraint([&](std::uint32_t a, std::uint32_t b, double rest, std::uint32_t kind) {
-      all.push_back({a, b, static_cast<float>(rest), kind});
-    });
+          all.push_back({layer * n + e.a, layer * n + e.b, static_cast<float>(e.rest_m), static_cast<uint>(kind)});
+    for (std::uint32_t i = 0; layers_ == 2 && i < n; ++i) all.push_back({i, n + i, 0, 3});
     constraint_count_ = all.size();
     add_buffer(BIND_CONSTRAINTS, "constraints", all);
   }
@@ -131,21 +103,21 @@ class Paper final : public GpuSolver {
     project_ = add(add_stage("ProjectConstraintDeltas", needs & edges), "project_constraint_deltas");
     average_ = add(add_stage("AverageConstraintDeltas", {}), "average_constraint_deltas");
     if (grips() != nullptr) {
-      hold_ = grips()->add_kernel(*x_);
+      hold_ = grips()->add_kernel(position_buffer());
       aim_ = grips()->add_kernel(*q_);
     }
     if (colliders() != nullptr) build_contact();
     PaperSpecialization update;
     if (needs.has(Feature::Friction) && setting_is("friction_on", "velocity")) {
       update.FRICTION = 2;
-      add_buffer(BIND_SLIP, "slip", x_->bytes());
+      add_buffer(BIND_SLIP, "slip", position_buffer().bytes());
     }
     update_ =
         add_kernel(add_stage("UpdatePositions", {}), "update_positions", sizeof(PaperConstants), update.by_number());
     if (settings()["readback"] == "blocking") {
       stage_readback_ = add_stage("Readback", {});
-      host_x_ = &add_host_buffer("positions on the host", x_->bytes());
-      host_v_ = &add_host_buffer("velocities on the host", v_->bytes());
+      host_x_ = &add_host_buffer("positions on the host", position_buffer().bytes());
+      host_v_ = &add_host_buffer("velocities on the host", velocity_buffer().bytes());
     }
   }
 
@@ -165,8 +137,8 @@ class Paper final : public GpuSolver {
     c.keep = static_cast<float>(std::max(0.0, 1 - scene().material.damping_per_s * h));
     for (int s = 0; s < substeps; ++s) record_step(c, s, substeps, dt_s);
     if (stage_readback_ >= 0) {
-      copy(stage_readback_, *x_, *host_x_);
-      copy(stage_readback_, *v_, *host_v_);
+      copy(stage_readback_, position_buffer(), *host_x_);
+      copy(stage_readback_, velocity_buffer(), *host_v_);
     }
   }
 
@@ -196,7 +168,7 @@ class Paper final : public GpuSolver {
   int layers_ = 1;
   std::uint64_t constraint_count_ = 0;
   int stage_readback_ = -1;
-  const vulkan::Buffer *x_ = nullptr, *v_ = nullptr, *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
+  const vulkan::Buffer *q_ = nullptr, *host_x_ = nullptr, *host_v_ = nullptr;
   const FrameKernel *forces_ = nullptr, *damp_ = nullptr, *euler_ = nullptr, *project_ = nullptr, *average_ = nullptr,
                     *update_ = nullptr, *hold_ = nullptr, *aim_ = nullptr;
   std::vector<std::pair<const FrameKernel*, PaperContactConstants>> contact_;

@@ -31,13 +31,20 @@ class Counting {
   }
 
   Words all() {
-    for (std::size_t k = kHeader; k < code_.bytes / 4; k += code_.words[k] >> 16) add(code_.words + k);
+    for (std::size_t k = kHeader, end = code_.bytes / 4; k < end; k += code_.words[k] >> 16) {
+      const std::size_t length = code_.words[k] >> 16;
+      if (length == 0 || k + length > end) throw Error("SPIR-V: an instruction reaches past the end");
+      add(code_.words + k);
+    }
     Words out(code_.words, code_.words + kHeader);
     out[kBound] = bound_;
     for (const Words* part : {&head_, &annotations_, &types_, &more_types_, &functions_})
       out.insert(out.end(), part->begin(), part->end());
     return out;
   }
+
+  /// Once all() has read the module.
+  const std::map<std::uint32_t, Access>& accesses() const { return accesses_; }
 
  private:
   Id id() { return bound_++; }
@@ -112,7 +119,11 @@ class Counting {
 
   void access(std::size_t written, Id pointer) {
     const auto at = pointer_.find(pointer);
-    if (at == pointer_.end() || uncounted_.contains(at->second.binding)) return;
+    if (at == pointer_.end()) return;
+    const Access now = written != 0 ? Access::Write : Access::Read;
+    const auto [access, fresh] = accesses_.try_emplace(at->second.binding, now);
+    if (!fresh && access->second != now) access->second = Access::ReadWrite;
+    if (uncounted_.contains(at->second.binding)) return;
     const Id size = value(size_.at(at->second.type)), sum = sums_[written];
     const Id more = result(spv::OpIAdd, uint_, {result(spv::OpLoad, uint_, {sum}), size});
     put(functions_, spv::OpStore, {sum, more});
@@ -139,16 +150,23 @@ class Counting {
   };
   const SpirV code_;
   const std::uint32_t first_word_;
-  const std::set<std::uint32_t>& uncounted_;
+  const std::set<std::uint32_t> uncounted_;
   Id bound_, buffer_ = 0, block_ = 0, array_ = 0, to_word_ = 0, uint_ = 0, bool_ = 0, entry_ = 0, function_ = 0;
   Id sums_[2] = {};  ///< bytes read, bytes written
   std::map<Id, std::uint32_t> binding_, size_, constant_, value_;
   std::map<Id, Id> pointee_;
   std::map<Id, Pointer> pointer_;
+  std::map<std::uint32_t, Access> accesses_;
   Words head_, annotations_, types_, more_types_, functions_;
 };
 
 }  // namespace
+
+std::map<std::uint32_t, Access> accesses_of(SpirV code) {
+  Counting module(code, 0, 0, {});
+  module.all();
+  return module.accesses();
+}
 
 std::vector<std::uint32_t> with_byte_counters(SpirV code, std::uint32_t counter, std::uint32_t first_word,
                                               const std::set<std::uint32_t>& uncounted) {

@@ -32,17 +32,10 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
   return found;
 }
 
-int rank(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return 2;
-    default:
-      return 3;
-  }
+std::ptrdiff_t rank(VkPhysicalDeviceType type) {
+  constexpr std::array kBest = {VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                                VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU};
+  return std::find(kBest.begin(), kBest.end(), type) - kBest.begin();
 }
 
 bool layer_present(const char* name) {

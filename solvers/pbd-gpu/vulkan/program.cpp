@@ -16,13 +16,6 @@ constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
 
-VkAccessFlags accesses(VkPipelineStageFlags stages) {
-  VkAccessFlags a = 0;
-  if ((stages & VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT) != 0) a |= VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
-  if ((stages & VK_PIPELINE_STAGE_TRANSFER_BIT) != 0) a |= VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-  return a;
-}
-
 }  // namespace
 
 Program::Program(std::shared_ptr<Device> device) : device_(std::move(device)) {}
@@ -39,7 +32,6 @@ Program::~Program() {
 
 Program::Touched Program::touched(const Step& s) {
   Touched t;
-  t.stages = s.kernel == nullptr ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
   if (s.kernel == nullptr) {
     t.read.insert(s.from);
     t.written.insert(s.to);
@@ -62,21 +54,13 @@ void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, V
   recorded_.push_back({true, before, after, written, next, nullptr, nullptr, nullptr});
 }
 
-void Program::barrier_if_needed(const Touched& next, Unordered& since) {
-  Touched& before = next.stages == VK_PIPELINE_STAGE_TRANSFER_BIT ? since.for_transfer : since.for_compute;
-  const bool hazard =
-      meet(before.written, next.read) || meet(before.written, next.written) || meet(before.read, next.written);
-  if (hazard) {
-    // Orders the writes of the steps since the last such barrier before the reads and writes of this step, and their
-    // reads before its writes.
-    barrier(before.stages, next.stages, accesses(before.stages) & kWrites, accesses(next.stages));
-    before = {};
+void Program::barrier_if_needed(const Touched& next, Touched& since) {
+  if (meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written)) {
+    barrier(kWork, kWork, kWrites, kAll);
+    since = {};
   }
-  for (Touched* t : {&since.for_compute, &since.for_transfer}) {
-    t->read.insert(next.read.begin(), next.read.end());
-    t->written.insert(next.written.begin(), next.written.end());
-    t->stages |= next.stages;
-  }
+  since.read.insert(next.read.begin(), next.read.end());
+  since.written.insert(next.written.begin(), next.written.end());
 }
 
 void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
@@ -115,7 +99,7 @@ void Program::record_steps(Copy& copy) {
   // Reads and writes of earlier submissions come before any of this one. Later submissions see host writes.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(copy.queries, 0);
-  Unordered since;
+  Touched since;
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];

@@ -66,15 +66,11 @@ class Program {
   };
   struct Touched {
     std::set<const Buffer*> read, written;
-    VkPipelineStageFlags stages = 0;
-  };
-  /// Accesses of steps that no barrier has ordered yet before a later dispatch, and before a later copy.
-  struct Unordered {
-    Touched for_compute, for_transfer;
   };
   static Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
-  void barrier_if_needed(const Touched& next, Unordered& since);
+  /// `since`: accesses of the steps since the last barrier.
+  void barrier_if_needed(const Touched& next, Touched& since);
   /// Objects that each submission in flight has for itself.
   struct Copy {
     VkCommandBuffer commands = VK_NULL_HANDLE;  ///< reused by later recordings

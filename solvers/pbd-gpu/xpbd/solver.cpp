@@ -44,16 +44,15 @@ class Xpbd final : public GpuSolver {
   void build() override {
     if (device_->shuffled_lanes() == 0)
       throw Error("solver xpbd: this device has no subgroup shuffles in compute shaders (optional in Vulkan 1.1)");
-    if (needs_chain_solver(scene())) restrict_to_chains();
+    const bool chained = needs_chain_solver(scene());
+    if (chained && scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
+      throw Error(
+          "solver xpbd: bending is supported on triangle meshes and even grids, and this cloth is neither; expected "
+          "bending_rigidity_N_m 0");
     const FeatureDecision membrane = membrane_decision(scene(), settings());
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
-    const bool chained = needs_chain_solver(scene());
     const bool touches = !is_contact_free(scene());
-    if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
-      disable(std::to_string(wanted) + " substeps",
-              "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
-                  " are the maximum per frame; the cloth is overstretched for some frames, but passes through nothing");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
       throw Error(fmt::format(
@@ -62,24 +61,13 @@ class Xpbd final : public GpuSolver {
           cloth.welded.front()));
     const std::vector<float> w = welded(inverse_masses(scene()), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
-    const std::vector<double> start_velocity = initial_velocities(scene());
     const Vec3 origin = scene().cloth.center_m;
-    vec4s position, velocity;
-    for (std::size_t i = 0; i < w.size(); ++i) {
-      // Relative to the cloth's initial centre, so that a scene far from the world's origin loses no digits.
-      const auto at = [&](std::size_t k) { return static_cast<float>(start[3 * i + k] - origin[k]); };
-      const auto speed = [&](std::size_t k) { return w[i] > 0 ? static_cast<float>(start_velocity[3 * i + k]) : 0.0f; };
-      position.push_back({at(0), at(1), at(2), w[i]});
-      velocity.push_back({speed(0), speed(1), speed(2), 0});
-    }
-    const vulkan::Buffer& x = add_buffer(BIND_POSITIONS, "positions", position);
-    const vulkan::Buffer& v = add_buffer(BIND_VELOCITIES, "velocities", velocity);
-    add_buffer(BIND_POSITION_COMPENSATION, "position compensation", x.bytes());
-    add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", v.bytes());
-    set_state(x, v, origin);
+    add_state(start, w, origin, 1);
+    add_buffer(BIND_POSITION_COMPENSATION, "position compensation", position_buffer().bytes());
+    add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", position_buffer().bytes());
     if (touches) add_colliders(origin, true);
     add_grips(origin, 1);
-    add_history(position.size());
+    add_history();
     const FeatureDecision tension = tension_decision(scene(), settings());
     if (!tension.enabled) disable("implicit tension", tension.reason);
     if (!membrane.enabled && scene().cloth.mesh && scene().material.membrane_stiffness_N_per_m)
@@ -93,9 +81,9 @@ class Xpbd final : public GpuSolver {
     if (touches)
       contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_);
     if (chained)
-      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, uses_bdf2(), tension.enabled, membrane.enabled);
+      chains_ = std::make_unique<Chains>(frame(), scene(), cloth, uses_bdf2_, tension.enabled, membrane.enabled);
     else
-      lines_ = std::make_unique<Lines>(frame(), scene(), uses_bdf2(), tension.enabled, splitting_correction.enabled);
+      lines_ = std::make_unique<Lines>(frame(), scene(), uses_bdf2_, tension.enabled, splitting_correction.enabled);
     if (touches && lines_) fused_frame_ = FusedFrame::make(frame(), *lines_, *contact_);
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
@@ -105,8 +93,9 @@ class Xpbd final : public GpuSolver {
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
-    if (adapts) set_reads_back();
-    if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips())) move_grips_ = grips()->add_kernel(x);
+    if (adapts) reads_back_ = true;
+    if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
+      move_grips_ = grips()->add_kernel(position_buffer());
     if (const FeatureSet near = scene().needs & kColliderFeatures; !touches && !near.empty()) {
       add_stage("ContactSubstep", near | (scene().needs & FeatureSet{Feature::Friction, Feature::DoubleSided}));
       disable("contact", "no collider is in reach of the cloth");
@@ -114,23 +103,15 @@ class Xpbd final : public GpuSolver {
   }
 
   /// History of BDF2: the state before the last substep.
-  void add_history(std::size_t particles) {
+  void add_history() {
     const FeatureDecision prediction = bdf2_decision(scene(), settings());
-    set_uses_bdf2(prediction.enabled);
-    if (!uses_bdf2()) {
+    uses_bdf2_ = prediction.enabled;
+    if (!uses_bdf2_) {
       disable("bdf2", prediction.reason);
       return;
     }
-    add_buffer(BIND_LAST_POSITIONS, "last positions", particles * sizeof(vec4));
-    add_buffer(BIND_LAST_VELOCITIES, "last velocities", particles * sizeof(vec4));
-  }
-
-  /// Rejects what chains do not support: bending of anything but meshes whose edges all are links.
-  void restrict_to_chains() const {
-    if (scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
-      throw Error(
-          "solver xpbd: bending is of triangle meshes and of even grids, and this cloth is "
-          "neither; expected bending_rigidity_N_m 0");
+    add_buffer(BIND_LAST_POSITIONS, "last positions", position_buffer().bytes());
+    add_buffer(BIND_LAST_VELOCITIES, "last velocities", position_buffer().bytes());
   }
 
   /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
@@ -147,12 +128,12 @@ class Xpbd final : public GpuSolver {
 
   /// Substeps of a frame that takes `by_rule` of them if it is as long as the scene's.
   int in_frames(int by_rule, double dt_s) const {
-    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor.value : 1);
+    return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor : 1);
   }
 
   FusedFrame::Steps contact_free_steps(double dt_s) const {
     const int substeps = std::min(substeps_in(dt_s), in_frames(contact_free_substeps(scene(), settings()), dt_s));
-    return {substeps, time_step(uses_bdf2(), dt_s / substeps, 0, scene().material.damping_per_s)};
+    return {substeps, time_step(uses_bdf2_, dt_s / substeps, 0, scene().material.damping_per_s)};
   }
 
   bool update_substep_count(double dt_s) override {
@@ -170,7 +151,7 @@ class Xpbd final : public GpuSolver {
 
   TimeStep time_step_of(double dt_s, double last_dt_s) const {
     const double last_h = last_dt_s > 0 ? last_dt_s / substeps_in(last_dt_s) : 0;
-    return time_step(uses_bdf2(), dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
+    return time_step(uses_bdf2_, dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
   }
 
   /// Substeps [first, first + count) in as few dispatches as the kernels allow.
@@ -195,7 +176,7 @@ class Xpbd final : public GpuSolver {
     }
     if (contact_) contact_->record_list(dt_s, substeps);
     if ((lines_ ? lines_->is_single_dispatch() : chains_->is_single_dispatch()) && !contact_) {
-      const int apart = uses_bdf2() && last_dt_s != dt_s ? 1 : 0;
+      const int apart = uses_bdf2_ && last_dt_s != dt_s ? 1 : 0;
       record_lines(0, apart, substeps, dt_s, start);
       record_lines(apart, substeps - apart, substeps, dt_s, step);
       return;
@@ -217,7 +198,7 @@ class Xpbd final : public GpuSolver {
   int frames_in(double dt_s) const {
     const double frame = scene().time.dt();
     if (!(dt_s > rules::kLongFrame * frame)) return 1;
-    return static_cast<int>(std::ceil(std::min(dt_s, std::max<double>(rules::kMaxLongFrame_s, frame)) / frame - 1e-9));
+    return static_cast<int>(std::ceil(std::min(dt_s, std::max(rules::kMaxLongFrame_s, frame)) / frame - 1e-9));
   }
 
   SubstepController controller_;

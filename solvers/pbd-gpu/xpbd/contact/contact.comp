@@ -1,5 +1,5 @@
 #version 450
-// The passes of contact with colliders (xpbd/contact/README.md) as kernels of their own, in the order of a frame.
+// The passes of contact (xpbd/contact/README.md) as kernels of their own, in the order of a frame.
 // CMakeLists.txt compiles this file once for each. fused_frame.comp calls the same functions.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
@@ -15,26 +15,31 @@ void run() {
   frame_state.max_shape_displacement = max_shape_displacement;
   vec3 along = mean_velocity();
   for (uint c = 0u; c < 3u; ++c) frame_state.drift[c] = 0.5 * along[c];
-  frame_state.bound_fraction = 1.0;  // prefix_sum may cut it
   frame_state.touched_vertices = 0u;
+  for (uint l = 0u; l < PAIR_LEVELS; ++l) frame_state.counted[l] = frame_state.self_counted[l] = 0u;
   frame_state.active_pair_count[0] = frame_state.active_pair_count[1] = 0u;
 }
 
-#elif defined(BROAD_PHASE)  // once per frame, one thread per primitive: counts its pairs; FILL writes them
+#elif defined(BROAD_PHASE)  // once per frame and fraction of the motion bounds, one thread per primitive: its pairs
 #include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
 void run() {
+  if (p.level > 0u && frame_state.counted[p.level - 1u] <= CAPACITY) return;
   for (uint k = item(); k < TRIANGLES + VERTICES; k += stride()) {
-    if (FILL) {
-      uvec4 range = ranges[k];
-      fill_pairs(k, frame_state.bound_fraction, range.x, range.y);
-      continue;
-    }
-    uvec4 n = uvec4(pairs_at(k, 1.0), 0u, 0u, 0u);
-    [[unroll]] for (uint l = 1u; l < PAIR_LEVELS; ++l)
-      if (n[l - 1u] != 0u) n[l] = pairs_at(k, kFractions[l]);
-    ranges[k] = n;
+    uint n = pairs_at(k, kFractions[p.level]), at = min(atomicAdd(frame_state.counted[p.level], n), CAPACITY);
+    uint room = min(n, CAPACITY - at);
+    ranges[k] = uvec4(at, room, 0u, 0u);
+    fill_pairs(k, kFractions[p.level], at, room);
   }
-  for (uint i = item(); FILL && i < VERTICES; i += stride()) list_touched_vertices(i);
+}
+
+#elif defined(FINISH_BROAD_PHASE)  // once per frame, one thread per vertex
+#include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
+void run() {
+  uint i = item();
+  if (SHAPES > 0u && i < VERTICES) list_touched_vertices(i);
+  if (i != 0u) return;
+  finish_broad_phase();
+  if (SELF != 0u) frame_state.self_bound_fraction = kFractions[fitting_level(frame_state.self_counted, SELF_CAPACITY)];
 }
 
 #elif defined(PREDICT)  // at a substep's start, one thread per vertex
@@ -97,6 +102,56 @@ void run() {
   project_all(item(), stride());
   // For the next substep.
   if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = frame_state.self_contact_pairs = 0u;
+}
+
+// Contact of the cloth with itself.
+#elif defined(SELF_AABBS)  // once per frame, one thread per triangle
+#include "xpbd/contact/broad_phase/self_aabbs.glsl"
+void run() { make_self_aabbs(); }
+
+#elif defined(SELF_BROAD_PHASE)  // once per frame and fraction of the motion bounds, one subgroup per triangle
+#include "xpbd/contact/broad_phase/self_broad_phase.glsl"
+void run() {
+  if (p.level > 0u && frame_state.self_counted[p.level - 1u] <= SELF_CAPACITY) return;
+  FOR_EACH_TRIANGLE(q, TRIANGLES, list_self_pairs_of(q);)
+}
+
+#elif defined(SELF_MAX_DISPLACEMENT)  // once per substep, one thread per triangle
+// The maximum displacement of its vertices in the last substep, and how far any of them may go in this one.
+void run() {
+  for (uint t = item(); t < TRIANGLES; t += stride()) {
+    uvec4 e = primitives[t];
+    vec2 largest = vec2(0.0);
+    for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(vertex_displacement[e[c]], starts[e[c]].w));
+    triangle_max_displacement[t] = vec4(largest, 0.0, 0.0);
+  }
+}
+
+#elif defined(SELF_ACTIVE_PAIRS)  // after the constraint solve, one subgroup per triangle
+#include "xpbd/contact/narrow_phase/self_active_pairs.glsl"
+void run() { FOR_EACH_TRIANGLE(t, TRIANGLES, collect_active_pairs(t);) }
+
+#elif defined(SELF_NEAREST_POINTS)  // then one thread per active pair: nearest points, and what contacts there propose
+#include "xpbd/contact/narrow_phase/contact_distance.glsl"
+#include "xpbd/contact/response/self_correction.glsl"
+#include "xpbd/contact/narrow_phase/self_nearest_points.glsl"
+void run() {
+  for (uint k = item(); k < SELF_ACTIVE_COUNT; k += stride()) {
+    query_self(k);
+    correct_self(k);
+  }
+}
+
+#elif defined(SELF_RESPOND)  // a later round of response, one thread per active pair
+#include "xpbd/contact/response/self_correction.glsl"
+void run() {
+  for (uint k = item(); k < SELF_ACTIVE_COUNT; k += stride()) correct_self(k);
+}
+
+#elif defined(SELF_SELECT_PLANE)  // before the projection, one thread per active pair
+#include "xpbd/contact/displacement_filter/self_select_plane.glsl"
+void run() {
+  for (uint k = item(); k < SELF_ACTIVE_COUNT; k += stride()) select_self_plane(k);
 }
 #endif
 

@@ -19,7 +19,7 @@ constexpr std::uint64_t kAllPairs = 1u << 18;
 /// of which 10 are active.
 constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
                         kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
-constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9, kScanThreads = 256;
+constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 /// Lanes that share a vertex: the parts of the sum in contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// Responses after the constraints.
@@ -121,7 +121,7 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
   frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (constants_.TRIANGLES + groups) * sizeof(SelfAabb));
-  self_ranges_ = &frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
+  frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
   frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact displacements", constants_.TRIANGLES * sizeof(vec4));
   frame_.add_buffer(BIND_SELF_ACTIVE, "self-contact active pairs", active * sizeof(SelfActivePair));
@@ -134,34 +134,24 @@ FeatureSet XpbdContact::serves() const {
          (kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::SelfCollision});
 }
 
-XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads,
-                                    const ContactPassSpecialization* constants, const vulkan::Buffers& own) {
-  const std::vector<std::uint32_t> values = joined(constants_, constants != nullptr ? *constants : pass_constants_);
-  return {frame_.add_kernel(stage, name, sizeof(ContactConstants), values, threads, own),
+XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads) {
+  return {frame_.add_kernel(stage, name, sizeof(ContactConstants), joined(constants_, pass_constants_), threads),
           vulkan::groups_for(items, threads)};
 }
 
 void XpbdContact::add_broad_phase() {
   if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   const std::uint32_t n = constants_.VERTICES;
-  broad_phase_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
-  ContactPassSpecialization fill = pass_constants_;
-  fill.FILL = 1;
+  bounds_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   if (with_itself_) {
     const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
-    const std::uint64_t shared = std::uint64_t{lanes} * constants_.TRIANGLES;
-    ContactPassSpecialization self = fill;
-    self.OF_SELF = 1;
-    broad_phase_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES));
-    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads));
-    broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads, &self, {{BIND_RANGES, self_ranges_}}));
-    broad_phase_.push_back(pass(stage_pairs_, "self_broad_phase", shared, threads, &self));
+    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES));
+    broad_phase_.push_back(
+        pass(stage_pairs_, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
   }
-  if (constants_.SHAPES == 0) return;
-  const std::uint32_t primitives = constants_.TRIANGLES + n, threads = std::min(primitives, kPairThreads);
-  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads));
-  broad_phase_.push_back(pass(stage_pairs_, "prefix_sum", 1, kScanThreads));
-  broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", threads, kGroupSize, &fill));
+  if (constants_.SHAPES > 0)
+    broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", std::min(constants_.TRIANGLES + n, kPairThreads)));
+  finish_ = {pass(stage_pairs_, "contact_finish_broad_phase", n)};
 }
 
 void XpbdContact::add_kernels() {
@@ -219,7 +209,12 @@ void XpbdContact::run(const Phase& phase, const ContactConstants& c) {
 
 void XpbdContact::record_shapes(double dt_s, int substeps) { run(update_shapes_, constants(0, substeps, dt_s)); }
 
-void XpbdContact::record_list(double dt_s, int substeps) { run(broad_phase_, constants(0, substeps, dt_s)); }
+void XpbdContact::record_list(double dt_s, int substeps) {
+  ContactConstants c = constants(0, substeps, dt_s);
+  run(bounds_, c);
+  for (; c.level < PAIR_LEVELS; ++c.level) run(broad_phase_, c);
+  run(finish_, c);
+}
 
 void XpbdContact::record_before(int s, int substeps, double dt_s) {
   if (kinematic_points_ > 0) run(before_, constants(s, substeps, dt_s));

@@ -49,9 +49,7 @@ class XpbdContact {
     vulkan::Groups groups;
   };
   using Phase = std::vector<Pass>;
-  /// `constants`: null: pass_constants_.
-  Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize,
-            const ContactPassSpecialization* constants = nullptr, const vulkan::Buffers& own = {});
+  Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize);
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle);
   void add_broad_phase();
@@ -64,8 +62,8 @@ class XpbdContact {
   ContactPassSpecialization pass_constants_;  ///< of most passes
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
-  const vulkan::Buffer *diagnostics_ = nullptr, *self_ranges_ = nullptr;
-  Phase update_shapes_, broad_phase_, before_, first_round_, later_round_, end_;
+  const vulkan::Buffer* diagnostics_ = nullptr;
+  Phase update_shapes_, bounds_, broad_phase_, finish_, before_, first_round_, later_round_, end_;
 };
 
 }  // namespace clothbench::pbd_gpu

@@ -59,6 +59,14 @@ const float kImpactMassFactor = 0.25;  // margins of a push before the solve tha
 const float kRounding_m = 2e-7;  // of positions
 const float kTiny = 1e-6;       // a weight below is none
 
+/// The first fraction whose pairs fit, else the last; pairs without a place are counted in the diagnostics.
+uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
+  uint level = 0u;
+  while (level + 1u < PAIR_LEVELS && counted[level] > capacity) ++level;
+  if (counted[level] > capacity) diagnostics.overflow += counted[level] - capacity;
+  return level;
+}
+
 // One bit per pair: whether it is active in this substep, and whether its contact proposes a correction in this round.
 #define ACTIVE_BITS 0u
 #define CORRECTION_BITS (CAPACITY / 32u + 1u)
@@ -82,6 +90,7 @@ const float kTiny = 1e-6;       // a weight below is none
 
 uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
+#define SELF_ACTIVE_COUNT min(frame_state.self_active, ACTIVE_CAPACITY)
 // Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
 // without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
 // 0.7 % less with one response.

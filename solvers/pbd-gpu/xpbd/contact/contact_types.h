@@ -25,7 +25,7 @@ struct ShapeAabb {
 /// Where a point of a kinematic convex shape comes from: vertex `index` of the kinematic meshes, or end `index` % 2 of
 /// capsule `index` / 2 if `capsule` is 1.
 struct PointSource {
-  uint point, index, capsule, shape;
+  uint point, index, capsule;
 };
 
 /// State of one pair of a primitive of the cloth (a triangle or a vertex) and a convex shape.
@@ -57,7 +57,7 @@ struct ContactFrameState {
   uint contact_free;          // 1: the frame was done without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;      // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
   uint max_displacement;      // of a vertex in this frame [m], a float's bits; until its list is made, in the last one
-  uint counted[PAIR_LEVELS];  // pairs at each fraction of the motion bounds
+  uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs of the lists at each fraction of the motion bounds
   float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with: half the mean
 };
 
@@ -112,6 +112,7 @@ struct ContactConstants {
   vec4 gravity_h;                // g h [m/s]
   uint response_round;           // of responses: 0 before the lines, with the predicted positions; 1 and on after them
   uint first_substep, substeps;  // this substep; substeps of the frame
+  uint level;                    // fraction of the motion bounds, kFractions
   float substep_part;            // of the frame
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)

@@ -117,7 +117,7 @@ class Maker {
       corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
       begin(k, 0);
       for (const std::uint32_t v : corners) {
-        made_.sources.push_back({static_cast<uint>(made_.points.size()), range->first_vertex + v, 0, this_shape()});
+        made_.sources.push_back({static_cast<uint>(made_.points.size()), range->first_vertex + v, 0});
         vertex(v);
       }
     }
@@ -130,8 +130,6 @@ class Maker {
                             c.moves() ? 1u : 0u, static_cast<uint>(made_.sources.size()), 0});
   }
 
-  uint this_shape() const { return static_cast<uint>(made_.shapes.size()) - 1; }
-
   void point(const Vec3& at) {
     const auto x = [&](std::size_t d) { return static_cast<float>(at[d] - origin_[d]); };
     made_.points.push_back({{x(0), x(1), x(2), 0}, {x(0), x(1), x(2), 0}});
@@ -139,7 +137,7 @@ class Maker {
   }
 
   void from_capsule(const Vec3& at) {
-    made_.sources.push_back({static_cast<uint>(made_.points.size()), capsule_ends_++, 1, this_shape()});
+    made_.sources.push_back({static_cast<uint>(made_.points.size()), capsule_ends_++, 1});
     point(at);
   }
 

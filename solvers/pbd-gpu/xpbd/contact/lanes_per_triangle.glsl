@@ -9,7 +9,7 @@ uint ballot_bits(bool mine) {
   return bits;
 }
 uint from_first_lane(uint value) { return subgroupShuffle(value, 0u); }
-uvec4 sum_over_lanes(uvec4 value) {
+uint sum_over_lanes(uint value) {
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) value += subgroupShuffleXor(value, n);
   return value;
 }

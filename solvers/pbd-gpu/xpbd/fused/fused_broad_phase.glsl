@@ -68,13 +68,6 @@ void fill_at(float fraction, uint level) {
   }
 }
 
-void finish_broad_phase(uint level) {
-  uint all = frame_state.counted[level];
-  frame_state.pairs = min(all, CAPACITY);
-  frame_state.bound_fraction = kFractions[level];
-  if (all > CAPACITY) diagnostics.overflow += all - CAPACITY;
-}
-
 /// The frame's list of pairs. With kTestsContactFree there is none where a slow cloth meets no convex shape.
 bool broad_phase() {
   bool may_be_contact_free = kTestsContactFree && is_slow();
@@ -94,8 +87,7 @@ bool broad_phase() {
   if (global_thread == 0u) frame_state.max_displacement = 0u;  // until here of the last frame
   for (uint g = thread; g < GROUPS; g += THREADS)
     if (overlaps_cloth(boxes[SHAPES + g])) {
-      uint bit = g / GROUPS_A_BIT;
-      atomicOr(nearby_groups[bit / 32u], 1u << bit % 32u);
+      atomicOr(nearby_groups[g / 32u], 1u << g % 32u);
       any_nearby = kNearby;
     }
   barrier();  // every thread's look before the answer
@@ -108,7 +100,7 @@ bool broad_phase() {
     if (may_be_contact_free && frame_state.contact_possible == 0u) return true;
     if (level + 1u == PAIR_LEVELS || frame_state.counted[level] <= CAPACITY) break;
   }
-  if (global_thread == 0u) finish_broad_phase(level);
+  if (global_thread == 0u) finish_broad_phase();
   FOR_EACH_STRIDED(i, VERTICES) list_touched_vertices(i);
   GRID_BARRIER_OR_FAIL;  // the list before it is read
   return true;

@@ -6,16 +6,8 @@
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
-layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
-layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
-layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };
-
 #include "xpbd/lines/grid_lines.glsl"
 #include "xpbd/contact/contact_buffers.glsl"
-vec3 anchor(uvec2 at, uint k) {
-  return x[index_of(at)].xyz;
-}
-#include "xpbd/lines/integrate_lines.glsl"
 #include "xpbd/lines/line_colour.glsl"
 #include "common/grip.glsl"
 // Chains and cloth that touches itself have one kernel per pass.
@@ -39,7 +31,6 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #endif
 
 #include "common/grid_barrier.glsl"
-#define GRID_BARRIER_OR_RETURN if (!grid_barrier()) return
 #define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
 #define CLOTH_LOW frame_state.cloth_low
 #define CLOTH_HIGH frame_state.cloth_high
@@ -92,9 +83,6 @@ void find_active_pairs() {
 }
 
 #endif
-// Where one workgroup holds all lines, colours wait for their own workgroup only.
-bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >= ROWS; }
-
 #ifdef CONTACT_FREE
 /// All that is left of contact in a substep: how far a vertex may go in the frame.
 void end_lines(uint i, vec4 at) {
@@ -112,17 +100,14 @@ bool solve_lines(uint substep) {
 #ifndef CONTACT_FREE
   clear_active_bits(global_thread, grid_stride);
 #endif
-  for (uint n = 0u; n < colours && (!lines_in_a_group() || global_thread == thread); ++n) {
+  for (uint n = 0u; n < colours; ++n) {
     colour = colours - 1u - n;
-    pass(substep, n == 0u, n + 1u == colours);
-    if (n + 1u == colours) break;
-    if (lines_in_a_group()) WORKGROUP_BARRIER
-    else GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
+    pass(substep, n == 0u);
+    if (n + 1u < colours) GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
   }
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    if ((!lines_in_a_group() || global_thread == thread) && on_chain(i))
-      end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
+    if (on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
   GRID_BARRIER_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
   return true;
@@ -165,7 +150,6 @@ bool narrow_phase() {
   FOR_EACH_ACTIVE_PAIR(n, ACTIVE_COUNT) process_pair(pairs[n].w);
   return true;
 }
-
 
 /// Responses before (round 0) and after the lines.
 bool respond_to_contact(out uint active_count) {
@@ -223,16 +207,12 @@ bool frame() {
 #endif
 
 void main() {
-  set_thread();
-  lane = thread / BESIDE % LANES;
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  set_place(group);
   global_thread = group * THREADS + thread;
   grid_stride = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
   if (p.passes == 0u) {  // only a probe whether all can run
-    GRID_BARRIER_OR_RETURN;
-    leave_grid_barrier();
+    if (grid_barrier()) leave_grid_barrier();
     return;
   }
 #ifndef CONTACT_FREE

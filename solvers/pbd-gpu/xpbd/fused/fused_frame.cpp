@@ -10,12 +10,16 @@ constexpr std::uint32_t kThreadsTogether = 32;
 /// Workgroups: those beyond the lines' have pairs and vertices only. One takes a sixth longer where capsules sweep,
 /// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
+/// Groups of shapes that a bit of shared memory each suffices for, in 4 KiB.
+constexpr std::uint32_t kMaxGroups = 1u << 15;
 
 }  // namespace
 
 std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
   const std::string wanted = frame.tuning()["contact_frame"];
-  if (wanted == "never" || contact.with_itself() || !frame.scene().cloth.mass_factors.empty()) return nullptr;
+  if (wanted == "never" || contact.with_itself() || !frame.scene().cloth.mass_factors.empty() ||
+      contact.specialization().GROUPS > kMaxGroups)
+    return nullptr;
   // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
   if (wanted == "auto" && frame.device()->is_software()) return nullptr;
   std::unique_ptr<FusedFrame> made(new FusedFrame(frame, lines, contact));
@@ -61,7 +65,7 @@ void FusedFrame::add_contact_free(const std::vector<std::uint32_t>& constants, s
     contact_free_groups_ = groups_;
   } else {
     contact_free_ = frame_.add_kernel(stage, "line_frame_contact_free", sizeof(LineConstants),
-                                      joined(lines_.single_dispatch_specialization(one), planes), one.threads);
+                                      joined(lines_.specialization(one), planes), one.threads);
   }
 }
 

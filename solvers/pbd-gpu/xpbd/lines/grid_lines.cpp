@@ -18,20 +18,17 @@ Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tensi
     : frame_(frame),
       scene_(scene),
       tethers_(tethers_of(scene, frame.settings()["tethers"].get<bool>())),
-      over_constrained_(over_constrained_lines(scene)),
       uses_bdf2_(uses_bdf2),
       tension_(tension),
-      corrects_splitting_(corrects_splitting),
-      regularised_(
-          std::any_of(over_constrained_.begin(), over_constrained_.end(), [](std::uint8_t t) { return t != 0; })) {
+      corrects_splitting_(corrects_splitting) {
   if (tethers_.to.empty()) frame_.disable("tethers", tethers_.reason);
   const std::size_t n = scene.cloth.vertex_count();
-  if (regularised_) {
-    std::vector<float> smallest;
-    for (const std::uint8_t over_constrained : over_constrained_)
-      smallest.push_back(over_constrained != 0 ? static_cast<float>(kRegularisation) : 0.0f);
-    frame_.add_buffer(BIND_REGULARISATION, "regularisation", smallest);
+  std::vector<float> smallest;
+  for (const std::uint8_t over_constrained : over_constrained_lines(scene)) {
+    smallest.push_back(over_constrained != 0 ? static_cast<float>(kRegularisation) : 0.0f);
+    regularised_ = regularised_ || over_constrained != 0;
   }
+  if (regularised_) frame_.add_buffer(BIND_REGULARISATION, "regularisation", smallest);
   if (!corrects_splitting_) return;
   frame_.add_buffer(BIND_SHIFTS, "shifts by columns and rows", n * sizeof(vec4));
   frame_.add_buffer(BIND_LINK_CREEP, "creep of links", passes() * n * sizeof(float));
@@ -43,9 +40,8 @@ void Lines::add_kernels(bool any_masses) {
   moves_grips_ = one_group.threads > 0 && !any_masses && !scaled;
   if (moves_grips_) {
     shape_ = {one_group, one_group};
-    substeps_ =
-        frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & kLineFeatures), "line_frame", sizeof(LineConstants),
-                          single_dispatch_specialization(one_group).by_number(), one_group.threads);
+    substeps_ = frame_.add_kernel(frame_.add_stage("Lines", scene_.needs & kLineFeatures), "line_frame",
+                                  sizeof(LineConstants), specialization(one_group).by_number(), one_group.threads);
   } else if (scaled || !add_persistent()) {
     add_passes();
   }
@@ -74,7 +70,6 @@ std::uint32_t Lines::features() const {
   if (needs.has(Feature::Bend)) f |= LINES_BEND;
   if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
-  if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
   if (regularised_) f |= LINES_REGULARISED;
   if (uses_bdf2_) f |= LINES_BDF2;
   if (tension_) f |= LINES_TENSION;
@@ -90,6 +85,7 @@ LineSpecialization Lines::specialization(const LineShape& shape) const {
   s.ROWS = static_cast<std::uint32_t>(scene_.cloth.rows);
   s.THREADS = shape.threads;
   s.FEATURES = features();
+  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   s.TETHERS = static_cast<std::uint32_t>(tethers_.to.size());
   uint* const ends[Tethers::kMax][2] = {{&s.TETHER_0, &s.TETHER_0_LAST},
                                         {&s.TETHER_1, &s.TETHER_1_LAST},
@@ -105,17 +101,6 @@ LineSpecialization Lines::specialization(const LineShape& shape) const {
   const bool square =
       s.COLUMNS == s.ROWS && shape.lanes * shape.vertices == s.COLUMNS && s.COLUMNS % shape.chains_a_group() == 0;
   s.EXACT = square ? 1 : 0;
-  return s;
-}
-
-LineSpecialization Lines::single_dispatch_specialization(const LineShape& shape) const {
-  LineSpecialization s = specialization(shape);
-  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
-  const auto largest = static_cast<std::size_t>(std::max(scene_.cloth.columns, scene_.cloth.rows));
-  uint* const firm[] = {&s.REGULAR_0, &s.REGULAR_1, &s.REGULAR_2, &s.REGULAR_3};
-  for (std::size_t colour = 0; colour < 4; ++colour)
-    for (std::size_t chain = 0; chain < largest; ++chain)
-      *firm[colour] |= std::uint32_t{over_constrained_[colour * largest + chain]} << chain;
   return s;
 }
 
@@ -137,7 +122,6 @@ LineShape Lines::shape_with_contact() const {
 LineSpecialization Lines::persistent_specialization(const LineShape& shape) {
   shape_ = {shape, shape};
   LineSpecialization s = specialization(shape);
-  s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   s.PERSISTENT = 1;
   return s;
 }
@@ -190,7 +174,6 @@ LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) 
     c.bend_rounds_v = bend_rounds(static_cast<double>(c.bend_v), 4 / mass, shape_[1]);
   }
   c.inverse_mass = f(1 / mass);
-  c.regularisation = f(kRegularisation);
   c.substep_part = f(1.0 / substeps);
   c.frames_per_s = f(1 / dt_s);
   return c;

@@ -3,11 +3,12 @@
 // LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
+layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // by chain
 
+#include "xpbd/time/substep.glsl"
 const bool kBends = (FEATURES & LINES_BEND) != 0u;
 const bool kShears = (FEATURES & LINES_SHEAR) != 0u;
 const bool kElastic = (FEATURES & LINES_ELASTIC) != 0u;
-const bool kTension = (FEATURES & LINES_TENSION) != 0u;
 const bool kCorrectsSplitting = (FEATURES & LINES_SPLITTING) != 0u;
 
 uint thread, lane, chain, colour;
@@ -186,16 +187,7 @@ void link_equations(float smallest) {
     bool is = goes_on(lane * K + k) && sum > 0.0 && square > 0.0;
     float per_l = inversesqrt(square), l = square * per_l;
     direction[k] = is ? e * per_l : vec3(0.0);
-    // Chains between attached vertices. Strips: tension must not turn a link by more than a substep resolves, or it
-    // overshoots and throws what hangs on it; across itself a chain moves by x += L x, L = dlambda w / l times per
-    // second difference, so dlambda w / l is held below 1. In sheets diagonals hold a kink. An inextensible link torn
-    // to several times its length yields bit by bit. Implicit tension turns links by no more than they can turn, so
-    // that elastic links need none of it.
-    float regularisation_ratio = smallest;
-    if (kTension) regularisation_ratio = kElastic ? 0.0 : smallest;
-    else if (smallest != 0.0 && kElastic && !kShears) regularisation_ratio = max(smallest, l / rest - 1.0);
-    else if (smallest != 0.0 && !kElastic) regularisation_ratio = max(smallest, 4.0 * (l / rest - 5.0));
-    float soft = max(alpha, regularisation_ratio * max(w[k], next.w));
+    float soft = max(alpha, regularised(smallest, kElastic, l / rest) * max(w[k], next.w));
     link_diagonal[k] = is ? sum + soft : 1.0;
     link_right[k] = is ? rest - l : 0.0;
     link_length[k] = l;
@@ -237,7 +229,10 @@ void record_link_multipliers(float lambda_below) {
   record_multipliers(compliance(), lambda, lambda_below);
 }
 
-void stretch(float smallest) {
+void stretch() {
+  float smallest = 0.0;  // ratio of alpha to inverse mass
+  if ((FEATURES & LINES_REGULARISED) != 0u && chain < chain_count())
+    smallest = regularisation[colour * max(COLUMNS, ROWS) + chain];
   if (kCorrectsSplitting) load_creep();
   if (kTension) turn_by_tension(smallest);
   link_equations(smallest);

@@ -29,7 +29,7 @@ class Lines {
   /// Shape of the kernel that takes a frame in one dispatch in one workgroup (threads 0 if cloth or device do not fit
   /// it), and what it is specialized to.
   LineShape single_dispatch_shape() const;
-  LineSpecialization single_dispatch_specialization(const LineShape&) const;
+  LineSpecialization specialization(const LineShape&) const;
   vulkan::Groups groups_of(const LineShape&) const;
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
@@ -44,7 +44,6 @@ class Lines {
  private:
   LineDevice device() const;
   std::uint32_t features() const;
-  LineSpecialization specialization(const LineShape&) const;
   bool add_persistent();
   void add_passes();
   LineRequest request() const;
@@ -52,9 +51,8 @@ class Lines {
   FrameBuilder& frame_;
   const Scene& scene_;
   const Tethers tethers_;
-  const std::vector<std::uint8_t> over_constrained_;
-  const bool uses_bdf2_, tension_, corrects_splitting_, regularised_;
-  bool moves_grips_ = false;
+  const bool uses_bdf2_, tension_, corrects_splitting_;
+  bool regularised_ = false, moves_grips_ = false;
   const FrameKernel* substeps_ = nullptr;     ///< takes any number of substeps in a dispatch; else pass_ one colour
   std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
   std::array<LineShape, 2> shape_{};          ///< of rows, and of columns and diagonals

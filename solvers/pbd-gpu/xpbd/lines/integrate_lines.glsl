@@ -4,8 +4,6 @@
 vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
 vec3 last_pos[K], last_vel[K];  // before the last substep, if kUsesBdf2
 
-#include "xpbd/time/substep.glsl"
-
 /// The nearest vertex of a rectangle of pinned ones.
 uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
@@ -37,8 +35,4 @@ void integrate() {
     [[unroll]] for (uint t = 0u; t < 4u; ++t)
       if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t], first[t], last[t])));
   }
-}
-
-void limit_speed() {
-  [[unroll]] for (uint k = 0u; k < K; ++k) vel[k] = limited(vel[k]);
 }

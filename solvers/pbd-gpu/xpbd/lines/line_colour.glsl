@@ -1,6 +1,23 @@
-// One colour of lines, its state in memory: the buffers x, v, rx, rv, lx, lv and regularisation. A frame with contact
-// (FUSED_FRAME) predicts nothing. Compensation terms are of the first colour's chains, so threads that stay with them
-// keep them from substep to substep.
+// One colour of lines, its state in memory: the buffers below, x, v, lx and lv. A frame with contact (FUSED_FRAME)
+// predicts nothing. Compensation terms are of the first colour's chains, so threads that stay with them keep them from
+// substep to substep.
+layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
+layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
+
+/// Pinned vertices are never written, so reading them here races with nothing.
+vec3 anchor(uvec2 at, uint k) {
+  return x[index_of(at)].xyz;
+}
+#include "xpbd/lines/integrate_lines.glsl"
+
+/// This thread's place in its workgroup, on its chain and among all chains.
+void set_place(uint group) {
+  set_thread();
+  lane = thread / BESIDE % LANES;
+  chain = group * (THREADS / LANES) + thread / (LANES * BESIDE) * BESIDE + thread % BESIDE;
+  [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
+}
+
 void store_history(uint at[K]) {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
@@ -14,7 +31,7 @@ void store_history(uint at[K]) {
   }
 }
 
-void pass(uint substep, bool first, bool last) {
+void pass(uint substep, bool first) {
   uint at[K];
   bool fetches = first && substep == 0u;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -44,16 +61,12 @@ void pass(uint substep, bool first, bool last) {
 #endif
     }
   }
-  float smallest = 0.0;
-  if ((FEATURES & LINES_REGULARISED) != 0u && chain < chain_count())
-    smallest = regularisation[colour * max(COLUMNS, ROWS) + chain];
   if (first) {
     integrate();
     if (substep + 1u >= p.substeps) store_history(at);
   }
   if (kBends && colour < 2u) bend();
-  stretch(smallest);
-  if (last) limit_speed();
+  stretch();
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
     x[at[k]] = vec4(pos[k], w[k]);

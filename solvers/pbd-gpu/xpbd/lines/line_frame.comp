@@ -165,9 +165,7 @@ void main() {
       take();
       if (turn == 0u) integrate();
       if (kBends && colour < 2u) bend();
-      uint regular = colour == 0u ? REGULAR_0 : colour == 1u ? REGULAR_1 : colour == 2u ? REGULAR_2 : REGULAR_3;
-      stretch(chain < 32u && (regular >> chain & 1u) != 0u ? p.regularisation : 0.0);
-      if (turn + 1u == colours) limit_speed();
+      stretch();
       give();
 #ifdef CONTACT_FREE
       if (turn + 1u == colours) check_motion_bound();

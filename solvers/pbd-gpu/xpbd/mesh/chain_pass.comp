@@ -37,7 +37,6 @@ void move(vec3 step) {
 
 /// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
-  vel = limited(vel);
   fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
     TetherEnd end = tether_ends[TETHERS * i + t];
@@ -63,7 +62,6 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
 }
 
-const bool kTension = (FEATURES & LINES_TENSION) != 0u;
 vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
 float link_length;
 
@@ -77,15 +75,9 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   bool is = entry.rest >= 0.0 && sum > 0.0 && square > 0.0;
   float per_l = inversesqrt(square), l = square * per_l;
   vec3 g = is ? e * per_l : vec3(0.0);
-  // As in grid_lines.glsl: what is pulled over-constrained between attached vertices yields, by what keeps it regular
-  // and its tension from turning links farther than a substep resolves.
-  float regularisation_ratio = entry.regularisation;
-  if (kTension) regularisation_ratio = entry.compliance == 0.0 ? regularisation_ratio : 0.0;
-  else if (regularisation_ratio != 0.0 && entry.rest > 0.0) {
-    if (entry.compliance == 0.0) regularisation_ratio = max(regularisation_ratio, 4.0 * (l / entry.rest - 5.0));
-    else if ((FEATURES & LINES_SHEAR) == 0u) regularisation_ratio = max(regularisation_ratio, l / entry.rest - 1.0);
-  }
-  float soft = max(entry.compliance * p.per_h * p.per_h * p.per_force_scale, regularisation_ratio * max(w, next.w));
+  float stretched = entry.rest > 0.0 ? l / entry.rest : 1.0;
+  float soft = max(entry.compliance * p.per_h * p.per_h * p.per_force_scale,
+                   regularised(entry.regularisation, entry.compliance != 0.0, stretched) * max(w, next.w));
   exchange(vec4(g, 0.0), 1u, below, above);
   float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
   float right = entry.rest - l;
@@ -267,7 +259,7 @@ void main() {
       continue;
     }
     uint f = number < bends ? 0u : number - bends;
-    ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds, 0u);
+    ChainRange range = ChainRange(p.first_entry, block + 1u, p.rounds);
     if (PERSISTENT) range = ranges[f];
     if (block < range.blocks)
       pass(range.first_entry + item(), number == 0u && p.again == 0u, number >= bends, range.rounds);

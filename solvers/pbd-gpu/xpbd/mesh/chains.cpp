@@ -43,9 +43,7 @@ Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth,
   persistent_ =
       cloth.welded.empty() && runs_at_once<ChainConstants>(frame, kernel, s.by_number(), block_, all_groups());
   if (persistent_) {
-    std::vector<ChainRange> ranges;
-    for (const Colour& f : colours_) ranges.push_back({f.first_entry, f.entries / block_, f.rounds, 0});
-    frame.add_buffer(BIND_CHAIN_COLOURS, "chain colours", ranges);
+    frame.add_buffer(BIND_CHAIN_COLOURS, "chain colours", colours_);
     add_grid_barrier(frame);
   }
   s.PERSISTENT = persistent_ ? 1 : 0;
@@ -68,7 +66,7 @@ void Chains::add_colours(const ChainCloth& cloth) {
   for (std::size_t f = 0; f < colours.size(); ++f) {
     const std::vector<ChainEntry> more = entries_of(colours[f], scene_, cloth, block_, f == 0);
     const auto rounds = membrane_ ? 0u : static_cast<std::uint32_t>(std::bit_width(colours[f].longest() - 1));
-    colours_.push_back({static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(more.size()), rounds});
+    colours_.push_back({static_cast<uint>(entries_.size()), static_cast<uint>(more.size()) / block_, rounds});
     entries_.insert(entries_.end(), more.begin(), more.end());
   }
 }
@@ -78,7 +76,6 @@ ChainSpecialization Chains::specialization() const {
   s.THREADS = block_;
   s.TETHERS = tethers_;
   if (scene_.needs.has(Feature::Shear) || scene_.needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
-  if (limits_speed(scene_, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
   if (bends_) s.FEATURES |= LINES_BEND;
   if (uses_bdf2_) s.FEATURES |= LINES_BDF2;
   if (tension_) s.FEATURES |= LINES_TENSION;
@@ -106,8 +103,8 @@ void Chains::add_membrane() {
 /// Workgroups: the maximum number of blocks of a colour.
 vulkan::Groups Chains::all_groups() const {
   std::uint32_t largest = 0;
-  for (const Colour& f : colours_) largest = std::max(largest, f.entries);
-  return vulkan::groups_for(largest, block_);
+  for (const ChainRange& f : colours_) largest = std::max(largest, f.blocks);
+  return vulkan::groups_for(std::uint64_t{largest} * block_, block_);
 }
 
 void Chains::record(int count, const TimeStep& step, bool again) {
@@ -135,10 +132,10 @@ void Chains::record(int count, const TimeStep& step, bool again) {
   for (int s = 0; s < count; ++s) {
     for (c.first_pass = first; c.first_pass < end; ++c.first_pass) {
       const std::uint32_t k = c.first_pass;
-      const Colour& colour = colours_[k < first_colour ? 0 : k - first_colour];
+      const ChainRange& colour = colours_[k < first_colour ? 0 : k - first_colour];
       c.first_entry = colour.first_entry;
       c.rounds = colour.rounds;
-      frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.entries, c);
+      frame_.dispatch(*kernel_, k > 0 && k < first_colour ? c.vertices : colour.blocks * block_, c);
     }
     record_welds();
   }

@@ -24,9 +24,6 @@ class Chains {
   bool is_single_dispatch() const { return persistent_ && scene_.grips.vertices.empty(); }
 
  private:
-  struct Colour {
-    std::uint32_t first_entry, entries, rounds;
-  };
   void add_colours(const ChainCloth&);
   void add_bending();
   void add_membrane();
@@ -40,7 +37,7 @@ class Chains {
   const std::uint32_t block_;
   const bool uses_bdf2_, tension_, membrane_;
   std::uint32_t tethers_ = 0;
-  std::vector<Colour> colours_;
+  std::vector<ChainRange> colours_;
   std::vector<ChainEntry> entries_;
   bool persistent_ = false;
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;

@@ -17,12 +17,6 @@ namespace {
 /// Edges below this fraction of the mean are welded.
 constexpr double kSliver = 0.02;
 
-double mean_length(const std::vector<Edge>& all) {
-  double sum = 0;
-  for (const Edge& e : all) sum += e.rest_m;
-  return sum / static_cast<double>(all.size());
-}
-
 std::vector<EdgePath> grid_edge_paths(const Scene& s) {
   const int columns = s.cloth.columns, rows = s.cloth.rows;
   std::vector<EdgePath> out;
@@ -154,21 +148,14 @@ bool needs_chain_solver(const Scene& s) {
   return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
 }
 
-double substeps_for_short_links(const Scene& s) {
-  const std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
-  const double mean = mean_length(all);
-  double shortest = mean;
-  for (const Edge& e : all)
-    if (e.rest_m >= kSliver * mean) shortest = std::min(shortest, e.rest_m);
-  return std::max(1.0, std::sqrt(mean / (2 * shortest)));
-}
-
 ChainCloth chain_cloth(const Scene& s) {
   ChainCloth c;
   c.particle.resize(s.cloth.vertex_count());
   std::iota(c.particle.begin(), c.particle.end(), 0u);
   std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
-  const double mean = mean_length(all);
+  double mean = 0;
+  for (const Edge& e : all) mean += e.rest_m;
+  mean /= static_cast<double>(all.size());
   const auto root = [&](std::uint32_t v) {
     while (c.particle[v] != v) v = c.particle[v];
     return v;
@@ -309,46 +296,31 @@ std::vector<ChainEntry> entries_of(const ChainColour& colour, const Scene& scene
   std::vector<std::uint8_t> held(n, 0), seen(n, 0);
   for (const std::uint32_t v : scene.pins.vertices) held[cloth.particle[v]] = 1;
   for (const std::uint32_t v : scene.grips.vertices) held[v] = 1;
-  std::vector<const std::vector<std::uint32_t>*> longest_first;
-  for (const auto& chain : colour.chains) longest_first.push_back(&chain);
-  std::stable_sort(longest_first.begin(), longest_first.end(),
-                   [](const auto* a, const auto* b) { return a->size() > b->size(); });
-  std::vector<std::vector<ChainEntry>> blocks;
-  std::vector<std::size_t> with_room;  // blocks that are not full
+  std::vector<ChainEntry> out;
+  const ChainEntry padding{CHAIN_NO_VERTEX, -1, 0, 0};
   const auto put = [&](const std::vector<ChainEntry>& entries) {
-    for (std::size_t k = with_room.size(); k-- > 0;) {
-      std::vector<ChainEntry>& b = blocks[with_room[k]];
-      if (b.size() + entries.size() > block) continue;
-      b.insert(b.end(), entries.begin(), entries.end());
-      if (b.size() == block) with_room.erase(with_room.begin() + static_cast<std::ptrdiff_t>(k));
-      return;
-    }
-    blocks.push_back(entries);
-    if (entries.size() < block) with_room.push_back(blocks.size() - 1);
-    if (with_room.size() > 16) with_room.erase(with_room.begin());  // nearly full: not worth another try
+    if (out.size() % block + entries.size() > block) out.resize((out.size() / block + 1) * block, padding);
+    out.insert(out.end(), entries.begin(), entries.end());
   };
-  for (const auto* chain : longest_first) {
-    const auto held_ones = std::count_if(chain->begin(), chain->end(), [&](std::uint32_t v) { return held[v] != 0; });
-    const std::vector<float>& share = colour.shares[static_cast<std::size_t>(chain - colour.chains.data())];
+  for (std::size_t c = 0; c < colour.chains.size(); ++c) {
+    const std::vector<std::uint32_t>& chain = colour.chains[c];
+    const auto held_ones = std::count_if(chain.begin(), chain.end(), [&](std::uint32_t v) { return held[v] != 0; });
+    const std::vector<float>& share = colour.shares[c];
     std::vector<ChainEntry> entries;
-    for (std::size_t k = 0; k < chain->size(); ++k) {
-      const bool goes_on = k + 1 < chain->size();
-      ChainCloth::Link l = goes_on ? cloth.link((*chain)[k], (*chain)[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const bool goes_on = k + 1 < chain.size();
+      ChainCloth::Link l = goes_on ? cloth.link(chain[k], chain[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
       if (goes_on && !share.empty()) l.compliance_m_per_N /= share[k];
       entries.push_back(
-          {(*chain)[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? static_cast<float>(kRegularisation) : 0.0f});
-      seen[(*chain)[k]] = 1;
+          {chain[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? static_cast<float>(kRegularisation) : 0.0f});
+      seen[chain[k]] = 1;
     }
     put(entries);
   }
   if (with_others)
     for (std::uint32_t v = 0; v < n; ++v)
       if (seen[v] == 0 && cloth.particle[v] == v) put({{v, -1, 0, 0}});
-  std::vector<ChainEntry> out;
-  for (std::vector<ChainEntry>& b : blocks) {
-    b.resize(block, {CHAIN_NO_VERTEX, -1, 0, 0});
-    out.insert(out.end(), b.begin(), b.end());
-  }
+  out.resize((out.size() + block - 1) / block * block, padding);
   return out;
 }
 

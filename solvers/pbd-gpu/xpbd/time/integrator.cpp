@@ -100,13 +100,16 @@ bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
          tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
 }
 
-/// True if hands pull a sheet so far that its links overshoot under BDF2 at the substeps that it uses.
-bool is_pulled_far(const Scene& scene) {
-  return !scene.grips.vertices.empty() && !(grip_strain(scene) <= rules::kMaxGripStrain);
+/// Whether a cloth that is held may be second order in time at the substeps that it uses. A strip's links are one
+/// system and solved exactly; what a sheet's colours leave to one another is not.
+FeatureDecision second_order_decision(const Scene& scene, const nlohmann::json& settings) {
+  if (is_strip(scene)) return {true, ""};
+  if (!scene.grips.vertices.empty() && !(grip_strain(scene) <= rules::kMaxGripStrain))
+    return {false, "hands pull the sheet by more than half of their distance: its links would overshoot"};
+  if (!resolves_waves(scene, xpbd_substeps(scene, settings)))
+    return {false, "a wave crosses the sheet in too few substeps: stiff links would gain energy"};
+  return {true, ""};
 }
-
-constexpr const char* kPulledFar =
-    "hands pull the sheet by more than half of their distance: its links would overshoot";
 
 }  // namespace
 
@@ -144,12 +147,8 @@ FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& setti
   if (is_tethered(scene, settings) && scene.cloth.mass_factors.empty() &&
       may_leave_tension_to_tethers(scene, xpbd_substeps(scene, settings)))
     return {false, "tethers limit the stretch at lower cost"};
-  if (is_strip(scene)) return {true, ""};
-  if (starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
-  if (is_pulled_far(scene)) return {false, kPulledFar};
-  if (!resolves_waves(scene, xpbd_substeps(scene, settings)))
-    return {false, "a wave crosses the sheet in too few substeps: it would not come to rest"};
-  return {true, ""};
+  if (!is_strip(scene) && starts_crumpled(scene)) return {false, "the sheet starts crumpled"};
+  return second_order_decision(scene, settings);
 }
 
 FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings) {
@@ -159,17 +158,11 @@ FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
   if (!is_held(scene)) return {true, ""};
-  const int substeps = xpbd_substeps(scene, settings);
-  const bool tension = tension_decision(scene, settings).enabled;
-  // A strip's links are one system and solved exactly; what a sheet's colours leave to one another is not.
-  if (is_strip(scene)) return {true, ""};
-  if (is_pulled_far(scene)) return {false, kPulledFar};
-  if (!resolves_waves(scene, substeps))
-    return {false, "a wave crosses the cloth in too few substeps: stiff links would gain energy"};
   // Tethers hold a grid, whose rows are solved last and whole; no colour that is solved last holds all of a mesh.
-  if (!tension && scene.needs.has(Feature::ClothMesh))
+  const FeatureDecision may = second_order_decision(scene, settings);
+  if (may.enabled && scene.needs.has(Feature::ClothMesh) && !tension_decision(scene, settings).enabled)
     return {false, "a triangle mesh without implicit tension: single links would stretch far"};
-  return {true, ""};
+  return may;
 }
 
 double substeps_for_splitting(const Scene& scene) {

@@ -1,18 +1,11 @@
 #pragma once
 #include <array>
 
-// Every threshold by which a scene decides how it is integrated and how many substeps it takes: one row each, with its
-// value, unit, reason and source. The pages of xpbd/time say how rows act together.
+// Every threshold by which a scene decides how it is integrated and how many substeps it takes, each with its [unit],
+// reason and (source, unless it is a choice). The pages of xpbd/time say how they act together.
 
 namespace clothbench::pbd_gpu {
 
-/// A row. Code reads its value by the row's name.
-template <class T>
-struct Rule {
-  T value;
-  const char *unit, *reason, *source;
-  constexpr operator T() const { return value; }
-};
 /// At `fast`, `default` and `accurate`.
 using PerQuality = std::array<double, 3>;
 /// Substeps of a frame: at least `smallest`, and one for so many links of the longer side.
@@ -22,119 +15,81 @@ struct LinkRule {
 
 namespace rules {
 
-using Value = Rule<double>;
-using Count = Rule<int>;
-using ByQuality = Rule<PerQuality>;
-using Substeps = Rule<LinkRule>;
-
-// clang-format off
 // Second order in time, tension and the splitting correction (integrator.cpp).
-inline constexpr Value kMaxStepRatio = {2, "of the last step",
-    "a longer step begins anew: the history says little",
-    "zero-stable below 1 + sqrt(2): Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, III.5"};
-inline constexpr Value kMaxWaveOfCloth = {0.6, "of the longer side, a substep",
-    "above, a horizontal sheet released by two corners gains up to seven times the energy of backward Euler",
-    "energy of released sheets"};
-inline constexpr Value kMaxExplicitTension = {1.0 / 3, "h'^2 T / (m l)",
-    "above, explicit tension throws a line aside", "stability of a line under tension (xpbd/time/README.md)"};
-inline constexpr Value kMaxGripStrain = {0.5, "1",
-    "hands that pull a sheet farther make its links overshoot: 12 % above the converged stretch, 3 % at order 1",
-    "two-hand-stretch-10mps"};
-inline constexpr Value kMaxSplittingCells = {6.9, "cells a wave crosses in h'",
-    "above, a sheet leaves its modulus: squared, 100 within seconds, 52 in a minute, 47 never",
-    "modulus of a patch of 65 x 17 vertices"};
-inline constexpr Value kMaxSplittingOfSide = {1.15, "of the shorter side in h'",
-    "above, what colours keep of one another feeds oscillations", "energy of small sheets"};
-inline constexpr Value kMaxStiffnessTimesTension = {25, "h'^2 Y / m times h'^2 T / (m l)",
-    "above, a sheet under tension gains energy: 39 is stable over 20 s, 81 grows",
-    "33 x 33 vertices held by one corner"};
-inline constexpr Count kMinSplittingLinks = {4, "links across", "fewer leave nothing to correct", "choice"};
-inline constexpr Value kMaxSplittingOblong = {0.05, "of a cell's side",
-    "the correction is derived for square cells", "xpbd/time/README.md"};
-inline constexpr ByQuality kMaxSplittingSubsteps = {{6, 32, 64}, "substeps",
-    "what a frame may cost for its modulus; n/6 if that is more", "choice of cost"};
+// [of the last step] A longer step begins anew: the history says little (zero-stable below 1 + sqrt(2): Hairer, Norsett
+// & Wanner, Solving Ordinary Differential Equations I, III.5)
+inline constexpr double kMaxStepRatio = 2;
+// [of the longer side, a substep] Above, a horizontal sheet released by two corners gains up to seven times the energy
+// of backward Euler (energy of released sheets)
+inline constexpr double kMaxWaveOfCloth = 0.6;
+// [h'^2 T / (m l)] Above, explicit tension throws a line aside (xpbd/time/README.md)
+inline constexpr double kMaxExplicitTension = 1.0 / 3;
+// Hands that pull a sheet farther make its links overshoot: 12 % above the converged stretch, 3 % at order 1
+// (two-hand-stretch-10mps)
+inline constexpr double kMaxGripStrain = 0.5;
+// [cells a wave crosses in h'] Above, a sheet leaves its modulus: squared, 100 within seconds, 52 in a minute, 47 never
+// (modulus of a patch of 65 x 17 vertices)
+inline constexpr double kMaxSplittingCells = 6.9;
+// [of the shorter side in h'] Above, what colours keep of one another feeds oscillations (energy of small sheets)
+inline constexpr double kMaxSplittingOfSide = 1.15;
+// [h'^2 Y / m times h'^2 T / (m l)] Above, a sheet under tension gains energy: 39 is stable over 20 s, 81 grows (33 x
+// 33 vertices held by one corner)
+inline constexpr double kMaxStiffnessTimesTension = 25;
+inline constexpr int kMinSplittingLinks = 4;  // [links across] Fewer leave nothing to correct
+// [of a cell's side] The correction is derived for square cells (xpbd/time/README.md)
+inline constexpr double kMaxSplittingOblong = 0.05;
+// [substeps] What a frame may cost for its modulus; n/6 if that is more
+inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 
 // Substeps by what acts on the cloth: the first row that applies (substep_count.cpp). They are counted per frame,
-// whatever its duration: a constant in seconds would differ between scaled copies of a scene.
-inline constexpr Value kStiff = {1e4, "N/m",
-    "from here on tethers carry the load, as in inextensible cloth", "scenes of hanging sheets"};
-inline constexpr Substeps kTetheredStiff = {{{2, 6, 20}, {24, 12, 6}}, "substeps",
-    "tethers carry the load", "error of hanging sheets by substeps"};
-inline constexpr Substeps kTethered = {{{3, 5, 20}, {24, 12, 6}}, "substeps",
-    "tethers bound the stretch", "error of hanging sheets by substeps"};
-inline constexpr Substeps kStrip = {{{5, 10, 20}, {12, 6, 3}}, "substeps",
-    "a line is solved exactly", "error of strips by substeps"};
-inline constexpr Substeps kPinnedSheet = {{{5, 10, 20}, {6, 3, 1.5}}, "substeps",
-    "colours leave error to one another", "error of sheets by substeps"};
-inline constexpr Substeps kAttachedSheet = {{{10, 20, 40}, {6, 3, 1.5}}, "substeps",
-    "attachments stretch a sheet", "two-hand-stretch"};
-inline constexpr Substeps kKinematicContact = {{{4, 5, 20}, {8, 6, 1.5}}, "substeps",
-    "a hand pushes in directions that tethers do not limit", "capsule-sweep"};
-inline constexpr Substeps kKinematicContactChains = {{{5, 8, 20}, {6, 4, 1.5}}, "substeps",
-    "chains of a mesh leave more error than grid lines", "strain of garments under capsules"};
-inline constexpr Substeps kReleased = {{{4, 5, 20}, {8, 8, 6}}, "substeps",
-    "what a hand has strained relaxes without contact",
-    "strain at the end: with the substeps of free cloth 6 of 68 random runs fail"};
-inline constexpr Substeps kResting = {{{8, 16, 32}, {4, 2, 1}}, "substeps",
-    "much of the cloth is struck at once", "strain at impact and friction on edges"};
-inline constexpr Substeps kRestingStrip = {{{8, 14, 28}, {12, 6, 3}}, "substeps",
-    "a strip has no diagonals to strain", "capstan, incline"};
-inline constexpr Substeps kNoContact = {{{3, 5, 20}, {1e9, 1e9, 1e9}}, "substeps",
-    "nothing acts: any number is right", "choice"};
-inline constexpr Value kManyLinks = {300, "links",
-    "from here on links at pins have the largest error at `fast`", "stretch at the pins of fine sheets"};
-inline constexpr Value kManyLinksFactor = {1.2, "1",
-    "as above: n/20 in place of n/24", "stretch at the pins of fine sheets"};
-inline constexpr Value kLayersFactor = {1.5, "1",
-    "a heap of the cloth's own layers slides on for long otherwise",
-    "a heap of 32 x 32 vertices slides for a second at 16, and lies at 24"};
-inline constexpr Value kMaxSwing = {0.15, "dt sqrt(g / L)",
-    "what gravity moves farther in a frame counts as several frames", "strips and sheets under strong gravity"};
-inline constexpr ByQuality kMaxSlidingStep = {{0.005, 0.0025, 0.00125}, "h sqrt(g / L)",
-    "a sliding strip is first order in time: within 3 % at the first", "Atwood's rope on a cylinder"};
+// whatever its duration: a constant in seconds would differ between scaled copies of a scene. Source unless stated:
+// error by substeps, in hanging sheets and strips without contact, and strain in contact.
+inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Tethers bound the stretch
+inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
+inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Colours leave error to one another
+inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
+// A hand pushes in directions that tethers do not limit (capsule-sweep)
+inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
+// Chains of a mesh leave more error than grid lines (garments under capsules)
+inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
+// What a hand has strained relaxes without contact: with the substeps of free cloth 6 of 68 random runs fail
+inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
+inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the cloth is struck at once
+// A strip has no diagonals to strain (capstan, incline)
+inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
+inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing acts: any number is right
+// A heap of the cloth's own layers slides on otherwise: one of 32 x 32 vertices for a second at 16, and lies at 24
+inline constexpr double kLayersFactor = 1.5;
+// [dt sqrt(g / L)] What gravity moves farther in a frame counts as several frames: at 100 g a strip gains energy
+inline constexpr double kMaxSwing = 0.15;
+// [h sqrt(g / L)] A sliding strip is first order in time: within 3 % at the first (Atwood's rope on a cylinder)
+inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
 // Substeps by speed in contact (substep_count.cpp). Nothing is passed with any number, so the maxima are of cost.
-inline constexpr ByQuality kTravelMargins = {{2, 1, 0.5}, "contact offsets, a substep",
-    "a struck vertex pulls its neighbours along before links overstretch", "strain of drawn scenes of contact"};
-inline constexpr ByQuality kFasterOnImpact = {{1, 2, 1}, "1",
-    "divides the travel of fast impacts: strain grows with speed", "strain of drawn scenes of contact"};
-inline constexpr Value kFastTravel = {8, "travels a frame",
-    "from here on motion counts as faster", "strain of drawn scenes of contact"};
-inline constexpr Value kMinMarginOfCell = {0.125, "cells",
-    "a thin offset does not ask for more substeps than this", "choice of cost"};
-inline constexpr Value kMaxTravelOnImpact = {0.25, "cells",
-    "on static shapes much of the cloth is struck at once", "strain of drawn scenes of contact"};
-inline constexpr Value kMaxLayerApproach = {2.0 / 3, "thicknesses, a substep",
-    "responses cannot part layers that approach farther; planes cut their motion", "xpbd/contact/README.md"};
-inline constexpr Value kUsersHand_m_per_s = {2, "m/s",
-    "a live session does not know its hand's speed, and a replay must take as many substeps", "usual hand motion"};
-inline constexpr ByQuality kMaxForSpeed = {{16, 32, 64}, "substeps",
-    "what a frame may cost", "choice of cost"};
-inline constexpr ByQuality kMaxForImpact = {{32, 96, 96}, "substeps",
-    "the same of free cloth on static colliders", "choice of cost"};
+// [contact offsets, a substep] A struck vertex pulls its neighbours along before links overstretch
+inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
+inline constexpr double kMinMarginOfCell = 0.125;  // [cells] A thin offset does not ask for more substeps than this
+// [thicknesses, a substep] Responses cannot part layers that approach farther; planes cut their motion
+inline constexpr double kMaxLayerApproach = 2.0 / 3;
+// [m/s] A live session does not know its hand's speed, and a replay must take as many substeps
+inline constexpr double kUsersHand_m_per_s = 2;
+inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] What a frame may cost
+inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] The same of free cloth on static colliders
 
-// Substeps by the last frame (SubstepController).
-inline constexpr Value kMinOfLast = {0.75, "of the last frame's",
-    "the strain of an impact relaxes in the frames after it", "strain of drawn scenes of contact"};
-inline constexpr Count kSubstepGrain = {4, "substeps",
-    "a frame is not recorded anew each time", "choice of cost"};
-inline constexpr Value kQuiescent = {1.0 / 24, "cells a frame",
-    "below for some frames, the cloth rests", "cloth at rest on a desk gives by 1 mm when the number changes"};
-inline constexpr Value kMoves = {1.0 / 6, "cells a frame",
-    "above, all substeps come back; apart from kQuiescent, so that the number does not oscillate",
-    "cloth at rest on a desk gives by 1 mm when the number changes"};
-inline constexpr Count kQuiescentFrames = {4, "frames",
-    "a turning point is not rest", "cloth at rest on a desk gives by 1 mm when the number changes"};
-inline constexpr Count kMaxHalvings = {2, "halvings",
-    "fewer substeps leave more strain", "cloth at rest on a desk gives by 1 mm when the number changes"};
+// Substeps by the last frame (SubstepController): cloth at rest on a desk gives by 1 mm when their number changes.
+inline constexpr double kMinOfLast = 0.75;  // [of the last frame's] The strain of an impact relaxes in the next frames
+inline constexpr int kSubstepGrain = 4;     // [substeps] A frame is not recorded anew each time
+inline constexpr double kQuiescent = 1.0 / 24;  // [cells a frame] Below for some frames, the cloth rests
+// [cells a frame] Above, all substeps come back; apart from kQuiescent, so that the number does not oscillate
+inline constexpr double kMoves = 1.0 / 6;
+inline constexpr int kQuiescentFrames = 4;  // [frames] A turning point is not rest
+inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
 // Long frames and crumpled starts (solver.cpp).
-inline constexpr Value kLongFrame = {1.25, "of the scene's frame", "jitter is no hitch", "choice"};
-inline constexpr Value kMaxLongFrame_s = {1, "s",
-    "in a longer frame the simulation itself has fallen behind", "choice"};
-inline constexpr Count kCrumpledFactor = {4, "1",
-    "with fewer substeps a crumpled start takes longer than 1 s to open", "crumpled starts of scenarios/stability"};
-// clang-format on
+inline constexpr double kLongFrame = 1.25;    // [of the scene's frame] Jitter is no hitch
+inline constexpr double kMaxLongFrame_s = 1;  // [s] In a longer frame the simulation itself has fallen behind
+// With fewer substeps a crumpled start takes longer than 1 s to open (crumpled starts of scenarios/stability)
+inline constexpr int kCrumpledFactor = 4;
 
 }  // namespace rules
 }  // namespace clothbench::pbd_gpu

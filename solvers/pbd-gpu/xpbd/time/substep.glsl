@@ -50,9 +50,15 @@ vec3 tethered(vec3 position, vec3 end, float reach) {
   return square > reach * reach ? e * (reach * inversesqrt(square) - 1.0) : vec3(0.0);
 }
 
-/// No vertex is faster than a fall across the cloth can make it: what a solve of few substeps throws, it does not keep.
-vec3 limited(vec3 velocity) {
-  float square = dot(velocity, velocity);
-  bool too_fast = (FEATURES & LINES_LIMIT_SPEED) != 0u && square > p.speed_limit * p.speed_limit;
-  return too_fast ? velocity * (p.speed_limit * inversesqrt(square)) : velocity;
+const bool kTension = (FEATURES & LINES_TENSION) != 0u;
+/// Least ratio of a link's alpha to inverse mass, in a chain pulled over-constrained between attached vertices; 0 in
+/// others, where `smallest` is. `stretched`: length over rest length. Strips: tension must not turn a link by more than
+/// a substep resolves, or it overshoots and throws what hangs on it; across itself a chain moves by x += L x,
+/// L = dlambda w / l times per second difference, so dlambda w / l is held below 1. In sheets diagonals hold a kink. An
+/// inextensible link torn to several times its length yields bit by bit. Implicit tension turns links by no more than
+/// they can turn, so that elastic links need none of it.
+float regularised(float smallest, bool elastic, float stretched) {
+  if (kTension) return elastic ? 0.0 : smallest;
+  if (smallest == 0.0 || (elastic && (FEATURES & LINES_SHEAR) != 0u)) return smallest;
+  return max(smallest, elastic ? stretched - 1.0 : 4.0 * (stretched - 5.0));
 }

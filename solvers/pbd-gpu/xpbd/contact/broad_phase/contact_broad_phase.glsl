@@ -1,5 +1,5 @@
 // Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds
-// of its vertices. Pairs are counted first, for the largest fraction of the bounds whose pairs fit, then written.
+// of its vertices. The list is made for one fraction of the bounds after another (kFractions) until its pairs fit.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
@@ -58,10 +58,8 @@ uint overlapping_shapes(uint first, uint end, out uint own) {
   return cluster_or(own);
 }
 
-// A bit stands for one group, and for several of them where there are very many.
-#define MOST_GROUP_WORDS 1024u
-#define GROUPS_A_BIT ((GROUPS + 32u * MOST_GROUP_WORDS - 1u) / (32u * MOST_GROUP_WORDS))
-#define GROUP_WORDS ((GROUPS + 31u) / 32u < MOST_GROUP_WORDS ? (GROUPS + 31u) / 32u : MOST_GROUP_WORDS)
+// One bit per group.
+#define GROUP_WORDS ((GROUPS + 31u) / 32u)
 #ifdef FUSED_FRAME
 shared uint nearby_groups[GROUP_WORDS + 1u];
 #define NEARBY_GROUPS(word) nearby_groups[word]
@@ -69,14 +67,14 @@ shared uint nearby_groups[GROUP_WORDS + 1u];
 #define NEARBY_GROUPS(word) ~0u
 #endif
 /// The next few of the groups with a bit that meet the primitive; the bits looked at are cleared.
-uint overlapping_groups(inout uint bits, uint word, uint part) {
+uint overlapping_groups(inout uint bits, uint word) {
   uint overlapping = 0u, last = bits;
   for (uint n = 0u; n < kAabbsPerStep && last != 0u; ++n) last &= last - 1u;
   uint step_bits = bits ^ last;
   bits = last;
   for (uint n = 0u; n < PRIMITIVE_LANE; ++n) step_bits &= step_bits - 1u;
   [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
-    uint g = GROUPS_A_BIT * (32u * word + uint(findLSB(step_bits))) + part;
+    uint g = 32u * word + uint(findLSB(step_bits));
     if (step_bits != 0u && g < GROUPS && aabb_overlaps(boxes[SHAPES + g])) overlapping |= step_bits & -step_bits;
     for (uint k = 0u; k < LANES_PER_PRIMITIVE; ++k) step_bits &= step_bits - 1u;
   }
@@ -85,17 +83,16 @@ uint overlapping_groups(inout uint bits, uint word, uint part) {
 // Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from
 // there on; `own`: this lane's shapes.
 #define FOR_EACH_OVERLAPPING_SHAPES(BODY) \
-  for (uint part = 0u; part < GROUPS_A_BIT; ++part) \
-    for (uint word = 0u; word < GROUP_WORDS; ++word) \
-      for (uint bits = NEARBY_GROUPS(word); bits != 0u;) \
-        for (uint groups = overlapping_groups(bits, word, part); ANY_IN_SUBGROUP(groups); groups &= groups - 1u) { \
-          uint first = SHAPES_PER_GROUP * (GROUPS_A_BIT * (32u * word + uint(max(findLSB(groups), 0))) + part); \
-          uint last = groups != 0u ? min(first + SHAPES_PER_GROUP, SHAPES) : 0u; \
-          for (uint step = 0u; step < SHAPES_PER_GROUP; step += kAabbsPerStep) { \
-            uint q = first + step, own, overlapping = overlapping_shapes(q, last, own); \
-            BODY \
-          } \
-        }
+  for (uint word = 0u; word < GROUP_WORDS; ++word) \
+    for (uint bits = NEARBY_GROUPS(word); bits != 0u;) \
+      for (uint groups = overlapping_groups(bits, word); ANY_IN_SUBGROUP(groups); groups &= groups - 1u) { \
+        uint first = SHAPES_PER_GROUP * (32u * word + uint(max(findLSB(groups), 0))); \
+        uint last = groups != 0u ? min(first + SHAPES_PER_GROUP, SHAPES) : 0u; \
+        for (uint step = 0u; step < SHAPES_PER_GROUP; step += kAabbsPerStep) { \
+          uint q = first + step, own, overlapping = overlapping_shapes(q, last, own); \
+          BODY \
+        } \
+      }
 
 void write_pair(uint at, uint primitive, uint of_shape) {
   pairs[at] = uvec4(primitive, of_shape, 0u, 0u);
@@ -118,6 +115,13 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
     }
     at += uint(bitCount(overlapping));
   )
+}
+
+/// Of the list at the largest fraction of the motion bounds whose pairs fit. By one thread.
+void finish_broad_phase() {
+  uint level = fitting_level(frame_state.counted, CAPACITY);
+  frame_state.pairs = min(frame_state.counted[level], CAPACITY);
+  frame_state.bound_fraction = kFractions[level];
 }
 
 /// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.

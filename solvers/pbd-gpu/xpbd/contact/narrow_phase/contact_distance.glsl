@@ -11,7 +11,7 @@ struct Nearest {
   vec3 n;    // from the convex shape to the cloth
   float gap; // between the primitive and the convex shape without its radius; at most 0: they touch
   vec3 on_cloth, on_shape;  // weights; for the convex shape only if it has at most three points
-  vec3 witness, displacement;  // the convex shape's nearest point at the end, and its displacement in the substep
+  vec3 displacement;  // of the convex shape's nearest point in the substep
 };
 
 vec3 point_at(uint j, float t) {
@@ -145,7 +145,7 @@ void load_shape(float t) {
 Nearest nearest_of_few(float begin, float end) {
   load_shape(begin);
   Feature f = nearest_feature();
-  Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_shape, vec3(0.0), vec3(0.0));
+  Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_shape, vec3(0.0));
   try_normal(r, f.apart, begin);
   // The difference of the nearest points loses digits where they nearly touch or the convex shape is large: what rounds
   // it by a rounding moves the convex shape's far corners. Across the features it does not.
@@ -155,12 +155,13 @@ Nearest nearest_of_few(float begin, float end) {
     vec3 face = cross(shape_points[1] - shape_points[0], shape_points[2] - shape_points[0]);
     try_normal(r, dot(face, f.apart) < 0.0 ? -face : face, begin);
   }
+  vec3 at_begin = vec3(0.0), at_end = vec3(0.0);
   [[unroll]] for (uint j = 0u; j < 3u; ++j) {
     if (j >= shape.count) continue;
-    r.witness += f.on_shape[j] * point_at(j, end);
-    r.displacement += f.on_shape[j] * shape_points[j];
+    at_end += f.on_shape[j] * point_at(j, end);
+    at_begin += f.on_shape[j] * shape_points[j];
   }
-  r.displacement = r.witness - r.displacement;
+  r.displacement = at_end - at_begin;
   return r;
 }
 #include "xpbd/contact/narrow_phase/gjk.glsl"

@@ -167,7 +167,7 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
   vec3 v = dot(guess, guess) > 0.0 ? guess : cloth[0] - point_at(0u, begin);
   if (dot(v, v) == 0.0) v = vec3(0.0, 1.0, 0.0);
   simplex_size = 0u;
-  Nearest r = Nearest(vec3(0.0), -1e30, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  Nearest r = Nearest(vec3(0.0), -1e30, vec3(0.0), vec3(0.0), vec3(0.0));
   for (uint k = 0u; k < kMax; ++k) {
     Corner c = support(v, begin);
     bool old = false;
@@ -200,9 +200,7 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     if (m >= simplex_size) continue;
     [[unroll]] for (uint c = 0u; c < 3u; ++c)
       if (c == simplex[m].a) r.on_cloth[c] += weight_of[m];
-    vec3 last = point_at(simplex[m].b, end);
-    r.witness += weight_of[m] * last;
-    r.displacement += weight_of[m] * (last - point_at(simplex[m].b, begin));
+    r.displacement += weight_of[m] * (point_at(simplex[m].b, end) - point_at(simplex[m].b, begin));
   }
   return r;
 }

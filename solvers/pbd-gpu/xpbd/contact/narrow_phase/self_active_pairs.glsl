@@ -1,8 +1,5 @@
-#version 450
 // Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's
 // active pairs begin is in no fixed order, and nothing depends on it; the pairs of a triangle are in the list's order.
-#define SUBGROUPS
-#include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/lanes_per_triangle.glsl"
 
 /// Where a triangle's active pairs begin, and how many there is place for.
@@ -41,7 +38,7 @@ void collect_active_pairs(uint t) {
     test_pairs(first, end, own, true);
     [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) count += is_active_pair[n] ? 1u : 0u;
   }
-  count = sum_over_lanes(uvec4(count, 0u, 0u, 0u)).x;
+  count = sum_over_lanes(count);
   uvec2 slot = uvec2(0u);
   if (triangle_lane() == 0u) {
     slot = reserve(count);
@@ -60,8 +57,4 @@ void collect_active_pairs(uint t) {
       at += uint(bitCount(bits));
     }
   }
-}
-
-void main() {
-  FOR_EACH_TRIANGLE(t, TRIANGLES, collect_active_pairs(t);)
 }

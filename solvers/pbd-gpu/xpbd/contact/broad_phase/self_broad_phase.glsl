@@ -1,9 +1,6 @@
-#version 450
 // Candidate pairs of triangles of the cloth without a common vertex whose boxes overlap, once per frame; each is stored
 // with both triangles. A box at a fraction of the motion bounds lies between those at rest and at the whole motion
-// bounds. One subgroup per triangle: counts its pairs at several fractions; FILL writes them.
-#define SUBGROUPS
-#include "xpbd/contact/contact_buffers.glsl"
+// bounds. One subgroup per triangle.
 const float kRoundingFactor = 0.9999;  // so that rounding makes no bound too great
 bool share_a_vertex(uvec4 a, uvec4 b) {
   for (uint c = 0u; c < 3u; ++c)
@@ -43,12 +40,20 @@ float min_distance(SelfAabb a, SelfAabb b) {
   return kRoundingFactor * length(max(apart, 0.0));
 }
 
-void fill_self_pairs_of(uint slot) {
-  uint own = self_order[slot];
-  uvec4 range = self_ranges[own], e = primitives[own];
+void list_self_pairs_of(uint slot) {
+  uint own = self_order[slot], n = 0u;
+  uvec4 e = primitives[own];
   SelfAabb box = self_aabbs[slot];
-  uint at = range.x, end = range.x + range.y;
-  FOR_EACH_NEIGHBOUR(box, frame_state.self_bound_fraction,
+  FOR_EACH_NEIGHBOUR(box, kFractions[p.level],
+    if (mine && !share_a_vertex(e, primitives[self_order[q]])) ++n;
+  )
+  n = sum_over_lanes(n);
+  uint at = 0u;
+  if (triangle_lane() == 0u) at = min(atomicAdd(frame_state.self_counted[p.level], n), SELF_CAPACITY);
+  at = from_first_lane(at);
+  uint end = at + min(n, SELF_CAPACITY - at);
+  if (triangle_lane() == 0u) self_ranges[own] = uvec4(at, end - at, 0u, 0u);
+  FOR_EACH_NEIGHBOUR(box, kFractions[p.level],
     uint other = mine ? self_order[q] : 0u;
     mine = mine && !share_a_vertex(e, primitives[other]);
     uint bits = ballot_bits(mine);
@@ -56,26 +61,4 @@ void fill_self_pairs_of(uint slot) {
     if (mine && to < end) self_pairs[to] = SelfPair(other, min_distance(box, self_aabbs[q]));
     at += uint(bitCount(bits));
   )
-}
-
-void count_self_pairs_of(uint slot) {
-  uint own = self_order[slot];
-  uvec4 e = primitives[own], n = uvec4(0u);
-  SelfAabb box = self_aabbs[slot];
-  FOR_EACH_NEIGHBOUR(box, 1.0,
-    if (mine && !share_a_vertex(e, primitives[self_order[q]])) {
-      SelfAabb other = self_aabbs[q];
-      for (uint l = 0u; l < PAIR_LEVELS && aabbs_overlap(box, other, kFractions[l]); ++l) ++n[l];
-    }
-  )
-  n = sum_over_lanes(n);
-  if (triangle_lane() == 0u) self_ranges[own] = n;
-}
-
-void main() {
-  if (FILL) {
-    FOR_EACH_TRIANGLE(q, TRIANGLES, fill_self_pairs_of(q);)
-  } else {
-    FOR_EACH_TRIANGLE(q, TRIANGLES, count_self_pairs_of(q);)
-  }
 }

@@ -1,8 +1,6 @@
-#version 450
 // Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
 // motion bounds (share 1), each by half of the thickness and the drift, and the group's at share 1. Groups are 16
 // triangles in self_order, which keeps neighbours together.
-#include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;
@@ -22,7 +20,7 @@ SelfAabb box_of(uvec4 e) {
 }
 
 /// Control flow is workgroup-uniform.
-void main() {
+void make_self_aabbs() {
   uint q = item(), thread = gl_LocalInvocationIndex, group = thread / SHAPES_PER_GROUP;
   for (uint n = thread; n < 3u * kGroups; n += gl_WorkGroupSize.x) {
     group_low[n] = kLowNone;

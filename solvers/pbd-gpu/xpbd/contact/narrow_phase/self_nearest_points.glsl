@@ -1,8 +1,3 @@
-#version 450
-// After the lines, one thread per active pair: nearest points at the substep's start, and what contacts there propose.
-#include "xpbd/contact/contact_buffers.glsl"
-#include "xpbd/contact/narrow_phase/contact_distance.glsl"
-#include "xpbd/contact/response/self_correction.glsl"
 // Nearest points of two triangles of the cloth at a substep's start. Both copies of a pair compute the same, the
 // triangle of the lower number first, so that their normals are opposite bit for bit.
 vec3 first_at[3], second_at[3];
@@ -132,13 +127,4 @@ void query_self(uint k) {
   }
   if (!(normal.w > 0.0) && self_active[k].own == first) atomicAdd(diagnostics.inside, 1u);
   self_active[k].marks = contacts | (separated ? SELF_PLANE : 0u);
-}
-
-void main() {
-  response_round = p.response_round;
-  uint count = min(frame_state.self_active, ACTIVE_CAPACITY);
-  for (uint k = item(); k < count; k += stride()) {
-    query_self(k);
-    correct_self(k);
-  }
 }

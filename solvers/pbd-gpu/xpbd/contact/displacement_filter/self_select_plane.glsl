@@ -1,7 +1,5 @@
-#version 450
 // Plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within
-// the gap at the start, so that staying satisfies all planes of the cloth with itself. One thread per active pair.
-#include "xpbd/contact/contact_buffers.glsl"
+// the gap at the start, so that staying satisfies all planes of the cloth with itself.
 void select_self_plane(uint k) {
   if ((self_active[k].marks & SELF_PLANE) == 0u) return;
   uint own = self_active[k].own, other = self_active[k].other;
@@ -24,9 +22,4 @@ void select_self_plane(uint k) {
   middle = max(min(middle, held_a - half_m), held_b + half_m);
   float offset = middle + dot(n, origin);
   self_active[k].plane = own < other ? vec4(n, offset + half_m) : vec4(-n, half_m - offset);
-}
-
-void main() {
-  uint count = min(frame_state.self_active, ACTIVE_CAPACITY);
-  for (uint k = item(); k < count; k += stride()) select_self_plane(k);
 }
