@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <type_traits>
 
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
@@ -16,7 +13,6 @@
 namespace clothbench::assets {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "recordings are little-endian");
 static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
 
 constexpr double kMostRate_hz = 1000;
@@ -25,19 +21,7 @@ constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of 
 
 template <class Item>
 std::string block(const Item* items, std::size_t count) {
-  static_assert(std::is_trivially_copyable_v<Item>);
   return encode_base64(reinterpret_cast<const std::uint8_t*>(items), count * sizeof(Item));
-}
-
-template <class Item>
-std::vector<Item> block_at(const JsonAt& at) {
-  static_assert(std::is_trivially_copyable_v<Item>);
-  const std::vector<std::uint8_t> bytes = at.bytes();
-  if (bytes.size() % sizeof(Item) != 0)
-    at.fail(fmt::format("{} bytes; expected a multiple of {}", bytes.size(), sizeof(Item)));
-  std::vector<Item> items(bytes.size() / sizeof(Item));
-  if (!items.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
-  return items;
 }
 
 bool good(const RecordedJoint& j) {
@@ -104,7 +88,7 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
   if (!(r.frame_rate_hz > 0 && r.frame_rate_hz <= kMostRate_hz))
     rate.fail(fmt::format("expected above 0 and at most {} Hz", kMostRate_hz));
   const JsonAt joints_where = at.key("joints");
-  const auto joints = block_at<RecordedJoint>(joints_where);
+  const auto joints = joints_where.items<RecordedJoint>();
   check_all(joints, joints_where, "a finite position, a unit quaternion and a radius of at least 0");
   const double count = count_at.number();
   if (!(count >= 1 && count == std::floor(count) && count * kRecordedJointCount == static_cast<double>(joints.size())))
@@ -115,7 +99,7 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
     r.frames[k / kRecordedJointCount].joints[k % kRecordedJointCount] = joints[k];
   if (const auto capsules_where = at.maybe("capsules")) {
     r.has_capsules = true;
-    const auto all = block_at<RecordedCapsule>(*capsules_where);
+    const auto all = capsules_where->items<RecordedCapsule>();
     check_all(all, *capsules_where, "finite ends and a radius of at least 0");
     if (all.size() != r.frames.size() * kCapsuleCount)
       capsules_where->fail(fmt::format("{} capsules; expected {} per frame", all.size(), kCapsuleCount));

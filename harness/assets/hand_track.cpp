@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kMostMetres = 1e4, kMostSeconds = 86400;
 
-Eigen::Quaterniond from_degrees(const Vector& degrees) {
-  const Vector r = degrees * (std::numbers::pi / 180);
-  using Turn = Eigen::AngleAxisd;
-  return Eigen::Quaterniond(Turn(r.z(), Vector::UnitZ()) * Turn(r.y(), Vector::UnitY()) * Turn(r.x(), Vector::UnitX()));
-}
-
 void read_pose(const JsonAt& at, HandKey& key, bool first) {
   const std::vector<std::string> known(kPoseNames.begin(), kPoseNames.end());
   const auto pose = at.maybe("pose"), blend = at.maybe("blend");
@@ -64,6 +58,12 @@ HandPose pose_of(const HandKey& key, const Hand& hand) {
 }
 
 }  // namespace
+
+Eigen::Quaterniond from_degrees(const Vector& degrees) {
+  const Vector r = degrees * (std::numbers::pi / 180);
+  using Turn = Eigen::AngleAxisd;
+  return Eigen::Quaterniond(Turn(r.z(), Vector::UnitZ()) * Turn(r.y(), Vector::UnitY()) * Turn(r.x(), Vector::UnitX()));
+}
 
 HandTrack parse_hand_track(const std::string& text, const std::string& source) {
   const nlohmann::json document = parse_json(text, source);

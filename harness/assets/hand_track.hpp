@@ -7,6 +7,9 @@
 
 namespace clothbench::assets {
 
+/// Rotation about the world's x, then y, then z axis.
+Eigen::Quaterniond from_degrees(const Vector& degrees);
+
 /// Which point of the hand `position_m` places.
 enum class Anchor { Palm, Pinch };
 

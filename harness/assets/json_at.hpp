@@ -1,11 +1,14 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace clothbench::assets {
@@ -30,6 +33,17 @@ class JsonAt {
   double number_or(const std::string& name, double otherwise) const;
   std::string text() const;
   std::vector<std::uint8_t> bytes() const;  ///< of base64 (RFC 4648 section 4), padded, no line breaks
+  /// The bytes as items that lie in memory as they do in the file.
+  template <class Item>
+  std::vector<Item> items() const {
+    static_assert(std::is_trivially_copyable_v<Item> && std::endian::native == std::endian::little);
+    const std::vector<std::uint8_t> from = bytes();
+    if (from.size() % sizeof(Item) != 0)
+      fail(std::to_string(from.size()) + " bytes; expected a multiple of " + std::to_string(sizeof(Item)));
+    std::vector<Item> out(from.size() / sizeof(Item));
+    if (!out.empty()) std::memcpy(out.data(), from.data(), from.size());
+    return out;
+  }
   bool boolean() const;
   Eigen::VectorXd numbers(std::size_t n) const;  ///< an array of exactly n finite numbers
   /// Fails if the object has any other key, naming the nearest known one.

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "assets/json_at.hpp"
@@ -14,8 +12,6 @@
 
 namespace clothbench::assets {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "captures are little-endian");
 
 Vector vector_at(const std::optional<JsonAt>& at) {
   if (!at) return Vector::Zero();
@@ -53,37 +49,20 @@ Table table_at(const JsonAt& entity, const JsonAt& bounded) {
   return table;
 }
 
-/// 4-byte items in threes.
-template <class Item>
-std::vector<Item> triples_at(const JsonAt& at) {
-  const std::vector<std::uint8_t> bytes = at.bytes();
-  if (bytes.empty() || bytes.size() % 12 != 0)
-    at.fail(fmt::format("{} bytes; expected a positive multiple of 12 (three 4-byte numbers each)", bytes.size()));
-  std::vector<Item> items(bytes.size() / sizeof(Item));
-  std::memcpy(items.data(), bytes.data(), bytes.size());
-  return items;
-}
-
 TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
   const Frame frame = pose_of(entity);
   const JsonAt vertices_at = stored.key("vertices"), indices_at = stored.key("indices");
-  const auto vertices = triples_at<float>(vertices_at);
-  const auto indices = triples_at<std::uint32_t>(indices_at);
   TriangleMesh mesh;
-  mesh.positions.reserve(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); i += 3) {
-    const Vector p(vertices[i], vertices[i + 1], vertices[i + 2]);
-    if (!p.allFinite()) vertices_at.fail(fmt::format("vertex {} is not finite", i / 3));
+  for (const auto& [x, y, z] : vertices_at.items<std::array<float, 3>>()) {
+    const Vector p(x, y, z);
+    if (!p.allFinite()) vertices_at.fail(fmt::format("vertex {} is not finite", mesh.vertex_count()));
     mesh.add_vertex(frame * p);
   }
-  const std::size_t count = mesh.vertex_count();
-  mesh.triangles.reserve(indices.size() / 3);
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(indices[i + k] < count))
-        indices_at.fail(fmt::format("triangle {} names vertex {}, but there are {}", i / 3, indices[i + k], count));
-    mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-  }
+  mesh.triangles = indices_at.items<std::array<std::uint32_t, 3>>();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (!(v < mesh.vertex_count()))
+        indices_at.fail(fmt::format("triangle {} names vertex {}, but there are {}", t, v, mesh.vertex_count()));
   return mesh;
 }
 

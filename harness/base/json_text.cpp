@@ -6,9 +6,15 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
 
 namespace clothbench {
 namespace {
@@ -71,6 +77,12 @@ class Strict : public nlohmann::json_sax<json> {
   std::vector<std::string> path_;
 };
 
+/// The sub-schema that `$ref` refers to; `schema` itself if it has no `$ref`.
+const json& sub_schema(const json& schema, const json& root) {
+  if (!schema.contains("$ref")) return schema;
+  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
+}
+
 /// An object that is right without any key, so that its defaults may stand for it.
 bool may_be_empty(const json& s) {
   return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") &&
@@ -96,6 +108,96 @@ void fill(json& value, const json& schema, const json& root) {
     for (json& item : value) fill(item, s["items"], root);
 }
 
+std::string pointer_of(const std::vector<std::string>& context) {
+  json::json_pointer pointer;
+  for (std::size_t i = 1; i < context.size(); ++i) {
+    std::string part = context[i];
+    if (part.size() >= 2 && part.front() == '[' && part.back() == ']') part = part.substr(1, part.size() - 2);
+    pointer.push_back(part);
+  }
+  return pointer.to_string();
+}
+
+/// Sub-schema a pointer leads to; null where the schema says nothing of it.
+json schema_at(const json& root, const std::string& pointer) {
+  json s = root;
+  std::size_t i = 1;
+  while (i < pointer.size()) {
+    const std::size_t end = std::min(pointer.find('/', i), pointer.size());
+    const std::string part = pointer.substr(i, end - i);
+    s = json(sub_schema(s, root));
+    if (s.contains("properties") && s["properties"].contains(part))
+      s = json(s["properties"][part]);
+    else if (s.contains("items"))
+      s = json(s["items"]);
+    else if (s.contains("additionalProperties"))
+      s = json(s["additionalProperties"]);
+    else
+      return json();
+    i = end + 1;
+  }
+  return json(sub_schema(s, root));
+}
+
+std::string expectation(const json& s) {
+  if (!s.is_object()) return "";
+  std::vector<std::string> parts;
+  if (s.contains("type")) parts.push_back(s["type"].is_string() ? s["type"].get<std::string>() : s["type"].dump());
+  if (s.contains("enum")) parts.push_back("one of " + s["enum"].dump());
+  if (s.contains("minimum")) parts.push_back(">= " + s["minimum"].dump());
+  if (s.contains("exclusiveMinimum")) parts.push_back("> " + s["exclusiveMinimum"].dump());
+  if (s.contains("maximum")) parts.push_back("<= " + s["maximum"].dump());
+  if (s.contains("minItems") && s.contains("maxItems") && s["minItems"] == s["maxItems"])
+    parts.push_back(s["minItems"].dump() + " items");
+  else if (s.contains("minItems"))
+    parts.push_back("at least " + s["minItems"].dump() + " items");
+  else if (s.contains("maxItems"))
+    parts.push_back("at most " + s["maxItems"].dump() + " items");
+  if (s.contains("minLength")) parts.push_back("at least " + s["minLength"].dump() + " characters");
+  if (s.contains("pattern")) parts.push_back("matching " + s["pattern"].get<std::string>());
+  return joined(parts);
+}
+
+/// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
+/// valijson names only the object.
+std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
+  const json s = json(sub_schema(schema, root));
+  if (value.is_object() && s.contains("properties")) {
+    const json& known = s["properties"];
+    for (const auto& [key, sub] : value.items()) {
+      if (known.contains(key)) {
+        if (std::string found = unknown_key(sub, known[key], root, pointer + "/" + key); !found.empty()) return found;
+      } else if (s.value("additionalProperties", json(true)) == json(false)) {
+        std::vector<std::string> names;
+        for (const auto& [name, unused] : known.items()) names.push_back(name);
+        return fmt::format("{}/{}: unknown key{}", pointer, shortened(key, 40), nearest_known(key, names));
+      }
+    }
+  }
+  if (value.is_array() && s.contains("items"))
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (std::string found = unknown_key(value[i], s["items"], root, fmt::format("{}/{}", pointer, i)); !found.empty())
+        return found;
+  return "";
+}
+
+/// The validator matches patterns by recursion, a step per character: a long string would overflow the stack.
+void refuse_long_strings(const json& value, const std::string& source, const std::string& pointer) {
+  constexpr std::size_t kMost = 4096;
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
+    throw Error(fmt::format("{}: {}: a string of {} bytes; expected at most {}", source, pointer,
+                            value.get_ref<const std::string&>().size(), kMost));
+  if (value.is_structured())
+    for (const auto& [key, item] : value.items()) refuse_long_strings(item, source, pointer + "/" + shortened(key, 40));
+}
+
+std::string missing_key(const json& value, const json& schema) {
+  if (!value.is_object() || !schema.is_object() || !schema.contains("required")) return "";
+  for (const auto& key : schema["required"])
+    if (!value.contains(key.get<std::string>())) return key.get<std::string>();
+  return "";
+}
+
 }  // namespace
 
 // For a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
@@ -107,11 +209,6 @@ std::string what_without_text(const std::exception& e) {
   return shortened(what.substr(colon + 2, read - (read == std::string::npos ? 0 : colon + 2)) +
                        (read < expected && expected != std::string::npos ? what.substr(expected) : std::string()),
                    kShown);
-}
-
-const json& sub_schema(const json& schema, const json& root) {
-  if (!schema.contains("$ref")) return schema;
-  return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
 }
 
 void refuse(const std::string& source, const std::string& pointer, const std::string& expected) {
@@ -142,6 +239,36 @@ nlohmann::json parse_json(const std::string& text, const std::string& source) {
 void fill_defaults(nlohmann::json& value, const std::string& schema_text) {
   const json schema = json::parse(schema_text);
   fill(value, schema, schema);
+}
+
+// One message from valijson's many: the deepest violation, with what was expected in its place.
+
+void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
+                   const std::string& base) {
+  const json schema_json = json::parse(schema_text);
+  if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty())
+    throw Error(source + ": " + fault);
+  refuse_long_strings(value, source, base);
+
+  valijson::Schema schema;
+  valijson::SchemaParser parser;
+  valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json), value_adapter(value);
+  parser.populateSchema(schema_adapter, schema);
+  valijson::Validator validator;
+  valijson::ValidationResults results;
+  if (validator.validate(schema, value_adapter, &results)) return;
+
+  std::vector<std::string> deepest;
+  for (valijson::ValidationResults::Error e; results.popError(e);)
+    if (e.context.size() > deepest.size()) deepest = e.context;
+  const std::string pointer = pointer_of(deepest);
+  const json sub = schema_at(schema_json, pointer);
+  const json found = value.at(json::json_pointer(pointer));
+  const std::string where = base + shortened(pointer, 200);
+  if (const std::string key = missing_key(found, sub); !key.empty())
+    throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
+  throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),
+                          shortened(found.dump(-1, ' ', false, json::error_handler_t::replace), 60)));
 }
 
 }  // namespace clothbench

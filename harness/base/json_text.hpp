@@ -26,9 +26,6 @@ std::string what_without_text(const std::exception&);
 void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source,
                    const std::string& pointer = "");
 
-/// The sub-schema that `$ref` refers to; `schema` itself if it has no `$ref`.
-const nlohmann::json& sub_schema(const nlohmann::json& schema, const nlohmann::json& root);
-
 /// Adds each missing value that has a `default` in the schema.
 void fill_defaults(nlohmann::json&, const std::string& schema_text);
 

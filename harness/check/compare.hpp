@@ -59,7 +59,7 @@ struct CheckedRun {
   std::vector<Finding> findings = {};
   TimeRatio time = {};                              ///< of two builds
   double time_a_s = kMissing, time_b_s = kMissing;  ///< median over the processes of each side
-  bool in_turns = true;                             ///< see in_turns in times.hpp
+  bool in_turns = true;                             ///< see in_turns
   std::string marks = {};  ///< kinds of conditions that differ and were allowed: "scene, machine"
 
   Verdict verdict() const;
@@ -95,12 +95,12 @@ using Processes = std::vector<std::vector<RunRecord>>;
 
 /// Compares two builds run by run: the results of each side's first process, and the times of all processes. The runs
 /// of A come first, then the runs that only B has. Throws Error if paired runs, or processes of one side, differ in a
-/// condition whose kind is not in `allowed` (results/conditions.hpp), or if a process has a run twice.
+/// condition whose kind is not in `allowed` (check/baseline.hpp), or if a process has a run twice.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline without a result fails, and so does a planned run without a
 /// result. A run that is not in the baseline is new. Throws Error if a run is twice among the results, or if a
-/// condition of a kind that is not in `allowed` differs from the baseline's (results/conditions.hpp).
+/// condition of a kind that is not in `allowed` differs from the baseline's (check/baseline.hpp).
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {

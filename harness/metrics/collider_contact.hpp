@@ -20,16 +20,24 @@ inline constexpr Needs kColliders{"colliders",
 /// placed as Scene::motion prescribes. The geometry of the collider kind decides the method
 /// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
 /// overlap, both count); the depth is the maximum over colliders.
+///
+/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus a tolerance: a tenth
+/// of that distance or a thousandth of the cloth's shorter side, whichever is greater. A triangle touches if any of its
+/// points does, edges and face included. Only vertices slide.
 class ColliderContact {
  public:
-  /// `scene` outlives this. Throws Error naming the collider that cannot be probed.
-  explicit ColliderContact(const Scene& scene);
+  /// `scene` outlives this. `held_at_m`: how far off each collider the solver keeps cloth, as in
+  /// Plan::contact_margins_m; its margin where it does not say. Throws Error naming the collider that cannot be probed.
+  explicit ColliderContact(const Scene& scene, const std::vector<double>& held_at_m = {});
   ~ColliderContact();
   ColliderContact(const ColliderContact&) = delete;
   ColliderContact& operator=(const ColliderContact&) = delete;
 
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   SceneContact probe(int frame, const std::vector<double>& positions);
+  /// The same; every frame in order, since it compares with the frame before. In a frame that is not finite no vertex
+  /// touches.
+  SceneTouch touch(int frame, const std::vector<double>& positions);
 
  private:
   struct Probes;

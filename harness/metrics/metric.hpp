@@ -26,8 +26,8 @@ struct SceneContact {
   double depth_m;   ///< NaN if no collider has an inside
 };
 
-/// Where the cloth touches the colliders and how it slides on them, in one frame (collider_touch.hpp). NaN if the cloth
-/// is not finite.
+/// Where the cloth touches the colliders and how it slides on them, in one frame (collider_contact.hpp). NaN if the
+/// cloth is not finite.
 struct SceneTouch {
   double touching_fraction;  ///< of the triangles' rest area
   double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame

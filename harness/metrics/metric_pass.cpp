@@ -1,7 +1,6 @@
 #include "metrics/metric_pass.hpp"
 
 #include "metrics/collider_contact.hpp"
-#include "metrics/collider_touch.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "metrics/truth_errors.hpp"
@@ -14,10 +13,8 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     wanted_.push_back(&m);
     series_.push_back({m.name, m.units, m.long_name, {}});
   }
-  if (kWithContactMetrics && !context.scene.colliders.empty()) {
-    contact_ = std::make_unique<ColliderContact>(context.scene);
-    touch_ = std::make_unique<ColliderTouch>(context.scene, context.contact_margins_m);
-  }
+  if (kWithContactMetrics && !context.scene.colliders.empty())
+    contact_ = std::make_unique<ColliderContact>(context.scene, context.contact_margins_m);
   if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision))
     triangles_ = triangles(context.scene.cloth);
   if (!context.scene.reference_case.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
@@ -28,9 +25,11 @@ MetricPass::~MetricPass() = default;
 
 void MetricPass::add(const ClothState& state) {
   SceneContact contact{};
-  if (contact_) contact = contact_->probe(frame_, state.position);
   SceneTouch touch{};
-  if (touch_) touch = touch_->probe(frame_, state.position);
+  if (contact_) {
+    contact = contact_->probe(frame_, state.position);
+    touch = contact_->touch(frame_, state.position);
+  }
   SelfContact self{};
   if (!triangles_.empty()) self = self_contact(state.position, triangles_);
   TruthErrors truth;
@@ -42,7 +41,7 @@ void MetricPass::add(const ClothState& state) {
                           frame_,
                           state,
                           contact_ ? &contact : nullptr,
-                          touch_ ? &touch : nullptr,
+                          contact_ ? &touch : nullptr,
                           judge_ ? &truth : nullptr,
                           stability_ ? &stability : nullptr,
                           triangles_.empty() ? nullptr : &self};

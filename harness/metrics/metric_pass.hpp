@@ -8,7 +8,6 @@
 namespace clothbench {
 
 class ColliderContact;
-class ColliderTouch;
 class StabilityJudge;
 class TruthJudge;
 
@@ -36,7 +35,6 @@ class MetricPass {
   std::vector<const Metric*> wanted_;
   std::vector<MetricSeries> series_;
   std::unique_ptr<ColliderContact> contact_;             ///< null if the scene has no collider
-  std::unique_ptr<ColliderTouch> touch_;                 ///< the same
   std::unique_ptr<TruthJudge> judge_;                    ///< null where the scene states no truth
   std::unique_ptr<StabilityJudge> stability_;            ///< null where the scene is not judged
   std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< empty where the cloth does not touch itself

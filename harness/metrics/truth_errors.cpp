@@ -24,19 +24,66 @@ truth::ReferenceCase required_case(const Scene& scene) {
 /// Strain of every edge along u, row by row; of every edge of a mesh.
 std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
   std::vector<double> out;
-  const auto strain = [&](std::size_t a, std::size_t b, double rest_m) {
-    return length(minus(vertex_at(x, b), vertex_at(x, a))) / rest_m - 1;
-  };
-  if (c.mesh) {
-    for (const Edge& e : c.mesh->edges) out.push_back(strain(e.a, e.b, e.rest_m));
-    return out;
-  }
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i + 1 < c.columns; ++i) {
-      const auto a = static_cast<std::size_t>(j * c.columns + i);
-      out.push_back(strain(a, a + 1, c.du()));
-    }
+  for (const Edge& e : edges(c, EdgeKind::Structural))
+    if (c.mesh || e.b == e.a + 1) out.push_back(length(minus(vertex_at(x, e.b), vertex_at(x, e.a))) / e.rest_m - 1);
   return out;
+}
+
+constexpr double kMore = 1.1;
+constexpr int kFrames = 4;
+
+double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
+  const Scene other =
+      scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
+  const auto known = truth::reference_case_of(other);
+  const int last = scene.time.frames();
+  double most = 0;
+  for (int k = known->settles ? kFrames : 1; k <= kFrames; ++k) {
+    const int frame = last * k / kFrames;
+    ClothState state;
+    state.position = truth::vertex_positions(other.cloth, *known, frame);
+    state.velocity.assign(state.position.size(), 0);
+    const TruthErrors e = judge.judge(frame, state);
+    most = max_or_nan(most, judge.reference_case().by_quantity ? e.quantity_error : e.e2);
+  }
+  return most / std::log(kMore);
+}
+
+constexpr double kNothing = 1e-12;  // a motion of rounding errors only
+
+/// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
+/// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
+/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
+/// their own.
+double mesh_error(const TruthJudge& judge, double moved_quantity) {
+  const Cloth& c = judge.scene().cloth;
+  if (c.mesh) return c.mesh->edge_m / c.width_m;
+  return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
+}
+
+/// Half a unit in the last place of float32, of the coordinate with the maximum magnitude.
+double rounding_m(const std::vector<Vec3>& columns) {
+  double largest_m = 0;
+  for (const Vec3& x : columns)
+    for (const double coordinate : x) largest_m = std::max(largest_m, std::abs(coordinate));
+  return std::exp2(-24) * largest_m;
+}
+
+/// Three standard deviations of the quantity if every coordinate is rounded (uniformly, by `by_m` at most), over its
+/// scale. Each column is a mean over as many vertices as lie across the strip.
+double rounding_of_quantity(const TruthJudge& judge, std::vector<Vec3> columns, double by_m) {
+  const truth::ReferenceCase& known = judge.reference_case();
+  const Cloth& c = judge.scene().cloth;
+  const double exact = known.quantity(columns), across = c.mesh ? 1 + c.height_m / c.mesh->edge_m : c.rows;
+  double squares = 0;
+  for (Vec3& x : columns)
+    for (double& coordinate : x) {
+      const double kept = coordinate;
+      coordinate += by_m;
+      squares += std::pow(known.quantity(columns) - exact, 2);
+      coordinate = kept;
+    }
+  return 3 * std::sqrt(squares / 3 / across) / known.quantity_scale;
 }
 
 }  // namespace
@@ -111,30 +158,6 @@ bool keeps_energy(const Scene& s) {
          s.cloth.drape_radius_m == 0;
 }
 
-namespace {
-
-constexpr double kMore = 1.1;
-constexpr int kFrames = 4;
-
-double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
-  const Scene other =
-      scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
-  const auto known = truth::reference_case_of(other);
-  const int last = scene.time.frames();
-  double most = 0;
-  for (int k = known->settles ? kFrames : 1; k <= kFrames; ++k) {
-    const int frame = last * k / kFrames;
-    ClothState state;
-    state.position = truth::vertex_positions(other.cloth, *known, frame);
-    state.velocity.assign(state.position.size(), 0);
-    const TruthErrors e = judge.judge(frame, state);
-    most = max_or_nan(most, judge.reference_case().by_quantity ? e.quantity_error : e.e2);
-  }
-  return most / std::log(kMore);
-}
-
-}  // namespace
-
 std::map<std::string, double> truth_dependence(const Scene& scene) {
   if (scene.reference_case.empty()) return {};
   const TruthJudge judge(scene);
@@ -145,47 +168,6 @@ std::map<std::string, double> truth_dependence(const Scene& scene) {
     out["truth_dependence_B"] = change(judge, scene, "material.bending_rigidity_N_m", B);
   return out;
 }
-
-namespace {
-
-constexpr double kNothing = 1e-12;  // a motion of rounding errors only
-
-/// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
-/// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
-/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
-/// their own.
-double mesh_error(const TruthJudge& judge, double moved_quantity) {
-  const Cloth& c = judge.scene().cloth;
-  if (c.mesh) return c.mesh->edge_m / c.width_m;
-  return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
-}
-
-/// Half a unit in the last place of float32, of the coordinate with the maximum magnitude.
-double rounding_m(const std::vector<Vec3>& columns) {
-  double largest_m = 0;
-  for (const Vec3& x : columns)
-    for (const double coordinate : x) largest_m = std::max(largest_m, std::abs(coordinate));
-  return std::exp2(-24) * largest_m;
-}
-
-/// Three standard deviations of the quantity if every coordinate is rounded (uniformly, by `by_m` at most), over its
-/// scale. Each column is a mean over as many vertices as lie across the strip.
-double rounding_of_quantity(const TruthJudge& judge, std::vector<Vec3> columns, double by_m) {
-  const truth::ReferenceCase& known = judge.reference_case();
-  const Cloth& c = judge.scene().cloth;
-  const double exact = known.quantity(columns), across = c.mesh ? 1 + c.height_m / c.mesh->edge_m : c.rows;
-  double squares = 0;
-  for (Vec3& x : columns)
-    for (double& coordinate : x) {
-      const double kept = coordinate;
-      coordinate += by_m;
-      squares += std::pow(known.quantity(columns) - exact, 2);
-      coordinate = kept;
-    }
-  return 3 * std::sqrt(squares / 3 / across) / known.quantity_scale;
-}
-
-}  // namespace
 
 ExactBound exact_bound(const TruthJudge& judge) {
   const Scene& scene = judge.scene();

@@ -5,7 +5,6 @@
 #include "clothbench/record.hpp"
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
-#include "truth/norms.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {

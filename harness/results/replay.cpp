@@ -274,6 +274,47 @@ void each_numbered(const std::map<std::string, const StoredGroup*>& groups, cons
   }
 }
 
+/// Sets colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; changes nothing else.
+void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
+  const auto named = by_path(groups);
+  if (!named.contains("colliders")) return;
+  const StoredGroup& all = *named.at("colliders");
+  scene.assets = all.attributes.value("assets", "");
+  read_jumps(all, scene);
+  each_numbered(named, "colliders", [&](const StoredGroup& g, std::size_t k, std::size_t count) {
+    scene.colliders.resize(count);
+    read_collider(g, scene, k, count);
+  });
+  if (named.contains("colliders/grips")) read_grips(*named.at("colliders/grips"), scene);
+}
+
+/// The cloth's mesh. `triangles`: the corners of its triangles, 3 per triangle, which files store apart.
+std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& groups,
+                                              const std::vector<std::uint32_t>& triangles) {
+  const auto named = by_path(groups);
+  if (!named.contains("cloth")) throw Error("/cloth is missing: the mesh of the cloth");
+  const StoredGroup& cloth = *named.at("cloth");
+  const StoredArray& position = expect_shape(cloth, "position_m", {0, 3});
+  assets::MeshFile file;
+  for (std::size_t k = 0; k + 2 < position.values.size(); k += 3)
+    file.vertices.push_back({position.values[k], position.values[k + 1], position.values[k + 2]});
+  for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
+    file.triangles.push_back({triangles[k], triangles[k + 1], triangles[k + 2]});
+  std::vector<PatternTriangle> pattern;
+  if (array_of(cloth, "pattern_m") != nullptr) {
+    const double* v = expect_shape(cloth, "pattern_m", {file.triangles.size(), 3, 2}).values.data();
+    for (std::size_t t = 0; t < file.triangles.size(); ++t, v += 6)
+      pattern.push_back({{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}});
+  }
+  ClothMesh mesh = cloth_mesh(std::move(file), "/cloth", std::move(pattern));
+  each_numbered(named, "cloth", [&](const StoredGroup& g, std::size_t, std::size_t) {
+    std::vector<std::uint32_t>& members = mesh.groups[g.attributes.at("name").get<std::string>()];
+    for (const double v : expect_shape(g, "vertex", {0}).values)
+      members.push_back(vertex_of(v, mesh.vertices.size(), g.path));
+  });
+  return std::make_shared<const ClothMesh>(std::move(mesh));
+}
+
 Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& groups) {
   Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
                                  {[&](json&) { return restore_mesh(groups, header.triangles); },
@@ -315,45 +356,6 @@ std::vector<StoredGroup> replay_of(const Scene& scene) {
   }
   if (!scene.grips.vertices.empty()) out.push_back(grips_of(scene));
   return out;
-}
-
-void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
-  const auto named = by_path(groups);
-  if (!named.contains("colliders")) return;
-  const StoredGroup& all = *named.at("colliders");
-  scene.assets = all.attributes.value("assets", "");
-  read_jumps(all, scene);
-  each_numbered(named, "colliders", [&](const StoredGroup& g, std::size_t k, std::size_t count) {
-    scene.colliders.resize(count);
-    read_collider(g, scene, k, count);
-  });
-  if (named.contains("colliders/grips")) read_grips(*named.at("colliders/grips"), scene);
-}
-
-std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& groups,
-                                              const std::vector<std::uint32_t>& triangles) {
-  const auto named = by_path(groups);
-  if (!named.contains("cloth")) throw Error("/cloth is missing: the mesh of the cloth");
-  const StoredGroup& cloth = *named.at("cloth");
-  const StoredArray& position = expect_shape(cloth, "position_m", {0, 3});
-  assets::MeshFile file;
-  for (std::size_t k = 0; k + 2 < position.values.size(); k += 3)
-    file.vertices.push_back({position.values[k], position.values[k + 1], position.values[k + 2]});
-  for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
-    file.triangles.push_back({triangles[k], triangles[k + 1], triangles[k + 2]});
-  std::vector<PatternTriangle> pattern;
-  if (array_of(cloth, "pattern_m") != nullptr) {
-    const double* v = expect_shape(cloth, "pattern_m", {file.triangles.size(), 3, 2}).values.data();
-    for (std::size_t t = 0; t < file.triangles.size(); ++t, v += 6)
-      pattern.push_back({{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}});
-  }
-  ClothMesh mesh = cloth_mesh(std::move(file), "/cloth", std::move(pattern));
-  each_numbered(named, "cloth", [&](const StoredGroup& g, std::size_t, std::size_t) {
-    std::vector<std::uint32_t>& members = mesh.groups[g.attributes.at("name").get<std::string>()];
-    for (const double v : expect_shape(g, "vertex", {0}).values)
-      members.push_back(vertex_of(v, mesh.vertices.size(), g.path));
-  });
-  return std::make_shared<const ClothMesh>(std::move(mesh));
 }
 
 void show_shape(StoredGroup& g) {

@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include "clothbench/record.hpp"
@@ -13,18 +12,10 @@ namespace clothbench {
 /// Empty for a grid without colliders and grips.
 std::vector<StoredGroup> replay_of(const Scene&);
 
-/// Sets the scene's colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; changes
-/// nothing else. Throws Error or nlohmann::json::exception if something is missing or has another shape.
-void restore_replay(const std::vector<StoredGroup>&, Scene&);
-
-/// The cloth's mesh from the output of `replay_of`, and the corners of its triangles, 3 per triangle, which files store
-/// apart. Throws as above.
-std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>&,
-                                              const std::vector<std::uint32_t>& triangles);
-
 /// Adds the capsules or triangles to draw to a collider's group that has neither, for programs that do not know the
 /// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Does not
-/// change groups of kinds that this version does not know. Throws as above.
+/// change groups of kinds that this version does not know. Throws Error or nlohmann::json::exception if something is
+/// missing or has another shape.
 void show_shape(StoredGroup&);
 
 /// A stored run's scene and motion, read only from its result file.

@@ -16,7 +16,6 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "scenario/drawn_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scenario/recorded_hand.hpp"
 #include "scenario/vec3.hpp"

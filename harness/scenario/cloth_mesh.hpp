@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,11 +9,12 @@
 
 #include "assets/mesh_file.hpp"
 #include "clothbench/scene.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench {
 
 /// Reads `cloth.mesh` of a scene: {"file": a Wavefront OBJ or a glTF file beside the scene or in the scenario root}, or
-/// {"drawn": a sheet of irregular triangles (drawn_mesh.hpp)}, to which the rest does not apply.
+/// {"drawn": a sheet of irregular triangles (DrawnSheet)}, to which the rest does not apply.
 /// Faces with more than three corners are triangulated; normals and materials are ignored. Adds "sha256" of the
 /// file to `j`; a value that `j` already has must match. Prints a notice on stderr, once per file, if vertices were
 /// welded. Throws Error with file and pointer if the file cannot be read or is not a valid cloth (see cloth_mesh).
@@ -52,5 +54,36 @@ std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&
 
 /// Longest and second longest side [m] of the mesh's bounding box.
 std::pair<double, double> longest_sides(const ClothMesh&);
+
+/// A flat sheet of irregular triangles, drawn by number: refined at will, and at any angle to its lattice.
+struct DrawnSheet {
+  double width_m = 1, height_m = 1;
+  int cells = 8;           ///< along the width; cells along the height have nearly the same size
+  double angle_rad = 0;    ///< of the lattice that inner vertices are of
+  double share = 0;        ///< of a cell by which each of them is moved at most, 0 to 0.4
+  std::uint32_t seed = 1;  ///< of those moves
+  bool clamp =
+      false;  ///< a second line of vertices, a cell from x = 0: attached together with the line x = 0, it is a clamp
+  std::array<int, 2> copies = {1, 1};      ///< equal sheets along x and along z, centred on the first sheet's place
+  std::array<double, 2> apart_m = {0, 0};  ///< between neighbours
+};
+
+/// Delaunay triangles (Bowyer 1981; Watson 1981) of a sheet in the plane z = 0, x from 0 to width_m and y from 0 to
+/// height_m. Groups: its borders "u0" (x = 0), "u1", "v0" (y = 0) and "v1", and the two lines "clamp". The same sheet
+/// has the same mesh.
+ClothMesh drawn_mesh(const DrawnSheet&);
+
+/// Reads `cloth.mesh.drawn`: the same sheet with its middle in the origin. Throws Error with the JSON pointer where it
+/// would have more than 20 000 vertices, or all copies more than 2 000 000.
+ClothMesh read_drawn_mesh(const nlohmann::json& drawn, const std::string& source);
+
+/// Most corners of a polygon.
+inline constexpr std::size_t kMostCorners = 1000;
+
+/// Cuts a polygon, convex or not, into triangles inside it, wound as it is (ear clipping: Meisters 1975). The polygon
+/// need not be flat: it is cut as seen along the axis nearest to its normal. `corners` [m]; the triangles hold indices
+/// of corners. A corner at the position of the corner before it is in no triangle. Throws Error "<where>: ..." for a
+/// polygon that has no area, crosses or touches itself, is too thin to be cut, or has over `kMostCorners` corners.
+std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& corners, const std::string& where);
 
 }  // namespace clothbench

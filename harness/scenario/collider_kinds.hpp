@@ -43,7 +43,7 @@ struct ColliderSurface {
   std::span<const std::array<std::uint32_t, 3>> triangles;  ///< owned by the collider, or static data
 };
 
-/// Description of one shape of collider: a file in kinds/. Loading, metrics, pictures, replays,
+/// Description of one shape of collider: a function in collider_kinds.cpp. Loading, metrics, pictures, replays,
 /// the page and features all use it; no other code of the harness distinguishes shapes. Solvers handle each shape in
 /// their own code.
 struct ColliderKind {
@@ -63,12 +63,6 @@ struct ColliderKind {
   bool half_space = false;  ///< solid on the side of `center_m` opposite to `normal`
   bool convex = false;      ///< lies on one side of the plane of every triangle
 };
-
-ColliderKind plane_kind();
-ColliderKind sphere_kind();
-ColliderKind box_kind();
-ColliderKind capsules_kind();
-ColliderKind mesh_kind();
 
 /// One of each shape, in the order of Collider::Shape.
 const std::vector<ColliderKind>& collider_kinds();

@@ -7,7 +7,7 @@
 #include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
-#include "scenario/moving_hand.hpp"
+#include "scenario/collider_reader.hpp"
 #include "scenario/scene_parts.hpp"
 #include "scenario/table_pose.hpp"
 #include "scenario/vec3.hpp"

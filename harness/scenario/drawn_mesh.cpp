@@ -1,5 +1,3 @@
-#include "scenario/drawn_mesh.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -162,6 +162,26 @@ std::vector<std::string> scenario_names() {
   return names;
 }
 
+bool touches(const Scene& scene, Feature what) {
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [&](const Collider& c) { return c.feature() == what; });
+}
+
+bool rubs(const Scene& scene) {
+  return scene.cloth.self_collision.friction > 0 ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.friction > 0; });
+}
+
+/// Member `key` of an object, created if it is missing, or item number `key` of an array.
+json& child(json& of, const std::string& key, const std::string& where) {
+  if (of.is_object() || of.is_null()) return of[key];
+  if (!of.is_array()) throw Error(where + ": expected a key of an object");
+  const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos && key.size() < 6;
+  if (!number || std::stoul(key) >= of.size())
+    throw Error(fmt::format("{}: expected an item's number, 0 to {}", where, static_cast<long>(of.size()) - 1));
+  return of[std::stoul(key)];
+}
+
 }  // namespace
 
 std::filesystem::path scenario_root() { return find_data(kScenarioFolder); }
@@ -180,20 +200,6 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
                           nearest_known(name_or_path, scenario_names())));
 }
 
-namespace {
-
-bool touches(const Scene& scene, Feature what) {
-  return std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                     [&](const Collider& c) { return c.feature() == what; });
-}
-
-bool rubs(const Scene& scene) {
-  return scene.cloth.self_collision.friction > 0 ||
-         std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.friction > 0; });
-}
-
-}  // namespace
-
 FeatureSet derive_needs(const Scene& scene) {
   FeatureSet needs;
 #define FEATURE(id, name, bit, of, doc, needed) \
@@ -202,20 +208,6 @@ FeatureSet derive_needs(const Scene& scene) {
 #undef FEATURE
   return needs;
 }
-
-namespace {
-
-/// Member `key` of an object, created if it is missing, or item number `key` of an array.
-json& child(json& of, const std::string& key, const std::string& where) {
-  if (of.is_object() || of.is_null()) return of[key];
-  if (!of.is_array()) throw Error(where + ": expected a key of an object");
-  const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos && key.size() < 6;
-  if (!number || std::stoul(key) >= of.size())
-    throw Error(fmt::format("{}: expected an item's number, 0 to {}", where, static_cast<long>(of.size()) - 1));
-  return of[std::stoul(key)];
-}
-
-}  // namespace
 
 void apply_override(json& scenario, const std::string& assignment, const std::string& source) {
   const auto eq = assignment.find('=');

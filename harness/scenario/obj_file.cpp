@@ -12,7 +12,6 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/polygon.hpp"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE

@@ -1,13 +1,12 @@
 // Debian has no earcut, CGAL's triangulations are GPL, and the polygon code of tinyobjloader cuts outside concave
 // faces.
-#include "scenario/polygon.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 
 namespace clothbench {
 namespace {

@@ -105,6 +105,12 @@ void put_shape(const Scene& scene, const std::vector<std::uint8_t>& pinned, std:
     }
 }
 
+std::size_t edge_number(const ClothMesh& mesh, const Edge& e) {
+  const auto before = [](const Edge& p, const Edge& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; };
+  return static_cast<std::size_t>(std::lower_bound(mesh.edges.begin(), mesh.edges.end(), e, before) -
+                                  mesh.edges.begin());
+}
+
 }  // namespace
 
 std::vector<double> initial_positions(const Scene& scene) {
@@ -145,16 +151,6 @@ std::vector<double> initial_velocities(const Scene& scene) {
   }
   return v;
 }
-
-namespace {
-
-std::size_t edge_number(const ClothMesh& mesh, const Edge& e) {
-  const auto before = [](const Edge& p, const Edge& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; };
-  return static_cast<std::size_t>(std::lower_bound(mesh.edges.begin(), mesh.edges.end(), e, before) -
-                                  mesh.edges.begin());
-}
-
-}  // namespace
 
 std::vector<std::optional<double>> triangle_stiffnesses(const Scene& s) {
   std::vector<std::optional<double>> out(s.cloth.mesh->triangles.size(), s.material.membrane_stiffness_N_per_m);

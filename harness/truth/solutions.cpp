@@ -174,7 +174,6 @@ std::vector<Nodes> swing(const SwingingChain& c, std::span<const double> times_s
   const double per_second = std::sqrt(c.gravity_m_per_s2 / c.length_m);
   const auto n = static_cast<std::size_t>(c.links);
   State state(2 * n, 0);
-  std::fill_n(state.begin(), n, c.start_angle_rad);
   std::vector<Nodes> out;
   ChainMotion motion(c.links, c.end_mass_ratio);
   double now = 0;

@@ -41,9 +41,9 @@ struct Pendulum {
 double pendulum_period_s(const Pendulum&);
 double pendulum_angle_rad(const Pendulum&, double time_s);
 
-/// A straight strip of inextensible links without bending stiffness, fixed at one end and released at rest: the motion
-/// of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles. Tensions T_j follow
-/// from |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
+/// A straight strip of inextensible links without bending stiffness, fixed at one end and released at rest from the
+/// horizontal: the motion of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles.
+/// Tensions T_j follow from |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
 ///   T_j (1/m_j + 1/m_{j-1}) - T_{j+1} c_j/m_j - T_{j-1} c_{j-1}/m_{j-1} = a theta_j'^2,
 ///   a theta_j'' = T_{j+1} sin(theta_{j+1} - theta_j)/m_j + T_{j-1} sin(theta_{j-1} - theta_j)/m_{j-1},
 /// where for j = 1 the terms with m_0 are instead + g sin(theta_1) and + g cos(theta_1) on the right.
@@ -56,7 +56,6 @@ struct SwingingChain {
   double length_m = 1;
   double gravity_m_per_s2 = 9.81;
   double end_mass_ratio = 0.5;  ///< mass of the free end row over the mass of an inner row: 1/2 for lumped masses
-  double start_angle_rad = 0;   ///< below the horizontal
 };
 /// The links + 1 nodes [m] at `times_s` (ascending, 0 or more), second coordinate upwards. `tolerance`: error per step
 /// of angles, and of angular speeds in units of sqrt(g/L).

@@ -97,7 +97,7 @@ ReferenceCase swing_strip(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.quantity = tip(s.start, s.along);
   using States = std::vector<Nodes>;
-  const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5, 0}, s.times_s()));
+  const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5}, s.times_s()));
   known.columns = [s, states](int frame) {
     Columns out;
     for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame))) out.push_back(s.at(x, z));
@@ -107,7 +107,7 @@ ReferenceCase swing_strip(const Strip& s) {
   const auto fine = std::make_shared<States>();
   known.continuum = [s, fine](double share, int frame) {
     if (fine->empty())
-      *fine = swing({std::min((s.mesh() ? 8 : 4) * s.links, 512), s.length_m, s.g, 0.5, 0}, s.times_s(), 1e-9);
+      *fine = swing({std::min((s.mesh() ? 8 : 4) * s.links, 512), s.length_m, s.g, 0.5}, s.times_s(), 1e-9);
     const auto [x, z] = node_position(fine->at(static_cast<std::size_t>(frame)), share);
     return s.at(x, z);
   };

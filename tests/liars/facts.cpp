@@ -3,7 +3,7 @@
 
 #include "lies.hpp"
 #include "metrics/motion_check/bodies.hpp"
-#include "metrics/motion_check/wrench.hpp"
+#include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::liars {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "metrics/contact/capsules.hpp"
+#include "metrics/contact/surface.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

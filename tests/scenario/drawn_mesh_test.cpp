@@ -1,12 +1,11 @@
 // Sheets of irregular triangles that are drawn by number.
-#include "scenario/drawn_mesh.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scratch_folder.hpp"
 

@@ -1,6 +1,4 @@
 // Polygons cut into triangles: drawn from seeds, and those that are none.
-#include "scenario/polygon.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <set>
 
 #include "clothbench/error.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scratch_folder.hpp"
 
 namespace clothbench {

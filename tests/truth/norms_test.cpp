@@ -1,5 +1,3 @@
-#include "truth/norms.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <random>
 
 #include "clothbench/error.hpp"
+#include "truth/reference_case.hpp"
 #include "truth/solutions.hpp"
 
 namespace clothbench::truth {

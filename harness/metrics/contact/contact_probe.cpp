@@ -12,8 +12,6 @@
 namespace clothbench::contact {
 namespace {
 
-Box box_of(const Simplex<3>& t) { return Box(t[0]).extend(t[1]).extend(t[2]); }
-
 /// Depth [m] of a triangle in a capsule; 0 or less if it is outside.
 double depth_in(const Simplex<3>& triangle, const Capsule& c) {
   // Most capsules are far away, which the boxes show at less cost; the factor covers rounding.

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "metrics/contact/capsules.hpp"
+#include "metrics/contact/surface.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {

@@ -52,7 +52,7 @@ Contour contour(const TriangleMeshView& cloth, const TriangleTree& object) {
   Contour result;
   for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
     const Simplex<3> triangle = cloth.triangle(t);
-    const Box box = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
+    const Box box = box_of(triangle);
     if (!box.intersects(object.tree().box()) || is_degenerate(triangle)) continue;
     object.tree().for_each_overlapping(box, [&](int other) { add_pair(result, triangle, object.triangles()[other]); });
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace clothbench::contact {
 namespace {
@@ -13,6 +14,49 @@ Point<3> direction(const Point<3>& v) {
 }
 
 }  // namespace
+
+double axis_share(const Point<3>& p, const Capsule& c) {
+  const Point<3> axis = c.b - c.a;
+  const double squared = axis.squaredNorm();
+  return squared > 0 ? std::clamp(axis.dot(p - c.a) / squared, 0.0, 1.0) : 0.0;
+}
+
+double signed_distance(const Point<3>& p, const Capsule& c) {
+  return (p - (c.a + axis_share(p, c) * (c.b - c.a))).norm() - c.radius_m;
+}
+
+CapsuleMesh capsule_mesh(const Capsule& c) {
+  constexpr int kQuarter = kCapsuleSides / 4;
+  const Point<3> along = c.a == c.b ? Point<3>(Point<3>::UnitZ()) : Point<3>((c.b - c.a).normalized());
+  const Point<3> u = along.unitOrthogonal(), v = along.cross(u);
+  CapsuleMesh mesh;
+  const auto add = [&](const Point<3>& p) { mesh.positions.insert(mesh.positions.end(), {p[0], p[1], p[2]}); };
+  int rings = 0;
+  const auto ring = [&](const Point<3>& centre, int step) {  // `step` quarters from the equator, towards b if positive
+    const double latitude = 0.5 * std::numbers::pi * step / kQuarter;
+    for (int k = 0; k < kCapsuleSides; ++k) {
+      const double t = 2 * std::numbers::pi * k / kCapsuleSides;
+      add(centre +
+          c.radius_m * (std::sin(latitude) * along + std::cos(latitude) * (std::cos(t) * u + std::sin(t) * v)));
+    }
+    ++rings;
+  };
+  add(c.a - c.radius_m * along);
+  for (int step = 1 - kQuarter; step <= 0; ++step) ring(c.a, step);
+  for (int step = c.a == c.b ? 1 : 0; step < kQuarter; ++step) ring(c.b, step);
+  add(c.b + c.radius_m * along);
+  const auto last = static_cast<std::uint32_t>(1 + rings * kCapsuleSides);
+  const auto at = [&](int r, int k) { return static_cast<std::uint32_t>(1 + r * kCapsuleSides + k % kCapsuleSides); };
+  for (int k = 0; k < kCapsuleSides; ++k) {
+    mesh.triangles.push_back({0, at(0, k + 1), at(0, k)});
+    mesh.triangles.push_back({last, at(rings - 1, k), at(rings - 1, k + 1)});
+    for (int r = 0; r + 1 < rings; ++r) {
+      mesh.triangles.push_back({at(r, k), at(r, k + 1), at(r + 1, k + 1)});
+      mesh.triangles.push_back({at(r, k), at(r + 1, k + 1), at(r + 1, k)});
+    }
+  }
+  return mesh;
+}
 
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before) {
   Nearest best{std::numeric_limits<double>::infinity(), Point<3>::Zero(), Point<3>::Zero()};
@@ -66,10 +110,8 @@ std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, doub
 }
 
 bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m) {
-  const Box tight = Box(triangle[0]).extend(triangle[1]).extend(triangle[2]);
-  const Point<3> out = Point<3>::Constant(reach_m);
   bool found = false;
-  mesh.tree().for_each_overlapping(Box(tight.min() - out, tight.max() + out), [&](int t) {
+  mesh.tree().for_each_overlapping(grown(box_of(triangle), reach_m), [&](int t) {
     found = found || within(triangle, mesh.triangles()[static_cast<std::size_t>(t)], reach_m);
   });
   return found;

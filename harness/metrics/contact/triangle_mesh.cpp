@@ -86,7 +86,7 @@ TriangleTree::TriangleTree(const TriangleMeshView& mesh) {
     if (is_degenerate(triangle)) continue;
     triangles_.push_back(triangle);
     numbers_.push_back(static_cast<std::uint32_t>(t));
-    boxes.push_back(Box(triangle[0]).extend(triangle[1]).extend(triangle[2]));
+    boxes.push_back(box_of(triangle));
   }
   tree_ = BoxTree(std::move(boxes));
 }

@@ -42,6 +42,12 @@ double area(const Simplex<3>& triangle);
 
 using Box = Eigen::AlignedBox3d;
 
+inline Box box_of(const Simplex<3>& t) { return Box(t[0]).extend(t[1]).extend(t[2]); }
+/// The box with all its faces moved outwards [m].
+inline Box grown(const Box& b, double by) {
+  return {b.min() - Point<3>::Constant(by), b.max() + Point<3>::Constant(by)};
+}
+
 /// A hierarchy of boxes over items 0..n-1.
 class BoxTree {
  public:

@@ -9,7 +9,6 @@
 
 #include "clothbench/motion.hpp"
 #include "metrics/motion_check/body_state.hpp"
-#include "metrics/motion_check/nearest.hpp"
 
 namespace clothbench::motion_check {
 namespace {
@@ -115,10 +114,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
     const V3 a = to_v3(c.a_m), e = to_v3(c.b_m);
     std::vector<bool> close(x.size(), false);
     bool some = false;
-    Box box(a.cwiseMin(e), a.cwiseMax(e));
-    const double wide = c.radius_m + far + near_cell;
-    box.extend(V3(box.min() - V3::Constant(wide)));
-    box.extend(V3(box.max() + V3::Constant(wide)));
+    const Box box = contact::grown(Box(a.cwiseMin(e), a.cwiseMax(e)), c.radius_m + far + near_cell);
     for (std::size_t v = 0; v < x.size(); ++v)
       if (box.contains(x[v])) close[v] = some = true;
     if (!some) continue;
@@ -135,10 +131,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
         for (const std::uint32_t v : t) (*flags)[v] = true;
       }
       for (const std::uint32_t v : t) {
-        const V3 along = e - a;
-        const double share =
-            along.squaredNorm() > 0 ? std::clamp((x[v] - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-        const V3 from = x[v] - a - share * along;
+        const V3 from = x[v] - a - contact::axis_share(x[v], {a, e, c.radius_m}) * (e - a);
         const double d = from.norm();
         if (!(d < c.radius_m + reach[v]) || noted[v]) continue;
         (*flags)[v] = noted[v] = true;
@@ -155,10 +148,7 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
 void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
                                    bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
-  Box box;
-  for (const V3& corner : t) box.extend(corner);
-  box.extend(V3(box.min() - V3::Constant(reach)));
-  box.extend(V3(box.max() + V3::Constant(reach)));
+  const Box box = contact::grown(contact::box_of(t), reach);
   p.tree->for_each_overlapping(box, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
     const bool coarse = reach > m.cell_m / 2 && p.tree->item_boxes()[index].diagonal().norm() < reach;
@@ -278,10 +268,8 @@ void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, 
       if (d < its_reach[v]) faces[frame].add(to_v3(at.normal), b.collider.friction);
     } else if (b.kind.capsules != nullptr) {
       for (const Capsule& c : pose(b, frame).capsules) {
-        const V3 a = to_v3(c.a_m), along = to_v3(c.b_m) - a;
-        const double share =
-            along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-        d = std::min(d, (p - a - share * along).norm() - c.radius_m);
+        const V3 a = to_v3(c.a_m), b = to_v3(c.b_m);
+        d = std::min(d, (p - a - contact::axis_share(p, {a, b, c.radius_m}) * (b - a)).norm() - c.radius_m);
       }
     }
     if (std::isfinite(d)) deepest = std::max(deepest, -d);

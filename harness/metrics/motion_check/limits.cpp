@@ -184,9 +184,8 @@ double Limits::impact_speed(std::size_t k, const Edge& e) const {
 
 void Limits::strain(std::size_t k) {
   double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
-  std::vector<bool> held(m_.vertices, false);
-  if (!m_.scene.grips.vertices.empty())
-    for (const std::uint32_t v : m_.held(k)) held[v] = true;
+  const std::vector<bool> held =
+      m_.scene.grips.vertices.empty() ? std::vector<bool>(m_.vertices, false) : m_.is_held(k);
   std::vector<std::array<double, 2>> loose;  // changes of strain in the frame, and the speeds of impacts
   for (const Edge& e : m_.edges) {
     if (!(e.rest_m > 0)) continue;

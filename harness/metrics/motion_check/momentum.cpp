@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "metrics/motion_check/bodies.hpp"
-#include "metrics/motion_check/wrench.hpp"
+#include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -64,6 +64,8 @@ class Motion {
   }
   /// Pinned vertices, and those that an attachment holds at the end of a frame.
   std::vector<std::uint32_t> held(std::size_t frame) const;
+  /// The same for each vertex.
+  std::vector<bool> is_held(std::size_t frame) const;
   bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
   /// Colliders of a frame, or of the scene's last frame after its end; null if nothing moves but cloth.
   const FrameMotion* scripted(std::size_t frame) const;
@@ -77,6 +79,20 @@ class Motion {
   std::span<const double> time_s_;
   std::span<const float> position_;
 };
+
+using V6 = Eigen::Matrix<double, 6, 1>;
+using M6 = Eigen::Matrix<double, 6, 6>;
+
+/// The wrench of a force: force and moment. An arm of half the cloth's length makes both of one unit.
+inline V6 wrench_of(const V3& force, const V3& arm) {
+  V6 w;
+  w << force, arm.cross(force);
+  return w;
+}
+
+/// Projection on the wrenches about `middle` that no attachment can exert around a frame. Vertices held in the frame or
+/// its neighbours count.
+M6 free_of_attachments(const Motion&, std::size_t frame, const V3& middle);
 
 /// Collects the largest ratio of a statistic.
 class Findings {

@@ -29,7 +29,6 @@ class Smoothness {
  private:
   Field high_pass(std::size_t k) const;
   void spike(std::size_t k, const std::vector<Field>& around);
-  std::vector<bool> held(std::size_t k) const;
   void freeze();
   void stuck();
 
@@ -40,19 +39,13 @@ class Smoothness {
   std::vector<std::vector<std::uint32_t>> near_;  ///< vertices two edges away
 };
 
-std::vector<bool> Smoothness::held(std::size_t k) const {
-  std::vector<bool> out(m_.vertices, false);
-  for (const std::uint32_t v : m_.held(k)) out[v] = true;
-  return out;
-}
-
 /// Fourth difference in time over 6 (a spike of one frame keeps its height), minus the mean of the neighbours.
 Field Smoothness::high_pass(std::size_t k) const {
   Field f(m_.vertices), sum(m_.vertices, V3::Zero());
   for (std::size_t v = 0; v < m_.vertices; ++v)
     f[v] = (m_.at(k - 2, v) - 4 * m_.at(k - 1, v) + 6 * m_.at(k, v) - 4 * m_.at(k + 1, v) + m_.at(k + 2, v)) / 6;
   for (const Edge& e : m_.edges) sum[e.a] += f[e.b], sum[e.b] += f[e.a];
-  const std::vector<bool> fixed = held(k);
+  const std::vector<bool> fixed = m_.is_held(k);
   for (std::size_t v = 0; v < m_.vertices; ++v)
     f[v] = fixed[v] ? V3(V3::Zero()) : V3(f[v] - sum[v] / std::max(degree_[v], 1));
   return f;
@@ -107,7 +100,7 @@ void Smoothness::stuck() {
     for (std::size_t v = 0; v < m_.vertices; ++v) all.push_back(moved(k, v));
     std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
     if (!(all[all.size() / 2] > moving)) continue;
-    const std::vector<bool> fixed = held(k);
+    const std::vector<bool> fixed = m_.is_held(k);
     int still = 0;
     for (std::size_t v = 0; v < m_.vertices; ++v) {
       if (fixed[v] || !(moved(k, v) < 1e-9) || !(moved(k + 1, v) < 1e-9) || !(moved(k - 1, v) > moving)) continue;

@@ -1,11 +1,10 @@
-#include "metrics/stability/envelope.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
+#include "metrics/stability/judge.hpp"
 
 namespace clothbench::stability {
 namespace {

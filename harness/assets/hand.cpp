@@ -1,9 +1,9 @@
-#include "assets/hand_pose.hpp"
+
+#include "assets/hand.hpp"
 
 #include <algorithm>
 #include <regex>
 
-#include "assets/hand.hpp"
 #include "assets/json_at.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
