@@ -126,7 +126,6 @@ struct PaperContactConstants {
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u  // links have a compliance
-#define LINES_LIMIT_SPEED 16u
 #define LINES_REGULARISED 32u  // chains pulled over-constrained between two attached vertices
 #define LINES_BDF2 64u         // BDF2; else backward Euler
 #define LINES_TENSION 128u     // implicit tension
@@ -137,7 +136,6 @@ struct LineConstants {
   vec4 gravity_h;                   // g h keep [m/s]; w: tether_spread_m
   float h;                          // implicit step, h' of TimeStep [s]
   float damping_fraction;           // of velocity by damping
-  float speed_limit;                // [m/s]
   float tether_stretch;             // 1 + slack
   float rest_u, rest_v, rest_d;     // rest lengths of links [m]
   float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
@@ -203,7 +201,6 @@ struct ChainConstants {
   vec4 gravity_h;          // g h keep [m/s]; w: tether_spread_m
   float h;                 // implicit step, h' of TimeStep [s]
   float damping_fraction;  // of velocity by damping
-  float speed_limit;       // [m/s]
   float per_h;             // 1/h
   uint first_entry;        // of the colour, if a dispatch solves only one
   uint rounds;             // of cyclic reduction: 2^rounds is at least the links of its longest chain

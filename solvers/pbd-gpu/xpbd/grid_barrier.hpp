@@ -22,12 +22,11 @@ inline TimeoutPolls timeout_polls(const vulkan::Device& d) {
   return d.is_software() ? TimeoutPolls{1u << 24, 1u << 30} : TimeoutPolls{1u << 14, 1u << 21};
 }
 
-/// Gravity, damping, the maximum speed and the step of LineConstants or ChainConstants.
+/// Gravity, damping and the step of LineConstants or ChainConstants.
 template <class Constants>
 Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
   const Scene& s = frame.scene();
-  const double h = step.implicit_h_s, gain = h * step.force_scale,
-               across = std::hypot(s.cloth.width_m, s.cloth.height_m);
+  const double h = step.implicit_h_s, gain = h * step.force_scale;
   const Vec3 g = s.gravity_m_per_s2;
   const auto f = [](double value) { return static_cast<float>(value); };
   Constants c{};
@@ -35,17 +34,9 @@ Constants step_constants(const FrameBuilder& frame, const TimeStep& step) {
   c.h = f(h);
   c.damping_fraction = f(step.damping_fraction);
   c.history_weight = f(step.history_weight);
-  c.speed_limit = f(2 * std::sqrt(2 * norm(g) * across) + 2 * norm(s.cloth.initial_velocity_m_per_s) +
-                    norm(s.cloth.spin_rad_per_s) * across);
   c.per_h = f(1 / h);
   c.timeout_polls = timeout_polls(*frame.device()).in_a_frame;
   return c;
-}
-
-/// True if speed is limited (LINES_LIMIT_SPEED). Moving colliders and stretched springs may drive cloth at any speed.
-inline bool limits_speed(const Scene& s, bool tethered) {
-  const bool driven = s.needs.has(Feature::MovingMesh) || s.needs.has(Feature::Capsules);
-  return (tethered || starts_crumpled(s)) && !driven;
 }
 
 /// True if the device runs all workgroups of this kernel at once (grid_barrier.glsl) and tuning.device_barrier allows

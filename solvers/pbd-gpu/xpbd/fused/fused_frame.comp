@@ -83,9 +83,6 @@ void find_active_pairs() {
 }
 
 #endif
-// Where one workgroup holds all lines, colours wait for their own workgroup only.
-bool lines_in_a_group() { return THREADS / LANES >= COLUMNS && THREADS / LANES >= ROWS; }
-
 #ifdef CONTACT_FREE
 /// All that is left of contact in a substep: how far a vertex may go in the frame.
 void end_lines(uint i, vec4 at) {
@@ -103,17 +100,14 @@ bool solve_lines(uint substep) {
 #ifndef CONTACT_FREE
   clear_active_bits(global_thread, grid_stride);
 #endif
-  for (uint n = 0u; n < colours && (!lines_in_a_group() || global_thread == thread); ++n) {
+  for (uint n = 0u; n < colours; ++n) {
     colour = colours - 1u - n;
-    pass(substep, n == 0u, n + 1u == colours);
-    if (n + 1u == colours) break;
-    if (lines_in_a_group()) WORKGROUP_BARRIER
-    else GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
+    pass(substep, n == 0u);
+    if (n + 1u < colours) GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
   }
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
-    if ((!lines_in_a_group() || global_thread == thread) && on_chain(i))
-      end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
+    if (on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
   GRID_BARRIER_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
   return true;

@@ -70,7 +70,6 @@ std::uint32_t Lines::features() const {
   if (needs.has(Feature::Bend)) f |= LINES_BEND;
   if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
   if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
-  if (limits_speed(scene_, !tethers_.to.empty())) f |= LINES_LIMIT_SPEED;
   if (regularised_) f |= LINES_REGULARISED;
   if (uses_bdf2_) f |= LINES_BDF2;
   if (tension_) f |= LINES_TENSION;

@@ -36,7 +36,3 @@ void integrate() {
       if (t < TETHERS && w[k] > 0.0) move(k, tethered(pos[k], end[t], reach_of(at, to[t], first[t], last[t])));
   }
 }
-
-void limit_speed() {
-  [[unroll]] for (uint k = 0u; k < K; ++k) vel[k] = limited(vel[k]);
-}

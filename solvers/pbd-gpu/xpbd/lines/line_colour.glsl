@@ -31,7 +31,7 @@ void store_history(uint at[K]) {
   }
 }
 
-void pass(uint substep, bool first, bool last) {
+void pass(uint substep, bool first) {
   uint at[K];
   bool fetches = first && substep == 0u;
   [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -67,7 +67,6 @@ void pass(uint substep, bool first, bool last) {
   }
   if (kBends && colour < 2u) bend();
   stretch();
-  if (last) limit_speed();
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     if (w[k] == 0.0) continue;
     x[at[k]] = vec4(pos[k], w[k]);

@@ -166,7 +166,6 @@ void main() {
       if (turn == 0u) integrate();
       if (kBends && colour < 2u) bend();
       stretch();
-      if (turn + 1u == colours) limit_speed();
       give();
 #ifdef CONTACT_FREE
       if (turn + 1u == colours) check_motion_bound();

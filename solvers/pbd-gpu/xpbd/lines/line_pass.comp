@@ -20,7 +20,7 @@ void main() {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % colours;
     colour = colours - 1u - turn;
-    pass(n / colours, turn == 0u, turn + 1u == colours);
+    pass(n / colours, turn == 0u);
   }
   if (PERSISTENT) leave_grid_barrier();
 }

@@ -37,7 +37,6 @@ void move(vec3 step) {
 
 /// Pinned vertices are never written, so reading them here races with nothing.
 void integrate(uint i) {
-  vel = limited(vel);
   fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
     TetherEnd end = tether_ends[TETHERS * i + t];

@@ -76,7 +76,6 @@ ChainSpecialization Chains::specialization() const {
   s.THREADS = block_;
   s.TETHERS = tethers_;
   if (scene_.needs.has(Feature::Shear) || scene_.needs.has(Feature::ClothMesh)) s.FEATURES |= LINES_SHEAR;
-  if (limits_speed(scene_, tethers_ > 0)) s.FEATURES |= LINES_LIMIT_SPEED;
   if (bends_) s.FEATURES |= LINES_BEND;
   if (uses_bdf2_) s.FEATURES |= LINES_BDF2;
   if (tension_) s.FEATURES |= LINES_TENSION;

@@ -17,12 +17,6 @@ namespace {
 /// Edges below this fraction of the mean are welded.
 constexpr double kSliver = 0.02;
 
-double mean_length(const std::vector<Edge>& all) {
-  double sum = 0;
-  for (const Edge& e : all) sum += e.rest_m;
-  return sum / static_cast<double>(all.size());
-}
-
 std::vector<EdgePath> grid_edge_paths(const Scene& s) {
   const int columns = s.cloth.columns, rows = s.cloth.rows;
   std::vector<EdgePath> out;
@@ -154,21 +148,14 @@ bool needs_chain_solver(const Scene& s) {
   return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
 }
 
-double substeps_for_short_links(const Scene& s) {
-  const std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
-  const double mean = mean_length(all);
-  double shortest = mean;
-  for (const Edge& e : all)
-    if (e.rest_m >= kSliver * mean) shortest = std::min(shortest, e.rest_m);
-  return std::max(1.0, std::sqrt(mean / (2 * shortest)));
-}
-
 ChainCloth chain_cloth(const Scene& s) {
   ChainCloth c;
   c.particle.resize(s.cloth.vertex_count());
   std::iota(c.particle.begin(), c.particle.end(), 0u);
   std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
-  const double mean = mean_length(all);
+  double mean = 0;
+  for (const Edge& e : all) mean += e.rest_m;
+  mean /= static_cast<double>(all.size());
   const auto root = [&](std::uint32_t v) {
     while (c.particle[v] != v) v = c.particle[v];
     return v;

@@ -58,18 +58,6 @@ int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 /// collider may have left the cloth strained in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Substeps that the speed of colliders needs, if that is more than the maximum. The cloth is then overstretched for
-/// some frames, but passes through nothing. 0 if the maximum is sufficient.
-int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
-
-/// Substeps from the largest displacement in a frame.
-struct TravelLimit {
-  double travel_m = 0;  ///< in a substep, where things are slow; infinity without colliders
-  double faster = 1;    ///< divisor of travel_m for fast motion
-  double layers_m = 0;  ///< in a substep, for layers of the cloth that touch; infinity without
-  double wanted(double max_displacement_m) const;
-};
-
 /// Chooses the number of substeps of the next frame from the largest displacement in the last one, for cloth in contact
 /// with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many substeps; most frames have
 /// none.
@@ -89,7 +77,7 @@ class SubstepController {
  private:
   void halve_if_quiescent(double cloth_m);
 
-  TravelLimit rule_;
+  double max_travel_m_ = 0;  ///< in a substep; infinity without colliders and self-contact
   int base_ = 1, max_ = 1, now_ = 1;
   bool adapts_ = false;
   double cell_m_ = 0;

@@ -44,10 +44,7 @@ inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 // Substeps by what acts on the cloth: the first row that applies (substep_count.cpp). They are counted per frame,
 // whatever its duration: a constant in seconds would differ between scaled copies of a scene. Source unless stated:
 // error by substeps, in hanging sheets and strips without contact, and strain in contact.
-// [N/m] From here on tethers carry the load, as in inextensible cloth
-inline constexpr double kStiff = 1e4;
-inline constexpr LinkRule kTetheredStiff = {{2, 6, 20}, {24, 12, 6}};    // Tethers carry the load
-inline constexpr LinkRule kTethered = {{3, 5, 20}, {24, 12, 6}};         // Tethers bound the stretch
+inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Tethers bound the stretch
 inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
 inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Colours leave error to one another
 inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
@@ -61,24 +58,17 @@ inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the c
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing acts: any number is right
-// [links] From here on links at pins have the largest error at `fast`
-inline constexpr double kManyLinks = 300;
-inline constexpr double kManyLinksFactor = 1.2;  // As above: n/20 in place of n/24
 // A heap of the cloth's own layers slides on otherwise: one of 32 x 32 vertices for a second at 16, and lies at 24
 inline constexpr double kLayersFactor = 1.5;
-// [dt sqrt(g / L)] What gravity moves farther in a frame counts as several frames
+// [dt sqrt(g / L)] What gravity moves farther in a frame counts as several frames: at 100 g a strip gains energy
 inline constexpr double kMaxSwing = 0.15;
 // [h sqrt(g / L)] A sliding strip is first order in time: within 3 % at the first (Atwood's rope on a cylinder)
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
 // Substeps by speed in contact (substep_count.cpp). Nothing is passed with any number, so the maxima are of cost.
-// Source of the rows without a choice: strain in drawn scenes of contact.
 // [contact offsets, a substep] A struck vertex pulls its neighbours along before links overstretch
 inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
-inline constexpr PerQuality kFasterOnImpact = {1, 2, 1};  // Divides the travel of fast impacts: strain grows with speed
-inline constexpr double kFastTravel = 8;                  // [travels a frame] From here on motion counts as faster
-inline constexpr double kMinMarginOfCell = 0.125;   // [cells] A thin offset does not ask for more substeps than this
-inline constexpr double kMaxTravelOnImpact = 0.25;  // [cells] On static shapes much of the cloth is struck at once
+inline constexpr double kMinMarginOfCell = 0.125;  // [cells] A thin offset does not ask for more substeps than this
 // [thicknesses, a substep] Responses cannot part layers that approach farther; planes cut their motion
 inline constexpr double kMaxLayerApproach = 2.0 / 3;
 // [m/s] A live session does not know its hand's speed, and a replay must take as many substeps

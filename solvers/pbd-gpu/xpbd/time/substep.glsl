@@ -50,13 +50,6 @@ vec3 tethered(vec3 position, vec3 end, float reach) {
   return square > reach * reach ? e * (reach * inversesqrt(square) - 1.0) : vec3(0.0);
 }
 
-/// No vertex is faster than a fall across the cloth can make it: what a solve of few substeps throws, it does not keep.
-vec3 limited(vec3 velocity) {
-  float square = dot(velocity, velocity);
-  bool too_fast = (FEATURES & LINES_LIMIT_SPEED) != 0u && square > p.speed_limit * p.speed_limit;
-  return too_fast ? velocity * (p.speed_limit * inversesqrt(square)) : velocity;
-}
-
 const bool kTension = (FEATURES & LINES_TENSION) != 0u;
 /// Least ratio of a link's alpha to inverse mass, in a chain pulled over-constrained between attached vertices; 0 in
 /// others, where `smallest` is. `stretched`: length over rest length. Strips: tension must not turn a link by more than
