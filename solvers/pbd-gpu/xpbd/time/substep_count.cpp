@@ -11,6 +11,11 @@
 #include "xpbd/time/rules.hpp"
 
 namespace clothbench::pbd_gpu {
+
+double links_of_longer_side(const Cloth& c) {
+  return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
+}
+
 namespace {
 
 std::size_t quality_of(const nlohmann::json& settings) {
@@ -18,8 +23,7 @@ std::size_t quality_of(const nlohmann::json& settings) {
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
 }
 
-/// How far [m] a moving collider, or a cloth that falls or is thrown on static shapes, may go in a substep. `layers`:
-/// also two layers of the cloth, which may come towards each other.
+/// How far [m] a moving collider or a falling cloth may go in a substep; with `layers` also two layers of the cloth.
 double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
   const double cell = std::min(scene.cloth.du(), scene.cloth.dv());
   double travel = std::numeric_limits<double>::infinity();
@@ -45,8 +49,7 @@ double substeps_for_speed(const Scene& scene, std::size_t quality) {
   return std::min(most[quality], std::max(1.0, wanted));
 }
 
-/// The assumed speed is the sum of the scene's initial speed, the speed of a fall by the cloth's length, and the speed
-/// of the fastest grip or collider.
+/// Assumed speed: the initial one, that of a fall by the cloth's length and that of the fastest grip or collider.
 double substeps_for_layers(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double longer = std::max(c.width_m, c.height_m);
@@ -56,14 +59,6 @@ double substeps_for_layers(const Scene& scene) {
   return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
-}  // namespace
-
-double links_of_longer_side(const Cloth& c) {
-  return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
-}
-
-namespace {
-
 /// By the page of this folder, "Substeps". `touches`: for what touches the cloth in the frame; `fast`: for its speed.
 int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
@@ -72,10 +67,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool touched = touches || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
   const bool tethered = is_tethered(scene, settings);
   const auto& grips = scene.grips.vertices;
-  // A hand pushes a cloth in directions that tethers do not limit.
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
-  // The first that applies.
   const LinkRule& rule = !touched        ? rules::kNoContact
                          : driven        ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
                                             : touches                 ? rules::kKinematicContact
@@ -115,8 +108,7 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
     : max_travel_m_(max_travel_m(scene, quality_of(settings), true)), adapts_(adapts) {
   max_ = xpbd_substeps(scene, settings);
   base_ = std::min(max_, substeps_by_rules(scene, settings, !is_contact_free(scene), false));
-  const Cloth& cloth = scene.cloth;
-  cell_m_ = cloth.mesh ? cloth.mesh->edge_m : std::max(cloth.du(), cloth.dv());
+  cell_m_ = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
   reset();
 }
 
@@ -136,9 +128,7 @@ void SubstepController::next(double cloth_m) {
   if (wanted <= base_) now_ = smallest;
 }
 
-/// Cloth that lies takes half of the base, and later a quarter: after some frames in which no vertex went farther than
-/// a twenty-fourth of a cell. All of it comes back once one goes a sixth, for fewer substeps leave more strain, so that
-/// the cloth gives a little when they change.
+/// Cloth that lies takes half of the base, and later a quarter, until it moves.
 void SubstepController::halve_if_quiescent(double cloth_m) {
   const double cells = cloth_m / cell_m_;
   quiescent_frames_ = cells <= rules::kQuiescent ? quiescent_frames_ + 1 : 0;
