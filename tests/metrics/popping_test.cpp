@@ -145,6 +145,40 @@ TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   EXPECT_GT(pop_of(scene, cracked(8, 2)), 10 * bound_m());
 }
 
+/// A wave that runs along the diagonal moves the corner at up to four times its speed.
+TEST(Popping, OfACornerIsWhatItsWaveDoesNotExplain) {
+  const Scene scene = scene_of(72);
+  const auto cracked = [](double quadrupled, bool only_corner = false) -> Motion {
+    return [=](std::size_t v, double t) {
+      const double front = static_cast<double>(v % 9 + v / 9), speed_m_per_s = 4, gap_s = 0.007;
+      const double by = speed_m_per_s * std::clamp(t - kStart_s - gap_s * front, 0.0, 1.0 / 36);
+      return Vec3{0, v == kCorner ? quadrupled * by : only_corner ? 0 : by, 0};
+    };
+  };
+  EXPECT_NEAR(pop_of(scene, cracked(4)), 0, kRounding_m);
+  EXPECT_GT(pop_of(scene, cracked(6)), 2 * bound_m());
+  EXPECT_GT(pop_of(scene, cracked(1, true)), 10 * bound_m());
+}
+
+/// What surrounds a vertex moves by the length of its path, also where it turns round within a window. What happens far
+/// away does not matter, and no vertex explains itself by a jump there and back.
+TEST(Popping, OfAVertexAmongOthersThatTurnRound) {
+  const Scene scene = scene_of(72);
+  const auto among = [](std::size_t from, std::size_t to) -> Motion {
+    return [=](std::size_t v, double t) {
+      const double there_and_back = std::max(0.0, 1 - std::abs((t - kStart_s) * 72 + 1));
+      const bool turns = v % 9 >= from && v % 9 < to && v != kMiddle;
+      return Vec3{turns ? 0.03 * there_and_back : 0, v == kMiddle ? 0.05 * ramp(t, 1 / 72.0) : 0, 0};
+    };
+  };
+  EXPECT_NEAR(pop_of(scene, among(3, 6)), 0, kRounding_m);
+  EXPECT_NEAR(pop_of(scene, among(7, 9)), 0.05, kRounding_m);
+  const auto jumps_back = [](std::size_t v, double t) {
+    return Vec3{0, v == kMiddle ? 0.05 * (ramp(t, 1 / 72.0) - ramp(t - 2 / 72.0, 1 / 72.0)) : 0, 0};
+  };
+  EXPECT_NEAR(pop_of(scene, jumps_back), 0.05, kRounding_m);
+}
+
 TEST(Popping, OfOneFrameIsTheSameAtEveryFrameRate) {
   for (const double rate : {8.0, 24.0, 28.0, 36.0, 60.0, 72.0, 144.0, 960.0})
     EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 1 / rate)), 0.05, kRounding_m) << rate;

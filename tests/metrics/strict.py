@@ -138,24 +138,28 @@ def driven(run):
 
 
 def popping(run):
-    """Greatest displacement in 1/36 s beyond twice that of vertices up to two edges away, before or after, or of what drives the cloth."""
+    """Greatest displacement in 1/36 s beyond what explains it: twice the path of what drives the cloth, twice the vertex's own displacement
+    before or after, and twice (corners: four times) the path of a vertex up to two edges away, before or after."""
     rate, count = run.scene["time"]["frame_rate_hz"], run.x.shape[1]
     window = max(2, np.ceil(rate / 36 - 1e-9)) / rate
     linked = np.zeros((count, count), int)
     linked[run.triangles[:, [0, 0, 1, 1, 2, 2]], run.triangles[:, [1, 2, 0, 2, 0, 1]]] = 1
     near = (linked + linked @ linked > 0) & ~np.eye(count, dtype=bool)
+    gain = np.where(np.bincount(run.triangles.ravel(), minlength=count) > 2, 2, 4)
     velocity = np.broadcast_to(run.scene["cloth"].get("initial_velocity_m_per_s", [0, 0, 0]), (count, 3))
     time, x = np.r_[run.time[0] - 1, run.time], np.concatenate([run.x[:1] - velocity, run.x])
+    gone = np.concatenate([np.zeros((1, count)), np.cumsum(norm(np.diff(x, axis=0)), axis=0)])
     drive, starts, most = np.r_[0, driven(run)], np.r_[run.time, (run.time[1:] + run.time[:-1]) / 2], 0.0
     for start in starts[starts + 2 * window <= run.time[-1] + 1e-9]:
         at = start + window * np.arange(-1, 3)
         k = np.minimum((frame := np.interp(at, time, np.arange(len(time)))).astype(int), len(time) - 2)
         share = (frame - k)[:, None, None]
         before, now, after = np.diff((1 - share) * x[k] + share * x[k + 1], axis=0)
-        beside = np.where(near, np.maximum(norm(before), norm(after))[None], 0).max(1)
+        paths = np.diff((1 - share[..., 0]) * gone[k] + share[..., 0] * gone[k + 1], axis=0)
+        beside = np.where(near, np.maximum(paths[0], paths[2])[None], 0).max(1)
         along = np.maximum(dot(now, before), dot(now, after)) / np.maximum(norm(now), 1e-300)
-        explained = np.maximum(np.maximum(beside, along), np.diff(np.interp(at, time, drive)).max())
-        most = max(most, (norm(now) - 2 * explained).max())
+        explained = np.maximum(gain * beside, 2 * np.maximum(along, np.diff(np.interp(at, time, drive)).max()))
+        most = max(most, (norm(now) - explained).max())
     return most
 
 
