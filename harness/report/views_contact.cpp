@@ -60,13 +60,12 @@ View verdicts() {
 View contact() {
   View v{"contact", "Contact",
          "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
-         "offsets. Crossings: how often cloth and colliders pass through each other between two frames, the "
-         "maximum of all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the "
-         "maximum in the "
-         "last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: maximum displacement "
-         "of a vertex within 1/36 s beyond twice the displacement of its neighbours, colliders and grips. Strain: "
-         "strain of the structural edges. Times: section Frame times. Paper, best: scenes of study `reproduction` at "
-         "the cheapest point at which most claims hold.",
+         "offsets. Crossings: how often cloth and colliders pass through each other between two frames, the maximum of "
+         "all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in "
+         "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: maximum "
+         "displacement of a vertex within 1/36 s that its neighbours, colliders and grips do not explain. Strain: of "
+         "structural edges. Times: section Frame times. Paper, best: scenes of study `reproduction` at the cheapest "
+         "point at which most claims hold.",
          [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
