@@ -9,7 +9,7 @@
 #include "clothbench/vector.hpp"
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
-#include "scenario/drawn_mesh.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
 
