@@ -141,7 +141,7 @@ TEST(Norms, ChainsOfTwoResolutionsOnTheLattice) {
   const std::vector<double> times{0.3};
   const auto on_lattice = [&](int links) {
     const Mesh m = mesh(8, links, 0.25, 1);
-    const Nodes nodes = swing({links, 1, 9.81, 0.5, 0}, times)[0];
+    const Nodes nodes = swing({links, 1, 9.81, 0.5}, times)[0];
     const auto values = m.values([&](double u, double v) {
       const auto p = node_position(nodes, v);
       return std::array<double, 3>{p[0], p[1], u};
