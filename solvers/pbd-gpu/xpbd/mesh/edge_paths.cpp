@@ -148,6 +148,15 @@ bool needs_chain_solver(const Scene& s) {
   return !(s.needs & FeatureSet{Feature::ClothMesh, Feature::UnevenGrid, Feature::Regions}).empty();
 }
 
+double substeps_for_short_links(const Scene& s) {
+  const std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
+  const double mean = mean_length(all);
+  double shortest = mean;
+  for (const Edge& e : all)
+    if (e.rest_m >= kSliver * mean) shortest = std::min(shortest, e.rest_m);
+  return std::max(1.0, std::sqrt(mean / (2 * shortest)));
+}
+
 ChainCloth chain_cloth(const Scene& s) {
   ChainCloth c;
   c.particle.resize(s.cloth.vertex_count());

@@ -10,6 +10,10 @@ namespace clothbench::pbd_gpu {
 /// True if the links of a cloth are not all alike, so that chains (chain_pass) solve it instead of lines.
 bool needs_chain_solver(const Scene&);
 
+/// Factor on the substeps of an even cloth: short links turn faster, by the square root of the ratio of lengths. 1
+/// while the shortest link that is not welded has at least half of the mean length.
+double substeps_for_short_links(const Scene&);
+
 /// Particles and links of a chain cloth, slivers welded (xpbd/mesh/README.md).
 struct ChainCloth {
   std::vector<std::uint32_t> particle;  ///< one a vertex: itself, or the vertex that it is welded to

@@ -79,6 +79,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
                          : grips.empty() ? rules::kPinnedSheet
                                          : rules::kAttachedSheet;
   double per_frame = std::max(rule.smallest[k], links / rule.links_a_substep[k]);
+  if (needs_chain_solver(scene)) per_frame *= substeps_for_short_links(scene);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m),
                swing = scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer_m);
   if (swing > rules::kMaxSwing && is_held(scene) && is_contact_free(scene)) per_frame *= swing / rules::kMaxSwing;
