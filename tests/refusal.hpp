@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
+#include <optional>
 #include <string>
 
 #include "clothbench/error.hpp"
@@ -15,12 +16,14 @@ inline std::string test_name(const std::string& words) {
   return out;
 }
 
-/// The message of the Error that `call` throws; empty if it throws none.
+/// The message of the Error that `call` throws, which must have this exit code if one is given; empty if it throws
+/// none.
 template <class Call>
-std::string refusal(Call call) {
+std::string refusal(Call call, std::optional<ExitCode> code = {}) {
   try {
     call();
   } catch (const Error& e) {
+    EXPECT_EQ(e.code(), code.value_or(e.code())) << e.what();
     return e.what();
   }
   return "";

@@ -19,17 +19,8 @@ namespace clothbench::assets {
   const AssetSource source = locate_assets(required_ != nullptr && std::string(required_) == "1"); \
   if (!source.npm) GTEST_SKIP() << "no npm assets: " << source.reason
 
-/// Message of the Error that `f` throws; fails the test if it throws none or another type.
-inline std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing thrown";
-  return {};
-}
+/// Message of the Error of bad input that `f` throws.
+inline std::string error_of(const std::function<void()>& f) { return refusal(f, ExitCode::BadInput); }
 
 template <class Item>
 std::string base64_of(const std::vector<Item>& items) {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 
 namespace clothbench {
@@ -51,15 +50,9 @@ inline Scene with_collider(Scene s, Collider c, double friction = 0.3) {
   return s;
 }
 
-inline const SolverEntry& entry_of(const std::string& name) {
-  for (const SolverEntry& e : solvers())
-    if (e.info.name == name) return e;
-  throw Error("no solver " + name);
-}
-
 inline std::unique_ptr<ClothSolver> make_solver(const std::string& name,
                                                 const nlohmann::json& given = nlohmann::json::object()) {
-  const SolverEntry& e = entry_of(name);
+  const SolverEntry& e = find_solver(name);
   return e.make(complete_settings(e.info, given), {});
 }
 

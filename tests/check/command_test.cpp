@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/files.hpp"
 #include "results.hpp"
 #include "results/store.hpp"
 
@@ -21,10 +22,7 @@ using testing_command::Streams;
 
 class CheckCommand : public WithFolder {
  protected:
-  void SetUp() override {
-    WithFolder::SetUp();
-    write_study({contact_run("desk"), contact_run("sweep")});
-  }
+  void SetUp() override { write_study({contact_run("desk"), contact_run("sweep")}); }
 
   /// A study folder with these runs, as `clothbench study` leaves it.
   void write_study(const std::vector<RunRecord>& runs) {
@@ -51,23 +49,18 @@ class CheckCommand : public WithFolder {
     return command("check " + run().string() + " --baseline " + baseline().string() + " " + more);
   }
 
-  static std::string content(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
   std::string text_;
 };
 
 TEST_F(CheckCommand, UpdateThenCheckThenRegress) {
   ASSERT_EQ(check("--update"), 0) << text_;
   EXPECT_NE(text_.find("2 changed or new"), std::string::npos) << text_;
-  const std::string made = content(baseline());
+  const std::string made = content_of(baseline());
   EXPECT_EQ(check(), 0) << text_;
   EXPECT_NE(text_.find("check passed: 2 runs: 0 failed, 0 improved, 0 new, 2 as in"), std::string::npos) << text_;
-  EXPECT_EQ(content(baseline()), made) << "a check writes nothing";
+  EXPECT_EQ(content_of(baseline()), made) << "a check writes nothing";
   ASSERT_EQ(check("--update"), 0);
-  EXPECT_EQ(content(baseline()), made) << "the same results give the same file";
+  EXPECT_EQ(content_of(baseline()), made) << "the same results give the same file";
 
   write_study({contact_run("desk"), with(contact_run("sweep"), "crossings_max", 0.25)});
   EXPECT_EQ(check(), 1) << text_;
@@ -102,13 +95,13 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
   EXPECT_EQ(check("--update --junit x.xml"), 2);
   EXPECT_EQ(command("check " + run().string() + " " + run().string() + " --baseline " + baseline().string()), 2);
   EXPECT_NE(text_.find("twice"), std::string::npos) << text_;
-  json bad = json::parse(content(baseline()));
+  json bad = json::parse(content_of(baseline()));
   bad["runs"][1]["scalars"]["depth_max"] = 1;
   std::ofstream(baseline()) << bad.dump();
   EXPECT_EQ(check(), 2);
   EXPECT_NE(text_.find("baseline.json: /runs/1/scalars/depth_max"), std::string::npos) << text_;
   EXPECT_EQ(check("--update"), 2) << "what cannot be read is not written over";
-  EXPECT_EQ(json::parse(content(baseline())), bad);
+  EXPECT_EQ(json::parse(content_of(baseline())), bad);
 }
 
 /// Whatever the summary says: the run of the baseline has the same.
@@ -150,7 +143,7 @@ TEST_F(CheckCommand, JunitAndJson) {
   write_study({contact_run("desk"), ended(contact_run("sweep"), "diverged", "F1", 3)});
   const fs::path junit = dir_ / "check.xml";
   EXPECT_EQ(check("--junit " + junit.string()), 1);
-  EXPECT_NE(content(junit).find("failures=\"1\""), std::string::npos);
+  EXPECT_NE(content_of(junit).find("failures=\"1\""), std::string::npos);
   EXPECT_EQ(command("check --json " + run().string() + " --baseline " + baseline().string(), Streams::Out), 1);
   const json j = json::parse(text_);
   EXPECT_EQ(j.at("passed"), false);
@@ -172,7 +165,7 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
   const std::string arguments = "check " + out.string() + " --baseline " + baseline().string();
   ASSERT_EQ(command(arguments + " --update"), 0) << text_;
   EXPECT_EQ(command(arguments), 0) << text_;
-  json changed = json::parse(content(baseline()));
+  json changed = json::parse(content_of(baseline()));
   ASSERT_EQ(changed["runs"].size(), 1u);
   EXPECT_EQ(changed["runs"][0]["solver"], "ballistic");
   ASSERT_TRUE(changed["runs"][0]["scalars"].contains("free_fall_error"));

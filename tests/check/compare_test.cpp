@@ -9,6 +9,7 @@
 #include "check/baseline.hpp"
 #include "check/print.hpp"
 #include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "results.hpp"
 
 namespace clothbench {
@@ -25,15 +26,6 @@ Verdict verdict_of(const std::string& name, double was, double is) {
   EXPECT_EQ(f.size(), 1u);
   EXPECT_EQ(f[0].quantity, name);
   return f[0].verdict;
-}
-
-std::string error_of(const auto& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(Gates, EveryPenetrationScalarHasOneAndNoTimeDoes) {
@@ -163,7 +155,7 @@ TEST(Check, OtherConditionsAreRefusedByNameUnlessAllowed) {
   for (const Other& other : all) {
     RunRecord changed = contact_run();
     other.change(changed);
-    const std::string refused = error_of([&] { check_runs(baseline, {changed}); });
+    const std::string refused = refusal([&] { check_runs(baseline, {changed}); });
     for (const char* word : {other.kind, other.found, "desk__xpbd__default", "--allow"})
       EXPECT_NE(refused.find(word), std::string::npos) << refused;
     const Checked allowed = check_runs(baseline, {changed}, {other.kind});
@@ -189,7 +181,7 @@ TEST(Compare, ASceneWithoutSizeIsBadInput) {
   RunRecord odd = contact_run();
   for (const char* json : {"{}", "not JSON", R"({"cloth":{"size_m":["a",1]}})"}) {
     odd.header.scenario_json = json;
-    EXPECT_NE(error_of([&] { findings(contact_run(), odd); }).find("/cloth/size_m"), std::string::npos) << json;
+    EXPECT_NE(refusal([&] { findings(contact_run(), odd); }).find("/cloth/size_m"), std::string::npos) << json;
   }
 }
 
@@ -214,7 +206,7 @@ TEST(Check, MissingRunsFailNewOnesDoNot) {
     EXPECT_FALSE(check_runs(baseline_of({a}), {a, with(b, "expect.motion", motion)}).passed()) << "impossible";
 
   EXPECT_FALSE(check_runs(baseline_of({a}), {}).passed());
-  EXPECT_NE(error_of([&] { check_runs(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
+  EXPECT_NE(refusal([&] { check_runs(baseline_of({a}), {a, a}); }).find("twice"), std::string::npos);
 }
 
 TEST(Check, APlannedRunIsFoundByItsFileName) {
@@ -231,7 +223,7 @@ TEST(Check, ProceduralRoomsDoNotPassForScans) {
   RunRecord scanned = contact_run(), procedural = contact_run();
   scanned.header.scenario_json = R"({"assets":"npm","cloth":{"size_m":[0.5,0.75]}})";
   procedural.header.scenario_json = R"({"assets":"procedural","cloth":{"size_m":[0.5,0.75]}})";
-  const std::string refused = error_of([&] { check_runs(baseline_of({scanned}), {procedural}); });
+  const std::string refused = refusal([&] { check_runs(baseline_of({scanned}), {procedural}); });
   EXPECT_NE(refused.find("scene: rooms and hands: npm and procedural"), std::string::npos) << refused;
 }
 
@@ -261,10 +253,10 @@ TEST(Update, TakesTheResultsAndSaysWhatChanged) {
 
 TEST(Update, RefusesWhatIsNotWhole) {
   const RunRecord a = contact_run("a"), b = contact_run("b");
-  EXPECT_NE(error_of([&] { update_baseline({}, {a, planned(b)}); }).find("b__xpbd__default"), std::string::npos);
-  EXPECT_NE(error_of([&] { update_baseline({}, {}); }).find("expected results with at least one run"),
+  EXPECT_NE(refusal([&] { update_baseline({}, {a, planned(b)}); }).find("b__xpbd__default"), std::string::npos);
+  EXPECT_NE(refusal([&] { update_baseline({}, {}); }).find("expected results with at least one run"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { update_baseline({}, {a, a}); }).find("twice"), std::string::npos);
+  EXPECT_NE(refusal([&] { update_baseline({}, {a, a}); }).find("twice"), std::string::npos);
 }
 
 }  // namespace

@@ -1,12 +1,17 @@
-// Output for people and machines: the console, JUnit XML, JSON.
+// The baseline file, and the output for people and machines: console, JUnit XML, JSON.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 
+#include "check/compare.hpp"
 #include "check/print.hpp"
+#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "results.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -28,10 +33,10 @@ Checked sample() {
   return c;
 }
 
-TEST(Junit, IsReadBackByAnXmlParser) {
-  const fs::path dir = fs::temp_directory_path() / ("clothbench-junit-" + std::to_string(getpid()));
-  fs::create_directories(dir);
-  std::ofstream(dir / "check.xml") << junit_xml(sample());
+class Junit : public WithFolder {};
+
+TEST_F(Junit, IsReadBackByAnXmlParser) {
+  std::ofstream(dir_ / "check.xml") << junit_xml(sample());
   json expected = json::array();
   for (const CheckedRun& c : sample().runs) {
     const std::string name = c.key.solver + " " + c.key.setting;
@@ -39,12 +44,11 @@ TEST(Junit, IsReadBackByAnXmlParser) {
     for (const Finding& f : c.findings) item[f.verdict == Verdict::Failed ? "failures" : "notes"].push_back(f.quantity);
     expected.push_back(item);
   }
-  std::ofstream(dir / "expected.json") << expected.dump();
+  std::ofstream(dir_ / "expected.json") << expected.dump();
   const std::string script = std::string(CLOTHBENCH_SOURCE_DIR) + "/tests/check/check_junit.py";
-  const std::string command = "/usr/bin/python3 '" + script + "' '" + (dir / "check.xml").string() + "' '" +
-                              (dir / "expected.json").string() + "'";
+  const std::string command = "/usr/bin/python3 '" + script + "' '" + (dir_ / "check.xml").string() + "' '" +
+                              (dir_ / "expected.json").string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  fs::remove_all(dir);
 }
 
 TEST(Console, ShowsWhatDiffersAndAVerdict) {
@@ -78,6 +82,85 @@ TEST(Json, HasEveryRun) {
   ASSERT_EQ(j.at("runs").size(), 4u);
   EXPECT_EQ(j["runs"][0]["verdict"], "same");
   EXPECT_EQ(j["runs"][1]["findings"][1]["allowed"], "≤ 0.0036");
+}
+
+// The baseline file: what is written is read back, what is wrong is said with file and JSON pointer.
+
+class BaselineFile : public WithFolder {
+ protected:
+  void SetUp() override {
+    file_ = dir_ / "baseline.json";
+    const std::vector<RunRecord> runs = {contact_run("sweep"), ended(contact_run("desk", "paper"), "diverged", "F1", 7),
+                                         contact_run("desk")};
+    made_ = update_baseline({}, runs).baseline;
+  }
+
+  Baseline written(const std::string& text) {
+    std::ofstream(file_) << text;
+    return read_baseline(file_);
+  }
+  std::string fault(const std::string& text) {
+    const std::string why = refusal([&] { written(text); }, ExitCode::BadInput);
+    EXPECT_TRUE(why.empty() || mentions(why, file_.string())) << why;
+    return why;
+  }
+
+  fs::path file_;
+  Baseline made_;
+};
+
+TEST_F(BaselineFile, ReadsBackExactly) {
+  made_.runs[0].scalars["depth_max_m"] = 0.1 + 0.2;
+  const std::string text = baseline_text(made_);
+  const Baseline read = written(text);
+  EXPECT_EQ(baseline_text(read), text);
+  EXPECT_EQ(read.runs[0].scalars.at("depth_max_m"), 0.1 + 0.2);
+  EXPECT_EQ(read.runs[0].scalars.count("slip_m"), 0u) << "not measured";
+  nlohmann::json by_hand = json::parse(text);
+  by_hand["runs"][0]["scalars"]["slip_m"] = nullptr;
+  EXPECT_TRUE(std::isnan(written(by_hand.dump()).runs[0].scalars.at("slip_m")));
+  EXPECT_EQ(read.runs[0].status, "diverged");
+  EXPECT_EQ(read.runs[0].failed_frame, 7);
+}
+
+TEST_F(BaselineFile, IsSortedWithOneValueALineAndGatedScalarsAlone) {
+  const std::string text = baseline_text(made_);
+  EXPECT_EQ(text.find("fps"), std::string::npos);
+  EXPECT_EQ(text.find("_s\""), std::string::npos) << "a time";
+  EXPECT_NE(text.find("\n    \"depth_max_m\": 0.003,\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n    \"Solve (stretch, shear)\",\n"), std::string::npos) << text;
+  const json j = json::parse(text);
+  std::vector<std::string> scenes;
+  for (const json& c : j["runs"])
+    scenes.push_back(c["scene"].get<std::string>() + " " + c["solver"].get<std::string>());
+  EXPECT_EQ(scenes, (std::vector<std::string>{"desk paper", "desk xpbd", "sweep xpbd"}));
+}
+
+TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
+  const json good = json::parse(baseline_text(made_));
+  const auto with_change = [&](const char* pointer, const json& value) {
+    json bad = good;
+    bad[json::json_pointer(pointer)] = value;
+    return fault(bad.dump());
+  };
+  EXPECT_EQ(fault(good.dump()), "");
+  EXPECT_NE(with_change("/runs/1/scalars/fps_median", 60).find("/runs/1/scalars/fps_median"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1/scalars/depth_max_m", "deep").find("/runs/1/scalars/depth_max_m"), std::string::npos);
+  EXPECT_NE(with_change("/runs/1/solvr", "x").find("nearest known: solver"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/status", "fine").find("/runs/2/status"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/failed_frame", -2).find("/runs/2/failed_frame"), std::string::npos);
+  EXPECT_NE(with_change("/runs/2/stages/0", 1).find("/runs/2/stages/0"), std::string::npos);
+  EXPECT_NE(with_change("/format", "clothbench-run").find("/format"), std::string::npos);
+  EXPECT_NE(with_change("/format_version", 2).find("/format_version"), std::string::npos);
+  EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "nothing to hold results to";
+  EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run occurs twice"), std::string::npos);
+  json bad = good;
+  bad["runs"][1].erase("scalars");
+  EXPECT_NE(fault(bad.dump()).find("/runs/1: \"scalars\" is missing"), std::string::npos);
+  EXPECT_NE(fault("{\n \"format\": NaN}").find("line 2"), std::string::npos);
+  EXPECT_NE(fault("").find("empty"), std::string::npos);
+  EXPECT_NE(fault(R"({"format":1,"format":2})").find("occurs twice"), std::string::npos);
+  EXPECT_NE(fault("[]"), "");
 }
 
 }  // namespace

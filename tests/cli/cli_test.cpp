@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/files.hpp"
 #include "command.hpp"
 #include "results/store.hpp"
 
@@ -151,7 +152,7 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
 
 TEST_F(Cli, RequiredAssetsMustBeThere) {
   const std::string to = " --solver ballistic --trials 0 --out " + (dir_ / "o").string();
-  ASSERT_EQ(setenv("CLOTHBENCH_ASSETS", "procedural", 1), 0);
+  const Variable procedural("CLOTHBENCH_ASSETS", "procedural");
   EXPECT_EQ(json_of("list assets").at(0).at("name"), "procedural");
   const Answer a = command("run paper/desk-flat-low --require-assets" + to);
   EXPECT_EQ(a.code, 2) << a.text;
@@ -159,7 +160,6 @@ TEST_F(Cli, RequiredAssetsMustBeThere) {
   EXPECT_EQ(command("run paper/gravity --require-assets" + to).code, 0) << "a scene that uses none";
   EXPECT_EQ(command("study penetration --quick --require-assets --out " + (dir_ / "s").string()).code, 2);
   EXPECT_FALSE(fs::exists(dir_ / "s")) << "nothing has begun";
-  unsetenv("CLOTHBENCH_ASSETS");
 }
 
 /// Starts the study, lets it run for a while and sends it a signal.
@@ -189,11 +189,6 @@ TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
   for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
 }
 
-std::string bytes(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST_F(Cli, AnEditedSceneIsNotResumed) {
   const fs::path scene = dir_ / "gravity.json", study = dir_ / "edited.json", out = dir_ / "study", one = dir_ / "run";
   nlohmann::json j;
@@ -210,7 +205,7 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   ASSERT_EQ(command(run).code, 0);
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
-  const std::string manifest = bytes(out / "study.json"), manifest_of_run = bytes(one / "study.json");
+  const std::string manifest = content_of(out / "study.json"), manifest_of_run = content_of(one / "study.json");
   // SolverRun 1 has not been run: it would join one of another scene.
   for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
     const Answer a = command(words);
@@ -219,8 +214,8 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
     EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
   }
   EXPECT_EQ(command(run).code, 2) << "finished, and not to be gone on with";
-  EXPECT_EQ(bytes(out / "study.json"), manifest);
-  EXPECT_EQ(bytes(one / "study.json"), manifest_of_run);
+  EXPECT_EQ(content_of(out / "study.json"), manifest);
+  EXPECT_EQ(content_of(one / "study.json"), manifest_of_run);
   EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3)
       << "study.json, one run's .h5 and .xdmf";
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "meshes.hpp"
+#include "metrics/contact/tunnel.hpp"
 #include "refusal.hpp"
 
 namespace clothbench::contact {
@@ -104,6 +105,135 @@ TEST(Robustness, EmptyAndDamagedObjects) {
   bad_number.positions[4] = std::nan("");
   EXPECT_THROW(TriangleTree(bad_number.view()), Error);
   EXPECT_PRED2(mentions, refusal([&] { TriangleTree tree(bad_index.view()); }), "triangle 5 names vertex 100000");
+}
+
+// A flat sheet pushed by d into a sphere of radius R: circle of radius a = sqrt(2Rd - d^2).
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadius = 0.1;
+
+double exact_contour(double d) { return 2 * kPi * std::sqrt(2 * kRadius * d - d * d); }
+
+/// A horizontal sheet d below the sphere's top, a vertex under the top, cells not aligned with the sphere's triangles.
+Mesh lowered_sheet(int cells, double d) {
+  const double c = std::cos(0.3), s = std::sin(0.3), side = 0.24;
+  const Point<3> u(side * c, 0, -side * s), v(side * s, 0, side * c);
+  return sheet(cells, cells, Point<3>(0, kRadius - d, 0) - 0.5 * (u + v), v, u);
+}
+
+/// Sphere turned so that the plane cuts it in no special way, but with a vertex on top, where the depth is largest.
+Mesh ball(int n) {
+  const Mesh plain = octasphere(n, kRadius);
+  const Point<3> top = plain.view().vertex(plain.triangles[n][0]).normalized();
+  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(top, Point<3>::UnitY()).toRotationMatrix();
+  return plain.mapped([&](const Point<3>& p) { return Point<3>(turn * p); });
+}
+
+ContactSample mesh_sample(int level, double d) {
+  const Mesh cloth = lowered_sheet(24 << level, d), object = ball(20 << level);
+  return against(cloth, object);
+}
+
+/// Three levels, each half as coarse: close to the exact value, and the observed order 2 +- 0.3.
+TEST(UnitNumbers, SphereMesh) {
+  for (const double d : {0.005, 0.01, 0.02}) {
+    const double exact = exact_contour(d);
+    const ContactSample s[3] = {mesh_sample(0, d), mesh_sample(1, d), mesh_sample(2, d)};
+    const double coarse = std::abs(s[0].contour_length_m - exact), fine = std::abs(s[2].contour_length_m - exact);
+    EXPECT_LE(fine, 2e-3 * exact) << d;
+    EXPECT_LE(std::abs(std::log2(coarse / fine) / 2 - 2), 0.3) << d;
+    EXPECT_LE(std::abs(s[2].depth_max_m - d), 1e-4 * kRadius) << d;
+  }
+}
+
+/// The contour of a capsule's triangles lies between the contours of the capsule and of one whose radius is smaller by
+/// the stated error.
+void expect_contour(double found, double at_radius, double at_less, const char* what) {
+  EXPECT_LE(found, at_radius * (1 + 1e-12)) << what;
+  EXPECT_GE(found, at_less * (1 - kCapsuleError)) << what;
+}
+
+// Level sheets in a sphere, across a capsule that lies along x (a stadium), and across one that stands on its end.
+TEST(UnitNumbers, CapsulesByTriangles) {
+  const double length = 0.3, less = (1 - kCapsuleError) * kRadius;
+  const Capsule ball = sphere(Point<3>::Zero(), kRadius), lying{{-length / 2, 0, 0}, {length / 2, 0, 0}, kRadius},
+                upright{{0, -length, 0}, {0, 0, 0}, kRadius};
+  const auto sample = [](const Mesh& cloth, const Capsule& c) { return capsule_contact(cloth.view(), {&c, 1}); };
+  const auto half_width = [](double radius, double height) {
+    return radius > height ? std::sqrt(radius * radius - height * height) : 0;
+  };
+  for (const double d : {1e-5, 1e-4, 0.001, 0.003, 0.005, 0.01, 0.02, 0.07}) {
+    const double a = half_width(kRadius, kRadius - d), b = half_width(less, kRadius - d);
+    const Mesh cloth = lowered_sheet(6, d), wide = sheet(16, 16, {-0.35, kRadius - d, -0.25}, {0, 0, 0.5}, {0.7, 0, 0});
+    for (const Capsule& round : {ball, upright}) {
+      const ContactSample s = sample(cloth, round);
+      expect_contour(s.contour_length_m, 2 * kPi * a, 2 * kPi * b, "circle");
+      EXPECT_NEAR(s.depth_max_m, d, 1e-12);
+    }
+    const ContactSample s = sample(wide, lying);
+    expect_contour(s.contour_length_m, 2 * kPi * a + 2 * length, b > 0 ? 2 * kPi * b + 2 * length : 0, "stadium");
+    EXPECT_NEAR(s.depth_max_m, d, 1e-12);
+  }
+}
+
+TEST(UnitNumbers, CapsuleMeshIsWithinItsError) {
+  for (const Capsule& c : {sphere({0.1, -0.2, 0.3}, 0.02), Capsule{{0, 0, 0}, {0.3, 0.1, -0.2}, 0.05}}) {
+    const CapsuleMesh mesh = capsule_mesh(c);
+    EXPECT_TRUE(is_inside(c.a, TriangleTree(mesh.view())));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Simplex<3> v = mesh.view().triangle(t);
+      const Point<3> out = (v[1] - v[0]).cross(v[2] - v[0]), middle = (v[0] + v[1] + v[2]) / 3;
+      for (const Point<3>& p : {v[0], Point<3>(0.5 * (v[0] + v[1])), Point<3>(0.5 * (v[1] + v[2])),
+                                Point<3>(0.5 * (v[2] + v[0])), middle}) {
+        EXPECT_LE(signed_distance(p, c), 1e-12);
+        EXPECT_GE(signed_distance(p, c), -kCapsuleError * c.radius_m);
+      }
+      EXPECT_GT(signed_distance(middle + 1e-3 * c.radius_m * out.normalized(), c), signed_distance(middle, c))
+          << "seen from outside";
+    }
+  }
+}
+
+// Two spheres far enough apart count as two, a duplicate changes nothing, and what is inside the other does not count.
+TEST(UnitNumbers, UnionOfCapsules) {
+  const Mesh cloth = sheet(40, 20, {-0.5, 0.09, -0.25}, {0, 0, 0.5}, {1, 0, 0});
+  const Capsule left = sphere({-0.22, 0, 0}, kRadius), right = sphere({0.21, 0, 0}, kRadius);
+  const auto length = [&](std::vector<Capsule> shapes) {
+    return capsule_contact(cloth.view(), shapes).contour_length_m;
+  };
+  EXPECT_NEAR(length({left, right}), length({left}) + length({right}), 1e-12);
+  EXPECT_EQ(length({left, right, left}), length({left, right}));
+  // A finger of two capsules that share a joint is as long as one.
+  const Point<3> a(-0.2, 0, 0), joint(0.01, 0, 0), b(0.2, 0, 0);
+  EXPECT_NEAR(length({{a, joint, kRadius}, {joint, b, kRadius}}), length({{a, b, kRadius}}),
+              0.01 * length({{a, b, kRadius}}));
+}
+
+// Smaller than a cloth triangle, and between its vertices: vertices can't see it.
+TEST(UnitNumbers, FingertipInsideOneTriangle) {
+  const Mesh cloth = sheet(2, 2, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
+  const double r = 0.02, d = 0.005;
+  const Point<3> centre(0.31, d - r, 0.12);
+  const Capsule tip{centre, centre - Point<3>(0, 0.1, 0), r};
+  const ContactSample s = capsule_contact(cloth.view(), {&tip, 1});
+  const double exact = 2 * kPi * std::sqrt(2 * r * d - d * d);
+  EXPECT_NEAR(s.contour_length_m, exact, 0.02 * exact);
+  EXPECT_NEAR(s.depth_max_m, d, 1e-12);
+  const Mesh mesh = octasphere(16, r).moved(centre);
+  EXPECT_NEAR(against(cloth, mesh).contour_length_m, exact, 0.01 * exact);
+}
+
+// Tilted about x by y = z/10: cut along z = 0.
+TEST(UnitNumbers, HalfSpace) {
+  const Mesh cloth = sheet(7, 9, {-0.3, 0, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}).mapped([](const Point<3>& p) {
+    return Point<3>(p[0], 0.1 * p[2], p[2]);
+  });
+  const ContactSample s = half_space_contact(cloth.view(), {0, 0, 0}, {0, 1, 0});
+  EXPECT_NEAR(s.contour_length_m, 0.6, 1e-12);
+  EXPECT_NEAR(s.depth_max_m, 0.03, 1e-12);
+  const ContactSample above = half_space_contact(cloth.view(), {0, -1, 0}, {0, 1, 0});
+  EXPECT_EQ(above.contour_length_m, 0);
+  EXPECT_EQ(above.depth_max_m, 0);
 }
 
 }  // namespace

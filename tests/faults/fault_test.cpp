@@ -41,7 +41,6 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
       if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
       FAIL() << e.what();
     }
-    WithFolder::SetUp();
     plan_.protocol = "test";
     plan_.rules.trials = kTrials;
     plan_.rules.frames = 2;
@@ -51,10 +50,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
     plan_.groups = {
         {{&scene_, &find_solver(GetParam()), complete_settings(find_solver(GetParam()).info, {}), "default"}}};
   }
-  void TearDown() override {
-    faults::disarm();
-    WithFolder::TearDown();
-  }
+  void TearDown() override { faults::disarm(); }
 
   /// Without a device from before, so that making one is part of the run.
   static void forget_device() { vulkan::Device::get({})->mark_lost(); }

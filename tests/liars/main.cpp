@@ -67,7 +67,6 @@ int main(int argc, char** argv) {
   app.add_option("--kind", matrix.kinds, "kinds of scenes; default: all");
   app.add_option("--solver", matrix.solver, "only this solver, such as \"xpbd accurate\"");
   app.add_option("--lie", matrix.only_lie, "only this lie; \"none\": only right motions");
-  app.add_option("--store", matrix.store, "folder for the plugin that replays the motions");
   app.add_option("--cost", cost, "time the check on this scene instead, with --solver or bullet-soft");
   CLI11_PARSE(app, argc, argv);
   try {

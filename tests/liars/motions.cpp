@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <numbers>
 
 #include "base/dice.hpp"
@@ -123,11 +122,6 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-template <class T>
-void put_all(std::ofstream& out, std::span<const T> values) {
-  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-}
-
 }  // namespace
 
 Vec3 Motion::at(std::size_t frame, std::size_t vertex) const {
@@ -207,19 +201,6 @@ std::optional<Motion> run(const std::shared_ptr<const Scene>& scene, const Right
   out.contact_offsets_m = solver->plan().contact_margins_m;
   if (changed) out.contact_offsets_m.clear();
   return out;
-}
-
-void write_motion(const Motion& m, const std::filesystem::path& path) {
-  std::ofstream out(path, std::ios::binary);
-  const std::array<std::uint32_t, 3> counts = {static_cast<std::uint32_t>(m.frames()),
-                                               static_cast<std::uint32_t>(m.vertices()),
-                                               static_cast<std::uint32_t>(m.contact_offsets_m.size())};
-  out << "LIAR";
-  put_all(out, std::span<const std::uint32_t>(counts));
-  put_all(out, std::span<const double>(m.contact_offsets_m));
-  put_all(out, std::span<const double>(m.time_s));
-  put_all(out, std::span<const float>(m.position));
-  if (!out) throw Error(path.string() + ": cannot be written");
 }
 
 }  // namespace clothbench::liars

@@ -1,10 +1,8 @@
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -44,9 +42,5 @@ std::vector<RightSolver> right_solvers(const Scene&, const std::string& only);
 /// The motion by a solver; none if a step fails. `changed`: what the solver is given instead of the scene.
 std::optional<Motion> run(const std::shared_ptr<const Scene>&, const RightSolver&,
                           const std::function<void(Scene&)>& changed = nullptr);
-
-/// A motion as a file of its own: "LIAR", then counts of frames, vertices and colliders (uint32), contact offsets and
-/// times (float64), positions (float32), all little-endian. liar_plugin.c reads it too.
-void write_motion(const Motion&, const std::filesystem::path&);
 
 }  // namespace clothbench::liars

@@ -1,10 +1,7 @@
 #include "trial.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "metrics/truth_errors.hpp"
@@ -14,10 +11,6 @@ namespace {
 
 /// Differences below this multiple of the resolution are no lie.
 constexpr double kNoticed = 10e-4;
-
-std::string scene_file(const std::string& kind, std::uint64_t seed) {
-  return fmt::format("{}-{}", kind.substr(kind.rfind('/') + 1), seed);
-}
 
 /// Error against the scene's exact solution over its bound, as a run fails by it; NaN if there is none.
 double solution_ratio(const Motion& m) {
@@ -72,19 +65,6 @@ std::vector<Trial> tell_all(const Matrix& matrix) {
     const Facts facts = facts_of(*motion);
     const Right right{std::move(*motion), facts,
                       [&](const std::function<void(Scene&)>& changed) { return run(scene, solver, changed); }};
-    const auto add = [&](Trial t, const Motion& told) {
-      t.kind = kind;
-      t.seed = seed;
-      if (!matrix.store.empty() && told.frames() == right.motion.frames()) {
-        t.number = static_cast<int>(out.size());
-        write_motion(told, matrix.store / fmt::format("{}.motion", t.number));
-      }
-      out.push_back(std::move(t));
-    };
-    if (!matrix.store.empty()) {
-      std::filesystem::create_directories(matrix.store);
-      std::ofstream(matrix.store / fmt::format("{}.json", scene_file(kind, seed))) << scene->json;
-    }
     bool trusted = true;
     for (const Lie& lie : lies()) {
       if (!trusted || !lie.applies(right.facts)) continue;
@@ -93,10 +73,12 @@ std::vector<Trial> tell_all(const Matrix& matrix) {
       const std::optional<Motion> told = lie.tell(right, dice);
       if (!told) continue;
       Trial t = judged(right, lie, *told);
+      t.kind = kind;
+      t.seed = seed;
       if (!lie.right && !(t.difference_m > kNoticed * right.facts.length_m)) continue;
       // A right motion that fails cannot show whether a lie is seen.
       if (lie.right && t.failed()) trusted = false;
-      add(std::move(t), *told);
+      out.push_back(std::move(t));
     }
   }
   return out;
@@ -107,7 +89,6 @@ nlohmann::json as_json(const Trial& t) {
   for (const motion_check::Finding& f : t.findings)
     if (!(f.ratio <= 1)) alarms[f.statistic->name] = {motion_check::name_of(f.statistic->check), f.ratio, f.frame};
   return {{"kind", t.kind},
-          {"scene", scene_file(t.kind, t.seed)},
           {"seed", t.seed},
           {"solver", t.solver},
           {"lie", t.lie},
@@ -117,8 +98,7 @@ nlohmann::json as_json(const Trial& t) {
           {"off_m", t.difference_m},
           {"worst", {t.worst().statistic->name, t.worst().ratio, t.worst().frame}},
           {"solution", t.solution},
-          {"alarms", alarms},
-          {"motion", t.number}};
+          {"alarms", alarms}};
 }
 
 }  // namespace clothbench::liars

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,7 +17,6 @@ struct Matrix {
   std::vector<std::string> kinds;  ///< empty: all
   std::string solver;              ///< label; empty: all that are right for the scene
   std::string only_lie;            ///< empty: all
-  std::filesystem::path store;     ///< folder for liar_plugin.c: motions by number, and their scenes; empty: none
 };
 
 /// Result of the motion check for one motion.
@@ -29,7 +27,6 @@ struct Trial {
   double difference_m = 0;
   double solution = 0;  ///< error against the scene's exact solution over its bound; NaN if there is none
   std::vector<motion_check::Finding> findings;
-  int number = -1;  ///< of the file in Matrix::store; -1: none, since a solver cannot leave out frames
 
   const motion_check::Finding& worst() const { return *motion_check::worst(findings); }
   /// As a run fails, without any bound that a scene states.

@@ -81,6 +81,15 @@ class Plugin(PluginTest):
 
     # --- those that are wrong
 
+    def test_a_motion_that_no_law_allows_fails_in_run_and_study(self):
+        run = ["run", "paper/gravity", *SMALL, "--trials", "0", "--solver", "plugin:" + EXAMPLE, "--out", self.out]
+        study = ["study", "table3", "--quick", "--trials", "1", "--out", self.out + "-study"]
+        for words, others in ((run, ["pass"]), (study, [])):
+            runs = self.rows(*words, "--solver", self.faulty())["runs"]
+            self.assertEqual([r["verdict"] for r in runs if r["solver"] != "faulty"], others)
+            wrong = [(r["verdict"], "mean_force (dynamic) " in r["outcome"]["expect"]) for r in runs if r["solver"] == "faulty"]
+            self.assertEqual(set(wrong), {("fail", True)})
+
     def test_what_is_refused(self):
         text = os.path.join(self.home, "text.so")
         with open(text, "w", encoding="utf-8") as out:

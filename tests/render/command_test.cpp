@@ -20,23 +20,19 @@ Answer command(const std::string& arguments, const std::string& environment = ""
   return testing_command::command(arguments, testing_command::Streams::Both, environment);
 }
 
-/// Two runs with positions, executed once for all tests.
-class RenderCommand : public ::testing::Test {
+/// Two runs with positions.
+class RenderCommand : public WithFolder {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<Folder>("render-command");
+  void SetUp() override {
     const Answer a = command(
         "run contact/sphere validation/pendulum --solver ballistic --solver xpbd --trials 0 --set time.duration_s=0.1 "
         "--out " +
         runs());
     ASSERT_EQ(a.code, 0) << a.text;
   }
-  static void TearDownTestSuite() { folder_.reset(); }
-  static std::string runs() { return (folder_->path / "runs").string(); }
-  static std::string out() { return (folder_->path / "out").string(); }
-  static std::unique_ptr<Folder> folder_;
+  std::string runs() const { return (dir_ / "runs").string(); }
+  std::string out() const { return (dir_ / "out").string(); }
 };
-std::unique_ptr<Folder> RenderCommand::folder_;
 
 TEST_F(RenderCommand, WritesPicturesOfAFile) {
   const Answer a = command("--json render " + runs() +
@@ -57,7 +53,7 @@ TEST_F(RenderCommand, WritesPicturesOfAFile) {
 }
 
 TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
-  const fs::path empty = folder_->path / "empty";
+  const fs::path empty = dir_ / "empty";
   fs::create_directories(empty);
   const Answer a =
       command("render " + runs() + "/sphere-drop__xpbd__default.h5 --frames 0:1 --size 160x120 -o " + out(),
@@ -68,9 +64,9 @@ TEST_F(RenderCommand, SaysThatFfmpegIsMissing) {
 
 TEST_F(RenderCommand, RefusesWhatItCannotDo) {
   const std::string file = runs() + "/sphere-drop__xpbd__default.h5";
-  const fs::path text = folder_->path / "text.h5";
+  const fs::path text = dir_ / "text.h5";
   std::ofstream(text) << "no result file";
-  const fs::path empty = folder_->path / "nothing";
+  const fs::path empty = dir_ / "nothing";
   fs::create_directories(empty);
   const std::vector<std::pair<std::string, std::string>> wrong = {{file + " --frames 99", "expected frames from 0 to"},
                                                                   {file + " --frames x", "expected a number"},
@@ -88,7 +84,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotDo) {
 }
 
 TEST_F(RenderCommand, TimesFramesWithTheirPictures) {
-  const std::string runs_with = (folder_->path / "with").string();
+  const std::string runs_with = (dir_ / "with").string();
   const Answer a =
       command("study table3 --quick --solver xpbd --trials 1 --with-rendering --eye 32x32 --out " + runs_with);
   ASSERT_EQ(a.code, 0) << a.text;

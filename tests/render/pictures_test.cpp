@@ -7,11 +7,14 @@
 
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
+#include "common/gpu_solver.hpp"
+#include "render/offscreen.hpp"
 #include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -45,11 +48,11 @@ void expect_same(const Surfaces& a, const Surfaces& b) {
     for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(a.position_m[v][k], b.position_m[v][k], 1e-6);
 }
 
-class Files : public ::testing::TestWithParam<const char*> {};
+class Files : public WithFolder, public ::testing::WithParamInterface<const char*> {};
+class Pictures : public WithFolder {};
 
 TEST_P(Files, HoldAllThatIsDrawn) {
-  const Folder folder("album");
-  const Stored s(GetParam(), {"time.duration_s=0.25"}, folder.path);
+  const Stored s(GetParam(), {"time.duration_s=0.25"}, dir_);
   EXPECT_EQ(s.read.frames(), static_cast<std::size_t>(s.scene.time.frames()) + 1);
   EXPECT_EQ(s.read.position, s.pass.position);
   const Bounds all{{-50, -50, -50}, {50, 50, 50}};
@@ -66,13 +69,12 @@ INSTANTIATE_TEST_SUITE_P(Pictures, Files,
                                            "paper/hand-push", "paper/desk-flat-low", "paper/two-hand-stretch-2mps",
                                            "paper/gravity", "validation/hang-mesh"));
 
-TEST(Pictures, MakesAMovieWhereFfmpegIs) {
-  const Folder folder("movie");
-  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, folder.path);
+TEST_F(Pictures, MakesAMovieWhereFfmpegIs) {
+  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, dir_);
   Shots shots;
   shots.width = 161;  // odd: a movie's are even
   shots.height = 121;
-  shots.out = folder.path;
+  shots.out = dir_;
   shots.frames = {0, 2, 4};
   const Taken t = take(s.read, shots, {});
   EXPECT_EQ(t.pictures.size(), 3u);
@@ -81,15 +83,14 @@ TEST(Pictures, MakesAMovieWhereFfmpegIs) {
   EXPECT_EQ(t.no_movie, "");
 }
 
-TEST(Pictures, ShowsWhatIsNotFinite) {
-  const Folder folder("nan");
-  Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, folder.path);
+TEST_F(Pictures, ShowsWhatIsNotFinite) {
+  Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, dir_);
   Motion m = s.read;
   const std::size_t count = 3 * m.scene.cloth.vertex_count();
   std::fill(m.position.begin() + static_cast<std::ptrdiff_t>(2 * count), m.position.end(), NAN);
   Shots shots;
   shots.width = shots.height = 96;
-  shots.out = folder.path;
+  shots.out = dir_;
   shots.movie = false;
   shots.frames = {1, 2, 3};
   EXPECT_EQ(take(m, shots, {}).pictures.size(), 3u);
@@ -97,9 +98,8 @@ TEST(Pictures, ShowsWhatIsNotFinite) {
   EXPECT_EQ(take(m, shots, {}).pictures.size(), 3u);
 }
 
-TEST(Pictures, FramesTheClothNotWhatFlewAway) {
-  const Folder folder("frame");
-  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, folder.path);
+TEST_F(Pictures, FramesTheClothNotWhatFlewAway) {
+  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, dir_);
   Motion m = s.read;
   const Camera before = frame(framing_of(m).points, 1);
   m.position[3 * m.scene.cloth.vertex_count() + 1] = -1e4f;  // one vertex of frame 1
@@ -107,15 +107,14 @@ TEST(Pictures, FramesTheClothNotWhatFlewAway) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(before.eye_m[k], after.eye_m[k], 0.2);
 }
 
-TEST(Pictures, FallsWithAClothThatNothingHolds) {
-  const Folder folder("fall");
-  const Stored s("paper/gravity", {"cloth.grid=[8,8]", "time.duration_s=2"}, folder.path);
+TEST_F(Pictures, FallsWithAClothThatNothingHolds) {
+  const Stored s("paper/gravity", {"cloth.grid=[8,8]", "time.duration_s=2"}, dir_);
   const Framing f = framing_of(s.read);
   ASSERT_TRUE(f.follows);
   EXPECT_LT(f.near.diagonal(), 4 * s.scene.cloth.width_m);
 }
 
-TEST(Pictures, ReadsRangesOfFrames) {
+TEST_F(Pictures, ReadsRangesOfFrames) {
   const auto list = [](const std::string& text) { return frames_from(text, 10); };
   EXPECT_EQ(list(":").size(), 10u);
   EXPECT_EQ(list("3"), (std::vector<std::size_t>{3}));
@@ -127,22 +126,127 @@ TEST(Pictures, ReadsRangesOfFrames) {
     EXPECT_THROW(list(bad), Error) << bad;
 }
 
-TEST(Pictures, SaysWhatItCannotDo) {
-  const Folder folder("bad");
-  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, folder.path);
+TEST_F(Pictures, SaysWhatItCannotDo) {
+  const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, dir_);
   Shots shots;
-  shots.out = folder.path;
+  shots.out = dir_;
   shots.frames = {999};
   EXPECT_THROW(take(s.read, shots, {}), Error);
-  EXPECT_THROW(write_png(folder.path / "no" / "folder.png", Picture(2, 2)), Error);
+  EXPECT_THROW(write_png(dir_ / "no" / "folder.png", Picture(2, 2)), Error);
 }
 
-TEST(Pictures, PicturesSurviveTheirFile) {
-  const Folder folder("png");
+TEST_F(Pictures, PicturesSurviveTheirFile) {
   Picture p(7, 3);
   for (std::size_t k = 0; k < p.rgb.size(); ++k) p.rgb[k] = static_cast<std::uint8_t>(37 * k);
-  write_png(folder.path / "a.png", p);
-  EXPECT_EQ(read_png(folder.path / "a.png").rgb, p.rgb);
+  write_png(dir_ / "a.png", p);
+  EXPECT_EQ(read_png(dir_ / "a.png").rgb, p.rgb);
+}
+
+constexpr DeviceOptions kValidated = {-1, true};
+
+TrialRules some_frames(bool rendered) {
+  TrialRules r;
+  r.frames = 6;
+  r.warmup_s = 0;
+  r.profiled_frames = 0;
+  if (rendered) r.rendering = stereo_rendering(48, 40);
+  return r;
+}
+
+class WithRendering : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WithRendering, FramesAreTimedWithTheirPictures) {
+  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
+  const SolverEntry& entry = find_solver(GetParam());
+  SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, kValidated, "test");
+  const TrialRules with = some_frames(true);
+  run.describe(with.rendering);
+  EXPECT_NE(run.header().environment.value("rendering", "").find("48 x 40"), std::string::npos);
+  const TimedTrial t = run.run_trial(0, with, 0);
+  ASSERT_EQ(run.outcome().status, "ok");
+  ASSERT_EQ(t.frames(), 6);
+  ASSERT_EQ(t.frame_rendered_s.size(), 6u);
+  for (const double s : t.frame_rendered_s) EXPECT_GT(s, 0);
+  EXPECT_TRUE(run.run_trial(1, some_frames(false), 0).frame_rendered_s.empty()) << "off unless asked";
+  EXPECT_EQ(vulkan::Device::get(kValidated)->validation_messages(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stereo, WithRendering, ::testing::Values("xpbd", "paper", "ballistic"));
+
+class Stereo : public WithFolder {};
+
+TEST_F(Stereo, StopsAtTheTrialsLimit) {
+  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
+  const SolverEntry& entry = find_solver("ballistic");
+  SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
+  TrialRules rules = some_frames(true);
+  rules.max_wall_s = 1e-9;
+  rules.min_frames = 2;
+  const TimedTrial t = run.run_trial(0, rules, 6);
+  EXPECT_EQ(t.frames(), 6);
+  EXPECT_EQ(t.frame_rendered_s.size(), 2u);
+}
+
+TEST_F(Stereo, FilesHaveTheColumnOnlyWhereAsked) {
+  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[8,8]"});
+  const SolverEntry& entry = find_solver("ballistic");
+  for (const bool rendered : {true, false}) {
+    RunSpec spec{&scene, &entry, complete_settings(entry.info, nlohmann::json::object()),
+                 rendered ? "with" : "without"};
+    SolverRun run(spec, {}, "test");
+    RunRecord record;
+    record.header = run.header();
+    record.trials = {run.run_trial(0, some_frames(rendered), 0), run.run_trial(1, some_frames(rendered), 0)};
+    if (rendered) record.trials[1].frame_rendered_s.resize(4);  // fewer than frames
+    RunWriter writer(dir_, run.header());
+    for (const TimedTrial& t : record.trials) writer.write_trial(t);
+    const auto summary = summarise(spec, run.plan(), record);
+    EXPECT_EQ(summary.contains("frame_rendered_median_s"), rendered);
+    const RunRecord read = read_run(writer.finish(run.outcome(), summary));
+    ASSERT_EQ(read.trials.size(), 2u);
+    for (std::size_t t = 0; t < 2; ++t) EXPECT_EQ(read.trials[t].frame_rendered_s, record.trials[t].frame_rendered_s);
+  }
+}
+
+/// The vertex shader reads the positions that read_state gives.
+TEST_F(Stereo, TheSolversBufferLooksAsItsState) {
+  const Scene scene = load_scene("paper/gravity", {"cloth.grid=[16,16]"});
+  const auto device = vulkan::Device::get(kValidated);
+  int seen = 0;
+  for (const SolverEntry& entry : solvers()) {
+    if (!entry.info.on_gpu) continue;
+    ++seen;
+    const std::string& name = entry.info.name;
+    const auto solver = entry.make(complete_settings(entry.info, nlohmann::json::object()), kValidated);
+    solver->load(scene);
+    const auto* gpu = dynamic_cast<const pbd_gpu::GpuSolver*>(solver.get());
+    ASSERT_NE(gpu, nullptr);
+    for (int frame = 0; frame < 10; ++frame) {
+      const FrameInput input{frame, scene.time.at(frame + 1), scene.time.dt(), scene.motion_after(frame)};
+      ASSERT_EQ(solver->step(input), StepStatus::Ok);
+    }
+    ClothState state;
+    solver->read_state(state);
+    SceneRenderer renderer(device, Offscreen::kFormat);
+    Offscreen images(device, {96, 96}, 1);
+    const Camera camera = frame(state.position, 1);
+    renderer.set_cloth(scene.cloth, scene.cloth.center_m);
+    renderer.write_positions(state.position);
+    images.draw(renderer, std::span(&camera, 1));
+    const Picture uploaded = images.read(0);
+    renderer.use_positions(gpu->position_buffer(), gpu->origin_m());
+    images.draw(renderer, std::span(&camera, 1));
+    const Picture in_place = images.read(0);
+    int different = 0, drawn = 0;
+    for (std::size_t k = 0; k < uploaded.rgb.size(); ++k) {
+      different += std::abs(uploaded.rgb[k] - in_place.rgb[k]) > 8 ? 1 : 0;
+      drawn += uploaded.rgb[k] < 200 ? 1 : 0;
+    }
+    EXPECT_GT(drawn, 2000) << name;
+    EXPECT_LT(different, drawn / 200) << name << ": only rounding";
+  }
+  EXPECT_GE(seen, 2);
+  EXPECT_EQ(device->validation_messages(), 0);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #pragma once
 #include <png.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <optional>
@@ -65,18 +64,5 @@ inline Picture read_png(const std::filesystem::path& path) {
     throw Error(path.string() + ": " + image.message);
   return out;
 }
-
-/// A folder that is gone with the test.
-struct Folder {
-  std::filesystem::path path;
-  explicit Folder(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("clothbench-" + name + "-" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-};
 
 }  // namespace clothbench::render

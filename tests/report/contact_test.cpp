@@ -117,12 +117,9 @@ TEST(Penetration, SeriesHaveOneRowPerFrame) {
   const auto csv = parse_csv(series_csv(RunTable({desk_run("xpbd", "default", "none")})));
   ASSERT_EQ(csv.size(), 3u);
   for (const auto& row : csv) ASSERT_EQ(row.size(), csv[0].size());
-  const auto at = [&](const std::string& name) {
-    return csv[2].at(static_cast<std::size_t>(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin()));
-  };
-  EXPECT_EQ(at("time_s"), "0.0138889");
-  EXPECT_EQ(at("contact_length_m"), "0.0123");
-  EXPECT_EQ(at("depth_m"), "") << "NaN is missing";
+  EXPECT_EQ(field(csv, 2, "time_s"), "0.0138889");
+  EXPECT_EQ(field(csv, 2, "contact_length_m"), "0.0123");
+  EXPECT_EQ(field(csv, 2, "depth_m"), "") << "NaN is missing";
 }
 
 TEST(Features, ComeFromTheResultFilesAlone) {

@@ -105,6 +105,13 @@ inline std::vector<std::vector<std::string>> parse_csv(const std::string& text) 
   return rows;
 }
 
+/// The value of a row in the column of this name; "no column" if there is none.
+inline std::string field(const std::vector<std::vector<std::string>>& csv, std::size_t row, const std::string& name) {
+  for (std::size_t k = 0; k < csv.at(0).size(); ++k)
+    if (csv[0][k] == name) return csv.at(row).at(k);
+  return "no column";
+}
+
 /// The study table3 at two resolutions.
 inline std::vector<RunRecord> study() {
   std::vector<RunRecord> runs;

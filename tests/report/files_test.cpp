@@ -1,4 +1,6 @@
 // From result files to a folder of tables and figures.
+#include "base/files.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -6,8 +8,8 @@
 #include <fstream>
 #include <set>
 
-#include "clothbench/error.hpp"
 #include "fake_runs.hpp"
+#include "refusal.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
 #include "with_folder.hpp"
@@ -20,7 +22,6 @@ namespace fs = std::filesystem;
 class ReportFiles : public WithFolder {
  protected:
   void SetUp() override {
-    WithFolder::SetUp();
     run_ = dir_ / "run";
     fs::create_directories(run_);
     StudyManifest manifest{"table3", "2026-01-01T00:00:00Z", "clothbench study table3", nlohmann::json::object(), {}};
@@ -37,25 +38,13 @@ class ReportFiles : public WithFolder {
     manifest.runs.push_back(run_name(c.header));
   }
 
-  std::string text(const fs::path& file) const {
-    std::ifstream in(file, std::ios::binary);
-    EXPECT_TRUE(in.good()) << file;
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
   fs::path run_;
 };
 
 /// Programs of the PATH while it lives: none but what is put into its folder.
 class OnlyPrograms {
  public:
-  explicit OnlyPrograms(const fs::path& dir) : dir_(dir), before_(std::getenv("PATH")) {
-    fs::create_directories(dir);
-    setenv("PATH", dir.c_str(), 1);
-  }
-  ~OnlyPrograms() { setenv("PATH", before_.c_str(), 1); }
-  OnlyPrograms(const OnlyPrograms&) = delete;
-  OnlyPrograms& operator=(const OnlyPrograms&) = delete;
+  explicit OnlyPrograms(const fs::path& dir) : dir_(dir), path_("PATH", dir.c_str()) { fs::create_directories(dir); }
   void add(const std::string& name, const std::string& script) const {
     std::ofstream(dir_ / name) << "#!/bin/sh\n" << script << "\n";
     fs::permissions(dir_ / name, fs::perms::owner_all);
@@ -63,7 +52,7 @@ class OnlyPrograms {
 
  private:
   fs::path dir_;
-  std::string before_;
+  Variable path_;
 };
 
 bool can_draw() {
@@ -90,19 +79,19 @@ TEST_F(ReportFiles, WritesEveryFile) {
   write_report({run_}, {out});
   for (const char* file : {"report.md", "tables.tex", "runs.csv", "runs.json", "series.csv", "trials.csv"})
     EXPECT_GT(fs::file_size(out / file), 0u) << file;
-  const std::string md = text(out / "report.md");
+  const std::string md = content_of(out / "report.md");
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);
   EXPECT_NE(md.find("planned, not run"), std::string::npos);
   EXPECT_EQ(md.find("gravity-77-single"), md.rfind("gravity-77-single"))
       << "a scene without runs has nothing to tabulate";
-  EXPECT_EQ(parse_csv(text(out / "runs.csv")).size(), 6u);
+  EXPECT_EQ(parse_csv(content_of(out / "runs.csv")).size(), 6u);
   if (can_draw()) {
     std::set<std::string> names;
     for (const auto& file : fs::directory_iterator(out / "figures")) names.insert(file.path().filename());
     EXPECT_EQ(names, (std::set<std::string>{"fig4-wide.pdf", "fig4-wide.svg", "fig4.pdf", "fig4.svg", "fig5-wide.pdf",
                                             "fig5-wide.svg", "fig5.pdf", "fig5.svg"}));
-    EXPECT_NE(text(out / "figures/fig4.svg").find("<svg"), std::string::npos);
-    EXPECT_NE(text(out / "figures/fig5.pdf").find("%PDF"), std::string::npos);
+    EXPECT_NE(content_of(out / "figures/fig4.svg").find("<svg"), std::string::npos);
+    EXPECT_NE(content_of(out / "figures/fig5.pdf").find("%PDF"), std::string::npos);
     EXPECT_NE(md.find("](figures/fig5-wide.svg)"), std::string::npos);
   } else {
     EXPECT_NE(md.find("were left out: "), std::string::npos);
@@ -117,15 +106,15 @@ TEST_F(ReportFiles, NoPictureOfAnOlderReportStandsBesideNewTables) {
     const OnlyPrograms none(dir_ / "bin");
     write_report({run_}, out);
     EXPECT_FALSE(fs::exists(old));
-    EXPECT_EQ(text(notes), "older");
+    EXPECT_EQ(content_of(notes), "older");
     if (page_template().figures.empty()) GTEST_SKIP() << "no page";
-    EXPECT_NE(text(out / "report.md")
+    EXPECT_NE(content_of(out / "report.md")
                   .find("Figures were left out: Node 18 or later was not found, or failed (Debian: nodejs)."),
               std::string::npos);
     none.add("node", "exit 1");
     write_report({run_}, out);
   }
-  EXPECT_NE(text(out / "report.md").find("Figures were left out: "), std::string::npos);
+  EXPECT_NE(content_of(out / "report.md").find("Figures were left out: "), std::string::npos);
   EXPECT_EQ(std::distance(fs::directory_iterator(out / "figures"), {}), 1) << "only the notes";
 }
 
@@ -138,7 +127,7 @@ TEST_F(ReportFiles, WithoutRsvgConvertThereIsNoPdf) {
   write_report({run_}, {dir_ / "out"});
   EXPECT_TRUE(fs::exists(dir_ / "out/figures/fig4.svg"));
   EXPECT_FALSE(fs::exists(dir_ / "out/figures/fig4.pdf"));
-  const std::string md = text(dir_ / "out" / "report.md");
+  const std::string md = content_of(dir_ / "out" / "report.md");
   EXPECT_NE(md.find("](figures/fig4-wide.svg)"), std::string::npos);
   EXPECT_NE(md.find("PDF pictures were left out: rsvg-convert was not found (Debian: librsvg2-bin)."),
             std::string::npos);
@@ -149,19 +138,12 @@ TEST_F(ReportFiles, IsAFunctionOfTheFiles) {
   write_report({run_ / ""}, {dir_ / "b"});
   for (const auto& file : fs::recursive_directory_iterator(dir_ / "a"))
     if (file.is_regular_file()) {
-      EXPECT_EQ(text(file.path()), text(dir_ / "b" / fs::relative(file.path(), dir_ / "a"))) << file.path();
+      EXPECT_EQ(content_of(file.path()), content_of(dir_ / "b" / fs::relative(file.path(), dir_ / "a"))) << file.path();
     }
 }
 
 TEST_F(ReportFiles, SaysWhatCannotBeRead) {
-  const auto message = [&](const fs::path& run) {
-    try {
-      write_report({run}, {dir_ / "out"});
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string("no error");
-  };
+  const auto message = [&](const fs::path& run) { return refusal([&] { write_report({run}, {dir_ / "out"}); }); };
   EXPECT_NE(message(dir_ / "nothing").find((dir_ / "nothing").string()), std::string::npos);
   EXPECT_NE(message(dir_).find(dir_.string()), std::string::npos) << "a folder without study.json";
   std::ofstream(dir_ / "bad.h5") << "not HDF5";

@@ -145,9 +145,8 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
   EXPECT_EQ(entry(rates, "xpbd", "frame p50 [ms]"), value("p50 (95 %)"));
   const auto csv = parse_csv(trials_csv(RunTable({c})));
   ASSERT_EQ(csv.size(), 3u);
-  const auto column = [&](const char* name) { return std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin(); };
-  EXPECT_EQ(csv[1].at(column("wall_p95_s")) + ", " + csv[2].at(column("wall_max_s")), "0.048, 0.1");
-  EXPECT_EQ(csv[1].at(column("device_p50_s")), "");
+  EXPECT_EQ(field(csv, 1, "wall_p95_s") + ", " + field(csv, 2, "wall_max_s"), "0.048, 0.1");
+  EXPECT_EQ(field(csv, 1, "device_p50_s"), "");
 }
 
 /// A run with trials of `frames` frames that vary by a share of the mean, in an order that is no trend.
@@ -202,17 +201,15 @@ TEST(Intervals, ContactScenesHaveARowOverFramesWithContact) {
   c.trials[0].frame_wall_s[7] = c.trials[0].frame_wall_s[8] = 5e-3;
   const Table t = table_of({c}, kTimes);
   ASSERT_EQ(t.rows.size(), 3u);
-  const auto column = [&](const char* head) {
-    return static_cast<std::size_t>(std::find(t.rows[0].begin(), t.rows[0].end(), head) - t.rows[0].begin());
-  };
-  EXPECT_EQ(t.rows[1][column("clock")] + "; " + t.rows[2][column("clock")], "wall; wall, with contact");
-  EXPECT_EQ(t.rows[2][column("frames")], "2");
-  EXPECT_TRUE(t.rows[1][column("p50 (95 %)")].starts_with("1.00")) << "a median over frames without contact";
-  EXPECT_EQ(t.rows[2][column("p50 (95 %)")], "5.00");
+  EXPECT_EQ(field(t.rows, 1, "clock") + "; " + field(t.rows, 2, "clock"), "wall; wall, with contact");
+  EXPECT_EQ(field(t.rows, 2, "frames"), "2");
+  EXPECT_TRUE(field(t.rows, 1, "p50 (95 %)").starts_with("1.00")) << "a median over frames without contact";
+  EXPECT_EQ(field(t.rows, 2, "p50 (95 %)"), "5.00");
   c.trials[0].frame_cpu_s.assign(10, 2e-3);
   c.trials[0].frame_rendered_s.assign(10, 3e-3);
   std::string clocks;
-  for (const auto& row : table_of({c}, kTimes).rows) clocks += row[column("clock")] + "|";
+  const Table all = table_of({c}, kTimes);
+  for (std::size_t row = 0; row < all.rows.size(); ++row) clocks += field(all.rows, row, "clock") + "|";
   EXPECT_EQ(clocks, "clock|wall|wall, with contact|CPU|wall, with rendering|");
 }
 

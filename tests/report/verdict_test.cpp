@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "clothbench/feature.hpp"
 #include "fake_runs.hpp"
+#include "report/report.hpp"
 
 namespace clothbench {
 namespace {
@@ -59,11 +62,7 @@ TEST(Verdict, ASolverWithoutContactPassesNothingAnywhere) {
   EXPECT_EQ(table_of(runs, "Randomly generated contact scenes: pass rate by speed [m/s]").rows[1].back().substr(0, 3),
             "0/1");
   EXPECT_EQ(runs_json(runs)[0]["verdict"], "ignored");
-  const auto csv = parse_csv(runs_csv(RunTable(runs)));
-  for (std::size_t k = 0; k < csv[0].size(); ++k)
-    if (csv[0][k] == "verdict") {
-      EXPECT_EQ(csv[1][k], "ignored");
-    }
+  EXPECT_EQ(field(parse_csv(runs_csv(RunTable(runs))), 1, "verdict"), "ignored");
 }
 
 TEST(Verdict, AFailureCountsBesideABoundThatIsNotMeasuredAndAlsoForWhoIgnoresContact) {
@@ -98,6 +97,142 @@ TEST(Verdict, WhatJudgesTheMotionFailsWithoutABound) {
   c.outcome.expect = "fail: kinematic 0.4 > 0.001";
   EXPECT_EQ(verdict(c), "fail");
   EXPECT_EQ(count_verdicts({c}).passed, 0u);
+}
+
+RunRecord run(const std::string& solver, const std::vector<double>& means_s, const Outcome& outcome) {
+  RunRecord c;
+  c.header.scene = "drop";
+  c.header.solver = solver;
+  c.header.setting = "default";
+  c.outcome = outcome;
+  for (const double mean : means_s) {
+    TimedTrial t;
+    t.frame_wall_s.assign(12, mean);
+    c.trials.push_back(t);
+  }
+  return c;
+}
+
+TEST(InShort, HasOutcomeTimesRatioAndRankOfEachRun) {
+  Outcome broken, crashed{"crashed", "F3", 7, "its process"};
+  broken.expect = "fail: depth_max_m 1 > 0";
+  const Table t = in_short_table(RunTable({run("none", {}, crashed), run("slow", {4e-3, 4e-3}, broken),
+                                           run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})}));
+  ASSERT_EQ(t.rows.size(), 5u);
+  using Cells = std::vector<std::string>;
+  EXPECT_EQ(t.rows[0], (Cells{"scene", "solver", "outcome", "frame p50 [ms]", "p95 / p99 / worst",
+                              "missed 72 / 90 Hz [%]", "trials", "× bullet-soft", "rank"}));
+  EXPECT_EQ(t.rows[1], (Cells{"drop", "bullet-soft", "ok", "4.00 (4.00–4.00)", "4.00 / 4.00 / 4.00", "0.00 / 0.00", "1",
+                              "1.00", "2"}));
+  EXPECT_EQ(t.rows[2], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "–", "–"}));
+  EXPECT_EQ(t.rows[3], (Cells{"drop", "quick", "ok", "2.00 (2.00–2.00)", "2.00 / 2.00 / 2.00", "0.00 / 0.00", "3",
+                              "2.00 (2.00–2.00)", "1"}));
+  EXPECT_EQ(t.rows[4][2] + " " + t.rows[4][8], "fail –");
+}
+
+TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
+  RunRecord torn = run("torn", {1e-3}, {}), held = run("held", {2e-3}, {}), cut = run("cut", {3e-3}, {});
+  torn.summary["stretch_max_last_second"] = 3.57;
+  held.summary["stretch_max_last_second"] = 0.05;
+  cut.trials[0].frame_wall_s.resize(5);
+  const Table t = in_short_table(RunTable({torn, held, cut}));
+  ASSERT_EQ(t.rows.size(), 4u);
+  EXPECT_EQ(t.rows[0][3] + ", " + t.rows[0].back(), "stretch [%], rank") << "no baseline is present";
+  EXPECT_EQ(t.rows[1][4], "3.00 (first 5 frames)") << "too few frames for an interval";
+  EXPECT_EQ(t.rows[2][1] + " " + t.rows[2][3] + " " + t.rows[2].back(), "held 5.00 1");
+  EXPECT_EQ(t.rows[3][1] + " " + t.rows[3][3] + " " + t.rows[3].back(), "torn 357 –");
+}
+
+// Heading, tiles, facts, warnings and notes of a report.
+
+TEST(Overview, TilesAreOfTheRunsPresent) {
+  const std::vector<Tile> tiles = tiles_of(RunTable(study()));
+  ASSERT_EQ(tiles.size(), 1u) << "rates only";
+  EXPECT_EQ(tiles[0].title, "Frames per second at 128², bullet-soft") << "no solver has a place of its own";
+  EXPECT_EQ(tiles[0].value, "1000");
+  EXPECT_EQ(tiles[0].others, "xpbd 50.0 (0 trials)") << "without the harness's own cost";
+  const Heading h = heading_of(RunTable(study()), {"table3"});
+  EXPECT_EQ(h.title, "Cloth solvers on Fake GPU: table3");
+  std::vector<RunRecord> runs = study();
+  runs.push_back(fake_run("xpbd", 128, "single", 1e-5));
+  runs.back().header.setting = "quality=fast";
+  EXPECT_EQ(tiles_of(RunTable(runs))[0].value, "1000") << "default settings only";
+  EXPECT_TRUE(tiles_of(RunTable({})).empty());
+}
+
+TEST(Environment, OneRowPerMachine) {
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 9, "single", 1),
+                                 fake_run("bullet-soft", 8, "single", 1, false)};
+  const Table t = table_of(runs, "Machines of the runs");
+  ASSERT_EQ(t.rows.size(), 3u);
+  EXPECT_EQ(entry(t, "Fake GPU", "runs") + ", " + entry(t, "CPU", "runs"), "xpbd (2), bullet-soft (1)");
+  EXPECT_EQ(entry(t, "CPU", "clocks"), "") << "a column without any value is left out";
+}
+
+TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
+  std::vector<RunRecord> runs = study();
+  const auto facts = [&] {
+    return joined(heading_of(RunTable(runs), {}).facts, " · ", [](auto& f) { return f.first + " " + f.second; });
+  };
+  EXPECT_EQ(facts(),
+            "GPU Fake GPU · driver 1.2 · CPU Fake CPU · protocol short · commit 0123456789ab · build Release · date "
+            "2026-01-01 · trials per run none timed");
+  EXPECT_TRUE(warnings_of(RunTable(runs)).empty());
+  for (RunRecord& c : runs)
+    if (c.header.environment["gpu"] != "CPU") c.header.environment["gpu_is_software"] = true;
+  EXPECT_EQ(warnings_of(RunTable(runs)).at(0),
+            "Software Vulkan device (Fake GPU): it shows correctness; its times say nothing of a GPU.");
+  runs[1].header.environment["gpu"] = "Other GPU";
+  runs[1].header.environment["git_dirty"] = true;
+  runs[1].header.environment["created"] = "2026-01-02T00:05:00Z";
+  EXPECT_NE(facts().find("GPU Fake GPU (software), Other GPU (software)"), std::string::npos) << facts();
+  EXPECT_NE(facts().find("(with local changes)"), std::string::npos);
+  EXPECT_NE(facts().find("2026-01-01 to 2026-01-02"), std::string::npos);
+  for (RunRecord& c : runs) c.header.environment = {{"gpu", nullptr}, {"git_dirty", "?"}};
+  EXPECT_EQ(facts(), "trials per run none timed");
+}
+
+// CSV and JSON: every value, exactly.
+
+TEST(Export, RunsCsvReadsBackExactly) {
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1.0 / 3),
+                                 fake_run("bullet-soft", 8, "double", 1e-300, false)};
+  runs.push_back(with_outcome(fake_run("paper", 8, "single", 1), "diverged", 17, "said \"no\", twice\nand stopped"));
+  const auto csv = parse_csv(runs_csv(RunTable(runs)));
+  ASSERT_EQ(csv.size(), 4u);
+  for (const auto& row : csv) EXPECT_EQ(row.size(), csv[0].size());
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const auto& [name, v] : runs[k].summary) {
+      const std::string text = field(csv, k + 1, name);
+      if (std::isfinite(v))
+        EXPECT_EQ(std::stod(text), v) << name;
+      else
+        EXPECT_EQ(text, "") << name;
+    }
+  EXPECT_EQ(field(csv, 1, "grid_x"), "8");
+  EXPECT_EQ(field(csv, 1, "gpu"), "Fake GPU");
+  EXPECT_EQ(field(csv, 1, "gpu_is_software"), "false");
+  EXPECT_EQ(field(csv, 1, "failed_frame"), "");
+  EXPECT_EQ(field(csv, 3, "failed_frame"), "17");
+  EXPECT_EQ(field(csv, 3, "message"), "said \"no\", twice\nand stopped");
+  EXPECT_EQ(field(csv, 3, "fps_median"), "");
+}
+
+TEST(Export, InfinityIsSaid) {
+  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1)};
+  runs[0].summary["up"] = INFINITY;
+  runs[0].summary["down"] = -INFINITY;
+  runs[0].summary["missing"] = kMissing;
+  const auto csv = parse_csv(runs_csv(RunTable(runs)));
+  EXPECT_EQ(field(csv, 1, "up"), "inf");
+  EXPECT_EQ(field(csv, 1, "down"), "-inf");
+  EXPECT_EQ(field(csv, 1, "missing"), "");
+  const nlohmann::json run = nlohmann::json::parse(runs_json(runs).dump()).at(0), summary = run.at("summary");
+  EXPECT_EQ(run.at("environment").at("cpu"), "Fake CPU");
+  EXPECT_EQ(summary.at("fps_median"), 1);
+  EXPECT_EQ(summary.at("up"), "inf");
+  EXPECT_EQ(summary.at("down"), "-inf");
+  EXPECT_TRUE(summary.at("missing").is_null());
 }
 
 }  // namespace

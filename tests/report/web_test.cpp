@@ -49,7 +49,6 @@ TEST(PackedMotion, EndsWhereTheClothIsNoMore) {
 class WebFiles : public WithFolder {
  protected:
   void SetUp() override {
-    WithFolder::SetUp();
     StudyManifest manifest{
         "table3", "2026-01-01T00:00:00Z", "clothbench study </script><b>table3", nlohmann::json::object(), {}};
     fs::create_directories(dir_ / "run");

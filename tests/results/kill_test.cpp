@@ -2,14 +2,19 @@
 // can be completed to the same file as an undisturbed one.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <random>
 
 #include "base/files.hpp"
+#include "clothbench/error.hpp"
+#include "results/hdf5_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -42,15 +47,14 @@ void work(const fs::path& dir, int pipe_out) {
   writer.finish(r.outcome, r.summary);
 }
 
-TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
-  const fs::path root = fs::temp_directory_path() / ("clothbench-kill-" + std::to_string(getpid()));
+class Kill : public WithFolder {};
+
+TEST_F(Kill, TwoHundredTimesNothingFinishedIsLost) {
   const std::string run = run_name(sample_run().header);
-  fs::create_directories(root / "whole");
-  work(root / "whole", -1);
+  work(dir_ / "whole", -1);
   std::mt19937 random(7);
   int interrupted = 0, completed = 0;
-  fs::path dir = root / "0";
-  fs::create_directories(dir);
+  fs::path dir = dir_ / "0";
   for (int kill_number = 0; kill_number < 200; ++kill_number) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
@@ -69,11 +73,10 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     for (unsigned char k = 0; read(ends[0], &k, 1) == 1;) reported.push_back(k);
     close(ends[0]);
     if (run_finished(dir, run)) {
-      EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(root / "whole" / (run + ".h5"))) << "kill " << kill_number;
+      EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(dir_ / "whole" / (run + ".h5"))) << "kill " << kill_number;
       ++completed;
       fs::remove_all(dir);
-      dir = root / std::to_string(kill_number + 1);
-      fs::create_directories(dir);
+      dir = dir_ / std::to_string(kill_number + 1);
       continue;
     }
     ++interrupted;
@@ -90,10 +93,69 @@ TEST(Kill, TwoHundredTimesNothingFinishedIsLost) {
     for (const TimedTrial& t : kept.trials) EXPECT_TRUE(same(t, trial(t.index)));
   }
   work(dir, -1);
-  EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(root / "whole" / (run + ".h5")));
+  EXPECT_EQ(content_of(dir / (run + ".h5")), content_of(dir_ / "whole" / (run + ".h5")));
   std::printf("killed %d times in mid-run, %d runs completed in between\n", interrupted, completed);
   EXPECT_GT(interrupted, 50) << "the kills must meet runs in progress";
-  fs::remove_all(root);
+}
+
+// No more room: a limit on the size of files fails the same writes with an error as a full disk does, for any user.
+
+/// Positions that do not compress, 1.5 MB of them.
+RunRecord large_run() {
+  RunRecord r = sample_run();
+  std::uint32_t noise = 1;
+  for (TimedTrial& t : r.trials) t.stage_device_s.assign(t.stage_device_s.size(), 1e-4);
+  r.header.vertices = 25000;
+  r.accuracy.position.resize(r.accuracy.time_s.size() * 3 * r.header.vertices);
+  for (float& x : r.accuracy.position) x = static_cast<float>((noise = noise * 1664525u + 1013904223u) >> 8);
+  return r;
+}
+
+/// Runs `work` in a process that may write files of 256 kB at most. Returns its exit status: 0 if an Error was thrown
+/// that names `file`, 10 if nothing was thrown.
+int with_little_room(const std::string& file, const auto& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{256 * 1024, 256 * 1024};
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(11);
+    try {
+      work();
+    } catch (const Error& e) {
+      _exit(std::string(e.what()).find(file) != std::string::npos ? 0 : 12);
+    }
+    _exit(10);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::size_t temporary_files(const fs::path& dir) {
+  std::size_t n = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    n += entry.path().filename().string().find(".tmp.") != std::string::npos;
+  return n;
+}
+
+class FullDisk : public WithFolder {};
+
+TEST_F(FullDisk, AWriteThatFailsIsAnErrorAndWhatWasFinishedStays) {
+  const RunRecord r = large_run();
+  RunWriter writer(dir_, r.header);
+  for (const TimedTrial& t : r.trials) writer.write_trial(t);
+  EXPECT_EQ(with_little_room(".part", [&] { writer.write_accuracy(r.accuracy); }), 0);
+  EXPECT_EQ(temporary_files(dir_), 0u);
+  EXPECT_EQ(writer.recovered().trials.size(), 3u);
+  EXPECT_TRUE(writer.recovered().accuracy.time_s.empty());
+
+  const fs::path h5 = dir_ / "x.h5";
+  EXPECT_EQ(with_little_room("x.h5", [&] { write_hdf5(h5, r); }), 0);
+  EXPECT_FALSE(fs::exists(h5)) << "half a file must not look like one";
+  EXPECT_EQ(temporary_files(dir_), 0u);
+  // With room again everything is still there to be finished.
+  writer.write_accuracy(r.accuracy);
+  EXPECT_EQ(read_run(writer.finish(r.outcome, r.summary)).accuracy.position, r.accuracy.position);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-#include "clothbench/error.hpp"
+#include "refusal.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
@@ -21,13 +21,7 @@ const Runs kAlone;
 class Folder : public WithFolder {
  protected:
   static std::string refusal_of(const fs::path& folder, const Runs& runs) {
-    try {
-      const ResultFolder held(folder, runs, "clothbench study second");
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::BadInput);
-      return e.what();
-    }
-    return "";
+    return refusal([&] { const ResultFolder held(folder, runs, "clothbench study second"); }, ExitCode::BadInput);
   }
 };
 

@@ -1,7 +1,6 @@
 // A scene and a motion come back from only a result file: without the scenario's folder, its meshes, rooms and hands.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 
 #include "assets/assets.hpp"
@@ -18,16 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// While it lives, neither scenarios nor assets can be found.
-class WithoutData {
- public:
-  WithoutData() {
-    setenv(kScenarioFolder.variable, "/nonexistent", 1);
-    setenv("CLOTHBENCH_ASSETS", "/nonexistent", 1);
-  }
-  ~WithoutData() {
-    unsetenv(kScenarioFolder.variable);
-    unsetenv("CLOTHBENCH_ASSETS");
-  }
+struct WithoutData {
+  Variable scenarios{kScenarioFolder.variable, "/nonexistent"}, assets{"CLOTHBENCH_ASSETS", "/nonexistent"};
 };
 
 RunHeader header_of(const Scene& scene) {

@@ -2,13 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
+#include "refusal.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/reference.hpp"
 #include "runner/solver_run.hpp"
+#include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -33,7 +38,9 @@ class Spy final : public ClothSolver {
   }
   void read_state(ClothState& out) const override { out = state_; }
   FrameCost last_cost() const override { return {}; }
-  Plan plan() const override { return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {}}; }
+  Plan plan() const override {
+    return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {{"threads", "none here", "sheet_Y"}, {"air", "-"}}};
+  }
 
  private:
   SolverInfo info_;
@@ -130,6 +137,68 @@ TEST(UnevenFrames, ReachTheReference) {
       return;
     }
   GTEST_SKIP() << "no solver reference in this build";
+}
+
+// A failed or impossible run must not pass for a good one.
+
+const nlohmann::json kNone = nlohmann::json::object();
+
+TEST(Record, HasWhatIsNoParameterOfTheRun) {
+  const Scene scene = load_scene("conformance/sheet");
+  std::vector<FrameInput> seen;
+  const SolverEntry entry = spy(seen);
+  const SolverRun run({&scene, &entry, kNone, "default"}, {}, "run");
+  const nlohmann::json& left_out = run.header().plan.at("left_out");
+  EXPECT_EQ(left_out[0], (nlohmann::json{{"what", "threads"}, {"why", "none here"}, {"no_parameter", "sheet_Y"}}));
+  EXPECT_FALSE(left_out[1].contains("no_parameter"));
+}
+
+TEST(RequireSameRuns, RefusesTwoRunsOfOneFile) {
+  const ScratchFolder folder;
+  const Scene scene = load_scene("conformance/sheet");
+  std::vector<FrameInput> seen;
+  const SolverEntry entry = spy(seen);
+  const RunSpec run{&scene, &entry, kNone, "default"};
+  for (const auto& groups : {std::vector<std::vector<RunSpec>>{{run, run}}, {{run}, {run}}}) {
+    RunPlan plan;
+    plan.groups = groups;
+    EXPECT_PRED2(mentions, refusal([&] { require_same_runs(folder.path(), plan, false); }),
+                 "conformance-sheet__spy__default");
+  }
+}
+
+// The rule of exit codes: a solver that finished none of its runs is a fault, however they ended.
+
+std::vector<std::string> faults(const std::vector<std::pair<std::string, std::string>>& ends) {
+  std::vector<RunRecord> runs;
+  for (const auto& [solver, status] : ends) {
+    runs.emplace_back().header.solver = solver;
+    runs.back().outcome = {status, "F3", 3, "why"};
+  }
+  return solver_faults(runs);
+}
+
+TEST(SolverEnds, EveryKindOfFailureCountsAlike) {
+  for (const char* status : {"crashed", "timed_out", "diverged", "not_finite", "device_lost", "error"}) {
+    EXPECT_EQ(faults({{"mine", status}}),
+              std::vector<std::string>{std::string("mine: finished none of 1 runs; the last: ") + status + ": why"});
+    EXPECT_TRUE(faults({{"mine", status}, {"mine", "ok"}}).empty()) << status;
+    EXPECT_EQ(faults({{"mine", status}, {"other", "ok"}}).size(), 1u) << "of each solver by itself: " << status;
+    EXPECT_EQ(faults({{"mine", status}, {"mine", "unsupported"}}).size(), 1u) << status;
+  }
+}
+
+TEST(SolverEnds, WhatWasNotRunIsNoFailure) {
+  EXPECT_TRUE(faults({{"mine", "unsupported"}, {"mine", "over_budget"}}).empty());
+  EXPECT_TRUE(faults({}).empty());
+}
+
+TEST(SolverEnds, AnEndThatTheSceneExpectsIsNoFailure) {
+  std::vector<RunRecord> runs(1);
+  runs[0].outcome = {"diverged", "F0", 3, "why", "pass"};
+  EXPECT_TRUE(solver_faults(runs).empty());
+  runs[0].outcome.expect = "fail: outcome";
+  EXPECT_EQ(solver_faults(runs).size(), 1u);
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <fstream>
 
-#include "../scenario/scratch_folder.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 #include "runner/reference.hpp"
 #include "scenario/load.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {

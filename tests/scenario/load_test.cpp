@@ -4,12 +4,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "base/data_folder.hpp"
 #include "base/json_text.hpp"
 #include "refusal.hpp"
 #include "scenario/study.hpp"
+#include "with_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -21,13 +24,7 @@ const char* const kGood = R"({"name":"x","why":"A scene for tests.","cloth":{"gr
   "time":{"frame_rate_hz":72,"duration_s":1}})";
 
 std::string message_of(const std::string& text) {
-  try {
-    scene_from_json(parse_json(text, "test.json"), "test.json");
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    return e.what();
-  }
-  return "";
+  return refusal([&] { scene_from_json(parse_json(text, "test.json"), "test.json"); }, ExitCode::BadInput);
 }
 
 /// kGood with one change.
@@ -210,6 +207,66 @@ TEST(Load, EveryShippedFileLoads) {
   }
   EXPECT_GE(scenes, 1);
   EXPECT_GE(studies, 1);
+}
+
+constexpr DataFolder kFolder{"test files", "CLOTHBENCH_DATA_FOLDER_TEST", "installed/here", "built/there"};
+
+class DataFolderTest : public WithFolder {
+ protected:
+  std::string why() const {
+    return refusal([&] { find_data(kFolder, roots_); });
+  }
+
+  const Variable unset_{kFolder.variable, nullptr};
+  DataRoots roots_{dir_ / "share", dir_ / "source"};
+};
+
+TEST_F(DataFolderTest, VariableThenInstalledThenSource) {
+  const fs::path source = roots_.source / "built/there", installed = roots_.installed / "installed/here",
+                 named = dir_ / "named";
+  fs::create_directories(source);
+  EXPECT_EQ(find_data(kFolder, roots_), source);
+  fs::create_directories(installed);
+  EXPECT_EQ(find_data(kFolder, roots_), installed);
+  fs::create_directories(named);
+  setenv(kFolder.variable, named.c_str(), 1);
+  EXPECT_EQ(find_data(kFolder, roots_), named);
+  setenv(kFolder.variable, "", 1);  // as good as not set
+  EXPECT_EQ(find_data(kFolder, roots_), installed);
+}
+
+TEST_F(DataFolderTest, OneErrorNamesEveryPlace) {
+  const fs::path installed = roots_.installed / "installed/here", source = roots_.source / "built/there",
+                 named = dir_ / "nowhere";
+  fs::create_directories(source.parent_path());
+  std::ofstream(source) << "a file is no folder";
+  for (const std::string& place :
+       {std::string("CLOTHBENCH_DATA_FOLDER_TEST"), installed.string(), source.string(), std::string("test files")})
+    EXPECT_PRED2(mentions, why(), place);
+  fs::create_directories(installed);
+  setenv(kFolder.variable, named.c_str(), 1);  // a wrong variable is not passed over
+  for (const fs::path& place : {named, installed, source}) EXPECT_PRED2(mentions, why(), place.string());
+}
+
+TEST_F(DataFolderTest, AProgramOfUnknownPlaceStillHasItsSourceTree) {
+  roots_.installed.clear();
+  EXPECT_EQ(usual_places(kFolder, roots_), std::vector<fs::path>{roots_.source / "built/there"});
+}
+
+TEST(DataRoots, ShareIsBesideTheProgramsFolder) {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  EXPECT_EQ(data_roots().installed, program.parent_path().parent_path() / "share/clothbench");
+  EXPECT_EQ(data_roots().source, CLOTHBENCH_SOURCE_DIR);
+}
+
+TEST_F(DataFolderTest, ASceneByItsPathNeedsNoScenarioFolder) {
+  const std::string scene = CLOTHBENCH_SOURCE_DIR "/scenarios/validation/hang-mesh.json";
+  ASSERT_EQ(load_scene(scene).name, "hang-mesh");
+  fs::copy(CLOTHBENCH_SOURCE_DIR "/scenarios/assets", dir_ / "assets", fs::copy_options::recursive);
+  fs::copy_file(scene, dir_ / "hang-mesh.json");
+  const Variable none("CLOTHBENCH_SCENARIOS", "/nonexistent");
+  EXPECT_EQ(load_scene((dir_ / "hang-mesh.json").string()).name, "hang-mesh");
+  EXPECT_THROW(load_scene("paper/gravity"), Error);
 }
 
 }  // namespace

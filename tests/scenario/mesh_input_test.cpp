@@ -21,28 +21,29 @@ constexpr char kPanels[] =
     "o front\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\ng waist left\nf 1/1 2/2 3/3\n"
     "o back\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 2 0\nvt 2 1\nvt 1 1\ng\nf 4/4 5/5 6/6\n";
 
-Scene scene_of(const ScratchFolder& folder, const char* file, const char* pointer, const json& value) {
-  json j = mesh_scenario({{"file", file}});
-  if (*pointer != 0) j[json::json_pointer(pointer)] = value;
-  return load_scene(folder.file("panels.json", j.dump()));
-}
-
-TEST(MeshInput, WeldsVerticesInOnePlaceWithANotice) {
+class MeshInput : public ::testing::Test {
+ protected:
+  MeshInput() { folder.file("panels.obj", kPanels); }
+  Scene scene_of(const char* file, const char* pointer, const json& value) const {
+    json j = mesh_scenario({{"file", file}});
+    if (*pointer != 0) j[json::json_pointer(pointer)] = value;
+    return load_scene(folder.file("panels.json", j.dump()));
+  }
   const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
+};
+
+TEST_F(MeshInput, WeldsVerticesInOnePlaceWithANotice) {
   ::testing::internal::CaptureStderr();
-  const Scene s = scene_of(folder, "panels.obj", "", {});
+  const Scene s = scene_of("panels.obj", "", {});
   EXPECT_PRED2(mentions, ::testing::internal::GetCapturedStderr(), "2 vertices");
   EXPECT_EQ(s.cloth.vertex_count(), 4u);
   EXPECT_EQ(s.cloth.mesh->edges.size(), 5u) << "one seam";
   EXPECT_EQ(s.cloth.mesh->triangles[1], (std::array<std::uint32_t, 3>{1, 3, 2}));
 }
 
-TEST(MeshInput, NamesOfFacesAreGroupsOfVertices) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
+TEST_F(MeshInput, NamesOfFacesAreGroupsOfVertices) {
   const auto pins = [&](const char* group) {
-    return scene_of(folder, "panels.obj", "/pins", {{{"group", group}}}).pins.vertices;
+    return scene_of("panels.obj", "/pins", {{{"group", group}}}).pins.vertices;
   };
   EXPECT_EQ(pins("waist"), (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(pins("left"), pins("waist")) << "a face may have several names";
@@ -51,23 +52,21 @@ TEST(MeshInput, NamesOfFacesAreGroupsOfVertices) {
   const std::string unknown = refusal([&] { pins("wrist"); });
   EXPECT_PRED2(mentions, unknown, "/pins/0/group");
   EXPECT_PRED2(mentions, unknown, "one of: back, front, left, waist");
-  const Scene held = scene_of(folder, "panels.obj", "/grips", {{{"group", "waist"}, {"velocity_m_per_s", {0, 1, 0}}}});
+  const Scene held = scene_of("panels.obj", "/grips", {{{"group", "waist"}, {"velocity_m_per_s", {0, 1, 0}}}});
   EXPECT_EQ(held.grips.vertices, (std::vector<std::uint32_t>{0, 1, 2}));
-  const Scene heavy = scene_of(folder, "panels.obj", "/cloth/mass_factors", {{{"group", "back"}, {"factor", 3}}});
+  const Scene heavy = scene_of("panels.obj", "/cloth/mass_factors", {{{"group", "back"}, {"factor", 3}}});
   EXPECT_EQ(heavy.cloth.mass_factors, (std::vector<double>{1, 3, 3, 3}));
   EXPECT_PRED2(mentions, refusal([&] {
-                 scene_of(folder, "panels.obj", "/grips", {{{"velocity_m_per_s", {0, 1, 0}}}});
+                 scene_of("panels.obj", "/grips", {{{"velocity_m_per_s", {0, 1, 0}}}});
                }),
                "/grips/0");
 }
 
-TEST(MeshInput, StartsCrumpledToo) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
-  const Scene ball = scene_of(folder, "panels.obj", "/cloth/start", {{"shape", "sphere"}, {"radius_m", 0.25}});
+TEST_F(MeshInput, StartsCrumpledToo) {
+  const Scene ball = scene_of("panels.obj", "/cloth/start", {{"shape", "sphere"}, {"radius_m", 0.25}});
   const std::vector<double> x = initial_positions(ball);
   for (std::size_t v = 0; v < 4; ++v) EXPECT_NEAR(std::hypot(x[3 * v], x[3 * v + 1], x[3 * v + 2]), 0.25, 1e-12);
-  const Scene folded = scene_of(folder, "panels.obj", "/cloth/start", {{"shape", "folded"}, {"folds", 2}});
+  const Scene folded = scene_of("panels.obj", "/cloth/start", {{"shape", "folded"}, {"folds", 2}});
   EXPECT_EQ(initial_positions(folded)[3], 0) << "x = 1 is folded back onto x = 0";
 }
 
@@ -121,12 +120,11 @@ std::string binary(json j) {
   return out;
 }
 
-TEST(MeshInput, ReadsGltf) {
-  const ScratchFolder folder;
+TEST_F(MeshInput, ReadsGltf) {
   folder.file("square.gltf", square_gltf().dump());
   folder.file("square.glb", binary(square_gltf()));
   for (const char* file : {"square.gltf", "square.glb"}) {
-    const Scene s = scene_of(folder, file, "/pins", {{{"group", "silk"}}});
+    const Scene s = scene_of(file, "/pins", {{{"group", "silk"}}});
     EXPECT_EQ(s.cloth.mesh->vertices, (std::vector<Vec3>{{0, 0, 5}, {2, 0, 5}, {2, 2, 5}, {0, 2, 5}}))
         << file << ": placed by its node";
     EXPECT_EQ(s.cloth.mesh->triangles.size(), 2u);
@@ -135,7 +133,7 @@ TEST(MeshInput, ReadsGltf) {
   }
 }
 
-TEST(MeshInput, OfAGltfTheActiveSceneIsRead) {
+TEST_F(MeshInput, OfAGltfTheActiveSceneIsRead) {
   json j = square_gltf();
   j["nodes"].push_back({{"name", "unused"}, {"mesh", 0}, {"translation", {9, 0, 0}}});
   j["nodes"].push_back({{"name", "parent"}, {"children", {1}}});
@@ -156,7 +154,7 @@ TEST(MeshInput, OfAGltfTheActiveSceneIsRead) {
   EXPECT_EQ(refusal([&] { vertices(); }).find("m.gltf: /scenes: index 2"), 0u) << refusal([&] { vertices(); });
 }
 
-TEST(MeshInput, MorphTargetsMoveTheirVertices) {
+TEST_F(MeshInput, MorphTargetsMoveTheirVertices) {
   json j = square_gltf();
   // The positions as displacements: each weight adds the square once more.
   j["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"NORMAL", 0}}};
@@ -170,7 +168,7 @@ TEST(MeshInput, MorphTargetsMoveTheirVertices) {
   EXPECT_PRED2(mentions, refusal(corner), "/meshes/0/primitives/0/targets: 2 morph targets, but 1 weights");
 }
 
-TEST(MeshInput, WhatAGltfNeedsIsRefusedByName) {
+TEST_F(MeshInput, WhatAGltfNeedsIsRefusedByName) {
   const auto why = [](const char* pointer, const json& value) {
     json j = square_gltf();
     j[json::json_pointer(pointer)] = value;
@@ -197,8 +195,7 @@ TEST(MeshInput, WhatAGltfNeedsIsRefusedByName) {
             "m.glb: not a binary glTF file of version 2: its version is 1");
 }
 
-TEST(MeshInput, NamesOfFilesMayEndInCapitals) {
-  const ScratchFolder folder;
+TEST_F(MeshInput, NamesOfFilesMayEndInCapitals) {
   folder.file("PANELS.OBJ", kPanels);
   folder.file("SQUARE.GLTF", square_gltf().dump());
   folder.file("SQUARE.Glb", binary(square_gltf()));
@@ -207,17 +204,17 @@ TEST(MeshInput, NamesOfFilesMayEndInCapitals) {
     const std::string scene = folder.file("SCENE.JSON", mesh_scenario({{"file", file}}).dump());
     EXPECT_EQ(load_scene(scene).cloth.vertex_count(), 4u) << file;
   }
-  EXPECT_PRED2(mentions, refusal([&] { scene_of(folder, "square.stl", "", {}); }),
+  EXPECT_PRED2(mentions, refusal([&] { scene_of("square.stl", "", {}); }),
                "/cloth/mesh/file: expected a file whose name");
 }
 
-TEST(MeshInput, MirroredNodesKeepTheirFrontOutside) {
+TEST_F(MeshInput, MirroredNodesKeepTheirFrontOutside) {
   json j = square_gltf();
   j["nodes"][0]["scale"] = {-1, 1, 1};
   EXPECT_EQ(assets::parse_gltf(j.dump(), "m.gltf").vertices[0], (Vec3{-1, 1, 5})) << "the last corner comes first";
 }
 
-TEST(MeshInput, RefusesBadGltfNamingThePlace) {
+TEST_F(MeshInput, RefusesBadGltfNamingThePlace) {
   const auto message = [](const char* pointer, const json& value) {
     json j = square_gltf();
     j[json::json_pointer(pointer)] = value;
@@ -241,7 +238,7 @@ TEST(MeshInput, RefusesBadGltfNamingThePlace) {
 }
 
 /// tinygltf leaves out a value of a wrong type. Replaces each value of a file, and each list and object, by others.
-TEST(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
+TEST_F(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
   json whole = square_gltf();
   whole.update({{"scene", 0},
                 {"scenes", {{{"nodes", {0}}}}},
@@ -281,17 +278,14 @@ TEST(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
   EXPECT_GT(tried, 300u);
 }
 
-TEST(MeshInput, FilesThatAreTooLargeAreNotRead) {
-  const ScratchFolder folder;
+TEST_F(MeshInput, FilesThatAreTooLargeAreNotRead) {
   const std::string path = folder.file("huge.obj", "");
   std::filesystem::resize_file(path, std::uintmax_t{300} << 20);  // takes no place on the disk
-  EXPECT_PRED2(mentions, refusal([&] { scene_of(folder, "huge.obj", "", {}); }), "at most 268435456 are read");
+  EXPECT_PRED2(mentions, refusal([&] { scene_of("huge.obj", "", {}); }), "at most 268435456 are read");
 }
 
-TEST(MeshInput, RegionsAreTheTrianglesOfAGroup) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
-  const auto regions = [&](const json& list) { return scene_of(folder, "panels.obj", "/material/regions", list); };
+TEST_F(MeshInput, RegionsAreTheTrianglesOfAGroup) {
+  const auto regions = [&](const json& list) { return scene_of("panels.obj", "/material/regions", list); };
   const Scene s = regions({{{"group", "waist"}, {"membrane_stiffness_N_per_m", 100}}});
   EXPECT_TRUE(s.needs.has(Feature::Regions));
   EXPECT_EQ(triangle_stiffnesses(s), (std::vector<std::optional<double>>{100, 1000}));
@@ -311,13 +305,11 @@ TEST(MeshInput, RegionsAreTheTrianglesOfAGroup) {
     EXPECT_EQ(edge_stiffnesses(later)[e].has_value(), mesh.edges[e].a == 0) << "one inextensible triangle is enough";
 }
 
-TEST(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
-  const ScratchFolder folder;
-  folder.file("panels.obj", kPanels);
+TEST_F(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
   const auto complaint = [&](const json& region) {
     json list = json::array({region});
     list[0]["membrane_stiffness_N_per_m"] = 100;
-    return refusal([&] { scene_of(folder, "panels.obj", "/material/regions", list); });
+    return refusal([&] { scene_of("panels.obj", "/material/regions", list); });
   };
   const std::string unknown = complaint({{"group", "cuff"}});
   EXPECT_PRED2(mentions, unknown, "panels.json: /material/regions/0/group");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -189,15 +188,12 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
 }
 
 TEST(Study, RequiredAssetsMustBeThere) {
-  const char* before = std::getenv("CLOTHBENCH_ASSETS");
-  const std::string kept = before == nullptr ? "" : before;
-  ASSERT_EQ(setenv("CLOTHBENCH_ASSETS", "procedural", 1), 0);
+  const Variable procedural("CLOTHBENCH_ASSETS", "procedural");
   EXPECT_NO_THROW(load_scene("paper/desk-flat-low"));
   EXPECT_NO_THROW(load_scene("paper/gravity", {}, Assets::Required)) << "a scene that uses none";
   EXPECT_THROW(load_scene("paper/desk-flat-low", {}, Assets::Required), Error);
   EXPECT_THROW(load_scene("paper/two-hand-stretch-2mps", {}, Assets::Required), Error);
   EXPECT_THROW(load_study("penetration", {{}, StudyLength::Full, Assets::Required}), Error);
-  before == nullptr ? unsetenv("CLOTHBENCH_ASSETS") : setenv("CLOTHBENCH_ASSETS", kept.c_str(), 1);
 }
 
 TEST(Settings, AreCompletedAndChecked) {

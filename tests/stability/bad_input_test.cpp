@@ -1,9 +1,9 @@
-// Degenerate input that is not refused: every solver that claims what it needs simulates it sanely (table in
-// scenarios/stability/README.md; tests/scenario/load_test.cpp has what is refused).
+// Sheets that are uneven, heavy in places, or start where they do not rest; frames of unlike lengths; hands that jump.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 #include "base/json_text.hpp"
 #include "refusal.hpp"
@@ -14,6 +14,178 @@ namespace clothbench {
 namespace {
 
 using nlohmann::json;
+
+Scene load(const std::vector<std::string>& set) {
+  static const json base = json::parse(
+      R"({"name": "uneven", "why": "an uneven sheet in a test", "cloth": {"grid": [5, 3], "size_m": [1, 0.5],
+    "areal_density_kg_per_m2": 0.2, "sides": "single"}, "material": {"membrane_stiffness_N_per_m": 1000}, "time": {"frame_rate_hz": 60, "duration_s": 0.5}})");
+  return scene_from_json(base, "test", set);
+}
+double total(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+TEST(Regular, NeedsNothingNew) {
+  const Scene s = load({});
+  for (Feature f : {Feature::UnevenGrid, Feature::Regions, Feature::Spin}) EXPECT_FALSE(s.needs.has(f));
+  EXPECT_EQ(s.json.find("start"), std::string::npos);  // what a scene does not use does not stand in it
+  EXPECT_EQ(s.json.find("stability"), std::string::npos);
+}
+
+TEST(Columns, FillTheWidthAndKeepTheMass) {
+  const Scene s = load({R"(cloth.column_factors=[{"column": 1, "factor": 0.001}])"});
+  EXPECT_TRUE(s.needs.has(Feature::UnevenGrid));
+  EXPECT_NEAR(s.cloth.line_u_m(2) - s.cloth.line_u_m(1), 0.001 / 3.001, 1e-12);
+  EXPECT_EQ(s.cloth.line_u_m(4), 1);
+  EXPECT_NEAR(total(vertex_masses(s)), 0.2 * 0.5, 1e-12);
+  const Edge narrow = edges(s.cloth, EdgeKind::Structural)[1];
+  EXPECT_NEAR(narrow.rest_m, 0.001 / 3.001, 1e-12);
+  const std::vector<double> x = initial_positions(s);
+  EXPECT_NEAR(x[3 * narrow.b] - x[3 * narrow.a], narrow.rest_m, 1e-12);
+}
+
+TEST(Columns, OfWidthZeroHaveNoLength) {
+  const Scene s = load({R"(cloth.column_factors=[{"column": 1, "factor": 0}])"});
+  EXPECT_EQ(edges(s.cloth, EdgeKind::Structural)[1].rest_m, 0);
+  for (double m : vertex_masses(s)) EXPECT_GT(m, 0);
+}
+
+TEST(Masses, AreScaledWhereTold) {
+  const Scene even = load({}),
+              s = load({R"(cloth.mass_factors=[{"edge": "u1", "factor": 1000}, {"vertices": [6], "factor": 0.0001}])"});
+  const auto a = vertex_masses(even), b = vertex_masses(s);
+  for (std::size_t v = 0; v < a.size(); ++v)
+    EXPECT_DOUBLE_EQ(b[v], a[v] * (v % 5 == 4 ? 1000 : v == 6 ? 1e-4 : 1)) << v;
+}
+
+TEST(Regions, ChangeTheStiffnessOfTheirColumns) {
+  const Scene s = load({R"(material.regions=[{"columns": [2, 3], "membrane_stiffness_N_per_m": 1e6}])"});
+  EXPECT_TRUE(s.needs.has(Feature::Regions));
+  const auto along_u = edges(s.cloth, EdgeKind::Structural);
+  EXPECT_EQ(membrane_stiffness(s, along_u[1]), 1000);
+  EXPECT_EQ(membrane_stiffness(s, along_u[2]), 1e6);
+  for (const Edge& e : along_u)
+    if (e.b == e.a + 5 && e.a == 2) {  // on the line between both
+      EXPECT_EQ(membrane_stiffness(s, e), (1000 + 1e6) / 2);
+    }
+}
+
+TEST(Starts, AreSeededAndLeaveWhatIsPinned) {
+  const std::vector<std::string> set = {R"(pins=[{"edge": "u0"}])",
+                                        R"(cloth.start={"shape": "sphere", "radius_m": 0.7, "seed": 3})"};
+  const Scene s = load(set);
+  const std::vector<double> x = initial_positions(s), again = initial_positions(load(set));
+  EXPECT_EQ(x, again);
+  std::vector<std::string> other = set;
+  other.push_back("cloth.start.seed=4");
+  EXPECT_NE(x, initial_positions(load(other)));
+  for (std::size_t v = 0; v < 15; ++v) {
+    if (v % 5 == 0) {
+      EXPECT_NEAR(x[3 * v], -0.5, 1e-15);
+      continue;
+    }
+    EXPECT_NEAR(std::hypot(x[3 * v], x[3 * v + 1], x[3 * v + 2]), 0.7, 1e-12);
+  }
+}
+
+TEST(Starts, SquashFoldMergeAndMove) {
+  for (double value : initial_positions(load({R"(cloth.start={"shape": "point"})"}))) EXPECT_EQ(value, 0);
+  const auto line = initial_positions(load({R"(cloth.start={"shape": "line"})"}));
+  for (std::size_t v = 0; v < 15; ++v) EXPECT_EQ(line[3 * v + 2], 0);
+  const auto folded = initial_positions(load({R"(cloth.start={"shape": "folded", "folds": 4})"}));
+  for (std::size_t v = 0; v < 5; ++v) EXPECT_NEAR(folded[3 * v], v % 2 == 0 ? -0.5 : -0.25, 1e-12);
+  const auto merged = initial_positions(load({R"(cloth.start={"shape": "rest", "merge": [[2, 7, 12]]})"}));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(merged[3 * 12 + k], merged[3 * 2 + k]);
+  const auto moved = initial_positions(load(
+      {R"(pins=[{"edge": "u0"}])", R"(cloth.start={"shape": "rest", "move": [{"edge": "u0", "by_m": [0, 2, 0]}]})"}));
+  EXPECT_EQ(moved[1], 2);
+}
+
+TEST(Starts, NoiseHasItsDeviation) {
+  const Scene s = load({"cloth.grid=[64,64]", R"(cloth.start={"shape": "rest", "noise_m": 0.001})"});
+  const auto x = initial_positions(s), rest = initial_positions(load({"cloth.grid=[64,64]"}));
+  double squares = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) squares += (x[k] - rest[k]) * (x[k] - rest[k]);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(x.size())), 0.001, 3e-5);
+}
+
+TEST(Spin, TurnsAboutTheCentre) {
+  const Scene s = load({"cloth.spin_rad_per_s=[0,2,0]", "cloth.initial_velocity_m_per_s=[0,1,0]"});
+  EXPECT_TRUE(s.needs.has(Feature::Spin));
+  const auto v = initial_velocities(s);
+  EXPECT_NEAR(v[2], 1.0, 1e-12);  // x = -1/2, so omega x r has z = +1
+  EXPECT_NEAR(v[1], 1.0, 1e-12);
+}
+
+TEST(Frames, OneHitchMovesAllThatFollow) {
+  const Scene s = load({R"(time.hitch={"frame": 2, "dt_s": 0.25})"});
+  EXPECT_DOUBLE_EQ(s.time.dt_after(1), 1.0 / 60);
+  EXPECT_DOUBLE_EQ(s.time.dt_after(2), 0.25);
+  EXPECT_NEAR(s.time.at(s.time.frames()), 0.5 + 0.25 - 1.0 / 60, 1e-12);
+}
+
+TEST(Frames, JitterStaysInItsShare) {
+  const Scene s = load({R"(time.jitter={"share": 0.5, "seed": 2})"});
+  double least = 1, most = 0;
+  for (int f = 0; f < s.time.frames(); ++f) {
+    least = std::min(least, s.time.dt_after(f) * 60);
+    most = std::max(most, s.time.dt_after(f) * 60);
+  }
+  EXPECT_GE(least, 0.5);
+  EXPECT_LT(least, 0.6);
+  EXPECT_LE(most, 1.5);
+  EXPECT_GT(most, 1.4);
+}
+
+TEST(Hands, StopLetGoAndJump) {
+  const Scene s = load(
+      {R"(grips=[{"edge": "u1", "velocity_m_per_s": [1, 0, 0], "stop_s": 0.1, "release_s": 0.3, "jumps": [{"time_s": 0.2, "by_m": [0, 0.5, 0]}]}])"});
+  const auto at = [&](int f) { return s.motion[static_cast<std::size_t>(f)]; };
+  EXPECT_NEAR(at(6).grip_position_m[0][0], 0.6, 1e-12);
+  EXPECT_NEAR(at(12).grip_position_m[0][0], 0.6, 1e-12);
+  EXPECT_EQ(at(12).grip_position_m[0][1], 0);
+  EXPECT_EQ(at(13).grip_position_m[0][1], 0.5);
+  ASSERT_EQ(s.jumps.size(), 1u);
+  EXPECT_EQ(s.jumps[0].frame, 13);
+  EXPECT_EQ(s.jumps[0].distance_m, 0.5);
+  EXPECT_EQ(at(17).grip_held[0], 1);
+  EXPECT_EQ(at(18).grip_held[0], 0);
+}
+
+TEST(Capsules, MoveJumpAndTurn) {
+  const Scene s = load(
+      {R"(colliders=[{"type": "capsule", "center_m": [0, 1, 0], "radius_m": 0.1, "length_m": 0.4, "velocity_m_per_s": [0, -1, 0], "start_s": 0.1, "spin_rad_per_s": [0, 0, 3.141592653589793], "jumps": [{"time_s": 0, "by_m": [0, 0, 2]}]}])"});
+  EXPECT_TRUE(s.needs.has(Feature::Capsules));
+  const Capsule end = s.motion.back().colliders[0].capsules[0];  // half a turn per second, for half a second
+  EXPECT_NEAR(end.a_m[0], 0, 1e-12);
+  EXPECT_NEAR(end.b_m[1] - end.a_m[1], 0.4, 1e-12);
+  EXPECT_NEAR((end.a_m[1] + end.b_m[1]) / 2, 0.6, 1e-12);
+  EXPECT_NEAR(end.a_m[2], 2, 1e-12);
+}
+
+TEST(Pins, OfOneVertexTwiceAreOne) {
+  EXPECT_EQ(load({R"(pins=[{"vertices": [0, 0]}, {"edge": "u0"}])"}).pins.vertices.size(), 3u);
+}
+
+TEST(Irregular, WhatIsWrongIsNamed) {
+  const struct {
+    std::vector<std::string> set;
+    const char* complaint;
+  } refused[] = {
+      {{R"(cloth.column_factors=[{"column": 4, "factor": 2}])"}, "/cloth/column_factors/0/column"},
+      {{R"(cloth.column_factors=[{"column": 0, "factor": 0}])"}, "no mass"},
+      {{R"(cloth.mass_factors=[{"edge": "u1", "factor": 0}])"}, "/cloth/mass_factors/0/factor"},
+      {{R"(cloth.mass_factors=[{"vertices": [15], "factor": 2}])"}, "vertex 15 of 15"},
+      {{R"(cloth.mass_factors=[{"factor": 2}])"}, "expected \"edge\", \"group\" or \"vertices\""},
+      {{R"(material.regions=[{"columns": [2, 4], "membrane_stiffness_N_per_m": 1}])"}, "/material/regions/0/columns"},
+      {{R"(time.hitch={"frame": 30, "dt_s": 0.25})"}, "/time/hitch/frame"},
+      {{R"(pins=[{"edge": "u0"}])", R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}])"}, "is pinned as well"},
+      {{R"(grips=[{"edge": "u0", "velocity_m_per_s": [1, 0, 0]}, {"edge": "v0", "velocity_m_per_s": [0, 1, 0]}])"},
+       "held by two hands"},
+  };
+  for (const auto& r : refused) EXPECT_PRED2(mentions, refusal([&] { load(r.set); }), r.complaint);
+}
+
+// Degenerate input that is not refused: every solver that claims what it needs simulates it sanely (table in
+// scenarios/stability/README.md; tests/scenario/load_test.cpp has what is refused).
 
 const char* const kSheet = R"({"name": "sheet", "why": "a sheet of bad input",
   "cloth": {"grid": [5, 4], "size_m": [0.4, 0.3], "areal_density_kg_per_m2": 0.2, "sides": "single", "pose": {"center_m": [0, 0.05, 0], "axis_u": [1, 0, 0], "axis_v": [0, 0, 1]}},

@@ -18,6 +18,7 @@ constexpr unsigned F(int k) { return 1u << k; }
 
 class Judge : public ::testing::Test {
  protected:
+  Judge() { load(); }
   /// A hanging sheet of 9 x 9 cells of 0.125 m, all classes judged, 60 frames.
   void load(const std::vector<std::string>& set = {}) {
     std::vector<std::string> all = {R"(stability={"case": "S01", "judged": ["F0", "F1", "F2"], "settle_s": 0.5})"};
@@ -47,7 +48,6 @@ class Judge : public ::testing::Test {
 };
 
 TEST_F(Judge, RestIsStable) {
-  load();
   for (int f = 0; f <= scene_.time.frames(); ++f) EXPECT_EQ(add(rest_).classes, 0u) << f;
 }
 
@@ -64,7 +64,6 @@ TEST_F(Judge, F0NotFinite) {
 }
 
 TEST_F(Judge, F0Unbounded) {
-  load();
   // Twice the diagonal: 7.45 m/s; ten times that is the limit.
   const double most = 10 * std::sqrt(2 * 9.81 * 2 * std::sqrt(2.0));
   ClothState s = rest_;
@@ -75,7 +74,6 @@ TEST_F(Judge, F0Unbounded) {
 }
 
 TEST_F(Judge, F1EnergyGain) {
-  load();
   ClothState s = rest_;
   const double M = 0.2, gL = 9.81;
   add(s);
@@ -89,7 +87,6 @@ TEST_F(Judge, F1EnergyGain) {
 }
 
 TEST_F(Judge, F1FallingIsNoGain) {
-  load();
   ClothState s = rest_;
   add(s);
   for (std::size_t k = 1; k < s.position.size(); k += 3) {
@@ -100,7 +97,6 @@ TEST_F(Judge, F1FallingIsNoGain) {
 }
 
 TEST_F(Judge, F2OneEdgeFourFramesInARow) {
-  load();
   ClothState s = rest_;
   s.position[3 * 80 + 1] -= 0.125 * 0.2;  // the last vertex: one edge in 144, below the 99th percentile
   for (int f = 0; f < 3; ++f) EXPECT_EQ(add(s).classes & F(2), 0u) << f;
@@ -110,13 +106,11 @@ TEST_F(Judge, F2OneEdgeFourFramesInARow) {
 }
 
 TEST_F(Judge, F2ManyEdgesAtOnce) {
-  load();
   EXPECT_EQ(add(stretched(1.049)).classes & F(2), 0u);
   EXPECT_EQ(add(stretched(1.051)).classes & F(2), F(2));
 }
 
 TEST_F(Judge, F2Torn) {
-  load();
   ClothState s = rest_;
   s.position[3 * 80 + 1] -= 0.125 * 1.01;
   EXPECT_EQ(add(s).classes & F(2), F(2));

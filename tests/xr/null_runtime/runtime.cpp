@@ -142,7 +142,7 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrV
       NULL_XR_ENTRY("xrGetSystemProperties", system_properties)};
   const auto found = own.find(name);
   *out = found != own.end() ? found->second : nullptr;
-  for (const auto find : {frame_function, input_function, graphics_function})
+  for (const auto find : {frame_function, graphics_function})
     if (*out == nullptr) *out = find(name);
   return *out != nullptr ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;
 }

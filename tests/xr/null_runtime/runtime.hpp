@@ -88,7 +88,6 @@ Pose from_xr(const XrPosef&);
 #define NULL_XR(text, function) \
   if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
 PFN_xrVoidFunction frame_function(const std::string& name);
-PFN_xrVoidFunction input_function(const std::string& name);
 PFN_xrVoidFunction graphics_function(const std::string& name);
 
 /// Fraction of the pixels of the last released image that are neither white nor transparent.

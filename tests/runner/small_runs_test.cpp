@@ -1,0 +1,225 @@
+// Runs of a small scene: held in the middle of a trial as a paused activity holds them, on a ladder, resumed.
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
+#include "refusal.hpp"
+#include "runner/interrupt.hpp"
+#include "runner/study_runner.hpp"
+#include "scenario/load.hpp"
+#include "with_folder.hpp"
+
+namespace clothbench {
+namespace {
+
+/// Steps `inner`, with the settings of the run.
+using WrappedStep = std::function<StepStatus(ClothSolver& inner, const nlohmann::json& settings, const FrameInput&)>;
+
+/// Another solver with its step replaced.
+class Wrapped final : public ClothSolver {
+ public:
+  Wrapped(std::unique_ptr<ClothSolver> inner, nlohmann::json settings, WrappedStep step)
+      : inner_(std::move(inner)), settings_(std::move(settings)), step_(std::move(step)) {}
+  const SolverInfo& info() const override { return inner_->info(); }
+  DeviceInfo device() const override { return inner_->device(); }
+  void load(const Scene& s) override { inner_->load(s); }
+  void reset() override { inner_->reset(); }
+  StepStatus step(const FrameInput& f) override { return step_(*inner_, settings_, f); }
+  void read_state(ClothState& s) const override { inner_->read_state(s); }
+  FrameCost last_cost() const override { return inner_->last_cost(); }
+  Plan plan() const override { return inner_->plan(); }
+
+ private:
+  std::unique_ptr<ClothSolver> inner_;
+  nlohmann::json settings_;
+  WrappedStep step_;
+};
+
+/// The ballistic solver with another step.
+SolverEntry ballistic_with(const WrappedStep& step) {
+  SolverEntry entry = find_solver("ballistic");
+  entry.make = [make = entry.make, step](const nlohmann::json& settings, const DeviceOptions& device) {
+    return std::make_unique<Wrapped>(make(nlohmann::json::object(), device), settings, step);
+  };
+  return entry;
+}
+
+/// Runs of a small scene in a folder of the test's own.
+class SmallRuns : public WithFolder {
+ protected:
+  void SetUp() override { options_.out = dir_; }
+
+  static RunPlan plan_of(std::vector<RunSpec> group, int trials, int frames, double accuracy_s = 0.05) {
+    RunPlan plan;
+    plan.protocol = "test";
+    plan.rules.trials = trials;
+    plan.rules.frames = frames;
+    plan.rules.warmup_s = 0;
+    plan.rules.accuracy_duration_s = accuracy_s;
+    plan.groups = {std::move(group)};
+    return plan;
+  }
+
+  const Scene scene_ = load_scene("paper/gravity", {"cloth.grid=[4,4]"});
+  RunOptions options_;
+};
+
+using namespace std::chrono_literals;
+
+class Hold : public SmallRuns {};
+
+TEST_F(Hold, ATrialThatWasHeldIsRunAgainAndTheWaitIsNotTimed) {
+  int steps = 0;
+  std::thread release;
+  const int in_trial = 4 + 3 + 10;  // accuracy pass, warm-up, then the tenth frame of the trial
+  const SolverEntry entry = ballistic_with([&](ClothSolver& inner, const nlohmann::json&, const FrameInput& f) {
+    if (++steps == in_trial) {
+      hold_runs(true);
+      release = std::thread([] {
+        std::this_thread::sleep_for(300ms);
+        hold_runs(false);
+      });
+    }
+    return inner.step(f);
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const RunResult result = execute_runs(plan_of({{&scene_, &entry, nlohmann::json::object()}}, 1, 20), options_);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 280ms) << "it did wait";
+  ASSERT_TRUE(release.joinable());
+  release.join();
+  EXPECT_EQ(steps, 4 + 2 * (3 + 20)) << "one accuracy pass, two trials with their warm-ups";
+  const RunRecord record = read_run(result.files.at(0));
+  EXPECT_EQ(record.outcome.status, "ok");
+  ASSERT_EQ(record.trials.size(), 1u);
+  EXPECT_EQ(record.trials[0].frames(), 20);
+  for (double w : record.trials[0].frame_wall_s) EXPECT_LT(w, 0.2);
+  EXPECT_TRUE(record.summary.count("temperature_end_C") == 1 && record.summary.count("cpu_clock_start_Hz") == 1);
+}
+
+TEST_F(Hold, AnInterruptEndsAHeldRun) {
+  hold_runs(true);
+  request_interrupt();
+  SolverRun run({&scene_, &find_solver("ballistic"), nlohmann::json::object(), "default"}, {}, "test");
+  TrialRules rules;
+  rules.accuracy_duration_s = 0.1;
+  EXPECT_THROW(run.run_accuracy(rules), Error);
+  clear_interrupt();
+  hold_runs(false);
+  EXPECT_NO_THROW(run.run_accuracy(rules));
+}
+
+// Ladders of settings: where they end, and what is stored of the rest; and trials that agree.
+
+class Ladder : public SmallRuns {};
+
+TEST_F(Ladder, EndsAtATimeOutAndStoresTheRestWithItsReason) {
+  const SolverEntry entry = ballistic_with([](ClothSolver& inner, const nlohmann::json& s, const FrameInput& f) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(s["substeps"].get<int>()));
+    return inner.step(f);
+  });
+  std::vector<RunSpec> rungs;
+  for (const int substeps : {10, 20, 80, 160, 320})
+    rungs.push_back({&scene_, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps});
+  RunPlan plan = plan_of(rungs, 4, 5, 0.1);
+  plan.rules.run_limit_s = 0.4;
+  plan.rules.agree = 0.5;  // a sleep is never that far off by itself
+  const RunResult result = execute_runs(plan, options_);
+  EXPECT_TRUE(result.faults.empty());
+  std::map<std::string, RunRecord> runs;
+  for (const std::filesystem::path& f : result.files) {
+    RunRecord c = read_run(f);
+    runs[c.header.setting] = std::move(c);
+  }
+  for (const char* rung : {"substeps=10", "substeps=20"}) EXPECT_EQ(runs.at(rung).outcome.status, "ok");
+  EXPECT_EQ(runs.at("substeps=80").outcome.status, "timed_out");
+  EXPECT_EQ(runs.at("substeps=160").outcome.status, "over_budget");
+  EXPECT_EQ(runs.at("substeps=320").outcome.status, "over_budget");
+  EXPECT_EQ(runs.at("substeps=320").outcome.message, "not run: 4 times the work of a setting that timed out");
+  EXPECT_TRUE(runs.at("substeps=320").trials.empty());
+  EXPECT_LT(runs.at("substeps=10").trials.size(), 4u) << "trials that agree are enough";
+  EXPECT_GE(runs.at("substeps=10").trials.size(), 2u);
+  EXPECT_GT(runs.at("substeps=20").summary.at("untimed_s"), 0.1);
+}
+
+TEST_F(Ladder, AllTrialsRunUnlessAskedOtherwise) {
+  const SolverEntry& entry = find_solver("ballistic");
+  const RunRecord c =
+      read_run(execute_runs(plan_of({{&scene_, &entry, nlohmann::json::object()}}, 3, 5), options_).files.at(0));
+  EXPECT_EQ(c.trials.size(), 3u);
+  EXPECT_TRUE(std::isnan(c.trials[0].pipelined_wall_s)) << "not asked for, and the CPU waits anyway";
+}
+
+// A folder is gone on with only if what it holds is of the same scene, settings and version of the solver.
+
+namespace fs = std::filesystem;
+
+class Resume : public SmallRuns {
+ protected:
+  void SetUp() override {
+    SmallRuns::SetUp();
+    options_.resume = true;
+    entry_.info.settings = {{"substeps", "4", "of a test"}};
+  }
+
+  RunPlan plan(const Scene& scene, int substeps = 4) const {
+    return plan_of({{&scene, &entry_, {{"substeps", substeps}}}}, 1, 2);
+  }
+  /// Error that refuses to continue, before anything is written and in the run itself.
+  std::string refused(const RunPlan& p) const {
+    const std::string looked = refusal([&] { require_same_runs(options_.out, p, true); }, ExitCode::BadInput);
+    EXPECT_EQ(refusal([&] { execute_runs(p, options_); }), looked);
+    return looked;
+  }
+
+  SolverEntry entry_ =
+      ballistic_with([](ClothSolver& inner, const nlohmann::json&, const FrameInput& f) { return inner.step(f); });
+  const Scene edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
+};
+
+TEST_F(Resume, TheSameIsGoneOnWith) {
+  execute_runs(plan(scene_), options_);
+  EXPECT_EQ(refused(plan(scene_)), "");
+}
+
+TEST_F(Resume, AnotherSceneOfTheSameNameIsRefused) {
+  const fs::path file = execute_runs(plan(scene_), options_).files.at(0);
+  const std::string text = refused(plan(edited_));
+  EXPECT_NE(text.find(file.string()), std::string::npos) << text;
+  EXPECT_NE(text.find(scene_.sha256.substr(0, 12)), std::string::npos) << text;
+  EXPECT_NE(text.find(edited_.sha256.substr(0, 12)), std::string::npos) << text;
+  EXPECT_NE(text.find("--out"), std::string::npos) << text;
+}
+
+TEST_F(Resume, ARunThatWasOnlyBegunIsLookedAtToo) {
+  const SolverRun run(plan(scene_).groups[0][0], {}, "test");
+  const RunWriter begun(options_.out, run.header());
+  require_same_runs(options_.out, plan(scene_), false);
+  EXPECT_THROW(require_same_runs(options_.out, plan(edited_), false), Error);
+  EXPECT_THROW(require_same_runs(options_.out, plan(edited_), true), Error);
+}
+
+TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
+  execute_runs(plan(scene_), options_);
+  EXPECT_NE(refused(plan(scene_, 5)).find("\"substeps\":5"), std::string::npos);
+  EXPECT_EQ(refused(plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2)), "");
+  entry_.make = nullptr;  // of a solver that this process does not have
+  require_same_runs(options_.out, plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2), true);
+  EXPECT_THROW(require_same_runs(options_.out, plan(scene_, 5), true), Error);
+}
+
+TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
+  execute_runs(plan(scene_), options_);
+  entry_.info.version += "-next";
+  EXPECT_NE(refused(plan(scene_)).find("-next"), std::string::npos);
+}
+
+TEST_F(Resume, WithoutItWhatIsFinishedIsRefused) {
+  execute_runs(plan(scene_), options_);
+  EXPECT_THROW(require_same_runs(options_.out, plan(scene_), false), Error);
+}
+
+}  // namespace
+}  // namespace clothbench
