@@ -4,7 +4,7 @@
 #   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz]
 # First form: exit status 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; the same call continues: complete
 # studies are skipped, finished runs stay. 2: bad input. Else the status of the study that failed.
-# Second form: one report per study, one page of all and SHA256SUMS into FOLDER (default results/reference/gpu), from folders of one state of the sources.
+# Second form: one report per study, one page of all and SHA256SUMS into FOLDER (default results/reference/h200), from folders of one state of the sources.
 # --archive: the raw result files too, with the commands and RESULTS.SHA256, as one archive to release; its name says how it is compressed.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH names the program (default:
 # build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS take part.
@@ -44,7 +44,7 @@ END
 fail() { echo "scripts/publish.sh: $*" >&2; exit 2; }
 bench=${CLOTHBENCH:-$here/build/release/clothbench}
 [ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
-folders=() to=$here/results/reference/gpu table=gpu only=' ' limit=570 jobs=$(nproc) report= archive=
+folders=() to=$here/results/reference/h200 table=gpu only=' ' limit=570 jobs=$(nproc) report= archive=
 while [ $# -gt 0 ]; do
   case $1 in
     --report) report=1 ;;

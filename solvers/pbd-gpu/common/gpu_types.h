@@ -125,7 +125,7 @@ struct PaperContactConstants {
 // Features that a scene needs of the line kernels of `xpbd`: bits of their constant FEATURES.
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
-#define LINES_ELASTIC 8u  // links have a compliance
+#define LINES_ELASTIC 8u       // links have a compliance
 #define LINES_REGULARISED 32u  // chains pulled over-constrained between two attached vertices
 #define LINES_BDF2 64u         // BDF2; else backward Euler
 #define LINES_TENSION 128u     // implicit tension

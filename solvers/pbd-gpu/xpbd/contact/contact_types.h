@@ -54,11 +54,11 @@ struct ContactFrameState {
   uint self_active;                  // its pairs active in this substep
   uint self_contact_pairs;           // active self-contact pairs that have contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
-  uint contact_free;          // 1: the frame was done without contact (contact_free_frame.glsl, fused_frame.comp)
-  uint contact_possible;      // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
-  uint max_displacement;      // of a vertex in this frame [m], a float's bits; until its list is made, in the last one
+  uint contact_free;      // 1: the frame was done without contact (contact_free_frame.glsl, fused_frame.comp)
+  uint contact_possible;  // 1: the cloth may touch a convex shape in this frame, or might if it had no contact
+  uint max_displacement;  // of a vertex in this frame [m], a float's bits; until its list is made, in the last one
   uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs of the lists at each fraction of the motion bounds
-  float drift[3];             // velocity [m/s] that the list of self-contact pairs moves along with: half the mean
+  float drift[3];  // velocity [m/s] that the list of self-contact pairs moves along with: half the mean
 };
 
 #define BROAD_PHASE_DONE 1u  // LineConstants::first_pass where a dispatch before has made the frame's list; else 0

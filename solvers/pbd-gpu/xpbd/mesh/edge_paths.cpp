@@ -17,6 +17,12 @@ namespace {
 /// Edges below this fraction of the mean are welded.
 constexpr double kSliver = 0.02;
 
+double mean_length(const std::vector<Edge>& all) {
+  double sum = 0;
+  for (const Edge& e : all) sum += e.rest_m;
+  return sum / static_cast<double>(all.size());
+}
+
 std::vector<EdgePath> grid_edge_paths(const Scene& s) {
   const int columns = s.cloth.columns, rows = s.cloth.rows;
   std::vector<EdgePath> out;
@@ -162,9 +168,7 @@ ChainCloth chain_cloth(const Scene& s) {
   c.particle.resize(s.cloth.vertex_count());
   std::iota(c.particle.begin(), c.particle.end(), 0u);
   std::vector<Edge> all = edges(s.cloth, EdgeKind::Structural);
-  double mean = 0;
-  for (const Edge& e : all) mean += e.rest_m;
-  mean /= static_cast<double>(all.size());
+  const double mean = mean_length(all);
   const auto root = [&](std::uint32_t v) {
     while (c.particle[v] != v) v = c.particle[v];
     return v;
