@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 
 #include "base/child_process.hpp"
@@ -113,6 +114,12 @@ json figure_row(const Row& r) {
   return out;
 }
 
+/// A command as anybody may type it: without folders and device of the machine that ran it.
+std::string plain_command(const std::string& line) {
+  const std::string plain = std::regex_replace(line, std::regex("^\\S*clothbench"), "clothbench");
+  return std::regex_replace(plain, std::regex(" (--out|-o|--device)[ =]\\S+| --resume"), "");
+}
+
 /// The study folders of the runs, and which job of its folder each run is.
 json studies_of(const RunTable& table, json& rows) {
   json out = json::array();
@@ -128,7 +135,7 @@ json studies_of(const RunTable& table, json& rows) {
       at->second.first = out.size();
       out.push_back({{"study", m.study},
                      {"folder", fs::absolute(folder).lexically_normal().filename().string()},
-                     {"command", m.command_line}});
+                     {"command", plain_command(m.command_line)}});
     }
     if (const auto job = at->second.second.find(run_name(c.header)); job != at->second.second.end()) {
       rows[k]["study"] = at->second.first;

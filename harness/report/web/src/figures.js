@@ -370,12 +370,8 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The command of a study without the folder of its results; empty if it is not known.
-export const plain_command = study =>
-    (study?.command ?? '').replace(/^\S*clothbench/, 'clothbench').replace(/ (--out|-o)[ =]\S+/, '').replace(/ --resume/, '');
-
 /// The command that makes one run again.
 export function command_of(doc, r) {
-  const plain = plain_command(doc.studies[r.study]);
+  const plain = doc.studies[r.study]?.command ?? '';
   return !plain || r.job === undefined || !/ study /.test(plain) ? plain : `${plain} --out again --job ${r.job}`;
 }

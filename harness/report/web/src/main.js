@@ -1,7 +1,7 @@
 // Builds the page from its document: figures and tables by section, the filter of solvers, contents, theme and motions.
 import {symbol, unique} from './chart.js';
 import {button, element, say} from './dom.js';
-import {make_figures, plain_command} from './figures.js';
+import {make_figures} from './figures.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
 import {start_tables, table_block} from './tables.js';
@@ -114,8 +114,7 @@ function start() {
   sections(doc, look);
   $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
   $('commands')
-      .append(
-          ...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, plain_command(s)))));
+      .append(...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));
   start_figures();
   start_tables();
   start_navigation();

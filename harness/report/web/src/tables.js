@@ -1,7 +1,7 @@
 // Tables: sorted by a click on a head, folded at 15 rows, filtered by solver, each with an anchor and the command of a row.
 import {symbol} from './chart.js';
 import {button, element, file_name, say} from './dom.js';
-import {command_of, plain_command} from './figures.js';
+import {command_of} from './figures.js';
 import {page_look, set_value, shown, state} from './state.js';
 
 const kFolded = 15;
@@ -19,7 +19,7 @@ export function copy_command(command) {
 
 /// A button that copies the commands of the studies that the runs come from; null if none is known.
 export function reproduce(doc, title, runs) {
-  const commands = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => plain_command(doc.studies[s])).filter(Boolean);
+  const commands = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => doc.studies[s].command).filter(Boolean);
   const all = commands.join('\n'), label = `Reproduce ${title}: copy the command`;
   return commands.length ? button('reproduce', label, () => copy_command(all), {class: 'quiet', title: all}) : null;
 }
