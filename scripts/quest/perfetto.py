@@ -1,6 +1,6 @@
 """GPU counters by Perfetto: which ones a device offers, the configuration of a trace, and a trace's samples.
 
-Field numbers are those of protos/perfetto in google/perfetto. Android's producers describe their counters in the events
+Field numbers are from protos/perfetto in google/perfetto. Android's producers describe their counters in the events
 themselves (docs/data-sources/gpu.md there)."""
 import struct
 
