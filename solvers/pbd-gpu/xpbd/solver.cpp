@@ -53,6 +53,10 @@ class Xpbd final : public GpuSolver {
     crumpled_ = starts_crumpled(scene());
     std::vector<double> start = initial_positions(scene());
     const bool touches = !is_contact_free(scene());
+    if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
+      disable(std::to_string(wanted) + " substeps",
+              "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
+                  " are the maximum per frame; the cloth is overstretched for some frames, but passes through nothing");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
       throw Error(fmt::format(

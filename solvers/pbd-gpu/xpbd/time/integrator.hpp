@@ -54,6 +54,9 @@ double links_of_longer_side(const Cloth&);
 /// scene with contact the maximum of a frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
+/// The substeps that fast motion in contact asks for, where a frame's maximum is below; else 0.
+int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
+
 /// Substeps of a frame in which no collider can be near: as in the scene without colliders, and more where a kinematic
 /// collider may have left the cloth strained in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);

@@ -41,15 +41,15 @@ double speed_m_per_s(const Scene& scene) {
   return std::max(scripted_collider_speed_m_per_s(scene), by_user ? rules::kUsersHand_m_per_s : 0.0);
 }
 
-double substeps_for_speed(const Scene& scene, std::size_t quality) {
-  const double impact = impact_speed_m_per_s(scene),
-               speed = std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact);
-  const auto& most = impact > 0 ? rules::kMaxForImpact : rules::kMaxForSpeed;
-  const double wanted = std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality, false) - 1e-9);
-  return std::min(most[quality], std::max(1.0, wanted));
+/// Whatever they cost.
+double wanted_for_speed(const Scene& scene, std::size_t quality) {
+  const double speed =
+      std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
+  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality, false) - 1e-9));
 }
 
-/// Assumed speed: the initial one, that of a fall by the cloth's length and that of the fastest grip or collider.
+/// Assumed speed: the initial speed, the speed of a fall by the cloth's length and the speed of the fastest grip or
+/// collider.
 double substeps_for_layers(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double longer = std::max(c.width_m, c.height_m);
@@ -91,7 +91,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
     if (const double needed = std::ceil(substeps_for_splitting(scene));
         needed <= std::max(rules::kMaxSplittingSubsteps[k], links / 6))
       per_frame = std::max(per_frame, needed);
-  const double for_speed = fast ? substeps_for_speed(scene, k) : 1;
+  const auto& most = impact_speed_m_per_s(scene) > 0 ? rules::kMaxForImpact : rules::kMaxForSpeed;
+  const double for_speed = fast ? std::min(most[k], wanted_for_speed(scene, k)) : 1;
   return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
 }
 
@@ -99,6 +100,12 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
 
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
   return substeps_by_rules(scene, settings, !is_contact_free(scene), true);
+}
+
+int uncapped_substeps_if_capped(const Scene& scene, const nlohmann::json& settings) {
+  if (settings.value("substeps", 0) > 0 || is_contact_free(scene)) return 0;
+  const double wanted = wanted_for_speed(scene, quality_of(settings));
+  return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
 }
 
 int contact_free_substeps(const Scene& scene, const nlohmann::json& settings) {

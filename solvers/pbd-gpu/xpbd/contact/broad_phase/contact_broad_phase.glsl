@@ -117,7 +117,7 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
   )
 }
 
-/// Of the list at the largest fraction of the motion bounds whose pairs fit. By one thread.
+/// Takes the largest fraction of the motion bounds at which all pairs fit into the list. By one thread.
 void finish_broad_phase() {
   uint level = fitting_level(frame_state.counted, CAPACITY);
   frame_state.pairs = min(frame_state.counted[level], CAPACITY);
