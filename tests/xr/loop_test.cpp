@@ -168,6 +168,14 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
   EXPECT_NEAR(r.summary.at("xr_fps_worst"), 24, 1e-4);
 }
 
+/// Runtimes that pace a slow application name multiples of the display's period.
+TEST_F(Sessions, SlowFramesBeforeTheFirstDoNotChangeTheRate) {
+  const LoopOptions o = options("paper/capsule-sweep", 12);
+  const LoopResult r = run(o, "blind=1,multiple=200");
+  EXPECT_EQ(load_scene(r.scenario.string()).time.frame_rate_hz, 72);
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
 TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   const LoopOptions o = options("paper/capsule-sweep", 12);
   const LoopResult r = run(o, "hands=0,capsules=0,rate=0,look=10");

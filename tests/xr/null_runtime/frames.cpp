@@ -80,7 +80,7 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   r.waited = true;
   ++r.frames;
   out->predictedDisplayTime = r.wake_ns + 2 * period;
-  out->predictedDisplayPeriod = period;
+  out->predictedDisplayPeriod = r.frames > 5 ? period * static_cast<XrDuration>(r.number("multiple", 1)) : period;
   const bool seen = r.state == XR_SESSION_STATE_VISIBLE || r.state == XR_SESSION_STATE_FOCUSED;
   out->shouldRender = seen && r.number("blind", 0) == 0 ? XR_TRUE : XR_FALSE;
   if (r.frames == static_cast<int>(r.number("quit", -1))) stop(r);

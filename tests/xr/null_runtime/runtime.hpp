@@ -13,6 +13,7 @@
 /// An OpenXR runtime without a headset: a clock that only frames advance, a script instead of a user, real Vulkan
 /// images. Checks every call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
 ///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
+///   multiple=200   from the sixth frame on, the period that it names is so many of the display's, as after slow frames
 ///   hands|capsules|rate=0   leaves an extension out
 ///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
 ///   blind=1        asks for no pictures, which take lavapipe most of the time
