@@ -142,8 +142,8 @@ class Xpbd final : public GpuSolver {
 
   bool update_substep_count(double dt_s) override {
     if (!controller_.adapts()) return false;
-    const double max_displacement_m = contact_->read_max_displacement_m(fused_frame_ != nullptr),
-                 frame_s = scene().time.dt();
+    const double of_list_m = contact_->read_max_displacement_m(fused_frame_ != nullptr), frame_s = scene().time.dt();
+    const double max_displacement_m = of_list_m * lists_in(in_frames(recorded_substeps_, last_dt_s_));
     // The first frame has none before it.
     const double cloth_m =
         last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
@@ -178,24 +178,37 @@ class Xpbd final : public GpuSolver {
       fused_frame_->record(dt_s, {substeps, step}, contact_free_steps(dt_s));
       return;
     }
-    if (contact_) contact_->record_list(dt_s, substeps);
     if ((lines_ ? lines_->is_single_dispatch() : chains_->is_single_dispatch()) && !contact_) {
       const int apart = uses_bdf2_ && last_dt_s != dt_s ? 1 : 0;
       record_lines(0, apart, substeps, dt_s, start);
       record_lines(apart, substeps - apart, substeps, dt_s, step);
       return;
     }
-    for (int s = 0; s < substeps; ++s) {
-      // First, so that a released vertex is free in the frame in one dispatch.
-      if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
-      if (contact_) contact_->record_before(s, substeps, dt_s);
-      record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
-      if (contact_)
-        contact_->record_after(s, substeps, dt_s, [&] {
-          if (second_solve_) chains_->record(1, step, true);
-        });
-      if (contact_ && chains_) chains_->record_welds();
+    for (int list = 0, lists = lists_in(substeps); list < lists; ++list) {
+      // Contact takes the substeps of a list for a frame of their own.
+      const int first = substeps * list / lists, count = substeps * (list + 1) / lists - first;
+      const double list_s = dt_s * (static_cast<double>(count) / substeps);
+      if (contact_) contact_->record_list(list_s, count);
+      for (int s = first; s < first + count; ++s) {
+        // First, so that a released vertex is free in the frame in one dispatch.
+        if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
+        if (contact_) contact_->record_before(s - first, count, list_s);
+        record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
+        if (contact_)
+          contact_->record_after(s - first, count, list_s, [&] {
+            if (second_solve_) chains_->record(1, step, true);
+          });
+        if (contact_ && chains_) chains_->record_welds();
+      }
     }
+  }
+
+  /// Lists of pairs that a frame of so many substeps makes one after another. Moving shapes and attachments say how far
+  /// they go in the whole frame.
+  int lists_in(int substeps) const {
+    const bool one =
+        !contact_ || !contact_->with_itself() || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty();
+    return one ? 1 : (substeps + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList;
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several, so that a link turns no farther in a substep.

@@ -85,6 +85,10 @@ inline constexpr double kMoves = 1.0 / 6;
 inline constexpr int kQuiescentFrames = 4;  // [frames] A turning point is not rest
 inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
+// [substeps] A list of self-contact pairs for a longer time has no capacity for fast cloth, and reduced motion bounds
+// slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
+inline constexpr int kSubstepsPerList = 8;
+
 // Long frames and crumpled starts (solver.cpp).
 inline constexpr double kLongFrame = 1.25;    // [of the scene's frame] Jitter is no hitch
 inline constexpr double kMaxLongFrame_s = 1;  // [s] In a longer frame the simulation itself has fallen behind
