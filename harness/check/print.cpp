@@ -206,4 +206,17 @@ std::string junit_xml(const Checked& checked) {
   return out + "  </testsuite>\n</testsuites>\n";
 }
 
+std::string github_annotations(const Checked& checked) {
+  std::string out;
+  for (const CheckedRun& run : checked.runs)
+    for (const Finding& f : run.findings) {
+      if (f.verdict != Verdict::Failed) continue;
+      out += "::error::";
+      for (const char c : valid_utf8(run.key.file_name() + ": " + f.sentence()))
+        out += c == '%' ? "%25" : c == '\n' || c == '\r' ? "%0A" : std::string(1, c);
+      out += "\n";
+    }
+  return out;
+}
+
 }  // namespace clothbench

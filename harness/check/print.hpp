@@ -23,4 +23,7 @@ nlohmann::json comparison_json(const Checked&);
 /// replaced.
 std::string junit_xml(const Checked&);
 
+/// A command of GitHub Actions per failure, which shows it at the top of the job.
+std::string github_annotations(const Checked&);
+
 }  // namespace clothbench

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 struct CheckArguments {
   std::vector<std::string> runs, allowed;
   std::string baseline, junit;
-  bool update = false;
+  bool update = false, github = false;
 };
 
 void update(const CheckArguments& a, const std::vector<RunRecord>& runs, const Console& console) {
@@ -26,6 +26,7 @@ void update(const CheckArguments& a, const std::vector<RunRecord>& runs, const C
 void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console& console) {
   const Checked checked = check_runs(read_baseline(a.baseline), runs, a.allowed);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
+  if (a.github) fmt::print(stderr, "{}", github_annotations(checked));
   console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
   if (!checked.passed()) console.exit_code = ExitCode::CheckFailed;
 }
@@ -49,6 +50,8 @@ void add_check(CLI::App& app, Console& console) {
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
+  cmd->add_flag("--github", a.github, "Also print failures as annotations of GitHub Actions, on stderr")
+      ->excludes(rewrite);
   cmd->footer(
       "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without "
       "matching positions, 2 bad input, or runs measured under other conditions than the baseline.\nExample: "

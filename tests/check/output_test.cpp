@@ -51,6 +51,14 @@ TEST_F(Junit, IsReadBackByAnXmlParser) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
+TEST(Annotations, AreALinePerFailure) {
+  const std::string text = github_annotations(sample());
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  EXPECT_TRUE(text.starts_with("::error::desk__bad")) << text;
+  EXPECT_NE(text.find("100 %25: d]]>%0A%0Anext"), std::string::npos) << text;
+  EXPECT_EQ(text.find("stretch_max"), std::string::npos) << "an improvement is none";
+}
+
 TEST(Console, ShowsWhatDiffersAndAVerdict) {
   const std::string text = check_text(sample(), "base.json");
   EXPECT_NE(text.find("check FAILED: 4 runs: 1 failed, 1 improved, 1 new, 1 as in base.json\n"), std::string::npos)
