@@ -8,7 +8,6 @@
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 #include "results/result_folder.hpp"
 #include "runner/environment.hpp"
 #include "runner/study_plan.hpp"

@@ -8,7 +8,6 @@
 #include "base/json_number.hpp"
 #include "metrics/registry.hpp"
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,5 +1,3 @@
-#include "report/frame_times.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,8 +92,7 @@ FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::ve
 const char* const kIntervalMethod =
     "In brackets: 95 % interval of the median, by a bootstrap over trials and blocks of at most 16 consecutive frames "
     "(400 resamples); with one trial it covers only the variation between frames. ~: the interval is wider than 20 % "
-    "of the "
-    "median, so the run is not ranked.";
+    "of the median, so the run is not ranked.";
 
 double FrameTimes::at(double q) const { return quantile(sorted, q); }
 

@@ -6,9 +6,7 @@
 #include <map>
 #include <set>
 
-#include "base/interval.hpp"
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 
 namespace clothbench {
@@ -22,10 +20,8 @@ constexpr double kBudget_ms = 1;     // of wall time per frame
 constexpr const char* kTable3Note =
     "Frames per second of a falling cloth, uncapped, without rendering, median of the trials; the columns after the "
     "resolutions are for the largest mesh. × bullet-soft: how many times as fast, the two intervals combined. An error "
-    "of free fall above 1 % (!) "
-    "makes a rate meaningless. Stretch: of structural edges in the last second; edges shorter than at rest count as 0 "
-    "in the mean. Published: Kim, Ma and Hong (Appl. Sci. 2025, 15, 6611), Table 3, Quest 3, with rendering, capped at "
-    "72. ";
+    "of free fall above 1 % (!) makes a rate meaningless. Stretch: of structural edges in the last second; edges "
+    "shorter than at rest count as 0 in the mean. ";
 /// Frames per second in at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
@@ -50,25 +46,27 @@ std::string rate_interval(const Row& r) {
                               : std::string();
 }
 
-/// Names of the solvers that wrap the engine of a published row.
-std::string peers(const Group& runs) {
+/// The origin of the published rows, and the names of solvers that wrap the engine of one.
+std::string about_published(const Group& runs) {
   const json published = published_table3();
-  std::set<std::string> out;
+  Texts out = {
+      "Published: Kim, Ma and Hong (Appl. Sci. 2025, 15, 6611), Table 3, Quest 3, with rendering, capped at 72."};
   for (const Row* r : runs)
-    for (const json& column : published.at("columns"))
-      if (const std::string engine = engine_of(*r->run); !engine.empty() && column.value("engine", "") == engine)
-        out.insert(r->label() + ": " + column.value("peer", ""));
+    for (const json& column : published.at("columns")) {
+      const std::string engine = engine_of(*r->run), peer = r->label() + ": " + column.value("peer", "");
+      if (!engine.empty() && column.value("engine", "") == engine && !contains(out, peer)) out.push_back(peer);
+    }
   return joined(out, " ");
 }
 
-View speed_and_error() {
-  View v{"rates", "Table 3: speed and error", std::string(kTable3Note) + kIntervalMethod, [](const Row& r) {
-           const bool other_setting = r.paper_table == 3 && r.setting != "default" && !r.is_best;
-           return r.part == Part::Rates && !other_setting && !is_floor(r.solver);
+/// Of the scene of the paper's Table 3, or of each other one.
+View speed_and_error(bool paper) {
+  View v{"rates", paper ? "Table 3: speed and error" : "Speed and error", std::string(kTable3Note) + kIntervalMethod,
+         [paper](const Row& r) {
+           const bool other_setting = paper && r.setting != "default" && !r.is_best;
+           return r.part == Part::Rates && (r.paper_table == 3) == paper && !other_setting && !is_floor(r.solver);
          }};
-  v.each = [](const Row& r) {
-    return r.paper_table == 3 ? "Table 3: speed and error" : "Speed and error: " + r.family;
-  };
+  if (!paper) v.each = [](const Row& r) { return "Speed and error: " + r.family; };
   v.order = [](const Group& g) {  // the fastest first, published values last
     double fps = 0;
     for (const Row* r : g) fps = r->published < 0 && r->largest ? r->value("fps_median") : fps;
@@ -88,10 +86,8 @@ View speed_and_error() {
                 if (r.published >= 0) return Cell(fmt::format("{:g}", fps), fps);
                 return r.status() == "ok" ? Cell(rate_text(fps), fps) : ending_cell(*r.run);
               },
-              [](const Row& r) { return r.resolution.size(); }};
-  v.columns = {column(
-                   "device", [](const Row& r) { return environment_text(*r.run, "gpu"); }, true),
-               at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
+              [](const Row& r) { return r.resolution.size(); }, 1};
+  v.columns = {at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
                at_largest("× " + time_baseline(), times_as_fast_cell),
                at_largest("rank", rank_cell),
                at_largest("free-fall error",
@@ -108,8 +104,8 @@ View speed_and_error() {
                                                2);
                           }),
                at_largest("trials", trials_cell)};
-  for (ViewColumn& c : tail_columns(largest)) v.columns.push_back(std::move(c));
-  v.more = peers;
+  add_tail_columns(v, largest);
+  if (paper) v.more = about_published;
   v.timed = true;
   return v;
 }
@@ -121,10 +117,12 @@ struct Entry {
   std::string title, value, interval;
 };
 
-/// The largest mesh of the first family that was timed.
+/// The largest mesh of the paper's Table 3; without it, of the first family that was timed.
 std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
   std::string family;
+  for (const Row* r : rows)
+    if (r->part == Part::Rates && r->paper_table == 3 && std::isfinite(r->value("fps_median"))) family = r->family;
   for (const Row* r : rows) {
     if (r->part != Part::Rates || !r->largest || r->sides.starts_with("double") || r->setting != "default" ||
         r->repeat > 1 || r->status() != "ok" || !std::isfinite(r->value("fps_median")) ||
@@ -132,8 +130,8 @@ std::vector<Entry> rates(const std::vector<const Row*>& rows) {
       continue;
     family = r->family;
     const std::string interval = rate_interval(*r), trials = std::to_string(r->run->trials.size());
-    out.push_back({r->solver, r->value("fps_median"), "Frames per second at " + r->resolution.label(),
-                   rate_text(r->value("fps_median")),
+    out.push_back({r->solver, r->times->wall.uncertain() ? 0 : r->value("fps_median"),
+                   "Frames per second at " + r->resolution.label(), rate_text(r->value("fps_median")),
                    interval + (interval.empty() ? "" : ", ") + trials + (trials == "1" ? " trial" : " trials")});
   }
   return out;
@@ -144,8 +142,8 @@ std::vector<Entry> errors(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
   std::string scene;
   for (const Row* r : rows) {
-    if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() ||
-        r->wall_ms_per_s() / r->frame_rate_hz() > kBudget_ms || (!scene.empty() && r->scene != scene))
+    if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() || r->times->wall.uncertain() ||
+        !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms) || (!scene.empty() && r->scene != scene))
       continue;
     scene = r->scene;
     const double floor = r->truth->rank_floor();
@@ -191,7 +189,7 @@ std::string fact(const RunRecord& c, const std::string& key) {
 
 }  // namespace
 
-std::vector<View> overview_views() { return {speed_and_error()}; }
+std::vector<View> overview_views() { return {speed_and_error(true), speed_and_error(false)}; }
 
 std::vector<Tile> tiles_of(const RunTable& table) {
   constexpr std::size_t kMostTiles = 4, kMostOthers = 3;
@@ -223,11 +221,11 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
   Heading h;
   std::string device;
   for (const auto& [key, name] : kFacts) {
-    std::set<std::string> values, short_names;  // "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)"
+    std::set<std::string> values, short_names;
     for (const RunRecord& c : table.runs())
       if (const std::string value = fact(c, key); !value.empty()) {
         values.insert(value);
-        short_names.insert(value.substr(0, value.find(" (")));
+        short_names.insert(short_name(value));
       }
     if (values.empty()) continue;
     if (device.empty()) device = joined(short_names);

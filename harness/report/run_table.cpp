@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
@@ -241,8 +240,7 @@ std::string Row::trust() const {
   std::string out = jobs_of(*run) == 1 ? "alone" : "not alone";
   const double start = value("gpu_clock_start_Hz"), end = value("gpu_clock_end_Hz");
   if (end < kThrottled * start) out += fmt::format(", throttled ({:.0f} to {:.0f} MHz)", 1e-6 * start, 1e-6 * end);
-  const bool clocks = std::isfinite(start) || std::isfinite(value("cpu_clock_start_Hz"));
-  if (!clocks) out += ", clocks not readable";
+  if (!std::isfinite(start) && !std::isfinite(value("cpu_clock_start_Hz"))) out += ", clocks not readable";
   const json load = environment_of(*run, "load_average");
   if (load.is_number()) out += fmt::format(", load {:.1f}", load.get<double>());
   if (times && times->wall.uncertain()) out += ", ~ wide interval";

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -9,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/interval.hpp"
 #include "base/words.hpp"
 #include "clothbench/record.hpp"
-#include "report/frame_times.hpp"
 
 namespace clothbench {
 
@@ -52,10 +51,37 @@ double quantile(const std::vector<double>& sorted, double q);
 std::string ending(const Outcome&);
 /// "diverged (F1)"; only the status if it has no class.
 std::string status_with_class(const Outcome&);
+/// "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)".
+inline std::string short_name(const std::string& device) { return device.substr(0, device.find(" (")); }
 /// "–" for an empty text.
 inline std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
+
+/// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as it should.
+std::vector<std::string> violated_bounds(const RunRecord&);
+
+inline constexpr const char* kNoVerdict = "–";
+
+/// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds hold
+/// but the scene has contact and the solver ignores all of it, which proves nothing; its ending if it did not end well.
+std::string verdict(const RunRecord&);
+
+/// Bounds that the run's scene sets on a value, and the check of its motion; only `"outcome": "ok"` is none.
+std::size_t bounds_of(const RunRecord&);
+
+/// Counted by `verdict`, of the runs whose scene has a bound. Missing runs are not counted.
+struct VerdictCounts {
+  std::size_t runs = 0, passed = 0, ignored = 0, unsupported = 0, not_measured = 0;
+  /// Failed a bound, or did not end well.
+  std::size_t failed() const { return runs - passed - ignored - unsupported - not_measured; }
+  /// "3 of 5 runs passed, 1 failed, 1 unsupported"; what there is none of is left out.
+  std::string text() const;
+  void add(const RunRecord&);
+};
+
+/// The one count of passed runs: consoles, tables and JSON take it from here.
+VerdictCounts count_verdicts(const std::vector<RunRecord>&);
 
 /// The first item for which `is` holds; if there is none, appends `fresh` and returns it.
 template <class Item, class Is>
@@ -70,8 +96,33 @@ struct Resolution {
   std::uint32_t vertices = 0;  ///< number of vertices of a cloth that is not a grid; 0 otherwise
   std::string label() const;   ///< "32²", "9×7", "1234 vertices", "–"
   double size() const { return static_cast<double>(grid[0]) * grid[1] + vertices; }
-  auto operator<=>(const Resolution&) const = default;
 };
+
+/// Frame times [s] of all timed trials of a run. Intervals: 95 %.
+struct FrameTimes {
+  std::vector<double> sorted;  ///< ascending
+  Interval median;
+  Interval rate;  ///< of the median over trials of the frames per second
+  /// Nearest-rank quantile; NaN without frames.
+  double at(double q) const;
+  /// Share of the frames that are longer than one refresh of a display.
+  double missed(double rate_hz) const;
+  /// True if the interval of the median is wider than 20 % of it: the run is marked and, by its wall time, not ranked.
+  bool uncertain() const;
+};
+
+/// All times of a run; `contact_…`: of the frames in which something touches the cloth.
+struct RunTimes {
+  FrameTimes wall, device, contact_wall, contact_device, cpu, rendered;
+  double threads = kMissing;  ///< CPU time over wall time of the median frame of a CPU solver, rounded
+};
+
+/// Intervals by kIntervalMethod, with a fixed seed; fewer than 6 frames have none. Frames of one block depend on each
+/// other, so they are drawn together.
+RunTimes times_of(const RunRecord&);
+
+/// The method of the intervals, as a sentence for notes of tables.
+extern const char* const kIntervalMethod;
 
 /// The section of the report that a run belongs to. None: a planned run whose scene is not known.
 enum class Part { Rates, Contact, Generated, Claims, Truth, Stability, None };

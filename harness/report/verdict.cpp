@@ -1,12 +1,9 @@
-#include "report/verdict.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "base/words.hpp"
 #include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"
 #include "report/run_table.hpp"

@@ -4,10 +4,9 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
-#include "base/interval.hpp"
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 
 namespace clothbench {
 namespace {
@@ -98,25 +97,28 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
       t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
+  t.keys = t.rows[0].size();
   bool any = v.columns.empty() && !v.across;
-  if (v.across)
-    for (const std::string& value : values_across(*v.across, runs)) {
-      std::vector<Cell> cells;
-      std::string solver;
-      for (const TableRow& r : rows) {
-        const auto at = r.across.find(value);
-        cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second, r.keys));
-        any = any || !cells.back().is_missing();
-        if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
-      }
-      add_column(t, value, cells, true, solver);
+  const Texts across = v.across ? values_across(*v.across, runs) : Texts();
+  for (std::size_t n = 0; n < across.size(); ++n) {
+    std::vector<Cell> cells;
+    std::string solver;
+    for (const TableRow& r : rows) {
+      const auto at = r.across.find(across[n]);
+      cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second, r.keys));
+      any = any || !cells.back().is_missing();
+      if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
     }
+    if (across.size() - n > v.across->leading) t.late.push_back(t.rows[0].size());
+    add_column(t, across[n], cells, true, solver);
+  }
   for (const ViewColumn& c : v.columns) {
     std::vector<Cell> cells;
     for (const TableRow& r : rows) cells.push_back(c.cell(r.runs, r.keys));
-    const bool same =
-        c.if_differs && std::all_of(cells.begin(), cells.end(), [&](auto& x) { return x.text == cells[0].text; });
-    any = (!same && add_column(t, c.head, cells, false)) || any;
+    std::set<std::string> texts;
+    for (const Cell& cell : cells)
+      if (!cell.is_missing()) texts.insert(cell.text);
+    any = ((!c.if_differs || texts.size() > 1) && add_column(t, c.head, cells, false)) || any;
   }
   if (!any && (!v.timed || withheld_note(runs).empty())) t.rows.resize(1);
   return t;
@@ -128,13 +130,9 @@ Key key(std::string head, std::function<std::string(const Row&)> of, bool is_sol
   return {std::move(head), [of = std::move(of)](const Row& r) -> Keys { return {of(r)}; }, is_solver};
 }
 
-Key scene_key() {
-  return key("scene", [](const Row& r) { return r.scene; });
-}
+Key scene_key() { return key("scene", &Row::scene); }
 Key solver_key() { return key("solver", &Row::label, true); }
-Key sides_key() {
-  return key("sides", [](const Row& r) { return r.sides; });
-}
+Key sides_key() { return key("sides", &Row::sides); }
 
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs, Pick pick) {
   return {std::move(head),
@@ -154,7 +152,7 @@ Across by_bands(const std::vector<double>& lows, std::function<double(const Row&
     const auto next = std::upper_bound(lows.begin(), lows.end(), low(r));
     return (next == lows.end() ? fmt::format("≥ {:g}", low(r)) : fmt::format("{:g}–{:g}", low(r), *next - gap)) + unit;
   };
-  return {key("", name), std::move(cell), low};
+  return {key("", name), std::move(cell), low, 0};
 }
 
 Cell trials_cell(const Row& r) {
@@ -177,8 +175,8 @@ std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
 
 const std::vector<View>& views() {
   static const std::vector<View> all = [] {
-    std::vector<View> out = overview_views();
-    for (auto* more : {rate_views, contact_views, reproduction_views, accuracy_views})
+    std::vector<View> out;
+    for (auto* more : {rate_views, overview_views, contact_views, reproduction_views, accuracy_views})
       for (View& v : more()) out.push_back(std::move(v));
     return out;
   }();

@@ -68,10 +68,10 @@ struct ViewColumn {
   bool if_differs = false;  ///< left out where all rows have the same value
 };
 using Pick = std::function<const Row*(const Group&)>;
-/// A column that shows the run that `pick` gives, empty where it gives none; by default the row's first run.
-ViewColumn column(
-    std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
-    Pick pick = [](const Group& g) { return g.front(); });
+inline const Row* first_of(const Group& g) { return g.front(); }
+/// A column that shows the run that `pick` gives, empty where it gives none.
+ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
+                  Pick pick = first_of);
 
 /// The number of timed trials; the rank by wall time; how many times as fast as time_baseline(), with the least and the
 /// greatest ratio of values within both intervals.
@@ -79,15 +79,13 @@ Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
 
-/// Median with its interval, tails, missed deadlines and real-time factor of the wall time of a frame of the run that
-/// `pick` gives; empty where it gives none.
-std::vector<ViewColumn> tail_columns(Pick pick);
-
-/// Columns that the runs themselves give: one per value of `key`, ascending by `order`.
+/// Columns that the runs themselves give: one per value of `key`, ascending by `order`. In a narrow window only the
+/// last `leading` of them keep their place; the others follow all other columns.
 struct Across {
   Key key;
   std::function<Cell(const Group&, const Keys& keys)> cell;
   std::function<double(const Row&)> order = nullptr;
+  std::size_t leading = SIZE_MAX;
 };
 
 /// One column per band of `value`, whose lower ends are `lows`, ascending. A name shows the next band's end less `gap`:
@@ -113,10 +111,16 @@ struct View {
 /// A table with the runs behind it, for filters and commands of the page.
 struct ViewTable : Table {
   std::vector<const Row*> runs = {};          ///< the first run of each row
+  std::size_t keys = 0;                       ///< number of columns that tell the rows apart
+  std::vector<std::size_t> late = {};         ///< columns that stand last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
   std::vector<std::vector<Cell>> cells = {};  ///< of the rows below the head; empty: text only
   std::vector<std::string> solvers = {};      ///< by column: the solver that a column is about, or ""
 };
+
+/// Adds columns on the run that `pick` gives: median wall time of a frame with its interval, tails, missed deadlines,
+/// real-time factor, GPU times, and precision, device and threads where rows differ in them.
+void add_tail_columns(View&, const Pick& pick);
 
 /// The tables of a view that have rows and values; none if no run is concerned.
 std::vector<ViewTable> tables_of(const View&, const RunTable&);

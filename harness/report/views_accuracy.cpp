@@ -7,7 +7,6 @@
 
 #include "clothbench/feature.hpp"
 #include "metrics/registry.hpp"
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 
 namespace clothbench {
@@ -84,6 +83,7 @@ std::string ranked_text(const Group& g) {
   }
   if (able > 0 && ranked == 0) return "NO: " + why;
   if (able == 0 || !g.front()->truth->refused().empty()) return "no";
+  if (const Row* r = representative(g); r != nullptr && r->times->wall.uncertain()) return "no: ~";
   if (ranked < able) return fmt::format("at {} of {} settings", ranked, able);
   return is_baseline(g.front()->solver) ? "baseline" : "yes";
 }
@@ -101,15 +101,14 @@ View work() {
          "stiffness that the scene depends on, as its plan states; effective stiffness is not measured here.",
          in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
-            key(
-                "solver", [](const Row& r) { return r.solver; }, true)};
+            key("solver", &Row::solver, true)};
   v.columns = {time_to("to 1 %", 1e-2, &Row::wall_ms_per_s), time_to("to 0.1 %", 1e-3, &Row::wall_ms_per_s),
                time_to("to 1 %, GPU", 1e-2, &Row::device_ms_per_s),
                time_to("to 0.1 %, GPU", 1e-3, &Row::device_ms_per_s)};
   for (const double budget_ms : kBudgets_ms)
     v.columns.push_back(best_error(fmt::format("error within {:g} ms", budget_ms), budget_ms));
   v.columns.push_back(best_error("best error", INFINITY));
-  for (ViewColumn& c : tail_columns(representative)) v.columns.push_back(std::move(c));
+  add_tail_columns(v, representative);
   v.columns.push_back({"failed", [](const Group& g, const Keys&) { return failed_cell(g); }});
   v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back({"ranked", [](const Group& g, const Keys&) { return ranked_text(g); }});
@@ -332,9 +331,7 @@ View feature_view() {
                for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name));
                return out;
              }}};
-  v.across = {key(
-                  "", [](const Row& r) { return r.solver; }, true),
-              declared};
+  v.across = {key("", &Row::solver, true), declared};
   v.in_full = true;
   return v;
 }

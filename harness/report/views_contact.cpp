@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 
 namespace clothbench {

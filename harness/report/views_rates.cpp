@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "report/report.hpp"
-#include "report/verdict.hpp"
 #include "report/view.hpp"
 
 namespace clothbench {
@@ -29,20 +28,52 @@ Keys clocks_of(const Row& r) {
 std::string milliseconds(double s) { return significant(1e3 * s, 3); }
 
 /// "2.00 (1.95–2.10)"; " ~" follows if the interval is wide.
-Cell median_cell(const FrameTimes& t) {
+Cell median_cell(const Row& r, const FrameTimes& t) {
   const std::string span = milliseconds(t.median.low) + "–" + milliseconds(t.median.high);
-  return {
-      milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") + (t.uncertain() ? " ~" : ""),
-      t.at(0.5)};
+  return {milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") +
+              (t.uncertain() ? " ~" : "") + r.frames_mark(),
+          t.at(0.5)};
 }
 
+/// "2.00 / 3.00 / 4.00"
 Cell tails_cell(const FrameTimes& t) {
   return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
-Cell missed_cell(const FrameTimes& t) { return paired_cell(100 * t.missed(72), 100 * t.missed(90), 3); }
+/// Times that a row is about, and their run; null without any.
+using Timed = std::pair<const Row*, const FrameTimes*>;
 
-Cell real_time_factor(const Row& r) { return number_cell(1 / (r.frame_rate_hz() * r.times->wall.at(0.5)), 3); }
+void add_time_columns(View& v, const std::function<Timed(const Group&, const Keys&)>& of) {
+  const auto add = [&](const char* head, std::function<Cell(const Row&, const FrameTimes&)> cell) {
+    v.columns.push_back({head, [of, cell](const Group& g, const Keys& keys) {
+                           const auto [row, times] = of(g, keys);
+                           return times == nullptr || times->sorted.empty() ? Cell() : cell(*row, *times);
+                         }});
+  };
+  add("frame p50 [ms]", median_cell);
+  add("p95 / p99 / worst", [](auto&, auto& t) { return tails_cell(t); });
+  add("missed 72 / 90 Hz [%]", [](auto&, auto& t) { return paired_cell(100 * t.missed(72), 100 * t.missed(90), 3); });
+  add("real-time factor", [](auto& r, auto& t) { return number_cell(1 / (r.frame_rate_hz() * t.at(0.5)), 3); });
+}
+
+/// p50, p95, p99 and worst of one clock's times.
+ViewColumn quantiles(const char* head, FrameTimes RunTimes::*times, const Pick& pick) {
+  const auto text = [times](const Row& r) {
+    const FrameTimes& t = (*r.times).*times;
+    return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
+  };
+  return column(head, text, false, pick);
+}
+
+/// What solvers of one table may differ in.
+void add_conditions(View& v, const Pick& pick) {
+  const auto add = [&](const char* head, std::function<Cell(const Row&)> cell) {
+    v.columns.push_back(column(head, std::move(cell), true, pick));
+  };
+  add("precision", [](const Row& r) { return environment_text(*r.run, "precision"); });
+  add("device", [](const Row& r) { return short_name(environment_text(*r.run, "gpu")); });
+  add("CPU threads", [](const Row& r) { return number_cell(r.times->threads, 1); });
+}
 
 View frame_times() {
   View v{
@@ -53,40 +84,32 @@ View frame_times() {
                   "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
                   "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
                   "frame. Load: once, before the first frame, in ms. × bullet-soft: how many times as fast, the two "
-                  "intervals combined. Rank 1: no "
-                  "ranked run of the scene is certainly faster (has its whole interval below the run's); runs that "
-                  "failed, and cloths with an edge of more than twice its length, are not ranked. CPU threads: CPU "
-                  "time over wall time. ") +
+                  "intervals combined. Rank 1: no ranked run of the scene is certainly faster (has its whole interval "
+                  "below the run's); runs that failed, and cloths with an edge of more than twice its length, are not "
+                  "ranked. CPU threads: CPU time over wall time. ") +
           kIntervalMethod,
       [](const Row& r) { return r.published < 0; }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
-  const auto add = [&](const std::string& head, std::function<Cell(const FrameTimes&)> text) {
-    v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
-                           for (const auto& [name, times] : kClocks)
-                             if (keys.back().text == name) return text((*g.front()->times).*times);
-                           return Cell();
-                         }});
+  const auto timed = [](const Group& g, const Keys& keys) {
+    const auto clock =
+        std::find_if(std::begin(kClocks), std::end(kClocks), [&](auto& c) { return keys.back().text == c.first; });
+    return Timed{g.front(), &((*g.front()->times).*clock->second)};
   };
   const auto add_wall = [&](const std::string& head, std::function<Cell(const Row&)> text) {
     v.columns.push_back({head, [text](const Group& g, const Keys& keys) {
                            return keys.back().text == kClocks[0].first ? text(*g.front()) : Cell();
                          }});
   };
+  add_time_columns(v, timed);
   v.columns.push_back(column("trials", trials_cell));
-  add("frames", [](auto& t) { return number_cell(static_cast<double>(t.sorted.size()), 1); });
-  add("p50 (95 %)", median_cell);
-  add("p95 / p99 / worst", tails_cell);
-  add("missed 72 / 90 Hz [%]", missed_cell);
-  add_wall("real-time factor", real_time_factor);
+  v.columns.push_back({"frames", [timed](const Group& g, const Keys& keys) {
+                         return number_cell(static_cast<double>(timed(g, keys).second->sorted.size()), 1);
+                       }});
   add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
   add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
   add_wall("× " + time_baseline(), times_as_fast_cell);
   add_wall("rank", rank_cell);
-  for (const auto& [head, key] : {std::pair{"precision", "precision"}, {"device", "gpu"}})
-    v.columns.push_back(column(
-        head, [key = key](const Row& r) { return environment_text(*r.run, key); }, true));
-  v.columns.push_back(column(
-      "CPU threads", [](const Row& r) { return number_cell(r.times->threads, 1); }, true));
+  add_conditions(v, first_of);
   v.columns.push_back(column("conditions", &Row::trust));
   v.in_full = true;
   v.timed = true;
@@ -112,7 +135,8 @@ View memory() {
                       }),
                column("window [s]", [](const Row& r) { return number_cell(r.value("bandwidth_window_s"), 2); }),
                column("memory [kB]", [](const Row& r) { return number_cell(1e-3 * r.value("device_memory_B"), 4); }),
-               column("dispatches", [](const Row& r) { return number_cell(r.value("dispatches"), 1); })};
+               column("dispatches", [](const Row& r) { return number_cell(r.value("dispatches"), 1); }),
+               column("trials", trials_cell)};
   v.in_full = true;
   v.timed = true;
   return v;
@@ -137,14 +161,12 @@ View in_short(std::function<bool(const Row&)> where) {
                  const double percent = 100 * r.value("stretch_max_last_second");
                  return percent > 0 && percent < 1e-3 ? Cell("<0.001", percent) : number_cell(percent, 3);
                })};
-  for (ViewColumn& c : tail_columns([](const Group& g) { return g.front(); })) v.columns.push_back(std::move(c));
-  v.columns.push_back(column("with contact: p50 / p95 / p99 / worst", [](const Row& r) {
-    const FrameTimes& t = r.times->contact_wall;
-    return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
-  }));
-  v.columns.push_back(column("trials", trials_cell));
   v.columns.push_back(column("× " + time_baseline(), times_as_fast_cell));
   v.columns.push_back(column("rank", rank_cell));
+  v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst", &RunTimes::contact_wall, first_of));
+  v.columns.push_back(quantiles("GPU, with contact", &RunTimes::contact_device, first_of));
+  v.columns.push_back(column("trials", trials_cell));
+  add_tail_columns(v, first_of);
   v.timed = true;
   return v;
 }
@@ -160,20 +182,13 @@ Cell times_as_fast_cell(const Row& r) {
   return {significant(ratio, 3) + (std::isfinite(low) && &mine != r.baseline ? span : ""), ratio};
 }
 
-std::vector<ViewColumn> tail_columns(Pick pick) {
-  const auto of = [&](const char* head, std::function<Cell(const Row&)> cell) {
-    const auto if_timed = [cell](const Row& r) { return r.times->wall.sorted.empty() ? Cell() : cell(r); };
-    return column(head, if_timed, false, pick);
-  };
-  return {of("frame p50 [ms]",
-             [](const Row& r) {
-               Cell c = median_cell(r.times->wall);
-               c.text += r.frames_mark();
-               return c;
-             }),
-          of("p95 / p99 / worst", [](const Row& r) { return tails_cell(r.times->wall); }),
-          of("missed 72 / 90 Hz [%]", [](const Row& r) { return missed_cell(r.times->wall); }),
-          of("real-time factor", real_time_factor)};
+void add_tail_columns(View& v, const Pick& pick) {
+  add_time_columns(v, [pick](const Group& g, const Keys&) {
+    const Row* r = pick(g);
+    return Timed{r, r == nullptr ? nullptr : &r->times->wall};
+  });
+  v.columns.push_back(quantiles("GPU: p50 / p95 / p99 / worst", &RunTimes::device, pick));
+  add_conditions(v, pick);
 }
 
 std::vector<View> rate_views() {

@@ -115,11 +115,9 @@ View claims() {
          "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
          "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
          [](const Row& r) { return r.part == Part::Claims; }};
-  v.keys = {key(
-                "solver", [](const Row& r) { return r.solver; }, true),
-            {"claim", [](const Row& r) {
-               return Keys{r.drawn().value("kind", ""), {"all", true}};
-             }}};
+  v.keys = {key("solver", &Row::solver, true), {"claim", [](const Row& r) {
+                                                  return Keys{r.drawn().value("kind", ""), {"all", true}};
+                                                }}};
   v.columns = {{"reading", reading},
                {"holds", share},
                at_best("fewest dispatches",
@@ -235,6 +233,9 @@ View work_model() {
                          return keys.front().text == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
                        }});
   v.columns.push_back({"iterations at the published slope", allowed_iterations});
+  v.columns.push_back({"trials", [](const Group& g, const Keys& keys) {
+                         return keys.front().text == kPublished ? Cell() : trials_cell(*g.front());
+                       }});
   v.timed = true;
   return v;
 }

@@ -6,7 +6,6 @@
 #include "clothbench/feature.hpp"
 #include "fake_runs.hpp"
 #include "metrics/registry.hpp"
-#include "report/verdict.hpp"
 
 namespace clothbench {
 namespace {

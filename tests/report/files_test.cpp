@@ -79,6 +79,9 @@ TEST_F(ReportFiles, WritesEveryFile) {
   write_report({run_}, {out});
   for (const char* file : {"report.md", "tables.tex", "runs.csv", "runs.json", "series.csv", "trials.csv"})
     EXPECT_GT(fs::file_size(out / file), 0u) << file;
+  EXPECT_EQ(std::count_if(fs::directory_iterator(out), {}, [](auto& e) { return e.is_regular_file(); }),
+            fs::exists(out / "index.html") ? 7 : 6)
+      << "CSV and JSON are runs, series and trials";
   const std::string md = content_of(out / "report.md");
   EXPECT_NE(md.find("diverged at 3"), std::string::npos);
   EXPECT_NE(md.find("planned, not run"), std::string::npos);

@@ -103,7 +103,8 @@ TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
     if (v.title == "Runs that failed") page.sections.push_back({"failed", "Failed", tables_of(v, table)});
   const nlohmann::json document = page_document(table, page);
   const Motions motions{motions_of(table).document, {"QUJD"}};
-  const std::string marks = "<!--clothbench:title--><!--clothbench:head--><!--clothbench:data-->";
+  const std::string marks =
+      "<!--clothbench:title--><!--clothbench:head--><!--clothbench:data--><!--clothbench:motions-->";
   const std::string html = page_html("<html>" + marks + "<script>code</script></html>", page, document, motions);
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
@@ -127,9 +128,12 @@ TEST_F(WebFiles, DataNeverBreaksOutOfItsElement) {
 
 TEST_F(WebFiles, WithoutATemplateNoOlderPageStays) {
   const std::vector<RunRecord> runs = collect({dir_ / "run"});
-  EXPECT_EQ(write_page(dir_, RunTable(runs), {},
-                       {"<html><!--clothbench:title--><!--clothbench:head--><!--clothbench:data--></html>", ""}),
-            "");
+  EXPECT_EQ(
+      write_page(
+          dir_, RunTable(runs), {},
+          {"<html><!--clothbench:title--><!--clothbench:head--><!--clothbench:data--><!--clothbench:motions--></html>",
+           ""}),
+      "");
   EXPECT_GT(fs::file_size(dir_ / "index.html"), 1000u);
   EXPECT_EQ(write_page(dir_, RunTable(runs), {}, {"", "there was no Node when this was built"}),
             "The interactive page was left out: there was no Node when this was built.");

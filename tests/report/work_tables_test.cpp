@@ -83,6 +83,7 @@ TEST(WorkTable, HasTheSmallestErrorOfSettingsThatFitABudget) {
   EXPECT_EQ(value(runs, kWork, "a", "error within 0.1 ms"), "0.3 (x)");
   EXPECT_EQ(value(runs, kWork, "a", "error within 1 ms"), "0.04 (y)");
   EXPECT_EQ(value(runs, kWork, "b", "error within 1 ms"), "≤ 0.002 (x)") << "the mesh's own error";
+  EXPECT_EQ(tiles_of(RunTable(runs)).at(0).value, "≤ 0.2 %") << "a bound has its sign and unit in the tile, too";
 }
 
 TEST(WorkTable, WhatIsOverBudgetIsNoFailure) {
@@ -102,6 +103,7 @@ TEST(WorkTable, HasTailsOfTheFastestSettingToOnePercent) {
   EXPECT_EQ(value(runs, kWork, "a", "missed 72 / 90 Hz [%]"), "87.0 / 89.0");
   EXPECT_EQ(value(runs, kWork, "a", "real-time factor"), "0.333");
   EXPECT_EQ(value(runs, kWork, "b", "real-time factor"), "8.33") << "none to 1 %: the most accurate";
+  EXPECT_EQ(value(runs, kWork, "a", "ranked"), "no: ~") << "its interval is too wide";
 }
 
 TEST(WorkTable, RefusesWithoutACertainReference) {

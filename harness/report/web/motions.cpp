@@ -50,18 +50,18 @@ Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
   return {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
 }
 
-/// Rows with a trajectory in the order in which they get a place on the page: garments with contact, scenes that lead a
-/// report, others with contact, the rest; in each, default settings, then the first run of every solver; at most six of
-/// a scene.
+/// Rows with a trajectory in the order in which they get a place on the page: the first of the scenes that lead a
+/// report, garments with contact, the other leading scenes, others with contact, the rest, runs without a cloth model;
+/// in each, default settings, then the first run of every solver; at most six of a scene.
 std::vector<const Row*> candidates(const RunTable& table) {
-  std::vector<std::pair<std::tuple<int, bool, std::size_t>, const Row*>> order;
+  std::vector<std::pair<std::tuple<bool, std::size_t, bool, std::size_t>, const Row*>> order;
   std::map<std::pair<std::string, std::string>, std::size_t> of_solver;
   std::map<std::string, std::size_t> of_scene;
   for (const Row& r : table.rows()) {
     if (r.run->file.empty() || r.run->accuracy.time_s.empty()) continue;
-    const bool contact = r.contact && r.part != Part::Truth, leads = place_of_scene(r.scene) < leading_scenes().size();
-    const int kind = !contact ? 3 : r.resolution.grid[0] == 0 ? 0 : leads ? 1 : 2;
-    order.push_back({{kind, r.setting != "default", of_solver[{r.scene, r.solver}]++}, &r});
+    const bool contact = r.contact && r.part != Part::Truth, garment = r.resolution.grid[0] == 0;
+    const std::size_t place = !contact ? 2 * leading_scenes().size() + 1 : garment ? 1 : 2 * place_of_scene(r.scene);
+    order.push_back({{is_floor(r.solver), place, r.setting != "default", of_solver[{r.scene, r.solver}]++}, &r});
   }
   std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first < b.first; });
   std::vector<const Row*> out;

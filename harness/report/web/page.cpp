@@ -11,18 +11,12 @@
 #include "base/files.hpp"
 #include "base/json_number.hpp"
 #include "clothbench/error.hpp"
-#include "report/verdict.hpp"
-#include "report/view.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr char kDataMark[] = "<!--clothbench:data-->", kHeadMark[] = "<!--clothbench:head-->",
-               kTitleMark[] = "<!--clothbench:title-->";
 
 /// Summary values that a figure shows.
 constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
@@ -67,7 +61,6 @@ json figure_row(const Row& r) {
     if (!text.empty()) out[name] = text;
   };
   add("sides", r.sides);
-  add("plugin", engine_of(*r.run));
   add("message", r.run->outcome.message);
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
   for (const std::string& name : violated_bounds(*r.run)) out["violated"].push_back({name, rounded(r.value(name))});
@@ -162,6 +155,8 @@ json table_json(const ViewTable& t, const RunTable& table) {
           {"note", t.note},
           {"rows", rows_json(t)},
           {"runs", runs},
+          {"keys", t.keys},
+          {"late", t.late},
           {"solver_column", t.solver_column},
           {"solvers", t.solvers}};
 }
@@ -194,7 +189,7 @@ std::string table_html(const Table& t) {
   return out + "</tbody></table><p class=\"note\">" + escaped(t.note) + "</p>";
 }
 
-/// The part that needs no script: title, facts, warnings, tiles and the first table.
+/// The part that needs no script: title, facts, warnings, tiles and the first two tables.
 std::string head_html(const Page& page) {
   std::string out = "<h1>" + escaped(page.heading.title) +
                     "</h1><p>clothbench runs cloth solvers on the same scenes and reports their speed together with "
@@ -211,17 +206,11 @@ std::string head_html(const Page& page) {
   out +=
       "</div><h2 class=\"skip\">Error and speed</h2><div class=\"pair\"><div "
       "id=\"hero\"><!--clothbench:figure--></div><div id=\"first-table\">";
-  if (!page.sections.empty() && !page.sections[0].tables.empty()) out += table_html(page.sections[0].tables[0]);
+  std::size_t tables = 0;
+  for (const PageSection& s : page.sections)
+    for (const ViewTable& t : s.tables)
+      if (++tables <= 2) out += table_html(t);
   return out + "</div></div>";
-}
-
-bool run_by_node(const fs::path& script, const fs::path& page, const fs::path& folder) {
-  try {
-    const ChildEnd end = ChildProcess({"node", script.string(), page.string(), folder.string()}).wait();
-    return end.how == ChildEnd::How::Exited && end.code == 0;
-  } catch (const Error&) {
-    return false;  // there is no Node
-  }
 }
 
 }  // namespace
@@ -237,9 +226,8 @@ json page_document(const RunTable& table, const Page& page) {
     for (const ViewTable& t : s.tables) tables.push_back(table_json(t, table));
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"format", "clothbench-report"}, {"format_version", 2},      {"title", page.heading.title},
-          {"notes", page.notes},           {"sections", shown},        {"runs", std::move(rows)},
-          {"studies", std::move(studies)}, {"solvers", solver_roles()}};
+  return {{"title", page.heading.title}, {"notes", page.notes},           {"sections", shown},
+          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()}};
 }
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
@@ -249,15 +237,15 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
     return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
                        replaced(text, {{'<', "\\u003c"}}));
   };
-  std::string all = data("clothbench-data", document) + data("clothbench-motions", motions.document);
+  std::string blobs, out = html;
   for (std::size_t k = 0; k < motions.blobs.size(); ++k)
-    all += fmt::format("<script type=\"text/plain\" id=\"blob-{}\">{}</script>\n", k, motions.blobs[k]);
-  std::string out = html;
-  for (const auto& [mark, text] : {std::pair<std::string, std::string>{kDataMark, all},
-                                   {kHeadMark, head_html(page)},
-                                   {kTitleMark, escaped(page.heading.title)}}) {
+    blobs += fmt::format("<script type=\"text/plain\" id=\"blob-{}\">{}</script>\n", k, motions.blobs[k]);
+  for (const auto& [mark, text] :
+       {std::pair<std::string, std::string>{"<!--clothbench:motions-->", blobs},
+        {"<!--clothbench:data-->", data("clothbench-data", document) + data("clothbench-motions", motions.document)},
+        {"<!--clothbench:head-->", head_html(page)},
+        {"<!--clothbench:title-->", escaped(page.heading.title)}})
     out.replace(out.find(mark), mark.size(), text);
-  }
   return out;
 }
 
@@ -286,9 +274,14 @@ std::pair<std::string, std::string> draw_pictures(const fs::path& out, const Pag
   if (page.figures.empty()) return without(page.missing);
   fs::create_directories(folder);
   write_file_atomically(script, page.figures);
-  const bool drawn = run_by_node(script, out / "index.html", folder);
+  ChildEnd end{.code = 1};
+  try {
+    end = ChildProcess({"node", script.string(), (out / "index.html").string(), folder.string()}).wait();
+  } catch (const Error&) {  // there is no Node
+  }
   fs::remove(script);
-  if (!drawn) return without("Node 18 or later was not found, or failed (Debian: nodejs)");
+  if (end.how != ChildEnd::How::Exited || end.code != 0)
+    return without("Node 18 or later was not found, or failed (Debian: nodejs)");
   const std::string shown = content_of(markdown);
   fs::remove(markdown);
   return {"", shown};

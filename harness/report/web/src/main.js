@@ -4,7 +4,7 @@ import {button, element, say} from './dom.js';
 import {make_figures} from './figures.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
-import {start_tables, table_block} from './tables.js';
+import {reproduce, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
 const kMethod = ['features', 'environment'];
@@ -36,22 +36,23 @@ function chips(doc, look) {
   }));
 }
 
-/// The first figure and the first table stand side by side on the first screen; each other one in its section.
+/// The first figure and the first two tables stand side by side on the first screen; each other one in its section.
 function sections(doc, look) {
-  const figures = make_figures(doc), hero = figures.find(f => f.hero), [lead, ...rest] = doc.sections.flatMap(s => s.tables),
+  const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
         links = [['overview', 'Overview']];
   $('hero').replaceChildren(hero ? figure_block(doc, look, hero) : '');
-  $('first-table').replaceChildren(lead ? table_block(doc, look, lead) : '');
+  $('first-table').replaceChildren(...lead.map(t => table_block(doc, look, t)));
   for (const s of doc.sections) {
     const blocks = [
       ...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)),
-      ...s.tables.filter(t => rest.includes(t)).map(t => table_block(doc, look, t))
+      ...s.tables.filter(t => !lead.includes(t)).map(t => table_block(doc, look, t))
     ];
     if (kMethod.includes(s.id)) {
       $('method-tables').append(...blocks);
     } else if (blocks.length) {
-      const title = element('h2', {id: `${s.id}-title`}, s.title);
-      $('sections').append(element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, title, blocks));
+      const again = reproduce(doc, `section ${s.title}`, s.tables.flatMap(t => t.runs.map(k => doc.runs[k])));
+      const head = element('div', {class: 'head'}, element('h2', {id: `${s.id}-title`}, s.title), again);
+      $('sections').append(element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, head, blocks));
       links.push([s.id, s.title]);
     }
   }
@@ -68,6 +69,7 @@ function sections(doc, look) {
 /// The viewer is a program of its own, which runs when its section comes near the window.
 function start_motions(doc, motions) {
   const load = () => {
+    if (document.readyState === 'loading') return addEventListener('DOMContentLoaded', load);  // the motions come last in the file
     if (window.clothbench.viewer) return;
     (0, eval)($('viewer-program').textContent);
     window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);

@@ -50,10 +50,4 @@ function main(from, out) {
   renameSync(`${from}.tmp`, from);
 }
 
-const [from, out] = process.argv.slice(2);
-try {
-  main(from, out);
-} catch (e) {
-  console.error(`figures: ${e.stack}\nusage: figures.cjs REPORT/index.html OUT`);
-  process.exit(1);
-}
+main(...process.argv.slice(2));
