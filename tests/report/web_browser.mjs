@@ -1,13 +1,13 @@
 // The page of a report in headless Chromium: no console error, every point of the figures there, the viewer moves.
-//   node web_browser.mjs PACKAGES INDEX.html [SHOTS]     PACKAGES: folder of node_modules; SHOTS: folder for
-//   screenshots
+//   node web_browser.mjs PACKAGES INDEX.html LARGE.html [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a page
+//   of which only the budgets are checked; SHOTS: folder for screenshots
 // Exit 77 where Chromium or the packages are missing.
 import {existsSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
-const [packages, page_file, shots] = process.argv.slice(2);
+const [packages, page_file, large_file, shots] = process.argv.slice(2);
 const browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : [
                        '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'
                      ]).find(existsSync);
@@ -107,7 +107,7 @@ async function check_places(id, x_of, y_of) {
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
   equal(ids, ['error-time', 'rates', 'verdicts', 'frame-times'], 'figures');
-  equal(await page.$eval('#first-table h3', e => e.firstChild.textContent), 'Leading scenes with contact', 'table of the first screen');
+  equal(await page.$$eval('#first-table h3', list => list.map(e => e.firstChild.textContent)), ['Leading scenes with contact', 'Table 3: speed and error'], 'tables of the first screen');
   for (const id of ids) {
     const options = await page.$$eval(`#${id} .head select`, list => list[0] && !list[0].closest('label').hidden ? [...list[0].options].map(o => o.value) : []);
     for (const option of options.length ? options.slice(0, 8) : [null]) {
@@ -171,6 +171,19 @@ async function check_widths() {
     await page.evaluate(() => document.documentElement.style.colorScheme = '');
   }
   await page.setViewport({width: 390, height: 844});
+  await wait(400);
+  // A wide table scrolls in its own box, says so, and keeps the names of its rows and its most important column in sight.
+  const boxes = await page.$$eval('.scroll', list => list.filter(b => b.scrollWidth > b.clientWidth + 1).map(b => {
+    const hint = b.parentElement.querySelector('.head button:not([title])'), said = hint.checkVisibility() && /^\d+ more columns? →$/.test(hint.textContent);
+    hint.click();
+    const moved = b.scrollLeft;
+    b.scrollLeft = 1e6;
+    b.dispatchEvent(new Event('scroll'));
+    const name = b.querySelector('tbody th').getBoundingClientRect(), box = b.getBoundingClientRect();
+    return {id: b.parentElement.id, good: said && moved > 0 && hint.hidden && Math.abs(name.left - box.left) < 2 && name.width < 160 && box.right <= 390};
+  }));
+  check(boxes.length > 5 && boxes.every(b => b.good), `390 px: ${boxes.length} tables scroll beside the names of their rows; not: ${boxes.filter(b => !b.good).map(b => b.id)}`);
+  equal(await page.$$eval('#t-table-3-speed-and-error thead th', list => list.slice(0, 2).map(h => h.textContent)), ['solver', '128²'], '390 px: the largest mesh comes first');
   await page.click('#menu');
   check(await page.evaluate(() => document.getElementById('contents').checkVisibility()), 'the menu opens');
   await page.click('#contents a[href="#method"]');
@@ -181,10 +194,12 @@ async function check_widths() {
 }
 
 /// Wide margins: this machine may be busy.
-async function check_budgets() {
+async function check_budgets(file) {
+  const page = await browser.newPage();
+  await page.goto(pathToFileURL(resolve(file)).href, {waitUntil: 'load'});
   const ready = await page.evaluate(() => window.clothbench.ready_ms);
   check(ready < 3000, `ready after ${ready.toFixed(0)} ms (asked for: 1000)`);
-  const html = readFileSync(page_file, 'utf8'), without = html.replace(/<script type="text\/plain" id="blob-\d+">[^<]*<\/script>/g, '').length;
+  const html = readFileSync(file, 'utf8'), without = html.replace(/<script type="text\/plain" id="blob-\d+">[^<]*<\/script>/g, '').length;
   check(without < 2e6, `${(without / 1e6).toFixed(2)} MB without motions`);
   const switched = await page.evaluate(() => {
     const start = performance.now();
@@ -195,12 +210,11 @@ async function check_budgets() {
     return took;
   });
   check(switched < 600, `the theme switches in ${switched.toFixed(0)} ms (asked for: 200)`);
-  const slow = await browser.newPage();
-  await slow.emulateCPUThrottling(4);
-  await slow.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
-  const slow_ms = await slow.evaluate(() => window.clothbench.ready_ms);
+  await page.emulateCPUThrottling(4);
+  await page.reload({waitUntil: 'load'});
+  const slow_ms = await page.evaluate(() => window.clothbench.ready_ms);
   check(slow_ms < 16000, `at a quarter of the speed ready after ${slow_ms.toFixed(0)} ms (asked for: 8000)`);
-  await slow.close();
+  await page.close();
 }
 
 async function check_without_script() {
@@ -225,7 +239,7 @@ async function check_values() {
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
-  const commands = await page.$$eval('figure, .table', list => list.filter(e => !e.querySelector('.head button[title^="clothbench "], .head button[title*="/clothbench "]')).map(e => e.id));
+  const commands = await page.$$eval('figure, .table, #sections > section', list => list.filter(e => !e.querySelector('.head button[title^="clothbench "], .head button[title*="/clothbench "]')).map(e => e.id));
   equal(commands.filter(id => !/-values$|features/.test(id)), [], 'figures and tables without a command that reproduces them');
 }
 
@@ -245,6 +259,7 @@ async function check_motion() {
   await page.waitForFunction(() => window.clothbench.viewer.panels.length > 0, {timeout: 60000});
   await page.evaluate(() => document.querySelector('#stage').scrollIntoView({behavior: 'instant'}));
   await page.evaluate(() => window.clothbench.viewer.ready);
+  equal(await page.evaluate(() => window.clothbench.viewer.scene), 'hand-push', 'first motion');
   await page.focus('#scrub');
   await page.keyboard.press('Home');
   await drawn();
@@ -342,7 +357,7 @@ async function check_colours() {
 }
 
 try {
-  await check_budgets();
+  for (const file of [page_file, large_file]) await check_budgets(file);
   await draw_all();
   for (const run of [check_tables, check_figures, check_filter, check_values, check_motion, check_widths, check_without_script, check_colours, check_without_webgl]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');

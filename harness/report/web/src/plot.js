@@ -127,8 +127,8 @@ class Figure {
       solvers: []
     };
     const values = new ShownTable({...doc, runs: rows}, this.look, table, `${entry.id}-values`);
-    values.fill();
     this.values.replaceChildren(values.block);
+    values.fill();
   }
 }
 

@@ -4,7 +4,7 @@ import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
 import {page_look, set_value, shown, state} from './state.js';
 
-const kFolded = 15;
+const kFolded = 15, kMostKeys = 4, kShort = 40, kNarrow = matchMedia('(max-width: 760px)');
 /// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
 const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
 
@@ -34,14 +34,16 @@ export class ShownTable {
     this.head = table.rows[0];
     this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]]}));
     this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
-    this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`});
+    this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
+    this.hidden_columns = button('', null, () => this.place.scrollBy(0.6 * this.place.clientWidth, 0), {class: 'quiet', hidden: true});
+    new ResizeObserver(() => this.tell_hidden()).observe(this.place);
     this.more = button('Show all rows', null, () => {
       this.open = !this.open;
       this.fill();
     }, {class: 'more'});
     this.block = element(
-        'div', {class: 'table', id}, block_head(id, table.title, table.title, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))),
-        this.place, element('div', {class: 'bar small'}, this.more),
+        'div', {class: 'table', id},
+        block_head(id, table.title, table.title, [this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, element('div', {class: 'bar small'}, this.more),
         table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
   }
 
@@ -59,6 +61,22 @@ export class ShownTable {
     });
   }
 
+  /// Sets the columns in their order. In a narrow window the first cell also has the other short keys, and details stand last.
+  arrange() {
+    const {solvers, keys = 1, late = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
+    this.columns = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
+    this.joined = kNarrow.matches && keys <= kMostKeys ? this.columns.filter(k => k > 0 && k < keys && short(k)) : [];
+    if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
+  }
+
+  /// How many columns the box hides on its right.
+  tell_hidden() {
+    const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
+    const count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
+    this.hidden_columns.textContent = `${count} more ${count === 1 ? 'column' : 'columns'} →`;
+    this.hidden_columns.hidden = !count;
+  }
+
   head_cell(h, k) {
     const on = this.sort.k === k, next = on ? (this.sort.down ? 'up' : 'down') : this.numeric[k] ? 'down' : 'up';
     const sort = () => {
@@ -72,12 +90,12 @@ export class ShownTable {
         button([h || ' ', arrow], null, sort));
   }
 
-  cell({text, value, tone}, k, run) {
-    const shape = this.numeric[k] ? 'n' : text.length > 60 ? 'long' : '';
+  cell(cells, k, run) {
+    const {text, value, tone} = cells[k], shape = this.numeric[k] ? 'n' : text.length > 60 ? 'long' : '', more = k === 0 ? this.joined : [];
     const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value});
-    if (k === this.table.solver_column && run && !run.published)
+    if ([k, ...more].includes(this.table.solver_column) && run && !run.published)
       c.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>`;
-    c.append(text);
+    c.append(text, ...more.map(j => element('small', {}, cells[j].text)));
     return c;
   }
 
@@ -88,17 +106,18 @@ export class ShownTable {
   }
 
   fill() {
-    const rows = this.sorted(), {table, head} = this, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
-    this.columns = head.map((_, k) => k).filter(k => shown(table.solvers[k]));
-    const titles = [this.columns.map(k => this.head_cell(head[k], k)), any ? element('th', {scope: 'col'}, 'run again') : null];
+    const rows = this.sorted(), {head} = this, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
+    this.arrange();
+    const titles = [this.columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
     const body = (this.open ? rows : rows.slice(0, kFolded)).map(({cells, run}, n) => {
       const last = any ? element('td', {}, buttons[n] ?? '') : null;
-      return element('tr', {class: run?.published && 'published'}, this.columns.map(k => this.cell(cells[k], k, run)), last);
+      return element('tr', {class: run?.published && 'published'}, this.columns.map(k => this.cell(cells, k, run)), last);
     });
     this.place.replaceChildren(element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body)));
     this.more.hidden = rows.length <= kFolded;
     this.more.textContent = this.open ? `Show ${kFolded} rows` : `Show all ${rows.length} rows`;
     this.filled = true;
+    this.tell_hidden();
   }
 }
 
@@ -122,4 +141,7 @@ export function near_window(list, made, make) {
   addEventListener('beforeprint', () => list.filter(t => !made(t)).forEach(make));
 }
 
-export const start_tables = () => near_window(tables, t => t.filled, t => t.fill());
+export function start_tables() {
+  near_window(tables, t => t.filled, t => t.fill());
+  kNarrow.addEventListener('change', () => tables.filter(t => t.filled).forEach(t => t.fill()));
+}
