@@ -64,6 +64,45 @@ for t in tables:
         assert [[(c if isinstance(c, str) else c[0]).strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
 assert any(r[0].startswith("published") for r in static["Table 3: speed and error"])
 
+# Numbers of the tables, text and value, each computed again from what the file of its run stores.
+STORED = {"crossings": ("crossings_max", 1), "contour, max / settled [mm]": ("contact_length_max_m", 1e3), "depth [mm]": ("depth_max_m", 1e3), "popping [mm]": ("pop_max_m", 1e3),
+          "strain, max / end [%]": ("stretch_max", 100), "stretch [%]": ("stretch_max_last_second", 100), "free-fall error": ("free_fall_error", 1), "load": ("load_s", 1e3)}
+TIMES = {"frame p50 [ms]": (0.5, 1e3), "p95 / p99 / worst": (0.95, 1e3), "missed 72 / 90 Hz [%]": (None, 1)}  # quantile; text over value
+nearest = lambda x, q: x[max(int(np.ceil(q * len(x))), 1) - 1]  # noqa: E731
+text_of = lambda c: c if isinstance(c, str) else c[0]  # noqa: E731
+
+
+def run_of(t, cells, row, name):
+    """The run behind a cell: of the column's solver or resolution; in tables of resolutions otherwise of the largest mesh."""
+    of_solver = [r for r in doc["runs"] if t["title"].startswith("Verdict") and (r["scene"], r["label"]) == (text_of(cells[0]), name)]
+    line = [r for r in doc["runs"] if all(r.get(k) == row.get(k) for k in ("label", "sides", "family"))]
+    return (of_solver + [r for r in line if r.get("resolution") == name] + [max(line, key=lambda r: r["width"]) if "128²" in t["rows"][0] else row])[0]
+
+
+compared = {}
+for t, cells, row in ((t, cells, doc["runs"][k]) for t in tables for cells, k in zip(t["rows"][1:], t["runs"]) if not t["title"].startswith("Error against")):
+    head = t["rows"][0]
+    clock = {"wall": "wall", "CPU": "cpu"}.get(cells[head.index("clock")]) if "clock" in head else "wall"
+    for name, cell in zip(head, cells):
+        r, (text, value, _) = run_of(t, cells, row, name), cell if isinstance(cell, list) else (cell, None, "")
+        if r.get("published") or text == "–" or name in TIMES and not clock:
+            continue
+        with h5py.File(files[r["scene"], r["solver"], r["setting"]]) as f:
+            a, frames = dict(f["summary"].attrs), np.sort(f[f"timing/frame_{clock}_s"][:].ravel()) if name in TIMES else None
+        q, ratio = TIMES.get(name, (None, 1))
+        if name == r["label"] and "/" not in text and text != "ignored":
+            assert text == {0: "fail", 1: "pass"}.get(min(v for k, v in a.items() if k.startswith("expect.")), "not measured"), (name, cells)
+        elif value is not None and name in (*STORED, *TIMES, "found", r.get("resolution")):
+            key, scale = STORED.get(name) or ("fps_median" if name == r.get("resolution") else text_of(cells[2]), 1)
+            wanted = nearest(frames, q) if q else 100 * np.mean(frames > 1 / 72) if name in TIMES else scale * a[key]
+            number = re.match(r"([\d.]+(?:e[+-]\d+)?)(k?)", text) or ["", value * ratio, ""]  # "<0.001"
+            np.testing.assert_allclose([value, float(number[1]) * (1e3 if number[2] else 1) / ratio], wanted, rtol=0.05, err_msg=f"{t['title']}: {name} of {cells[:2]}")
+            np.testing.assert_allclose(value, wanted, rtol=1e-5, err_msg=f"{t['title']}: {name} of {cells[:2]}")
+        else:
+            continue
+        compared[t["title"]] = compared.get(t["title"], 0) + 1
+assert sum(compared.values()) > 150 and len(compared) >= 6, compared
+
 # Rows of the figures.
 KEYS = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s", "stretch_max_last_second"}
 points = errors = quantiles = 0
@@ -138,4 +177,4 @@ with h5py.File(files["open-sheet", "bullet-soft", "default"]) as f:
     a = sheet["arrays"]["triangles"]
     np.testing.assert_array_equal(words(a["blob"], 4).reshape(a["shape"]), f["colliders/0/triangles"][:])
     np.testing.assert_array_equal(shapes["sphere"]["attributes"]["radius_m"], 0.15)
-print(f"{len(tables)} tables, {points} rates, {quantiles} times, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")
+print(f"{len(tables)} tables, {compared}, {points} rates, {quantiles} times, {series} series, {moved} motions, {len(html) / 1e6:.1f} MB")
