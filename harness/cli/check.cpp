@@ -55,9 +55,7 @@ void add_check(CLI::App& app, Console& console) {
   cmd->footer(
       "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without "
       "matching positions, 2 bad input, or runs measured under other conditions than the baseline.\nExample: "
-      "clothbench "
-      "check results/runs/mine --baseline results/baselines/penetration.json "
-      "--junit check.xml");
+      "clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
       fs::remove(a.junit);  // an older verdict must not outlive a failed check

@@ -45,6 +45,13 @@ struct Help : CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     return fitted(option->get_description(), get_column_width());
   }
+  std::string make_footer(const CLI::App* app) const override {
+    std::istringstream lines(app->get_footer());
+    std::string out;
+    for (std::string line; std::getline(lines, line);)  // a command stays in one piece, to be copied
+      out += line.find(" clothbench ") < line.size() ? line + "\n" : fitted(line, 0) + "\n";
+    return out;
+  }
   std::string make_subcommand(const CLI::App* command) const override {
     std::ostringstream out;
     CLI::detail::format_help(out, command->get_display_name(true),
