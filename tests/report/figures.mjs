@@ -48,7 +48,7 @@ for (const figure of Object.values(figures))
     assert.ok(!/NaN|undefined|var\(/.test(svg), `${figure.id}: ${svg.match(/.{80}(NaN|undefined|var\().{40}/)?.[0]}`);
   }
 
-const kLeastDistance = 15, kLeastContrast = 3;  // CIEDE2000; WCAG 2 for graphics
+const kLeastDistance = 15, kLeastSpare = 11, kLeastContrast = 3;  // CIEDE2000, of two known solvers and of any other; WCAG 2 for graphics
 const kBack = {light: '#ffffff', dark: '#12161c'};
 // Machado, Oliveira and Fernandes (2009), severity 1.
 const kVision = {
@@ -81,20 +81,21 @@ function distance([l1, a1, b1], [l2, a2, b2]) {
 }
 assert.ok(Math.abs(distance([50, 2.6772, -79.7751], [50, 0, -82.7485]) - 2.0425) < 1e-3, 'a published pair of the formula');
 
-const names = Object.keys(roles.look), luminance = hex => times([[0.2126, 0.7152, 0.0722]], linear(hex))[0];
+const all_looks = {...roles.look, ...Object.fromEntries(roles.spare.map(l => [`another plugin, ${l[0]}`, l]))};
+const names = Object.keys(all_looks), luminance = hex => times([[0.2126, 0.7152, 0.0722]], linear(hex))[0];
 let least = Infinity;
 for (const [at, theme] of [[1, 'light'], [2, 'dark']]) {
   for (const [k, a] of names.entries()) {
-    const [low, high] = [luminance(roles.look[a][at]), luminance(kBack[theme])].sort((x, y) => x - y);
+    const [low, high] = [luminance(all_looks[a][at]), luminance(kBack[theme])].sort((x, y) => x - y);
     assert.ok((high + 0.05) / (low + 0.05) >= kLeastContrast, `${theme}: contrast of ${a}`);
     for (const b of names.slice(k + 1))
       for (const [vision, matrix] of Object.entries(kVision)) {
-        const apart = distance(...[a, b].map(n => lab(times(matrix, linear(roles.look[n][at])))));
+        const apart = distance(...[a, b].map(n => lab(times(matrix, linear(all_looks[n][at])))));
         least = Math.min(least, apart);
-        assert.ok(apart >= kLeastDistance, `${theme}, ${vision}: ${a} and ${b} are ${apart.toFixed(1)} apart`);
+        assert.ok(apart >= (b in roles.look ? kLeastDistance : kLeastSpare), `${theme}, ${vision}: ${a} and ${b} are ${apart.toFixed(1)} apart`);
       }
   }
 }
-const symbols = [...Object.values(roles.look), ...roles.spare].map(l => l[0]);
+const symbols = Object.values(all_looks).map(l => l[0]);
 assert.equal(new Set(symbols).size, symbols.length, 'each solver has a symbol of its own');
 console.log(`${names.length} solvers, at least ${least.toFixed(1)} apart`);
