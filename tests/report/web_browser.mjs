@@ -280,6 +280,12 @@ async function check_motion() {
       await page.evaluate(() => window.clothbench.viewer.time),
       await page.evaluate(() => window.clothbench.viewer.times[1]),
       'an arrow goes to the next frame');
+  const first = await page.$('#chips button'), panels = () => page.evaluate(() => window.clothbench.viewer.panels.length), both = await panels();
+  for (const wanted of [both - 1, both]) {
+    await first.evaluate(b => b.click());
+    await page.waitForFunction(n => window.clothbench.viewer.panels.length === n, {timeout: 10000}, wanted);
+  }
+  check(both > 1, `the filter of solvers hides a motion and shows it again (${both} panels)`);
   await page.focus('#viewer button');
   await page.keyboard.press('Space');
   await page.waitForFunction(
