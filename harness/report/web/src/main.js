@@ -36,12 +36,13 @@ function chips(doc, look) {
   }));
 }
 
-/// The first figure and the first two tables stand side by side on the first screen; each other one in its section.
+/// First screen: the first figure, the leading scenes below it, Table 3 beside them; the rest in sections.
 function sections(doc, look) {
   const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
-        links = [['overview', 'Overview']];
-  $('hero').replaceChildren(hero ? figure_block(doc, look, hero) : '');
-  $('first-table').replaceChildren(...lead.map(t => table_block(doc, look, t)));
+        below = doc.sections[0]?.id === 'overview' ? 1 : 0, links = [['overview', 'Overview']];
+  const first = lead.map(t => table_block(doc, look, t));
+  $('hero').replaceChildren(hero ? figure_block(doc, look, hero) : '', ...first.slice(0, below));
+  $('first-table').replaceChildren(...first.slice(below));
   for (const s of doc.sections) {
     const blocks = [
       ...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)),
