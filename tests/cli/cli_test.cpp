@@ -49,6 +49,8 @@ TEST_F(Cli, HelpNamesEveryCommand) {
   EXPECT_EQ(a.code, 0);
   for (const char* word : {"list", "run", "study", "plan", "report", "validate", "import", "check", "conformance"})
     EXPECT_NE(a.text.find(word), std::string::npos) << word;
+  EXPECT_EQ(command("help").text, a.text);
+  EXPECT_EQ(command("help run").text, command("run --help").text);
 }
 
 TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
