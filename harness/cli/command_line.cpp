@@ -109,7 +109,12 @@ int run_command_line(const std::vector<std::string>& words) {
   for (AddCommand* add : kCommands) add(app, console);
   try {
     // CLI11 takes the words last first.
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    std::vector<std::string> given(words.rbegin(), words.rend());
+    if (!given.empty() && given.back() == "help") {  // help, help run
+      given.pop_back();
+      given.insert(given.begin(), "--help");
+    }
+    app.parse(given);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     const std::string unknown = unknown_word(app, words);

@@ -67,8 +67,8 @@ void check_options(const Study& study, const StudyArguments& a) {
   if (is_drawn(study)) return;
   if (a.count > 0 || a.seed)
     throw Error(
-        "--seed, --count: the scenes of this study are given in its file; only studies with protocol contact (contact "
-        "and physics) generate scenes");
+        "--seed, --count: the scenes of this study are given in its file; only contact, physics and reproduction "
+        "generate scenes");
   if (a.procedural)
     throw Error("--procedural: this study has no random contact scenes; set CLOTHBENCH_ASSETS=procedural instead");
   if (a.jobs > 0 && study.protocol != "stability-map")
@@ -129,10 +129,11 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_option("--set", a.set, "Override a scene key in every run: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
-  cmd->add_option("--seed", a.seed, "In the studies contact and physics: seed of the first scene (default 1)");
+  cmd->add_option(
+      "--seed", a.seed,
+      "In studies of generated scenes (contact, physics, reproduction): seed of the first scene (default 1)");
   cmd->add_option("--count", a.count,
-                  "Number of scenes to generate in the studies contact and physics, from seed --seed on; default: the "
-                  "study's count")
+                  "Number of scenes to generate in these studies, from seed --seed on; default: the study's count")
       ->check(CLI::Range(1, 100000));
   cmd->add_flag("--procedural", a.procedural,
                 "Generate contact scenes from procedural rooms and hands, which need no download; tables state this");

@@ -197,9 +197,9 @@ std::vector<Tile> tiles_of(const RunTable& table) {
   for (const Row& r : table.rows())
     if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
   std::vector<Tile> out;
-  for (std::vector<Entry> entries : {shares(rows, Part::Generated, "Generated contact scenes passed"),
-                                     shares(rows, Part::Contact, "Contact scenes passed"), errors(rows), rates(rows),
-                                     shares(rows, Part::Stability, "Hard cases stable")}) {
+  for (std::vector<Entry> entries :
+       {shares(rows, Part::Generated, "Random scenes passed"), shares(rows, Part::Contact, "Contact scenes passed"),
+        errors(rows), rates(rows), shares(rows, Part::Stability, "Hard cases stable")}) {
     if (entries.empty() || out.size() == kMostTiles) continue;
     std::stable_sort(entries.begin(), entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
     const Entry& best = entries.front();

@@ -54,7 +54,7 @@ bool is_time(const std::string& name) {
 
 constexpr std::pair<const char*, const char*> kSections[] = {
     {"overview", "Overview"},      {"rates", "Frame rates"},
-    {"contact", "Contact"},        {"accuracy", "Error against run time"},
+    {"contact", "Verdicts"},       {"accuracy", "Error against run time"},
     {"stability", "Stability"},    {"time", "Frame times"},
     {"failed", "Failures"},        {"features", "Features"},
     {"environment", "Environment"}};

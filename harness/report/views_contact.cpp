@@ -88,12 +88,11 @@ std::string with_assets(const std::string& kind, const Row& r) {
 }
 
 View pass_rates() {
-  View v{"contact", "Randomly generated contact scenes: pass rate by speed [m/s]",
-         "Each seed draws a scene of one kind: positions, directions, poses, speeds and cloth, from the ranges in the "
-         "study's file, scenarios/studies/contact.json. Fast, default, accurate: substeps of `xpbd`. "
-         "Passed of generated, by the speed of the hand, or of the cloth where it first touches; in brackets the 95 % "
-         "interval of the probability (Wilson). Unsupported and timed out count as not passed. Contact offset: "
-         "distance at which the solver keeps the cloth from colliders.",
+  View v{"contact", "Random scenes: pass rate by speed [m/s]",
+         "Each seed draws a scene of one kind from the ranges in the study's file (scenarios/studies). Fast, default, "
+         "accurate: substeps of `xpbd`. Passed of generated, by the speed of the hand, or of the cloth where it first "
+         "touches; in brackets the 95 % interval of the probability (Wilson). Unsupported and timed out count as not "
+         "passed. Contact offset: distance at which the solver keeps the cloth from colliders.",
          [](const Row& r) { return r.part == Part::Generated; }};
   v.keys = {{"solver",
              [](const Row& r) {

@@ -195,6 +195,12 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
       if (std::filesystem::is_regular_file(named, ec)) return named;
     }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
+  for (const std::string& known : scenario_names()) {  // tables show the name in the file
+    const std::filesystem::path file = scenario_root() / (known + ".json");
+    const json scene =
+        std::filesystem::is_regular_file(file, ec) ? json::parse(read_text(file), nullptr, false) : json();
+    if (scene.is_object() && scene.value("name", json()) == name_or_path) return file;
+  }
   throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}",
                           shortened(name_or_path, kShown), scenario_root().string(),
                           nearest_known(name_or_path, scenario_names())));

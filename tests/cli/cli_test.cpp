@@ -53,6 +53,8 @@ TEST_F(Cli, HelpNamesEveryCommand) {
   std::istringstream lines(command("check --help").text);
   for (std::string line; std::getline(lines, line);)
     EXPECT_TRUE(display_width(line) <= 80 || line.find(" clothbench ") != std::string::npos) << line;
+  EXPECT_EQ(command("help").text, a.text);
+  EXPECT_EQ(command("help run").text, command("run --help").text);
 }
 
 TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {

@@ -163,7 +163,7 @@ TEST(Penetration, TablesStateTheContactOffset) {
   EXPECT_EQ(offset("other"), "3.5 to 20");
 }
 
-constexpr const char* kRates = "Randomly generated contact scenes: pass rate by speed [m/s]";
+constexpr const char* kRates = "Random scenes: pass rate by speed [m/s]";
 
 RunRecord generated(const std::string& solver, const std::string& kind, int seed, double speed,
                     const std::string& ending, double contour = 0, const std::string& assets = "npm") {

@@ -181,6 +181,11 @@ TEST(Load, TextThatIsNoJson) {
   EXPECT_PRED2(mentions, message_of("[]"), "expected object");
 }
 
+TEST(Load, ASceneIsFoundByTheNameThatTablesShow) {
+  EXPECT_EQ(find_scenario("box-drop").lexically_relative(scenario_root()), "contact/box.json");
+  EXPECT_PRED2(mentions, refusal([] { find_scenario("box-dorp"); }), "no such file, nor a scene");
+}
+
 TEST(Load, FilesThatCannotBeRead) {
   EXPECT_THROW(load_scene("/no/such/scene.json"), Error);
   EXPECT_THROW(load_scene(fs::temp_directory_path().string()), Error);
