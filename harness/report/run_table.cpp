@@ -281,11 +281,9 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
     // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
-    if (r.part != Part::Truth) continue;
-    if (text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene)) {
+    if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
-      continue;
-    }
+    if (r.part != Part::Truth) continue;
     auto& shared = facts.try_emplace(r.scene, std::make_shared<TruthFacts>()).first->second;
     add_facts(*shared, r);
     r.truth = shared;
