@@ -103,7 +103,7 @@ class Loop {
 
   std::string waiting_for() const {
     if (!session_.running()) return "the headset does not run it (is it worn?)";
-    return rate_hz_ > 0 ? "no hand was seen" : "no hand was seen, or its frames stay more than 0.1 s apart";
+    return "no hand was seen";
   }
 
   /// The cloth before anything is live, so that the user sees where it is.
@@ -152,12 +152,11 @@ class Loop {
   /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
   /// their kernels the first time, which takes so long that the hands are elsewhere afterwards.
   void prepare(const XrFrameState& state) {
-    if (done_) return;
+    if (done_ || !rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
     LiveScene::Begin b;
     b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
     for (const Side side : {Side::Left, Side::Right})
       if (live_.wants(side) && !b.hands[static_cast<std::size_t>(side)]) return;
-    if (!rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
     b.frame_rate_hz = rate_hz_;
     b.frames =
         o_.frames > 0 ? o_.frames : static_cast<int>(std::lround(live_.written().time.duration_s * b.frame_rate_hz));
@@ -181,17 +180,17 @@ class Loop {
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
   }
 
-  /// A display changes its rate some frames after it was asked to, if it has that rate. It is asked once: runtimes name
-  /// multiples of the display's period after slow frames, and a solver's first step is one.
+  /// A display changes its rate some frames after it was asked to, if it has that rate. Else the highest rate counts,
+  /// because runtimes name multiples of the display's period after slow frames, as a solver's first step is one.
   bool rate_settled(double period_s) {
-    constexpr double kTimeout_s = 1, kSame_hz = 0.5, kSlowest_hz = 10, kFastest_hz = 1000;
+    constexpr double kTimeout_s = 1, kSame_hz = 0.5, kFastest_hz = 1000;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
-    if (rate_hz_ > 0) return true;
+    if (settled_) return true;
     const double hz = std::round(1 / period_s);  // a period is in whole ns
     const bool asked = std::abs(hz - o_.rate_hz) <= kSame_hz;
-    if (asked || (hz >= kSlowest_hz && hz <= kFastest_hz && seconds(first_frame_, Clock::now()) > kTimeout_s))
-      rate_hz_ = hz;
-    return rate_hz_ > 0;
+    if (asked || (hz > rate_hz_ && hz <= kFastest_hz)) rate_hz_ = hz;
+    settled_ = asked || (rate_hz_ > 0 && seconds(first_frame_, Clock::now()) > kTimeout_s);
+    return settled_;
   }
 
   /// The vertex shader reads a GPU solver's positions where they lie.
@@ -324,7 +323,8 @@ class Loop {
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
   Clock::time_point leaving_, first_frame_;
-  double rate_hz_ = 0;  ///< 0 until it has settled
+  double rate_hz_ = 0;  ///< of the display, once `settled_`
+  bool settled_ = false;
   int frames_ = 0;
   XrTime first_time_ = 0;
   FrameLog log_;

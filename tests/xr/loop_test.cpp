@@ -236,6 +236,7 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   expect_error(o, ExitCode::CheckFailed, "no hand was seen");
   setenv("CLOTHBENCH_NULL_XR", "", 1);
   o.frames = 9000;
+  o.timeout_s = 60;
   expect_error(o, ExitCode::BadInput, "1 to 8640");
   o = options("garments/sleeve", 10);
   o.overrides = {R"(cloth.mesh.file="none.obj")"};
