@@ -135,22 +135,25 @@ class Xpbd final : public GpuSolver {
     return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor : 1);
   }
 
-  FusedFrame::Steps contact_free_steps(double dt_s) const {
-    const int substeps = std::min(substeps_in(dt_s), in_frames(contact_free_substeps(scene(), settings()), dt_s));
+  /// Instead of so many substeps of contact.
+  FusedFrame::Steps contact_free_steps(double dt_s, int most) const {
+    const int substeps = std::min(most, in_frames(contact_free_substeps(scene(), settings()), dt_s));
     return {substeps, time_step(uses_bdf2_, dt_s / substeps, 0, scene().material.damping_per_s)};
   }
 
   bool update_substep_count(double dt_s) override {
     if (!controller_.adapts()) return false;
     const double of_list_m = contact_->read_max_displacement_m(fused_frame_ != nullptr), frame_s = scene().time.dt();
-    const double max_displacement_m = of_list_m * lists_in(in_frames(recorded_substeps_, last_dt_s_));
+    const double max_displacement_m = of_list_m * recorded_lists_;
     // The first frame has none before it.
     const double cloth_m =
         last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
     last_dt_s_ = dt_s;
     controller_.next(cloth_m);
-    // After a reset too what was recorded has the last frame's substeps.
-    return std::exchange(recorded_substeps_, controller_.substeps()) != controller_.substeps();
+    // After a reset too what was recorded has the last frame's substeps and lists.
+    const int lists = lists_in(substeps_in(dt_s)), substeps = controller_.substeps();
+    const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
+    return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists;
   }
 
   TimeStep time_step_of(double dt_s, double last_dt_s) const {
@@ -174,10 +177,6 @@ class Xpbd final : public GpuSolver {
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_shapes(dt_s, substeps);
-    if (fused_frame_) {
-      fused_frame_->record(dt_s, {substeps, step}, contact_free_steps(dt_s));
-      return;
-    }
     if ((lines_ ? lines_->is_single_dispatch() : chains_->is_single_dispatch()) && !contact_) {
       const int apart = uses_bdf2_ && last_dt_s != dt_s ? 1 : 0;
       record_lines(0, apart, substeps, dt_s, start);
@@ -188,6 +187,10 @@ class Xpbd final : public GpuSolver {
       // Contact takes the substeps of a list for a frame of their own.
       const int first = substeps * list / lists, count = substeps * (list + 1) / lists - first;
       const double list_s = dt_s * (static_cast<double>(count) / substeps);
+      if (fused_frame_) {
+        fused_frame_->record(list_s, {count, step}, contact_free_steps(list_s, count));
+        continue;
+      }
       if (contact_) contact_->record_list(list_s, count);
       for (int s = first; s < first + count; ++s) {
         // First, so that a released vertex is free in the frame in one dispatch.
@@ -206,9 +209,9 @@ class Xpbd final : public GpuSolver {
   /// Lists of pairs that a frame of so many substeps makes one after another. Moving shapes and attachments say how far
   /// they go in the whole frame.
   int lists_in(int substeps) const {
-    const bool one =
-        !contact_ || !contact_->with_itself() || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty();
-    return one ? 1 : (substeps + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList;
+    if (!contact_ || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty()) return 1;
+    return contact_->with_itself() ? (substeps + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList
+                                   : controller_.lists();
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several, so that a link turns no farther in a substep.
@@ -219,7 +222,7 @@ class Xpbd final : public GpuSolver {
   }
 
   SubstepController controller_;
-  int recorded_substeps_ = 0;
+  int recorded_substeps_ = 0, recorded_lists_ = 1;
   double last_dt_s_ = 0;  ///< of the last frame; 0: none
 
   bool crumpled_ = false;

@@ -61,9 +61,9 @@ int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 /// collider may have left the cloth strained in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Chooses the number of substeps of the next frame from the largest displacement in the last one, for cloth in contact
-/// with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many substeps; most frames have
-/// none.
+/// Chooses the number of substeps of the next frame, and of lists of pairs, from the largest displacement in the last
+/// one, for cloth in contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many;
+/// most frames have none.
 class SubstepController {
  public:
   SubstepController() = default;
@@ -73,6 +73,8 @@ class SubstepController {
   bool adapts() const { return adapts_; }
   /// Substeps of a frame as long as the scene's.
   int substeps() const { return now_; }
+  /// Lists of candidate pairs that such a frame makes one after another.
+  int lists() const { return lists_; }
   /// Before a frame. `cloth_m`: the largest displacement of a vertex in the last frame, in the time of a frame of the
   /// scene; infinity: unknown.
   void next(double cloth_m);
@@ -81,7 +83,7 @@ class SubstepController {
   void halve_if_quiescent(double cloth_m);
 
   double max_travel_m_ = 0;  ///< in a substep; infinity without colliders and self-contact
-  int base_ = 1, max_ = 1, now_ = 1;
+  int base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
   bool adapts_ = false;
   double cell_m_ = 0;
   int halvings_ = 0;          ///< of the base

@@ -88,6 +88,10 @@ inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave m
 // [substeps] A list of self-contact pairs for a longer time has no capacity for fast cloth, and reduced motion bounds
 // slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
 inline constexpr int kSubstepsPerList = 8;
+// [cells] The same of pairs with static colliders: farther in a list's time, and cloth is held back beside a desk
+// (contact-11204631-desk)
+inline constexpr double kCellsPerList = 2;
+inline constexpr int kMinSubstepsPerList = 4;  // [substeps] A list costs as much as one or two
 
 // Long frames and crumpled starts (solver.cpp).
 inline constexpr double kLongFrame = 1.25;    // [of the scene's frame] Jitter is no hitch

@@ -122,6 +122,7 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
 
 void SubstepController::reset() {
   now_ = max_;
+  lists_ = 1;
   halvings_ = quiescent_frames_ = 0;
 }
 
@@ -134,6 +135,8 @@ void SubstepController::next(double cloth_m) {
   constexpr double kGrain = rules::kSubstepGrain;
   now_ = wanted < max_ ? std::clamp(static_cast<int>(kGrain * std::ceil(wanted / kGrain)), smallest, max_) : max_;
   if (wanted <= base_) now_ = smallest;
+  const double most = std::max(1, now_ / rules::kMinSubstepsPerList);
+  lists_ = static_cast<int>(std::clamp(std::ceil(cloth_m / cell_m_ / rules::kCellsPerList), 1.0, most));
 }
 
 /// Cloth that lies takes half of the base, and later a quarter, until it moves.
