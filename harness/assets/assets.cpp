@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 
-#include "assets/json_at.hpp"
 #include "assets/procedural.hpp"
 #include "base/data_folder.hpp"
 #include "base/json_text.hpp"
@@ -45,7 +44,9 @@ std::string versions(const fs::path& root) {
   return joined(kPackages, ", ", [&](const char* package) {
     const fs::path file = root / package / "package.json";
     const nlohmann::json document = parse_json(read_text(file), file.string());
-    return fmt::format("{} {}", package, JsonAt(document, file.string()).key("version").text());
+    validate_json(document, R"({"required": ["version"], "properties": {"version": {"type": "string"}}})",
+                  file.string());
+    return fmt::format("{} {}", package, document["version"].get<std::string>());
   });
 }
 

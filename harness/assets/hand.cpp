@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <regex>
 
-#include "assets/json_at.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
@@ -25,19 +24,14 @@ std::string as_json(const std::string& text, const std::string& source) {
   return std::regex_replace(std::regex_replace(literal, names, "\"$2\":"), commas, "$1");
 }
 
-/// 16 numbers, columns first, a rotation and a translation.
-Frame frame_at(const JsonAt& at) {
-  const Eigen::VectorXd numbers = at.numbers(16);
-  const Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
-  const Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
-  if (!((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-3) || !(r.determinant() > 0) ||
-      !(m.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
-    at.fail("expected a rotation and a translation, columns first");
-  Frame frame = Frame::Identity();
-  frame.linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
-  frame.translation() = m.topRightCorner<3, 1>();
-  return frame;
-}
+constexpr char kPoseSchema[] = R"({
+  "type": "object", "required": ["jointTransforms"], "properties": {
+    "jointTransforms": {"type": "object", "additionalProperties": {
+      "type": "object", "required": ["offsetMatrix", "radius"], "properties": {
+        "offsetMatrix": {"type": "array", "minItems": 16, "maxItems": 16, "items": {"type": "number"}},
+        "radius": {"type": "number", "exclusiveMinimum": 0, "maximum": 0.1}}}}
+  }
+})";
 
 }  // namespace
 
@@ -48,15 +42,23 @@ int joint_index(std::string_view name) {
 
 HandPose parse_pose_js(const std::string& text, const std::string& source) {
   const nlohmann::json document = parse_json(as_json(text, source), source + " (as JSON)");
-  const JsonAt root(document, source);
-  const JsonAt transforms = root.key("jointTransforms");
+  validate_json(document, kPoseSchema, source);
   HandPose pose;
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const JsonAt joint = transforms.key(std::string(kJointNames[j]));
-    pose.joints[j] = frame_at(joint.key("offsetMatrix"));
-    const JsonAt radius = joint.key("radius");
-    pose.radius_m[j] = radius.number();
-    if (!(pose.radius_m[j] > 0 && pose.radius_m[j] < 0.1)) radius.fail("expected a radius between 0 and 0.1 m");
+  for (std::size_t k = 0; k < kJointCount; ++k) {
+    const std::string name(kJointNames[k]);
+    const auto joint = document["jointTransforms"].find(name);
+    if (joint == document["jointTransforms"].end()) refuse(source, "/jointTransforms", in_quotes(name) + " is missing");
+    const auto numbers = (*joint)["offsetMatrix"].get<std::array<double, 16>>();
+    const Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
+    const Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
+    if (!((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-3) || !(r.determinant() > 0) ||
+        !(m.row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
+      refuse(source, "/jointTransforms/" + name + "/offsetMatrix",
+             "expected a rotation and a translation, columns first");
+    pose.joints[k] = Frame::Identity();
+    pose.joints[k].linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
+    pose.joints[k].translation() = m.topRightCorner<3, 1>();
+    pose.radius_m[k] = (*joint)["radius"].get<double>();
   }
   return pose;
 }

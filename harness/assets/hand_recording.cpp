@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "assets/json_at.hpp"
+#include "assets/base64.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
@@ -15,9 +15,21 @@ namespace {
 
 static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
 
-constexpr double kMostRate_hz = 1000;
 constexpr float kMostCoordinate_m = 1e4f;
 constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
+
+constexpr char kRecordingSchema[] = R"({
+  "type": "object", "required": ["hand", "recording"], "additionalProperties": false, "properties": {
+    "hand": {"enum": ["left", "right"]},
+    "why": {"type": "string"},
+    "recording": {
+      "type": "object", "required": ["frame_rate_hz", "frames", "joints"], "additionalProperties": false, "properties": {
+        "frame_rate_hz": {"type": "number", "exclusiveMinimum": 0, "maximum": 1000},
+        "frames": {"type": "integer", "minimum": 1},
+        "joints": {"type": "string"},
+        "capsules": {"type": "string"}}}
+  }
+})";
 
 template <class Item>
 std::string block(const Item* items, std::size_t count) {
@@ -39,10 +51,19 @@ bool good(const RecordedCapsule& c) {
   return c.radius_m >= 0 && c.radius_m <= kMostCoordinate_m;
 }
 
-template <class Items>
-void check_all(const Items& items, const JsonAt& at, const char* expected) {
+/// `per_frame` items of each frame.
+template <class Item>
+std::vector<Item> read_block(const nlohmann::json& recording, const char* key, std::size_t per_frame,
+                             const char* expected, const std::string& source) {
+  const std::string pointer = std::string("/recording/") + key;
+  auto items = decode_items<Item>(recording[key].get_ref<const std::string&>(), source, pointer);
+  const auto frames = recording["frames"].get<std::size_t>();
+  if (items.size() % per_frame != 0 || items.size() / per_frame != frames)
+    refuse(source, pointer,
+           fmt::format("{} {}; expected {} for each of {} frames", items.size(), key, per_frame, frames));
   for (std::size_t k = 0; k < items.size(); ++k)
-    if (!good(items[k])) at.fail(fmt::format("number {}: expected {}", k, expected));
+    if (!good(items[k])) refuse(source, pointer, fmt::format("number {}: expected {}", k, expected));
+  return items;
 }
 
 Eigen::Quaterniond quaternion(const RecordedJoint& j) {
@@ -76,35 +97,23 @@ bool is_hand_recording(const nlohmann::json& track) { return track.is_object() &
 
 HandRecording parse_hand_recording(const std::string& text, const std::string& source) {
   const nlohmann::json document = parse_json(text, source);
-  const JsonAt root(document, source);
-  root.only({"hand", "why", "recording"});
+  validate_json(document, kRecordingSchema, source);
+  const nlohmann::json& recording = document["recording"];
   HandRecording r;
-  r.side = root.key("hand").word({"left", "right"}) == "left" ? Side::Left : Side::Right;
-  if (const auto why = root.maybe("why")) why->text();
-  const JsonAt at = root.key("recording");
-  at.only({"frame_rate_hz", "frames", "joints", "capsules"});
-  const JsonAt rate = at.key("frame_rate_hz"), count_at = at.key("frames");
-  r.frame_rate_hz = rate.number();
-  if (!(r.frame_rate_hz > 0 && r.frame_rate_hz <= kMostRate_hz))
-    rate.fail(fmt::format("expected above 0 and at most {} Hz", kMostRate_hz));
-  const JsonAt joints_where = at.key("joints");
-  const auto joints = joints_where.items<RecordedJoint>();
-  check_all(joints, joints_where, "a finite position, a unit quaternion and a radius of at least 0");
-  const double count = count_at.number();
-  if (!(count >= 1 && count == std::floor(count) && count * kRecordedJointCount == static_cast<double>(joints.size())))
-    joints_where.fail(fmt::format("{} joints; expected {} for each of {} frames, at least one", joints.size(),
-                                  kRecordedJointCount, count));
-  r.frames.resize(static_cast<std::size_t>(count));
+  r.side = document["hand"] == "left" ? Side::Left : Side::Right;
+  r.frame_rate_hz = recording["frame_rate_hz"].get<double>();
+  r.has_capsules = recording.contains("capsules");
+  const auto joints =
+      read_block<RecordedJoint>(recording, "joints", kRecordedJointCount,
+                                "a finite position, a unit quaternion and a radius of at least 0", source);
+  r.frames.resize(joints.size() / kRecordedJointCount);
   for (std::size_t k = 0; k < joints.size(); ++k)
     r.frames[k / kRecordedJointCount].joints[k % kRecordedJointCount] = joints[k];
-  if (const auto capsules_where = at.maybe("capsules")) {
-    r.has_capsules = true;
-    const auto all = capsules_where->items<RecordedCapsule>();
-    check_all(all, *capsules_where, "finite ends and a radius of at least 0");
-    if (all.size() != r.frames.size() * kCapsuleCount)
-      capsules_where->fail(fmt::format("{} capsules; expected {} per frame", all.size(), kCapsuleCount));
-    for (std::size_t k = 0; k < all.size(); ++k) r.frames[k / kCapsuleCount].capsules[k % kCapsuleCount] = all[k];
-  }
+  if (!r.has_capsules) return r;
+  const auto capsules = read_block<RecordedCapsule>(recording, "capsules", kCapsuleCount,
+                                                    "finite ends and a radius of at least 0", source);
+  for (std::size_t k = 0; k < capsules.size(); ++k)
+    r.frames[k / kCapsuleCount].capsules[k % kCapsuleCount] = capsules[k];
   return r;
 }
 

@@ -3,54 +3,42 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "assets/json_at.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::assets {
 namespace {
 
-constexpr double kMostMetres = 1e4, kMostSeconds = 86400;
+constexpr double kMostSeconds = 86400;
 
-void read_pose(const JsonAt& at, HandKey& key, bool first) {
-  const std::vector<std::string> known(kPoseNames.begin(), kPoseNames.end());
-  const auto pose = at.maybe("pose"), blend = at.maybe("blend");
-  if (!pose && first) at.fail("\"pose\" is missing; the first key must have one");
-  if (!pose && blend) blend->fail("expected \"pose\" next to it");
-  if (!pose) return;
-  key.pose = pose->word(known);
-  key.blend_to.clear();
-  key.amount = 0;
-  if (!blend) return;
-  blend->only({"to", "amount"});
-  key.blend_to = blend->key("to").word(known);
-  const JsonAt amount = blend->key("amount");
-  key.amount = amount.number();
-  if (!(key.amount >= 0 && key.amount <= 1)) amount.fail("expected 0 to 1, not " + amount.json().dump());
-}
+constexpr char kTrackSchema[] = R"({
+  "definitions": {
+    "pose": {"enum": ["relaxed", "pinch", "point"]},
+    "place": {"type": "array", "minItems": 3, "maxItems": 3,
+              "items": {"type": "number", "minimum": -1e4, "maximum": 1e4}}
+  },
+  "type": "object", "required": ["hand", "keys"], "additionalProperties": false, "properties": {
+    "hand": {"enum": ["left", "right"]},
+    "anchor": {"enum": ["palm", "pinch"]},
+    "why": {"type": "string"},
+    "keys": {"type": "array", "minItems": 1, "items": {
+      "type": "object", "required": ["time_s", "position_m"], "additionalProperties": false, "properties": {
+        "time_s": {"type": "number", "minimum": 0, "maximum": 86400},
+        "pose": {"$ref": "#/definitions/pose"},
+        "blend": {"type": "object", "required": ["to", "amount"], "additionalProperties": false, "properties": {
+          "to": {"$ref": "#/definitions/pose"},
+          "amount": {"type": "number", "minimum": 0, "maximum": 1}}},
+        "position_m": {"$ref": "#/definitions/place"},
+        "rotation_deg": {"$ref": "#/definitions/place"},
+        "grip": {"type": "boolean"},
+        "sweep": {"type": "boolean"}}}}
+  }
+})";
 
-HandKey read_key(const JsonAt& at, const HandKey* before) {
-  at.only({"time_s", "pose", "blend", "position_m", "rotation_deg", "grip", "sweep"});
-  HandKey key = before ? *before : HandKey{};
-  const JsonAt time = at.key("time_s");
-  key.time_s = time.number();
-  if (!(key.time_s >= 0 && key.time_s <= kMostSeconds)) time.fail(fmt::format("expected 0 to {} s", kMostSeconds));
-  if (before && !(key.time_s > before->time_s))
-    time.fail(fmt::format("expected later than the key before, {} s", before->time_s));
-  read_pose(at, key, before == nullptr);
-  const JsonAt position = at.key("position_m");
-  key.position_m = position.numbers(3);
-  if (!(key.position_m.cwiseAbs().maxCoeff() <= kMostMetres))
-    position.fail(fmt::format("expected at most {} m", kMostMetres));
-  if (const auto degrees = at.maybe("rotation_deg")) key.orientation = from_degrees(degrees->numbers(3));
-  const auto grip = at.maybe("grip");
-  key.grip = grip && grip->boolean();
-  const auto sweep = at.maybe("sweep");
-  key.sweep = sweep && sweep->boolean();
-  return key;
-}
+Vector vector_of(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 
 HandPose pose_of(const HandKey& key, const Hand& hand) {
   const HandPose& pose = hand.pose(key.pose);
@@ -67,17 +55,30 @@ Eigen::Quaterniond from_degrees(const Vector& degrees) {
 
 HandTrack parse_hand_track(const std::string& text, const std::string& source) {
   const nlohmann::json document = parse_json(text, source);
-  const JsonAt root(document, source);
-  root.only({"hand", "anchor", "why", "keys"});
+  validate_json(document, kTrackSchema, source);
   HandTrack track;
-  track.side = root.key("hand").word({"left", "right"}) == "left" ? Side::Left : Side::Right;
-  if (const auto anchor = root.maybe("anchor"))
-    track.anchor = anchor->word({"palm", "pinch"}) == "pinch" ? Anchor::Pinch : Anchor::Palm;
-  if (const auto why = root.maybe("why")) why->text();
-  const JsonAt keys = root.key("keys");
-  if (keys.size() == 0) keys.fail("expected at least one key");
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    HandKey key = read_key(keys.item(i), track.keys.empty() ? nullptr : &track.keys.back());
+  track.side = document["hand"] == "left" ? Side::Left : Side::Right;
+  track.anchor = document.value("anchor", "palm") == "pinch" ? Anchor::Pinch : Anchor::Palm;
+  for (const nlohmann::json& j : document["keys"]) {
+    const std::string pointer = fmt::format("/keys/{}", track.keys.size());
+    const bool first = track.keys.empty();
+    HandKey key = first ? HandKey{} : track.keys.back();
+    const double before_s = key.time_s;
+    key.time_s = j["time_s"].get<double>();
+    if (!first && !(key.time_s > before_s))
+      refuse(source, pointer + "/time_s", fmt::format("expected later than the key before, {} s", before_s));
+    if (j.contains("pose")) {
+      const nlohmann::json blend = j.value("blend", nlohmann::json::object());
+      key.pose = j["pose"].get<std::string>();
+      key.blend_to = blend.value("to", "");
+      key.amount = blend.value("amount", 0.0);
+    } else if (first || j.contains("blend")) {
+      refuse(source, pointer, "\"pose\" is missing; the first key, and one with \"blend\", must have one");
+    }
+    key.position_m = vector_of(j["position_m"]);
+    if (j.contains("rotation_deg")) key.orientation = from_degrees(vector_of(j["rotation_deg"]));
+    key.grip = j.value("grip", false);
+    key.sweep = j.value("sweep", false);
     track.keys.push_back(std::move(key));
   }
   return track;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "assets/json_at.hpp"
+#include "assets/base64.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
@@ -13,56 +13,79 @@
 namespace clothbench::assets {
 namespace {
 
-Vector vector_at(const std::optional<JsonAt>& at) {
-  if (!at) return Vector::Zero();
-  return {at->number_or("x", 0), at->number_or("y", 0), at->number_or("z", 0)};
-}
+constexpr char kRoomSchema[] = R"({
+  "definitions": {
+    "point": {"type": "object", "properties": {"x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
+    "turn": {"type": "object", "properties": {
+      "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}, "w": {"type": "number"}}},
+    "length": {"type": "number", "exclusiveMinimum": 0}
+  },
+  "type": "object", "required": ["type", "version", "spatialEntities"], "properties": {
+    "type": {"enum": ["scene"]},
+    "version": {"enum": [1]},
+    "spatialEntities": {"type": "array", "items": {"type": "object", "required": ["uuid", "locatable_META"], "properties": {
+      "uuid": {"type": "string"},
+      "semanticLabel_META": {"type": "string"},
+      "locatable_META": {"type": "object", "required": ["orientation"], "properties": {
+        "position": {"$ref": "#/definitions/point"},
+        "orientation": {"$ref": "#/definitions/turn"}}},
+      "bounded3D_META": {"type": "object", "required": ["extent"], "properties": {
+        "offset": {"$ref": "#/definitions/point"},
+        "extent": {"type": "object", "required": ["width", "height", "depth"], "properties": {
+          "width": {"$ref": "#/definitions/length"},
+          "height": {"$ref": "#/definitions/length"},
+          "depth": {"$ref": "#/definitions/length"}}}}},
+      "triangleMesh_META": {"type": "object", "required": ["vertices", "indices"], "properties": {
+        "vertices": {"type": "string"},
+        "indices": {"type": "string"}}}
+    }}}
+  }
+})";
 
-Frame pose_of(const JsonAt& entity) {
-  const JsonAt located = entity.key("locatable_META");
-  const JsonAt turned = located.key("orientation");
-  const Eigen::Quaterniond q(turned.number_or("w", 0), turned.number_or("x", 0), turned.number_or("y", 0),
-                             turned.number_or("z", 0));
+using nlohmann::json;
+
+Vector point_of(const json& j) { return {j.value("x", 0.0), j.value("y", 0.0), j.value("z", 0.0)}; }
+
+Frame pose_of(const json& entity, const std::string& source, const std::string& pointer) {
+  const json &located = entity["locatable_META"], &turned = located["orientation"];
+  const Eigen::Quaterniond q(turned.value("w", 0.0), turned.value("x", 0.0), turned.value("y", 0.0),
+                             turned.value("z", 0.0));
   // Captures hold unit quaternions to 1e-6; anything far from that is another kind of data.
   if (!(std::abs(q.norm() - 1) <= 1e-3))
-    turned.fail(fmt::format("expected a unit quaternion, not of norm {}", q.norm()));
+    refuse(source, pointer + "/locatable_META/orientation",
+           fmt::format("expected a unit quaternion, not of norm {}", q.norm()));
   Frame frame = Frame::Identity();
   frame.linear() = q.normalized().toRotationMatrix();
-  frame.translation() = vector_at(located.maybe("position"));
+  frame.translation() = point_of(located.value("position", json::object()));
   return frame;
 }
 
-double extent_at(const JsonAt& extent, const char* name) {
-  const double v = extent.number_or(name, 0);
-  if (!(v > 0)) extent.fail(fmt::format("\"{}\" is {}; expected more than 0 m", name, v));
-  return v;
-}
-
-Table table_at(const JsonAt& entity, const JsonAt& bounded) {
+Table table_of(const json& entity, const Frame& frame) {
   Table table;
-  table.uuid = entity.key("uuid").text();
-  table.frame = pose_of(entity);
-  const JsonAt extent = bounded.key("extent");
-  const Vector low = vector_at(bounded.maybe("offset"));
-  table.box =
-      Box(low, low + Vector(extent_at(extent, "width"), extent_at(extent, "height"), extent_at(extent, "depth")));
+  table.uuid = entity["uuid"].get<std::string>();
+  table.frame = frame;
+  const json &bounded = entity["bounded3D_META"], &extent = bounded["extent"];
+  const Vector low = point_of(bounded.value("offset", json::object()));
+  table.box = Box(
+      low, low + Vector(extent["width"].get<double>(), extent["height"].get<double>(), extent["depth"].get<double>()));
   return table;
 }
 
-TriangleMesh mesh_at(const JsonAt& entity, const JsonAt& stored) {
-  const Frame frame = pose_of(entity);
-  const JsonAt vertices_at = stored.key("vertices"), indices_at = stored.key("indices");
+TriangleMesh mesh_of(const json& stored, const Frame& frame, const std::string& source, const std::string& pointer) {
+  const auto text = [&](const char* key) { return stored[key].get_ref<const std::string&>(); };
   TriangleMesh mesh;
-  for (const auto& [x, y, z] : vertices_at.items<std::array<float, 3>>()) {
+  for (const auto& [x, y, z] : decode_items<std::array<float, 3>>(text("vertices"), source, pointer + "/vertices")) {
     const Vector p(x, y, z);
-    if (!p.allFinite()) vertices_at.fail(fmt::format("vertex {} is not finite", mesh.vertex_count()));
+    if (!p.allFinite())
+      refuse(source, pointer + "/vertices", fmt::format("vertex {} is not finite", mesh.vertex_count()));
     mesh.add_vertex(frame * p);
   }
-  mesh.triangles = indices_at.items<std::array<std::uint32_t, 3>>();
+  mesh.triangles = decode_items<std::array<std::uint32_t, 3>>(text("indices"), source, pointer + "/indices");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
       if (!(v < mesh.vertex_count()))
-        indices_at.fail(fmt::format("triangle {} names vertex {}, but there are {}", t, v, mesh.vertex_count()));
+        refuse(source, pointer + "/indices",
+               fmt::format("triangle {} names vertex {}, but there are {}", t, v, mesh.vertex_count()));
   return mesh;
 }
 
@@ -80,24 +103,23 @@ double Table::top_height() const {
 }
 
 Room parse_room(const std::string& text, const std::string& source, const std::string& name) {
-  const nlohmann::json document = parse_json(text, source);
-  const JsonAt root(document, source);
-  const JsonAt type = root.key("type"), version = root.key("version");
-  if (type.text() != "scene") type.fail("expected \"scene\", not " + in_quotes(type.text()));
-  if (version.number() != 1) version.fail("version " + version.json().dump() + "; 1 is understood");
+  const json document = parse_json(text, source);
+  validate_json(document, kRoomSchema, source);
+  const json& entities = document["spatialEntities"];
   Room room;
   room.name = name;
-  const JsonAt entities = root.key("spatialEntities");
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    const JsonAt entity = entities.item(i);
-    if (const auto stored = entity.maybe("triangleMesh_META")) {
-      if (!room.mesh.triangles.empty()) stored->fail("a second mesh; expected one entity with triangleMesh_META");
-      room.mesh = mesh_at(entity, *stored);
+    const std::string pointer = fmt::format("/spatialEntities/{}", i), mesh = pointer + "/triangleMesh_META";
+    const json& entity = entities[i];
+    if (entity.contains("triangleMesh_META")) {
+      if (!room.mesh.triangles.empty()) refuse(source, mesh, "a second mesh; expected one");
+      room.mesh = mesh_of(entity["triangleMesh_META"], pose_of(entity, source, pointer), source, mesh);
     }
-    const auto label = entity.maybe("semanticLabel_META"), box = entity.maybe("bounded3D_META");
-    if (label && label->text() == "TABLE" && box) room.tables.push_back(table_at(entity, *box));
+    if (entity.value("semanticLabel_META", "") == "TABLE" && entity.contains("bounded3D_META"))
+      room.tables.push_back(table_of(entity, pose_of(entity, source, pointer)));
   }
-  if (room.mesh.triangles.empty()) entities.fail("expected an entity with triangleMesh_META, the scanned mesh");
+  if (room.mesh.triangles.empty())
+    refuse(source, "/spatialEntities", "expected an entity with triangleMesh_META, the scanned mesh");
   return room;
 }
 

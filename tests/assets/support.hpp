@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "assets/assets.hpp"
-#include "assets/json_at.hpp"
+#include "assets/base64.hpp"
 #include "refusal.hpp"
 
 namespace clothbench::assets {

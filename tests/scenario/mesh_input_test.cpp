@@ -4,7 +4,7 @@
 #include <cstring>
 #include <set>
 
-#include "assets/json_at.hpp"
+#include "assets/base64.hpp"
 #include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
@@ -102,8 +102,7 @@ json square_gltf() {
 /// The same as a .glb, its buffer outside the text.
 std::string binary(json j) {
   const std::string uri = j["buffers"][0]["uri"];
-  const json encoded = uri.substr(uri.find(',') + 1);
-  const std::vector<std::uint8_t> bytes = assets::JsonAt(encoded, "uri").bytes();
+  const std::vector<std::uint8_t> bytes = assets::decode_base64(uri.substr(uri.find(',') + 1), "file", "/uri");
   std::string data(bytes.begin(), bytes.end());
   j["buffers"][0].erase("uri");
   std::string text = j.dump();

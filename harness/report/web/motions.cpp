@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include "assets/json_at.hpp"
+#include "assets/base64.hpp"
 #include "clothbench/error.hpp"
 #include "report/web/page.hpp"
 #include "results/replay.hpp"
