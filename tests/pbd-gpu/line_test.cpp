@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clothbench/record.hpp"
+#include "clothbench/vector.hpp"
 #include "contact_scenes.hpp"
 #include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
@@ -86,6 +87,34 @@ TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
       solver->reset();
       ASSERT_EQ(after(*solver, s, 8).position, first.position) << columns << "x" << rows << " repeat " << repeat;
     }
+  }
+}
+
+/// No vertex is farther from a pin than the cloth between them is long: along its lines, if it does not shear.
+TEST_F(LineScenes, TethersEndWhereTheClothIsTaut) {
+  for (const bool shear : {true, false}) {
+    Scene s = with_pins(sheet(33, 31));
+    if (!shear) s.needs = s.needs - FeatureSet{Feature::Shear};
+    s.material.membrane_stiffness_N_per_m.reset();
+    const auto farthest =
+        [&](bool tethers) {  // distance over length; not of vertices beside a pin, whose links are torn
+          const auto solver = make("xpbd", {{"substeps", 2}, {"tethers", tethers}});
+          solver->load(s);
+          const std::vector<double> x = after(*solver, s, 36).position;
+          double most = 0;
+          for (std::size_t v = 8 * 33; v < s.cloth.vertex_count(); ++v)
+            for (const std::uint32_t pin : s.pins.vertices) {
+              const double u = std::abs(static_cast<int>(v % 33) - static_cast<int>(pin)) * s.cloth.du(),
+                           along = static_cast<double>(v / 33) * s.cloth.dv();
+              if (u < 0.25) continue;
+              const double reach = shear ? std::hypot(u, along) : u + along;
+              most = max_or_nan(most, length(minus(vertex_at(x, v), vertex_at(x, pin))) / reach);
+            }
+          return most;
+        };
+    const double with = farthest(true);
+    EXPECT_TRUE(with >= (shear ? 0.98 : 0.88) && with <= 1.03) << shear << ": " << with;
+    EXPECT_GE(farthest(false), 1.1) << "or this tests nothing";
   }
 }
 
