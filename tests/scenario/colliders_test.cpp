@@ -13,6 +13,7 @@
 #include "scenario/collider_kinds.hpp"
 #include "scenario/load.hpp"
 #include "scenario/scene_parts.hpp"
+#include "sheets.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
@@ -185,18 +186,6 @@ TEST(Kinds, TrianglesOfABoxAreWhereItsDistanceIsNothing) {
   }
   EXPECT_EQ(faces.triangles.size(), 12u);
   EXPECT_NEAR(kind.nearest(box, box.center_m).distance_m, -1, 1e-12);
-}
-
-Scene sheet(int columns, int rows, double width, double height) {
-  Scene s;
-  s.cloth.columns = columns;
-  s.cloth.rows = rows;
-  s.cloth.width_m = width;
-  s.cloth.height_m = height;
-  s.cloth.areal_density_kg_per_m2 = 0.2;
-  s.cloth.axis_u = {1, 0, 0};
-  s.cloth.axis_v = {0, 0, 1};
-  return s;
 }
 
 TEST(Geometry, MassesAddUpToDensityTimesArea) {
