@@ -44,21 +44,7 @@ class Gpu : public ::testing::Test {
                            : make_xpbd(complete_settings(xpbd_info(), given), options());
   }
 
-  /// The same bits from a second solver, and after a reset.
-  static void expect_repeats(const Scene& s, int frames, const nlohmann::json& given = nlohmann::json::object());
-
   std::shared_ptr<vulkan::Device> device_;
 };
-
-inline void Gpu::expect_repeats(const Scene& s, int frames, const nlohmann::json& given) {
-  const auto one = make("xpbd", given), two = make("xpbd", given);
-  one->load(s);
-  two->load(s);
-  const ClothState a = after(*one, s, frames), b = after(*two, s, frames);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  one->reset();
-  EXPECT_EQ(after(*one, s, frames).position, a.position) << "reset restores everything";
-}
 
 }  // namespace clothbench::pbd_gpu
