@@ -3,7 +3,6 @@
 
 #include "gpu_fixture.hpp"
 #include "metrics/registry.hpp"
-#include "runner/solver_run.hpp"
 #include "scenario/strict_contact.hpp"
 
 namespace clothbench::pbd_gpu {
@@ -15,9 +14,7 @@ struct ContactRun {
 };
 inline ContactRun contact_run(const Scene& s, const nlohmann::json& given) {
   SolverRun run({&s, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, {-1, true}, "test");
-  TrialRules rules;
-  rules.accuracy_duration_s = s.time.duration_s;
-  const AccuracyPass pass = run.run_accuracy(rules);
+  const AccuracyPass pass = whole_pass(run, s);
   ContactRun out;
   out.fault = (run.outcome().status == "ok" ? "" : run.outcome().message) + check_stages(s, xpbd_info(), run.plan());
   const auto summary = scalars_of({s, pass});

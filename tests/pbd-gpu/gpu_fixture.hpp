@@ -8,6 +8,7 @@
 #include "clothbench/error.hpp"
 #include "common/gpu_solver.hpp"
 #include "sheets.hpp"
+#include "solvers.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -27,8 +28,7 @@ class Gpu : public ::testing::Test {
     try {
       device_ = vulkan::Device::get(options());
     } catch (const Error& e) {
-      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
-      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+      if (may_lack_device(e)) GTEST_SKIP() << e.what();
       FAIL() << e.what();
     }
   }
@@ -42,6 +42,14 @@ class Gpu : public ::testing::Test {
                                          const nlohmann::json& given = nlohmann::json::object()) {
     return name == "paper" ? make_paper(complete_settings(paper_info(), given), options())
                            : make_xpbd(complete_settings(xpbd_info(), given), options());
+  }
+
+  /// The state at the end of the scene, by any solver.
+  static ClothState end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
+    const SolverEntry& e = find_solver(solver);
+    const auto made = e.make(complete_settings(e.info, settings), solver == "xpbd" ? options() : DeviceOptions{});
+    made->load(s);
+    return after(*made, s, s.time.frames());
   }
 
   std::shared_ptr<vulkan::Device> device_;

@@ -6,7 +6,6 @@
 #include "clothbench/record.hpp"
 #include "clothbench/vector.hpp"
 #include "contact_scenes.hpp"
-#include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
@@ -17,24 +16,9 @@ namespace {
 class LineScenes : public Gpu {
  protected:
   static AccuracyPass run(const Scene& scene, const nlohmann::json& given) {
-    const SolverEntry entry{xpbd_info(), nullptr, xpbd_free_fall_m};
-    const nlohmann::json settings = complete_settings(entry.info, given);
-    const auto solver = make_xpbd(settings, {});
-    solver->load(scene);
-    const MetricContext context{scene, entry, settings};
-    MetricPass metrics(context);
-    AccuracyPass pass;
-    ClothState state;
-    for (int f = 0; f <= scene.time.frames(); ++f) {
-      const double dt = scene.time.dt();
-      if (f > 0) {
-        EXPECT_EQ(solver->step({f - 1, f * dt, dt, scene.motion_after(f - 1)}), StepStatus::Ok);
-      }
-      solver->read_state(state);
-      metrics.add(state);
-      pass.time_s.push_back(f * dt);
-    }
-    pass.metrics = metrics.take();
+    SolverRun run({&scene, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, options(), "test");
+    const AccuracyPass pass = whole_pass(run, scene);
+    EXPECT_EQ(run.outcome().status, "ok") << scene.name;
     return pass;
   }
 };

@@ -93,9 +93,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
     settings[kTuning]["contact_pairs"] = places;
     RunSpec spec{&s, &entry, complete_settings(xpbd_info(), settings)};
     SolverRun run(spec, {}, "test");
-    TrialRules rules;
-    rules.accuracy_duration_s = s.time.duration_s;
-    const AccuracyPass pass = run.run_accuracy(rules);
+    const AccuracyPass pass = whole_pass(run, s);
     const Outcome& outcome = run.outcome();
     EXPECT_EQ(outcome.status, overflow ? "error" : "ok") << outcome.message;
     const auto series = std::find_if(pass.metrics.begin(), pass.metrics.end(),
