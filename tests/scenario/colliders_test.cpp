@@ -60,12 +60,15 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
   EXPECT_GT(whole.colliders[0].mesh->triangles.size(), m.triangles.size());
 }
 
+assets::Vector middle_of_the_table() {
+  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
+  const auto c = assets::find_table(room, "1088a241").top_corners();
+  return (c[0] + c[1] + c[2] + c[3]) / 4;
+}
+
 TEST_F(Colliders, CornerDropHangsHalfOutside) {
   const Scene s = load_scene("contact/desk-slide");
-  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
-  const auto& table = assets::find_table(room, "1088a241");
-  const auto c = table.top_corners();
-  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  const assets::Vector center = middle_of_the_table();
   const auto x = initial_positions(s);
   std::size_t low = 0;
   for (std::size_t v = 0; v < x.size() / 3; ++v)
@@ -91,11 +94,7 @@ TEST_F(Colliders, ACornerDropMayStartInsideTheEdge) {
   const assets::Vector was(at[0], at[1], at[2]), is(in[0], in[1], in[2]);
   EXPECT_NEAR((is - was).norm(), 0.25, 1e-9);
   EXPECT_EQ(is.y(), was.y());
-  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
-  const auto& table = assets::find_table(room, "1088a241");
-  const auto c = table.top_corners();
-  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
-  EXPECT_LT((is - center).norm(), (was - center).norm()) << "towards the table's middle";
+  EXPECT_LT((is - middle_of_the_table()).norm(), (was - middle_of_the_table()).norm()) << "towards the table's middle";
 }
 
 TEST_F(Colliders, HandsMoveFrameByFrame) {
