@@ -128,35 +128,25 @@ TEST(Words, AreSplitAtBlanksOutsideQuotes) {
   EXPECT_EQ(split_words("   "), Words{});
 }
 
-TEST_F(SessionTest, WithoutArgumentsItIsTable3) {
-  start("");
-  ASSERT_TRUE(system_->wait_for_result());
-  EXPECT_EQ(commands_->all().at(0), (std::vector<std::string>{"study", "table3"}));
-}
-
 TEST_F(SessionTest, TheLastLineIsTheResultAndThenTheActivityEnds) {
-  Session* const session = start("clothbench run paper/gravity --out mine");
-  ASSERT_TRUE(system_->wait_for_finish());
-  EXPECT_EQ(commands_->all().at(0), (std::vector<std::string>{"run", "paper/gravity", "--out", "mine"}))
-      << "the program's own name may stand before";
-  EXPECT_EQ(system_->last(), "RESULT PASS");
-  EXPECT_EQ(system_->finishes(), 1);
-  session->pause();
-  EXPECT_EQ(system_->last(), "RESULT PASS") << "nothing is logged after it";
-}
-
-TEST_F(SessionTest, AFailedCommandFailsTheResult) {
-  commands_->body = [](const auto&) { return 3; };
-  start("study a");
-  ASSERT_TRUE(system_->wait_for_result());
-  EXPECT_EQ(system_->last(), "RESULT FAIL");
-}
-
-TEST_F(SessionTest, WhatIsWrongBeforeTheRunIsAResultToo) {
-  commands_->body = [](const auto&) -> int { throw std::runtime_error("thrown"); };
-  start("list solvers");
-  ASSERT_TRUE(system_->wait_for_result());
-  EXPECT_EQ(system_->last(), "RESULT FAIL");
+  commands_->body = [](const std::vector<std::string>& words) -> int {
+    if (words[0] == "list") throw std::runtime_error("wrong before the run");
+    return words[1] == "a" ? 3 : 0;
+  };
+  for (const auto& [extra, words, result] : std::vector<std::tuple<std::string, std::vector<std::string>, std::string>>{
+           {"", {"study", "table3"}, "RESULT PASS"},
+           {"clothbench run paper/gravity --out mine", {"run", "paper/gravity", "--out", "mine"}, "RESULT PASS"},
+           {"study a", {"study", "a"}, "RESULT FAIL"},
+           {"list solvers", {"list", "solvers"}, "RESULT FAIL"}}) {
+    renew();
+    Session* const session = start(extra);
+    ASSERT_TRUE(system_->wait_for_finish()) << extra;
+    EXPECT_EQ(commands_->all().back(), words);
+    EXPECT_EQ(system_->last(), result) << extra;
+    EXPECT_EQ(system_->finishes(), 1) << extra;
+    session->pause();
+    EXPECT_EQ(system_->last(), result) << "nothing is logged after it";
+  }
 }
 
 TEST_F(SessionTest, DestroyedItStopsAndSaysHowToGoOn) {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sheets.hpp"
+#include "bullet.hpp"
 
 namespace clothbench {
 namespace {
@@ -59,7 +59,7 @@ Scene falling(double y, int n = 17) {
 double lowest(const ClothState& state, const std::function<double(const Vec3&)>& distance) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; 3 * v < state.position.size(); ++v) {
-    const double d = distance(vertex(state.position, v));
+    const double d = distance(vertex_at(state.position, v));
     least = d >= least ? least : d;
   }
   return least;
@@ -67,14 +67,14 @@ double lowest(const ClothState& state, const std::function<double(const Vec3&)>&
 
 double mean_speed(const ClothState& state) {
   double sum = 0;
-  for (std::size_t v = 0; 3 * v < state.velocity.size(); ++v) sum += norm(vertex(state.velocity, v));
+  for (std::size_t v = 0; 3 * v < state.velocity.size(); ++v) sum += length(vertex_at(state.velocity, v));
   return sum * 3 / static_cast<double>(state.velocity.size());
 }
 
 TEST_P(Bullet, LiesOnAPlaneAtTheMargin) {
   const Scene s = with_collider(falling(0.1), plane());
-  const ClothState state = after(*make_solver(GetParam()), s, 108);
-  for (std::size_t v = 0; v < 17 * 17; ++v) EXPECT_NEAR(vertex(state.position, v)[1], kMargin_m, 0.002) << v;
+  const ClothState state = from_start(*make_solver(GetParam()), s, 108);
+  for (std::size_t v = 0; v < 17 * 17; ++v) EXPECT_NEAR(vertex_at(state.position, v)[1], kMargin_m, 0.002) << v;
   EXPECT_LT(mean_speed(state), 0.1);
 }
 
@@ -82,23 +82,23 @@ TEST_P(Bullet, TakesTheMarginAskedFor) {
   // 4 mm asks for steps shorter than 4 mm: 0.7 m/s over 72 Hz and 16 substeps is 0.6 mm.
   const Scene s = with_collider(falling(0.03, 9), plane());
   const auto solver = make_solver(GetParam(), {{"collision_margin_m", 0.0}, {"substeps", 16}});
-  const ClothState state = after(*solver, s, 72);
-  for (std::size_t v = 0; v < 81; ++v) EXPECT_NEAR(vertex(state.position, v)[1], 0.004, 0.002) << v;
+  const ClothState state = from_start(*solver, s, 72);
+  for (std::size_t v = 0; v < 81; ++v) EXPECT_NEAR(vertex_at(state.position, v)[1], 0.004, 0.002) << v;
 }
 
 TEST_P(Bullet, DrapesOverASphere) {
   const Scene s = with_collider(falling(0.3), sphere(0.15));
-  const ClothState state = after(*make_solver(GetParam()), s, 144);
-  const double least = lowest(state, [](const Vec3& p) { return norm(p) - 0.15; });
+  const ClothState state = from_start(*make_solver(GetParam()), s, 144);
+  const double least = lowest(state, [](const Vec3& p) { return length(p) - 0.15; });
   EXPECT_GT(least, 0.5 * kMargin_m);
   EXPECT_LT(least, 1.5 * kMargin_m);
   EXPECT_LT(lowest(state, [](const Vec3& p) { return p[1]; }), 0.05) << "it hangs down";
-  EXPECT_GT(vertex(state.position, 8 * 17 + 8)[1], 0.1) << "its middle is still on top";
+  EXPECT_GT(vertex_at(state.position, 8 * 17 + 8)[1], 0.1) << "its middle is still on top";
 }
 
 TEST_P(Bullet, DrapesOverATurnedBox) {
   const Scene s = with_collider(falling(0.3), box(0.1));
-  const ClothState state = after(*make_solver(GetParam()), s, 144);
+  const ClothState state = from_start(*make_solver(GetParam()), s, 144);
   const double r = std::sqrt(0.5);
   const double least = lowest(state, [&](const Vec3& p) {
     return std::max({std::abs(r * (p[0] - p[2])), std::abs(p[1]), std::abs(r * (p[0] + p[2]))}) - 0.1;
@@ -110,10 +110,10 @@ TEST_P(Bullet, DrapesOverATurnedBox) {
 
 TEST_P(Bullet, StaysOnAnOpenMesh) {
   const Scene s = with_collider(falling(0.3), square(0.15, false));
-  const ClothState state = after(*make_solver(GetParam()), s, 144);
+  const ClothState state = from_start(*make_solver(GetParam()), s, 144);
   int above = 0;
   for (std::size_t v = 0; v < 17 * 17; ++v) {
-    const Vec3 p = vertex(state.position, v);
+    const Vec3 p = vertex_at(state.position, v);
     if (!(std::max(std::abs(p[0]), std::abs(p[2])) < 0.14)) continue;
     EXPECT_GT(p[1], 0.25 * kMargin_m) << v;
     ++above;
@@ -145,10 +145,10 @@ TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
       for (Capsule& k : m.colliders[0].capsules) k.a_m[2] = k.b_m[2] = way(f);
       s.motion.push_back(m);
     }
-    const ClothState state = after(*make_solver(GetParam()), s, 60);
+    const ClothState state = from_start(*make_solver(GetParam()), s, 60);
     int before = 0;
     for (std::size_t v = 0; v < 17 * 17; ++v) {
-      const Vec3 p = vertex(state.position, v);
+      const Vec3 p = vertex_at(state.position, v);
       if (!(std::abs(p[0]) < 0.08 && std::abs(p[1] + 0.35) < 0.05)) continue;
       EXPECT_GT(p[2], way(60)) << v << " is before what pushes it, " << (capsules ? "capsules" : "square");
       ++before;
@@ -163,9 +163,9 @@ double slide_m(const std::string& solver, double friction) {
   Scene s = with_collider(sheet(9, 9, 0.3, 0.3), plane({d, c, 0}), friction);
   s.cloth.axis_u = {c, -d, 0};
   s.cloth.center_m = {kMargin_m * d, kMargin_m * c, 0};
-  const ClothState state = after(*make_solver(solver), s, 29);
+  const ClothState state = from_start(*make_solver(solver), s, 29);
   double sum = 0;
-  for (std::size_t v = 0; v < 81; ++v) sum += c * vertex(state.position, v)[0] - d * vertex(state.position, v)[1];
+  for (std::size_t v = 0; v < 81; ++v) sum += c * vertex_at(state.position, v)[0] - d * vertex_at(state.position, v)[1];
   return sum / 81;
 }
 
@@ -188,16 +188,16 @@ TEST_P(Bullet, AVertexLetGoFallsFreely) {
   for (int f = 0; f <= s.time.frames(); ++f) {
     FrameMotion m;
     for (std::uint32_t v = 0; v < 9; ++v) {
-      m.grip_position_m.push_back(vertex(start, v));
+      m.grip_position_m.push_back(vertex_at(start, v));
       m.grip_held.push_back(f < 4 ? 1 : 0);
     }
     s.motion.push_back(m);
   }
   const SolverEntry& entry = find_solver(GetParam());
   const auto solver = make_solver(GetParam());
-  const ClothState held = after(*solver, s, 4);
-  EXPECT_EQ(held.position, after(*make_solver(GetParam()), s, 0).position);
-  const ClothState state = run(*solver, s, 4, 22);
+  const ClothState held = from_start(*solver, s, 4);
+  EXPECT_EQ(held.position, from_start(*make_solver(GetParam()), s, 0).position);
+  const ClothState state = run_frames(*solver, s, 4, 22);
   const double fall = entry.free_fall_m(s, complete_settings(entry.info, nlohmann::json::object()), 18);
   for (std::size_t k = 0; k < start.size(); ++k)
     EXPECT_NEAR(state.position[k] - held.position[k], k % 3 == 1 ? fall : 0, 1e-4 * std::abs(fall));

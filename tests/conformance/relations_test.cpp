@@ -7,7 +7,7 @@
 
 #include "clothbench/error.hpp"
 #include "runner/conformance.hpp"
-#include "runner/solver_run.hpp"
+#include "solvers.hpp"
 
 namespace clothbench {
 namespace {
@@ -15,32 +15,27 @@ namespace {
 using nlohmann::json;
 
 /// Falls like `ballistic`, with one fault of choice.
-class Cheat : public ClothSolver {
+class Cheat : public StillSolver {
  public:
   enum class Fault { None, LiesAlongX, Numbering, Counts, SeesColliders, Remembers, NowhereByColliders, Fails };
-  Cheat(Fault fault, std::vector<FrameInput>* seen) : fault_(fault), seen_(seen) {
+  explicit Cheat(Fault fault) : StillSolver({}), fault_(fault) {
     info_.name = "cheat";
     info_.supports = kColliderFeatures | FeatureSet{Feature::Stretch, Feature::Shear, Feature::Bend,
                                                     Feature::Damping, Feature::Pins,  Feature::Friction};
   }
-  static SolverEntry entry(Fault fault, std::vector<FrameInput>* seen = nullptr) {
+  static SolverEntry entry(Fault fault) {
     SolverEntry e;
-    e.info = Cheat(fault, seen).info_;
-    e.make = [=](const json&, const DeviceOptions&) { return std::make_unique<Cheat>(fault, seen); };
+    e.info = Cheat(fault).info_;
+    e.make = [=](const json&, const DeviceOptions&) { return std::make_unique<Cheat>(fault); };
     return e;
   }
-  const SolverInfo& info() const override { return info_; }
-  DeviceInfo device() const override { return {}; }
-  void load(const Scene& s) override { scene_ = &s, reset(); }
   void reset() override {
+    StillSolver::reset();
     age_s_ = 0;
-    state_.position = initial_positions(*scene_);
-    state_.velocity.assign(state_.position.size(), 0);
   }
   StepStatus step(const FrameInput& in) override {
     static int steps = 0;
     ++steps;
-    if (seen_ != nullptr) seen_->push_back(in);
     if (fault_ == Fault::Fails) return StepStatus::Diverged;
     age_s_ += in.dt_s;
     for (std::size_t i = 0; i < state_.position.size(); ++i) {
@@ -56,21 +51,14 @@ class Cheat : public ClothSolver {
     if (fault_ == Fault::NowhereByColliders && !scene_->colliders.empty()) state_.position[0] = std::nan("");
     return StepStatus::Ok;
   }
-  void read_state(ClothState& out) const override { out = state_; }
   bool restart(const ClothState& state) override {
     age_s_ = 0;
     state_ = state;
     return fault_ != Fault::Counts;
   }
-  FrameCost last_cost() const override { return {}; }
-  Plan plan() const override { return {}; }
 
  private:
   Fault fault_;
-  std::vector<FrameInput>* seen_;
-  SolverInfo info_;
-  const Scene* scene_ = nullptr;
-  ClothState state_;
   double age_s_ = 0;
 };
 

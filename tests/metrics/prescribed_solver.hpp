@@ -1,10 +1,8 @@
 #pragma once
 #include <functional>
-#include <memory>
 #include <vector>
 
-#include "clothbench/record.hpp"
-#include "clothbench/solver.hpp"
+#include "solvers.hpp"
 
 namespace clothbench {
 
@@ -12,37 +10,32 @@ namespace clothbench {
 using Path = std::function<void(int frame, std::vector<double>& position)>;
 
 /// A solver that gives its cloth a prescribed motion, whatever is in the way, so that the values of metrics are known.
-class PrescribedSolver final : public ClothSolver {
+class PrescribedSolver final : public StillSolver {
  public:
   PrescribedSolver(SolverInfo info, Path path, std::vector<double> contact_margins_m = {})
-      : info_(std::move(info)), path_(std::move(path)), margins_(std::move(contact_margins_m)) {}
+      : StillSolver(std::move(info)), path_(std::move(path)), margins_(std::move(contact_margins_m)) {}
 
-  const SolverInfo& info() const override { return info_; }
-  DeviceInfo device() const override { return {"CPU", "", "C++20", false, "{}"}; }
-  void load(const Scene& scene) override { start_ = initial_positions(scene); }
-  void reset() override { frame_ = 0; }
+  void reset() override {
+    StillSolver::reset();
+    frame_ = 0;
+  }
   StepStatus step(const FrameInput&) override {
     ++frame_;
     return StepStatus::Ok;
   }
   void read_state(ClothState& out) const override {
-    out.position = start_;
-    out.velocity.assign(start_.size(), 0);
+    out = state_;
     path_(frame_, out.position);
   }
-  FrameCost last_cost() const override { return {kMissing, {kMissing}, {kMissing}, {kMissing}}; }
   Plan plan() const override {
-    Plan p;
-    p.stages = {{"follow", {}, 0, kMissing, kMissing}};
+    Plan p = StillSolver::plan();
     p.contact_margins_m = margins_;
     return p;
   }
 
  private:
-  SolverInfo info_;
   Path path_;
   std::vector<double> margins_;
-  std::vector<double> start_;
   int frame_ = 0;
 };
 
@@ -51,7 +44,7 @@ inline SolverEntry prescribed(const Path& path, const std::vector<double>& conta
   info.name = "prescribed";
   info.folder = "tests";
   info.precision = "float64";
-  for (std::size_t i = 0; i < kFeatureCount; ++i) info.ignores.add(static_cast<Feature>(i));
+  info.ignores = all_features();
   return {info,
           [info, path, contact_margins_m](const nlohmann::json&, const DeviceOptions&) {
             return std::make_unique<PrescribedSolver>(info, path, contact_margins_m);

@@ -16,23 +16,13 @@ namespace clothbench {
 namespace {
 
 /// Another solver with the positions that a file keeps.
-class Rounded final : public ClothSolver {
+class Rounded final : public WrappedSolver {
  public:
-  explicit Rounded(std::unique_ptr<ClothSolver> of) : of_(std::move(of)) {}
-  const SolverInfo& info() const override { return of_->info(); }
-  DeviceInfo device() const override { return of_->device(); }
-  void load(const Scene& scene) override { of_->load(scene); }
-  void reset() override { of_->reset(); }
-  StepStatus step(const FrameInput& input) override { return of_->step(input); }
+  using WrappedSolver::WrappedSolver;
   void read_state(ClothState& out) const override {
-    of_->read_state(out);
+    inner_->read_state(out);
     for (double& x : out.position) x = static_cast<double>(static_cast<float>(x));
   }
-  FrameCost last_cost() const override { return of_->last_cost(); }
-  Plan plan() const override { return of_->plan(); }
-
- private:
-  std::unique_ptr<ClothSolver> of_;
 };
 
 SolverEntry rounded(SolverEntry entry) {

@@ -3,41 +3,11 @@
 
 #include <cmath>
 
-#include "metrics/metric_pass.hpp"
-#include "metrics/registry.hpp"
-#include "prescribed_solver.hpp"
 #include "scenario/load.hpp"
+#include "unmet_bounds.hpp"
 
 namespace clothbench {
 namespace {
-
-std::map<std::string, double> summary_of(const Scene& scene, const AccuracyPass& pass) {
-  return scalars_of({scene, pass});
-}
-
-const std::vector<double>& series(const AccuracyPass& p, const std::string& name) {
-  for (const MetricSeries& m : p.metrics)
-    if (m.name == name) return m.values;
-  throw std::runtime_error("no metric " + name);
-}
-
-/// The accuracy pass of a cloth with a prescribed motion.
-AccuracyPass passed(const Scene& scene, const Path& path, const std::vector<double>& margins = {},
-                    const nlohmann::json& settings = nlohmann::json::object()) {
-  const SolverEntry entry = prescribed(path);
-  MetricPass metrics(MetricContext{scene, entry, settings, margins});
-  AccuracyPass pass;
-  const std::vector<double> start = initial_positions(scene);
-  for (int f = 0; f <= scene.time.frames(); ++f) {
-    ClothState state{start, std::vector<double>(start.size(), 0)};
-    path(f, state.position);
-    metrics.add(state);
-    pass.time_s.push_back(scene.time.at(f));
-    for (const double x : state.position) pass.position.push_back(static_cast<float>(x));
-  }
-  pass.metrics = metrics.take();
-  return pass;
-}
 
 const Path kStill = [](int, std::vector<double>&) {};
 
@@ -49,7 +19,7 @@ TEST(Touch, AFingertipBetweenVerticesTouches) {
         {"cloth.grid=[11,11]", "time.duration_s=0.05",
          R"(colliders=[{"type":"capsule","center_m":[0.03,0.06,)" + std::to_string(z + 0.1) +
              R"(],"radius_m":0.02,"length_m":0.16,"axis":[0,0,1],"velocity_m_per_s":[0,0,0.001],"margin_m":0.004}])"});
-    return series(passed(scene, kStill), "touching_fraction")[0];
+    return series(stored_run(scene, prescribed(kStill)), "touching_fraction")[0];
   };
   EXPECT_NEAR(touching(0.0049), 1.0 / 200, 1e-12) << "one triangle, a tolerance of 1 mm beyond the margin";
   EXPECT_EQ(touching(0.0051), 0);
@@ -60,38 +30,35 @@ TEST(Touch, SlidingOnAPlaneIsTheWaySlid) {
       load_scene("contact/plane", {"cloth.grid=[9,9]", "colliders.0.friction=0.3", "time.duration_s=1"});
   const double down = scene.cloth.center_m[1] - scene.colliders[0].margin_m;
   // Laid down at frame 10; from frame 20 on 1 mm a frame along x.
-  const AccuracyPass pass = passed(scene, [&](int frame, std::vector<double>& x) {
-    for (std::size_t k = 0; k < x.size(); k += 3) {
-      x[k] += frame > 20 ? 1e-3 * (frame - 20) : 0;
-      x[k + 1] -= frame >= 10 ? down : 0;
-    }
-  });
-  EXPECT_EQ(series(pass, "touching_fraction")[9], 0);
-  EXPECT_NEAR(series(pass, "touching_fraction")[10], 1, 1e-12);
-  EXPECT_EQ(series(pass, "slip_m")[10], 0) << "it has only just come to lie";
-  EXPECT_EQ(series(pass, "slip_m")[20], 0);
-  EXPECT_NEAR(series(pass, "slip_m")[21], 1e-3, 1e-12);
-  const auto s = summary_of(scene, pass);
-  EXPECT_NEAR(s.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
+  const RunRecord run = stored_run(scene, prescribed([&](int frame, std::vector<double>& x) {
+                                     for (std::size_t k = 0; k < x.size(); k += 3) {
+                                       x[k] += frame > 20 ? 1e-3 * (frame - 20) : 0;
+                                       x[k + 1] -= frame >= 10 ? down : 0;
+                                     }
+                                   }));
+  EXPECT_EQ(series(run, "touching_fraction")[9], 0);
+  EXPECT_NEAR(series(run, "touching_fraction")[10], 1, 1e-12);
+  EXPECT_EQ(series(run, "slip_m")[10], 0) << "it has only just come to lie";
+  EXPECT_EQ(series(run, "slip_m")[20], 0);
+  EXPECT_NEAR(series(run, "slip_m")[21], 1e-3, 1e-12);
+  EXPECT_NEAR(run.summary.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
 }
 
 /// The distance that contact holds the cloth at is the solver's to tell, in whatever words its settings have for it.
 TEST(Touch, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
-  const auto touching = [&](double height, const std::vector<double>& margins,
-                            const nlohmann::json& settings = nlohmann::json::object()) {
+  const auto touching = [&](double height, const std::vector<double>& margins) {
     const double down = scene.cloth.center_m[1] - height;
     const Path path = [=](int, std::vector<double>& x) {
       for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
     };
-    return series(passed(scene, path, margins, settings), "touching_fraction")[0];
+    return series(stored_run(scene, prescribed(path, margins)), "touching_fraction")[0];
   };
   EXPECT_EQ(touching(0.02, {}), 0) << "the scene's margin is 4 mm";
   EXPECT_EQ(touching(0.02, {kMissing}), 0) << "without one, the scene's counts";
   EXPECT_NEAR(touching(0.02, {0.02}), 1, 1e-12);
   EXPECT_NEAR(touching(0.004, {}), 1, 1e-12);
   EXPECT_EQ(touching(0.004, {0.001}), 0) << "a solver that holds it nearer does not touch it there";
-  EXPECT_EQ(touching(0.02, {}, {{"collision_margin_m", 0.02}}), 0) << "no metric reads a solver's setting";
 }
 
 TEST(Touch, ACapsuleThatCarriesTheClothDoesNotSlip) {
@@ -100,16 +67,15 @@ TEST(Touch, ACapsuleThatCarriesTheClothDoesNotSlip) {
       {"cloth.grid=[9,9]", "time.duration_s=0.5", "time.frame_rate_hz=60",
        R"(colliders=[{"type":"capsule","center_m":[0,0,0],"radius_m":0.1,"length_m":0.4,"axis":[0,0,1],"velocity_m_per_s":[1,0,0],"friction":1}])"});
   const double down = scene.cloth.center_m[1] - 0.1 - scene.colliders[0].margin_m;
-  const AccuracyPass pass = passed(scene, [&](int frame, std::vector<double>& x) {
-    for (std::size_t k = 0; k < x.size(); k += 3) {
-      x[k] += frame / 60.0;
-      x[k + 1] -= down;
-    }
-  });
-  EXPECT_GT(series(pass, "touching_fraction")[5], 0);
-  for (const double slid : series(pass, "slip_m")) EXPECT_NEAR(slid, 0, 1e-12);
-  const auto s = summary_of(scene, pass);
-  EXPECT_EQ(s.at("pop_max_m"), 0) << "it touches to the end, and nothing pops";
+  const RunRecord run = stored_run(scene, prescribed([&](int frame, std::vector<double>& x) {
+                                     for (std::size_t k = 0; k < x.size(); k += 3) {
+                                       x[k] += frame / 60.0;
+                                       x[k + 1] -= down;
+                                     }
+                                   }));
+  EXPECT_GT(series(run, "touching_fraction")[5], 0);
+  for (const double slid : series(run, "slip_m")) EXPECT_NEAR(slid, 0, 1e-12);
+  EXPECT_EQ(run.summary.at("pop_max_m"), 0) << "it touches to the end, and nothing pops";
 }
 
 }  // namespace

@@ -89,12 +89,6 @@ TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
 
 class Chained : public Gpu {
  protected:
-  static ClothState end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
-    const SolverEntry& e = find_solver(solver);
-    const auto made = e.make(complete_settings(e.info, settings), {});
-    made->load(s);
-    return after(*made, s, s.time.frames());
-  }
   static double distance(const ClothState& a, const ClothState& b) {
     double most = 0;
     for (std::size_t k = 0; k < a.position.size(); ++k) {

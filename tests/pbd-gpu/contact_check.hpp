@@ -1,31 +1,32 @@
 #pragma once
 #include <string>
-#include <vector>
 
 #include "gpu_fixture.hpp"
+#include "metrics/registry.hpp"
+#include "scenario/strict_contact.hpp"
 
 namespace clothbench::pbd_gpu {
 
-/// Every pair of a triangle of the cloth and a convex convex shape of a collider whose boxes meet in a frame, by force.
-struct PairCheck {
-  long pairs = 0;
-  long separated = 0;  ///< those that some plane parts at both ends of the frame, with the convex shape's radius
+/// A whole run of `xpbd`, judged by the harness's measures of contact, which share no code with the solver.
+struct ContactRun {
+  std::string fault;    ///< how the run failed, what leaked, stages that are wrong; empty if nothing
+  double touching = 0;  ///< largest fraction of the cloth that touched colliders in a frame
 };
-/// For solvers that move cloth and colliders in straight lines in a frame, as `xpbd` does with substeps=1: a plane that
-/// separates a pair at both ends then separates it in between. Convex shapes are capsules, spheres, and triangles (of
-/// boxes too); directions tried come from the nearest points at both ends and 15 between them. In double, with no code
-/// of the solver's. Positions [m], three numbers per vertex.
-PairCheck check_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after,
-                      int frame);
-
-/// The same of the cloth's triangles with each other, those without a common vertex.
-PairCheck check_self_pairs(const Scene& scene, const std::vector<double>& before, const std::vector<double>& after);
-
-/// First fault in the run of a scene whose frames are steps; empty if there is none. Adds up its pairs with convex
-/// shapes, and the pairs of the cloth with itself.
-std::string fault_of(GpuSolver& solver, const Scene& s, long& pairs, long& own_pairs);
-
-/// Expects that nothing is, and more than `least` pairs: of the cloth with itself where the scene has self-contact.
-void expect_all_separated(GpuSolver& solver, const Scene& s, long least = 0);
+inline ContactRun contact_run(const Scene& s, const nlohmann::json& given) {
+  SolverRun run({&s, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, {-1, true}, "test");
+  const AccuracyPass pass = whole_pass(run, s);
+  ContactRun out;
+  out.fault = (run.outcome().status == "ok" ? "" : run.outcome().message) + check_stages(s, xpbd_info(), run.plan());
+  const auto summary = scalars_of({s, pass});
+  for (const StrictBound& b : strict_contact()) {
+    const std::string name = b.scalar;
+    if (name.starts_with("pop") || name.starts_with("stretch") || !b.defined(s)) continue;
+    if (!(summary.at(name) <= 0)) out.fault += name + " " + std::to_string(summary.at(name)) + " ";
+  }
+  for (const MetricSeries& m : pass.metrics)
+    for (const double v : m.values)
+      if (m.name == "touching_fraction") out.touching = max_or_nan(out.touching, v);
+  return out;
+}
 
 }  // namespace clothbench::pbd_gpu

@@ -7,6 +7,8 @@
 
 #include "clothbench/error.hpp"
 #include "common/gpu_solver.hpp"
+#include "sheets.hpp"
+#include "solvers.hpp"
 
 namespace clothbench::pbd_gpu {
 
@@ -26,8 +28,7 @@ class Gpu : public ::testing::Test {
     try {
       device_ = vulkan::Device::get(options());
     } catch (const Error& e) {
-      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
-      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+      if (may_lack_device(e)) GTEST_SKIP() << e.what();
       FAIL() << e.what();
     }
   }
@@ -43,73 +44,15 @@ class Gpu : public ::testing::Test {
                            : make_xpbd(complete_settings(xpbd_info(), given), options());
   }
 
-  /// The same bits from a second solver, and after a reset.
-  static void expect_repeats(const Scene& s, int frames, const nlohmann::json& given = nlohmann::json::object());
+  /// The state at the end of the scene, by any solver.
+  static ClothState end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
+    const SolverEntry& e = find_solver(solver);
+    const auto made = e.make(complete_settings(e.info, settings), solver == "xpbd" ? options() : DeviceOptions{});
+    made->load(s);
+    return after(*made, s, s.time.frames());
+  }
 
   std::shared_ptr<vulkan::Device> device_;
 };
-
-/// A horizontal sheet; features are added by the caller.
-inline Scene sheet(int columns, int rows, double width = 1, double height = 1) {
-  Scene s;
-  s.name = "sheet";
-  s.cloth.columns = columns;
-  s.cloth.rows = rows;
-  s.cloth.width_m = width;
-  s.cloth.height_m = height;
-  s.cloth.areal_density_kg_per_m2 = 0.2;
-  s.cloth.axis_u = {1, 0, 0};
-  s.cloth.axis_v = {0, 0, 1};
-  s.material.membrane_stiffness_N_per_m = 1000;
-  s.gravity_m_per_s2 = {0, -9.81, 0};
-  s.time = {72, 1};
-  s.needs = {Feature::Stretch, Feature::Shear};
-  return s;
-}
-
-inline Scene with_bending(Scene s) {
-  s.material.bending_rigidity_N_m = 1e-5;
-  s.needs.add(Feature::Bend);
-  return s;
-}
-
-inline Scene with_damping(Scene s) {
-  s.material.damping_per_s = 0.5;
-  s.needs.add(Feature::Damping);
-  return s;
-}
-
-/// First and last vertex of the first row held.
-inline Scene with_pins(Scene s) {
-  s.pins.vertices = {0, static_cast<std::uint32_t>(s.cloth.columns - 1)};
-  s.needs.add(Feature::Pins);
-  return s;
-}
-
-inline ClothState after_frame(ClothSolver& solver, const Scene& s, int frame) {
-  EXPECT_EQ(solver.step({frame, (frame + 1) * s.time.dt(), s.time.dt(), s.motion_after(frame)}), StepStatus::Ok);
-  ClothState state;
-  solver.read_state(state);
-  return state;
-}
-
-inline ClothState after(ClothSolver& solver, const Scene& s, int frames) {
-  for (int f = 0; f < frames; ++f)
-    EXPECT_EQ(solver.step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)}), StepStatus::Ok);
-  ClothState state;
-  solver.read_state(state);
-  return state;
-}
-
-inline void Gpu::expect_repeats(const Scene& s, int frames, const nlohmann::json& given) {
-  const auto one = make("xpbd", given), two = make("xpbd", given);
-  one->load(s);
-  two->load(s);
-  const ClothState a = after(*one, s, frames), b = after(*two, s, frames);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  one->reset();
-  EXPECT_EQ(after(*one, s, frames).position, a.position) << "reset restores everything";
-}
 
 }  // namespace clothbench::pbd_gpu

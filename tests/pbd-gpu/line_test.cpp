@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "clothbench/record.hpp"
+#include "clothbench/vector.hpp"
 #include "contact_scenes.hpp"
-#include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
@@ -16,24 +16,9 @@ namespace {
 class LineScenes : public Gpu {
  protected:
   static AccuracyPass run(const Scene& scene, const nlohmann::json& given) {
-    const SolverEntry entry{xpbd_info(), nullptr, xpbd_free_fall_m};
-    const nlohmann::json settings = complete_settings(entry.info, given);
-    const auto solver = make_xpbd(settings, {});
-    solver->load(scene);
-    const MetricContext context{scene, entry, settings};
-    MetricPass metrics(context);
-    AccuracyPass pass;
-    ClothState state;
-    for (int f = 0; f <= scene.time.frames(); ++f) {
-      const double dt = scene.time.dt();
-      if (f > 0) {
-        EXPECT_EQ(solver->step({f - 1, f * dt, dt, scene.motion_after(f - 1)}), StepStatus::Ok);
-      }
-      solver->read_state(state);
-      metrics.add(state);
-      pass.time_s.push_back(f * dt);
-    }
-    pass.metrics = metrics.take();
+    SolverRun run({&scene, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, options(), "test");
+    const AccuracyPass pass = whole_pass(run, scene);
+    EXPECT_EQ(run.outcome().status, "ok") << scene.name;
     return pass;
   }
 };
@@ -86,6 +71,34 @@ TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
       solver->reset();
       ASSERT_EQ(after(*solver, s, 8).position, first.position) << columns << "x" << rows << " repeat " << repeat;
     }
+  }
+}
+
+/// No vertex is farther from a pin than the cloth between them is long: along its lines, if it does not shear.
+TEST_F(LineScenes, TethersEndWhereTheClothIsTaut) {
+  for (const bool shear : {true, false}) {
+    Scene s = with_pins(sheet(33, 31));
+    if (!shear) s.needs = s.needs - FeatureSet{Feature::Shear};
+    s.material.membrane_stiffness_N_per_m.reset();
+    const auto farthest =
+        [&](bool tethers) {  // distance over length; not of vertices beside a pin, whose links are torn
+          const auto solver = make("xpbd", {{"substeps", 2}, {"tethers", tethers}});
+          solver->load(s);
+          const std::vector<double> x = after(*solver, s, 36).position;
+          double most = 0;
+          for (std::size_t v = 8 * 33; v < s.cloth.vertex_count(); ++v)
+            for (const std::uint32_t pin : s.pins.vertices) {
+              const double u = std::abs(static_cast<int>(v % 33) - static_cast<int>(pin)) * s.cloth.du(),
+                           along = static_cast<double>(v / 33) * s.cloth.dv();
+              if (u < 0.25) continue;
+              const double reach = shear ? std::hypot(u, along) : u + along;
+              most = max_or_nan(most, length(minus(vertex_at(x, v), vertex_at(x, pin))) / reach);
+            }
+          return most;
+        };
+    const double with = farthest(true);
+    EXPECT_TRUE(with >= (shear ? 0.98 : 0.88) && with <= 1.03) << shear << ": " << with;
+    EXPECT_GE(farthest(false), 1.1) << "or this tests nothing";
   }
 }
 

@@ -3,23 +3,9 @@
 #include <numbers>
 
 #include "gpu_fixture.hpp"
-#include "scenario/cloth_mesh.hpp"
+#include "strips.hpp"
 
 namespace clothbench::pbd_gpu {
-
-inline Scene of_mesh(ClothMesh mesh, std::vector<std::uint32_t> pins) {
-  Scene s = sheet(2, 2);
-  const auto [longest, second] = longest_sides(mesh);
-  s.cloth.columns = static_cast<int>(mesh.vertices.size());
-  s.cloth.rows = 1;
-  s.cloth.width_m = longest;
-  s.cloth.height_m = second;
-  s.cloth.mesh = std::make_shared<const ClothMesh>(std::move(mesh));
-  s.needs = {Feature::Stretch, Feature::ClothMesh};
-  s.pins.vertices = std::move(pins);
-  if (!s.pins.vertices.empty()) s.needs.add(Feature::Pins);
-  return s;
-}
 
 /// A square sheet of n x n vertices, pushed about inside, whose diagonals lie either way; two corners held.
 inline Scene mesh_sheet(int n) {

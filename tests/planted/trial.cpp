@@ -5,18 +5,16 @@
 #include "metrics/metric_pass.hpp"
 #include "results/replay.hpp"
 #include "runner/expect.hpp"
-#include "runner/solver_run.hpp"
+#include "solvers.hpp"
 
 namespace clothbench {
 namespace {
 
 /// A solver that gets another scene, or whose output is changed.
-class Faulty final : public ClothSolver {
+class Faulty final : public WrappedSolver {
  public:
-  Faulty(std::unique_ptr<ClothSolver> inner, const Fault& fault) : inner_(std::move(inner)), fault_(fault) {}
+  Faulty(std::unique_ptr<ClothSolver> inner, const Fault& fault) : WrappedSolver(std::move(inner)), fault_(fault) {}
 
-  const SolverInfo& info() const override { return inner_->info(); }
-  DeviceInfo device() const override { return inner_->device(); }
   void load(const Scene& scene) override {
     given_ = scene;
     if (fault_.scene) fault_.scene(given_);
@@ -38,7 +36,6 @@ class Faulty final : public ClothSolver {
     inner_->read_state(out);
     if (fault_.state) fault_.state(frame_, out);
   }
-  FrameCost last_cost() const override { return inner_->last_cost(); }
   Plan plan() const override {
     Plan p = inner_->plan();
     if (fault_.plan) fault_.plan(p);
@@ -46,7 +43,6 @@ class Faulty final : public ClothSolver {
   }
 
  private:
-  std::unique_ptr<ClothSolver> inner_;
   const Fault& fault_;
   Scene given_;
   int frame_ = 0;

@@ -134,28 +134,6 @@ class Plugin(PluginTest):
             self.assertEqual([f for f in os.listdir(self.out) if not f.endswith((".h5", ".xdmf", ".json"))], [])
             shutil.rmtree(self.out)
 
-    def test_one_rule_of_exit_codes(self):
-        """1 where a solver finished none of its runs, however it failed; 0 where it finished one."""
-        for fault, status, message in (
-            ("crash:5", "crashed", "signal 11"),
-            ("exit:5", "crashed", "exit status 0"),
-            ("hang:5", "timed_out", ""),
-            ("nan:3", "not_finite", ""),
-            ("create", "crashed", "signal 11"),
-            ("load", "error", "it was asked to fail"),
-        ):
-            words = ["run", "paper/gravity", "--solver", self.faulty(), *SMALL, "--trials", "0", "--out", self.out]
-            self.assertEqual(self.command(*words, FAULT=fault, CLOTHBENCH_SOLVER_LIMIT_S="2"), 1, self.text)
-            outcome = self.stored("gravity__faulty__default")[0]
-            self.assertEqual(outcome["status"], status)
-            self.assertIn(message, outcome["message"])
-            if fault == "nan:3":
-                self.assertEqual(outcome["failed_frame"], 3)
-            self.assertIn("FAULT faulty: finished none of 1 runs; the last: " + status, self.text)
-            # The solver can run this scene, so it finished one of two.
-            self.assertEqual(self.command(*words[:2], "validation/free-fall", *words[2:], "--resume"), 0, self.text)
-            shutil.rmtree(self.out)
-
     def test_what_a_plugin_prints_is_no_part_of_the_summary(self):
         solver = self.faulty()
         for words in (

@@ -6,6 +6,7 @@
 
 #include "clothbench/solver.hpp"
 #include "scenario/load.hpp"
+#include "sheets.hpp"
 
 namespace clothbench {
 namespace {
@@ -32,14 +33,7 @@ ClothState run(const Scene& scene, const std::string& integrator, int substeps) 
   const SolverEntry& e = find_solver("reference");
   auto solver = e.make(complete_settings(e.info, {{"substeps", substeps}, {"integrator", integrator}}), {});
   solver->load(scene);
-  for (int f = 0; f < scene.time.frames(); ++f) {
-    const double dt = scene.time.dt();
-    EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, scene.motion_after(f)}), StepStatus::Ok)
-        << integrator << ", frame " << f;
-  }
-  ClothState state;
-  solver->read_state(state);
-  return state;
+  return after(*solver, scene, scene.time.frames());
 }
 
 /// x and height of the tip (last vertex of the first row).
@@ -105,9 +99,7 @@ TEST_P(Integrators, HeldVerticesFollowTheHandAndLetGo) {
   solver->load(s);
   ClothState state;
   for (int f = 0; f < s.time.frames(); ++f) {
-    const double dt = s.time.dt();
-    ASSERT_EQ(solver->step({f, (f + 1) * dt, dt, s.motion_after(f)}), StepStatus::Ok);
-    solver->read_state(state);
+    state = after_frame(*solver, s, f);
     for (std::size_t k = 0; k < s.grips.vertices.size(); ++k) {
       if (s.motion[static_cast<std::size_t>(f)].grip_held[k] == 0) continue;
       for (std::size_t c = 0; c < 3; ++c)

@@ -14,6 +14,7 @@
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
+#include "solvers.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench::render {
@@ -30,9 +31,7 @@ struct Stored {
       : scene(load_scene(name, set)) {
     const SolverEntry& entry = find_solver("ballistic");
     SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, {}, "test");
-    TrialRules rules;
-    rules.accuracy_duration_s = scene.time.duration_s;
-    pass = run.run_accuracy(rules);
+    pass = whole_pass(run, scene);
     RunWriter writer(folder, run.header());
     writer.write_replay(replay_of(scene));
     writer.write_accuracy(pass);

@@ -6,13 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "clothbench/record.hpp"
 #include "refusal.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/reference.hpp"
-#include "runner/solver_run.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
+#include "solvers.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
@@ -21,38 +20,26 @@ namespace {
 const std::string kHitch = R"(time.hitch={"frame":3,"dt_s":0.1})", kJitter = R"(time.jitter={"share":0.5})";
 
 /// A cloth that does not move, and the frames that were requested of it.
-class Spy final : public ClothSolver {
+class Spy final : public StillSolver {
  public:
-  Spy(SolverInfo info, std::vector<FrameInput>& seen) : info_(std::move(info)), seen_(seen) {}
-  const SolverInfo& info() const override { return info_; }
-  DeviceInfo device() const override { return {}; }
-  void load(const Scene& s) override {
-    scene_ = &s;
-    state_ = {initial_positions(s), std::vector<double>(3 * s.cloth.vertex_count(), 0)};
-  }
-  void reset() override {}
+  Spy(SolverInfo info, std::vector<FrameInput>& seen) : StillSolver(std::move(info)), seen_(seen) {}
   bool restart(const ClothState&) override { return true; }
   StepStatus step(const FrameInput& in) override {
     seen_.push_back(in);
     return StepStatus::Ok;
   }
-  void read_state(ClothState& out) const override { out = state_; }
-  FrameCost last_cost() const override { return {}; }
   Plan plan() const override {
     return {{{"stand", scene_->needs, 0, kMissing, kMissing}}, {}, {{"threads", "none here", "sheet_Y"}, {"air", "-"}}};
   }
 
  private:
-  SolverInfo info_;
   std::vector<FrameInput>& seen_;
-  const Scene* scene_ = nullptr;
-  ClothState state_;
 };
 
 SolverEntry spy(std::vector<FrameInput>& seen) {
   SolverEntry e;
   e.info.name = "spy";
-  for (std::size_t i = 0; i < kFeatureCount; ++i) e.info.supports.add(static_cast<Feature>(i));
+  e.info.supports = all_features();
   e.make = [info = e.info, &seen](const nlohmann::json&, const DeviceOptions&) {
     return std::make_unique<Spy>(info, seen);
   };
@@ -121,9 +108,8 @@ TEST(UnevenFrames, ReachTheSolverInAWholeRun) {
     const Scene s = load_scene("validation/incline-stick", {how, "time.duration_s=0.25"});
     std::vector<FrameInput> seen;
     const SolverEntry entry = spy(seen);
-    TrialRules rules;
-    rules.accuracy_duration_s = s.time.duration_s;
-    SolverRun({&s, &entry, nlohmann::json::object()}, {}, "test").run_accuracy(rules);
+    SolverRun run({&s, &entry, nlohmann::json::object()}, {}, "test");
+    whole_pass(run, s);
     EXPECT_EQ(seen.size(), static_cast<std::size_t>(s.time.frames()));
     expect_frames_of(s, seen);
   }

@@ -13,6 +13,7 @@
 #include "scenario/collider_kinds.hpp"
 #include "scenario/load.hpp"
 #include "scenario/scene_parts.hpp"
+#include "sheets.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
@@ -59,12 +60,15 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
   EXPECT_GT(whole.colliders[0].mesh->triangles.size(), m.triangles.size());
 }
 
+assets::Vector middle_of_the_table() {
+  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
+  const auto c = assets::find_table(room, "1088a241").top_corners();
+  return (c[0] + c[1] + c[2] + c[3]) / 4;
+}
+
 TEST_F(Colliders, CornerDropHangsHalfOutside) {
   const Scene s = load_scene("contact/desk-slide");
-  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
-  const auto& table = assets::find_table(room, "1088a241");
-  const auto c = table.top_corners();
-  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  const assets::Vector center = middle_of_the_table();
   const auto x = initial_positions(s);
   std::size_t low = 0;
   for (std::size_t v = 0; v < x.size() / 3; ++v)
@@ -90,11 +94,7 @@ TEST_F(Colliders, ACornerDropMayStartInsideTheEdge) {
   const assets::Vector was(at[0], at[1], at[2]), is(in[0], in[1], in[2]);
   EXPECT_NEAR((is - was).norm(), 0.25, 1e-9);
   EXPECT_EQ(is.y(), was.y());
-  const auto room = assets::open_room(assets::locate_assets(false), "living_room");
-  const auto& table = assets::find_table(room, "1088a241");
-  const auto c = table.top_corners();
-  const assets::Vector center = (c[0] + c[1] + c[2] + c[3]) / 4;
-  EXPECT_LT((is - center).norm(), (was - center).norm()) << "towards the table's middle";
+  EXPECT_LT((is - middle_of_the_table()).norm(), (was - middle_of_the_table()).norm()) << "towards the table's middle";
 }
 
 TEST_F(Colliders, HandsMoveFrameByFrame) {
@@ -185,18 +185,6 @@ TEST(Kinds, TrianglesOfABoxAreWhereItsDistanceIsNothing) {
   }
   EXPECT_EQ(faces.triangles.size(), 12u);
   EXPECT_NEAR(kind.nearest(box, box.center_m).distance_m, -1, 1e-12);
-}
-
-Scene sheet(int columns, int rows, double width, double height) {
-  Scene s;
-  s.cloth.columns = columns;
-  s.cloth.rows = rows;
-  s.cloth.width_m = width;
-  s.cloth.height_m = height;
-  s.cloth.areal_density_kg_per_m2 = 0.2;
-  s.cloth.axis_u = {1, 0, 0};
-  s.cloth.axis_v = {0, 0, 1};
-  return s;
 }
 
 TEST(Geometry, MassesAddUpToDensityTimesArea) {

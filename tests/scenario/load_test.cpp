@@ -23,41 +23,35 @@ const char* const kGood = R"({"name":"x","why":"A scene for tests.","cloth":{"gr
   "areal_density_kg_per_m2":0.2,"sides":"single"},"material":{"membrane_stiffness_N_per_m":1000},
   "time":{"frame_rate_hz":72,"duration_s":1}})";
 
+Scene scene_of(const std::string& text) { return scene_from_json(parse_json(text, "test.json"), "test.json"); }
 std::string message_of(const std::string& text) {
-  return refusal([&] { scene_from_json(parse_json(text, "test.json"), "test.json"); }, ExitCode::BadInput);
+  return refusal([&] { scene_of(text); }, ExitCode::BadInput);
 }
 
 /// kGood with one change.
 std::string changed(const std::string& from, const std::string& to) { return replaced(kGood, from, to); }
 
 TEST(Load, CompletesDefaults) {
-  const Scene s = scene_from_json(parse_json(kGood, "test.json"), "test.json");
+  const Scene s = scene_of(kGood);
   EXPECT_EQ(s.gravity_m_per_s2, (Vec3{0, -9.81, 0}));
   EXPECT_EQ(s.cloth.axis_v, (Vec3{0, 0, 1}));
   EXPECT_EQ(s.time.frames(), 72);
   EXPECT_EQ(s.needs, (FeatureSet{Feature::Stretch, Feature::Shear}));
   EXPECT_EQ(s.sha256.size(), 64u);
-  // The stored scenario is complete: loading it again changes nothing.
-  EXPECT_EQ(scene_from_json(parse_json(s.json, "again"), "again").sha256, s.sha256);
+  EXPECT_EQ(scene_of(s.json).sha256, s.sha256) << "the stored scenario is complete";
 }
 
 TEST(Load, NeedsFollowTheScene) {
-  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}"), "t"), "t")
-                  .needs.has(Feature::Bend));
-  EXPECT_TRUE(scene_from_json(parse_json(changed("1000}", "1000,\"damping_per_s\":0.1}"), "t"), "t")
-                  .needs.has(Feature::Damping));
-  EXPECT_TRUE(scene_from_json(parse_json(changed("\"single\"", "\"double-duplicated\""), "t"), "t")
-                  .needs.has(Feature::DuplicatedLayer));
-  EXPECT_FALSE(
-      scene_from_json(parse_json(changed("\"single\"", "\"double\""), "t"), "t").needs.has(Feature::DoubleSided))
+  EXPECT_TRUE(scene_of(changed("1000}", "1000,\"bending_rigidity_N_m\":1e-5}")).needs.has(Feature::Bend));
+  EXPECT_TRUE(scene_of(changed("1000}", "1000,\"damping_per_s\":0.1}")).needs.has(Feature::Damping));
+  EXPECT_TRUE(scene_of(changed("single", "double-duplicated")).needs.has(Feature::DuplicatedLayer));
+  EXPECT_FALSE(scene_of(changed("single", "double")).needs.has(Feature::DoubleSided))
       << "with nothing to touch, two-sided contact is nothing";
 }
 
 TEST(Load, PinsBecomeVertices) {
-  const Scene s = scene_from_json(
-      parse_json(changed("\"time\"", R"("pins":[{"corners":["u0v0","u1v1"]},{"edge":"v0"},{"vertices":[9]}],"time")"),
-                 "t"),
-      "t");
+  const Scene s =
+      scene_of(changed("\"time\"", R"("pins":[{"corners":["u0v0","u1v1"]},{"edge":"v0"},{"vertices":[9]}],"time")"));
   EXPECT_EQ(s.pins.vertices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 9, 47}));
 }
 
@@ -123,9 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"three numbers", "[8,6]", "[8,6,4]", "/cloth/grid", "2 items"},
         Bad{"wrong type", "0.2", "\"0.2\"", "/cloth/areal_density_kg_per_m2", "number"},
         Bad{"null", "0.2", "null", "/cloth/areal_density_kg_per_m2", "number"},
-        Bad{"negative density", "0.2", "-0.2", "/cloth/areal_density_kg_per_m2", "> 0"},
         Bad{"zero density", "0.2", "0", "/cloth/areal_density_kg_per_m2", "> 0"},
-        Bad{"no vertex", "[8,6]", "[0,0]", "/cloth/grid/0", ">= 2"},
         Bad{"null in a vector", "\"time\"", "\"gravity_m_per_s2\":[0,null,0],\"time\"", "/gravity_m_per_s2/1",
             "number"},
         Bad{"no duration", "\"duration_s\":1", "\"duration_s\":0", "/time/duration_s", "> 0"},
@@ -175,8 +167,7 @@ TEST(Load, TextThatIsNoJson) {
   for (const std::string& text :
        {std::string(""), std::string("hello"), std::string("{"), std::string("\x00\xff\xfe", 3), std::string("[1,2"),
         std::string(kGood).substr(0, 100), std::string(100000, '['), std::string("{\"name\":\"\xc3\x28\"}")}) {
-    const std::string message = message_of(text);
-    EXPECT_PRED2(mentions, message, "test.json");
+    EXPECT_PRED2(mentions, message_of(text), "test.json");
   }
   EXPECT_PRED2(mentions, message_of("[]"), "expected object");
 }

@@ -25,19 +25,11 @@ constexpr std::size_t kLong = 30000, kMostOfAMessage = 700;
 const std::string kText(kLong, 'Q');
 
 json scene() {
-  return {{"name", "long"},
-          {"why", "a scene for the tests"},
-          {"cloth",
-           {{"grid", {4, 4}},
-            {"size_m", {1, 1}},
-            {"areal_density_kg_per_m2", 0.3},
-            {"sides", "single"},
-            {"pose", {{"center_m", {0, 1, 0}}}}}},
-          {"pins", {{{"edge", "u0"}}}},
-          {"colliders", {{{"type", "sphere"}, {"center_m", {0, 0, 0}}, {"radius_m", 0.2}, {"friction", 0.3}}}},
-          {"material", {{"membrane_stiffness_N_per_m", 1000}}},
-          {"assumed", {"/material/membrane_stiffness_N_per_m"}},
-          {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}}};
+  json j = parse_json(read_text(find_scenario("contact/sphere")), "sphere.json");
+  j["cloth"]["grid"] = {4, 4};
+  j["pins"] = {{{"edge", "u0"}}};
+  j["assumed"] = {"/material/membrane_stiffness_N_per_m"};
+  return j;
 }
 
 json study(const std::string& scene_file) {

@@ -305,38 +305,24 @@ TEST_F(MeshInput, RegionsAreTheTrianglesOfAGroup) {
 }
 
 TEST_F(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
-  const auto complaint = [&](const json& region) {
-    json list = json::array({region});
-    list[0]["membrane_stiffness_N_per_m"] = 100;
-    return refusal([&] { scene_of("panels.obj", "/material/regions", list); });
-  };
-  const std::string unknown = complaint({{"group", "cuff"}});
-  EXPECT_PRED2(mentions, unknown, "panels.json: /material/regions/0/group");
-  EXPECT_PRED2(mentions, unknown, "one of: ");
-  const std::string columns = complaint({{"columns", {0, 1}}});
-  EXPECT_PRED2(mentions, columns, "/material/regions/0/columns: expected a cloth that is a grid");
-  const std::string none = complaint(json::object());
-  EXPECT_PRED2(mentions, none, "/material/regions/0: expected \"group\"");
-
-  json grid = mesh_scenario({{"file", "panels.obj"}});
+  const json mesh = mesh_scenario({{"file", "panels.obj"}});
+  json grid = mesh, drawn = mesh;
   grid["cloth"].erase("mesh");
-  grid["cloth"]["grid"] = {4, 3};
-  grid["cloth"]["size_m"] = {1, 1};
-  const auto of_grid = [&](const json& region) {
-    grid["material"]["regions"] = json::array({region});
-    grid["material"]["regions"][0]["membrane_stiffness_N_per_m"] = 100;
-    return refusal([&] { scene_from_json(grid, "grid.json"); });
-  };
-  const std::string group = of_grid({{"group", "cuff"}});
-  EXPECT_PRED2(mentions, group, "/material/regions/0/group: expected a cloth that is a mesh");
-  EXPECT_PRED2(mentions, of_grid(json::object()), "/material/regions/0: expected \"columns\"");
-
-  // The group of a border has no triangle for itself.
-  json drawn = mesh_scenario({{"file", "panels.obj"}});
+  grid["cloth"].update({{"grid", {4, 3}}, {"size_m", {1, 1}}});
   drawn["cloth"]["mesh"] = {{"drawn", {{"size_m", {1, 0.5}}, {"cells", 8}}}};
-  drawn["material"]["regions"] = {{{"group", "u0"}, {"membrane_stiffness_N_per_m", 100}}};
-  const std::string line = refusal([&] { scene_from_json(drawn, "drawn.json"); });
-  EXPECT_PRED2(mentions, line, "drawn.json: /material/regions/0/group: no triangle");
+  for (const auto& [scenario, region, expected] : std::vector<std::tuple<json, json, std::string>>{
+           {mesh, {{"group", "cuff"}}, "/group: expected one of: "},
+           {mesh, {{"columns", {0, 1}}}, "/columns: expected a cloth that is a grid"},
+           {mesh, json::object(), ": expected \"group\""},
+           {grid, {{"group", "cuff"}}, "/group: expected a cloth that is a mesh"},
+           {grid, json::object(), ": expected \"columns\""},
+           {drawn, {{"group", "u0"}}, "/group: no triangle"}}) {  // a border has none for itself
+    json j = scenario;
+    j["material"]["regions"] = json::array({region});
+    j["material"]["regions"][0]["membrane_stiffness_N_per_m"] = 100;
+    EXPECT_PRED2(mentions, refusal([&] { load_scene(folder.file("panels.json", j.dump())); }),
+                 "panels.json: /material/regions/0" + expected);
+  }
 }
 
 }  // namespace

@@ -15,16 +15,6 @@
 namespace clothbench {
 namespace {
 
-TEST(Study, Table3IsFiveResolutionsByThreeSides) {
-  const Study s = load_study("table3");
-  EXPECT_EQ(s.scenes.size(), 15u);
-  EXPECT_EQ(s.trials, 5);
-  EXPECT_EQ(s.scenes.front().scene.name, "gravity-8-single");
-  EXPECT_EQ(s.scenes.back().scene.name, "gravity-128-double");
-  EXPECT_EQ(s.scenes.back().scene.cloth.columns, 128);
-  EXPECT_EQ(s.scenes.back().group, 4) << "runs of one resolution are one interleaved group";
-}
-
 TEST(Study, FaultsNameFileAndPointer) {
   const auto fault = [](const std::string& from, const std::string& to) {
     std::string text = replaced(read_text(scenario_root() / "studies/table3.json"), from, to);

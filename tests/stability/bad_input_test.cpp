@@ -115,13 +115,6 @@ TEST(Spin, TurnsAboutTheCentre) {
   EXPECT_NEAR(v[1], 1.0, 1e-12);
 }
 
-TEST(Frames, OneHitchMovesAllThatFollow) {
-  const Scene s = load({R"(time.hitch={"frame": 2, "dt_s": 0.25})"});
-  EXPECT_DOUBLE_EQ(s.time.dt_after(1), 1.0 / 60);
-  EXPECT_DOUBLE_EQ(s.time.dt_after(2), 0.25);
-  EXPECT_NEAR(s.time.at(s.time.frames()), 0.5 + 0.25 - 1.0 / 60, 1e-12);
-}
-
 TEST(Frames, JitterStaysInItsShare) {
   const Scene s = load({R"(time.jitter={"share": 0.5, "seed": 2})"});
   double least = 1, most = 0;

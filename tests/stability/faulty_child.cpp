@@ -8,30 +8,24 @@
 #include <new>
 #include <thread>
 
-#include "clothbench/error.hpp"
 #include "runner/study_runner.hpp"
+#include "solvers.hpp"
 
 namespace clothbench {
 namespace {
 
 /// Falls as a stone, until it does not.
-class Faulty final : public ClothSolver {
+class Faulty final : public StillSolver {
  public:
-  explicit Faulty(SolverInfo info) : info_(std::move(info)) {}
-  const SolverInfo& info() const override { return info_; }
-  DeviceInfo device() const override { return {"CPU", "", "C++20", false, "{}"}; }
+  using StillSolver::StillSolver;
   void load(const Scene& s) override {
     if (info_.name == "refuses") throw Error("solver refuses: no such cloth");
     if (info_.name == "no-memory") throw std::bad_alloc();
-    scene_ = &s;
-    reset();
-  }
-  void reset() override {
-    x_ = initial_positions(*scene_);
-    v_.assign(x_.size(), 0);
+    StillSolver::load(s);
   }
   StepStatus step(const FrameInput& f) override {
-    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += f.dt_s * (v_[k] += scene_->gravity_m_per_s2[k % 3] * f.dt_s);
+    for (std::size_t k = 0; k < state_.position.size(); ++k)
+      state_.position[k] += f.dt_s * (state_.velocity[k] += scene_->gravity_m_per_s2[k % 3] * f.dt_s);
     if (f.index != 2) return StepStatus::Ok;
     if (info_.name == "crashes") std::raise(SIGSEGV);
     if (info_.name == "aborts") {
@@ -45,24 +39,9 @@ class Faulty final : public ClothSolver {
       while (true) std::this_thread::sleep_for(std::chrono::seconds(1));
     if (info_.name == "throws") throw std::runtime_error("thrown in a frame");
     if (info_.name == "loses-device") return StepStatus::DeviceLost;
-    if (info_.name == "nan") x_[4] = std::numeric_limits<double>::quiet_NaN();
+    if (info_.name == "nan") state_.position[4] = std::numeric_limits<double>::quiet_NaN();
     return StepStatus::Ok;
   }
-  void read_state(ClothState& s) const override {
-    s.position = x_;
-    s.velocity = v_;
-  }
-  FrameCost last_cost() const override { return {0, {0}, {0}, {0}}; }
-  Plan plan() const override {
-    Plan p;
-    p.stages = {{"fall", {}, 0, 0, 0}};
-    return p;
-  }
-
- private:
-  const SolverInfo info_;
-  const Scene* scene_ = nullptr;
-  std::vector<double> x_, v_;
 };
 
 const SolverEntry* look_up(const std::string& name) {
@@ -71,7 +50,7 @@ const SolverEntry* look_up(const std::string& name) {
   SolverInfo info;
   info.name = name;
   info.precision = "float64";
-  for (std::size_t i = 0; i < kFeatureCount; ++i) info.ignores.add(static_cast<Feature>(i));
+  info.ignores = all_features();
   entry.info = info;
   entry.make = [info](const nlohmann::json&, const DeviceOptions&) { return std::make_unique<Faulty>(info); };
   entry.free_fall_m = [](const Scene& s, const nlohmann::json&, int n) {

@@ -6,17 +6,12 @@
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <set>
 
-#include "base/json_text.hpp"
-#include "clothbench/error.hpp"
-#include "report/view.hpp"
 #include "results/store.hpp"
-#include "runner/study_plan.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
+#include "scenario/study.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {
@@ -133,66 +128,6 @@ TEST_F(Process, OneChildTakesManyRunsAndIsReplacedAfterAFault) {
   EXPECT_EQ(worker_->children(), 4);
 }
 
-// The study's driver with a solver of its own in a child: crashes, resume.
-
-using nlohmann::json;
-
-using StabilityStudy = WithFolder;
-
-void write(const fs::path& file, const json& j) { std::ofstream(file) << j.dump(); }
-
-/// Runs a study whose solvers only the child has.
-void execute(const Study& study, const RunOptions& o) {
-  static std::map<std::string, SolverEntry> entries;
-  const RunPlan plan = plan_study(study, [](const std::string& name) -> const SolverEntry* {
-    SolverEntry& e = entries[name];
-    e.info.name = name;
-    e.make = [](const json&, const DeviceOptions&) -> std::unique_ptr<ClothSolver> { return nullptr; };
-    return &e;
-  });
-  execute_in_worker(plan, o);
-}
-
-TEST_F(StabilityStudy, RunsEveryRunAndOneCrashIsOneRow) {
-  // The falling stone of the child is out of all bounds once its cloth starts faster than ten times a fall.
-  write(dir_ / "thrown.json", {{"name", "thrown"},
-                               {"why", "thrown ever faster in a test"},
-                               {"cloth",
-                                {{"grid", {3, 3}},
-                                 {"size_m", {1, 1}},
-                                 {"areal_density_kg_per_m2", 0.2},
-                                 {"sides", "single"},
-                                 {"start", {{"shape", "rest"}, {"noise_m", 1e-6}}}}},
-                               {"material", {{"membrane_stiffness_N_per_m", 1000}}},
-                               {"gravity_m_per_s2", {0, -1, 0}},
-                               {"time", {{"frame_rate_hz", 60}, {"duration_s", 0.5}}},
-                               {"stability", {{"case", "S16"}, {"judged", {"F0", "F1", "F2"}}}}});
-  write(dir_ / "thrown-study.json",
-        {{"name", "thrown"},
-         {"why", "thrown in a test"},
-         {"protocol", "stability-map"},
-         {"scenes", {{{"file", "thrown.json"}}}},
-         {"solvers", {{{"solver", "falls"}}, {{"solver", "crashes"}}}},
-         {"trials", 1},
-         {"run_limit_s", 20},
-         {"rules", {{"frames", 0}, {"max_wall_s", 0}, {"min_frames", 1}, {"warmup_s", 0}}}});
-  const Study study = load_study((dir_ / "thrown-study.json").string());
-  RunOptions o;
-  o.out = dir_ / "out";
-  o.program = FAULTY_CHILD;
-  fs::create_directories(o.out);
-  execute(study, o);
-  EXPECT_THROW(execute(study, o), Error);
-  o.resume = true;
-  execute(study, o);
-  const RunRecord fell = read_run(finished_file(o.out, "thrown__falls__default")),
-                  crashed = read_run(finished_file(o.out, "thrown__crashes__default"));
-  EXPECT_EQ(fell.outcome.klass + " " + crashed.outcome.klass, "ok F3");
-  EXPECT_EQ(fell.summary.at("stability_grade"), 0);
-  EXPECT_EQ(crashed.summary.at("stability_grade"), 2);
-  EXPECT_EQ(RunTable({crashed}).rows().at(0).part, Part::Stability);
-}
-
 TEST(StabilityCases, AreAllThereAndLoad) {
   std::set<std::string> cases;
   std::size_t full = 0;
@@ -207,7 +142,7 @@ TEST(StabilityCases, AreAllThereAndLoad) {
       EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
       // A separate process receives the scene that --resume looks for.
       if (length == StudyLength::Quick) {
-        EXPECT_EQ(scene_from_json(json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256)
+        EXPECT_EQ(scene_from_json(nlohmann::json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256)
             << item.scene.name;
       }
     }

@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "clothbench/error.hpp"
 #include "metrics/truth_errors.hpp"
 #include "scenario/load.hpp"
+#include "sheets.hpp"
+#include "solvers.hpp"
 
 namespace clothbench {
 namespace {
@@ -24,8 +25,7 @@ class Friction : public ::testing::Test {
     try {
       entry_->make(settings_, {})->device();
     } catch (const Error& e) {
-      const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
-      if (e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1") GTEST_SKIP() << e.what();
+      if (may_lack_device(e)) GTEST_SKIP() << e.what();
       FAIL() << e.what();
     }
   }
@@ -37,12 +37,7 @@ class Friction : public ::testing::Test {
     const Scene s = load_scene("validation/" + name, overrides);
     const auto solver = entry_->make(settings_, {});
     solver->load(s);
-    const double dt = s.time.dt();
-    for (int f = 0; f < s.time.frames(); ++f)
-      EXPECT_EQ(solver->step({f, (f + 1) * dt, dt, s.motion_after(f)}), StepStatus::Ok);
-    ClothState state;
-    solver->read_state(state);
-    const TruthErrors e = TruthJudge(s).judge(s.time.frames(), state);
+    const TruthErrors e = TruthJudge(s).judge(s.time.frames(), after(*solver, s, s.time.frames()));
     std::printf("%s: quantity %.6g, error %.3g\n", name.c_str(), e.quantity, e.quantity_error);
     return e;
   }
