@@ -174,6 +174,18 @@ TEST_F(Gpu, CoupledFamiliesAgreeWithDoublePrecision) {
     }
 }
 
+TEST_F(Gpu, PlanStatesSubsteps) {
+  const auto planned = [](const Scene& s, const nlohmann::json& settings) {
+    const auto solver = make("xpbd", settings);
+    solver->load(s);
+    return solver->plan().substeps;
+  };
+  const Scene falling = sheet(9, 9, 1, 1);
+  EXPECT_EQ(planned(falling, nlohmann::json::object()), 5);
+  EXPECT_EQ(planned(falling, {{"quality", "accurate"}}), 20);
+  EXPECT_EQ(planned(falling, {{"substeps", 7}}), 7);
+}
+
 TEST_F(Gpu, TethersAgreeWithDoublePrecision) {
   std::size_t turn = 0;
   for (const auto& [columns, rows] : {std::pair{2, 2}, {9, 7}, {5, 20}, {33, 17}})
