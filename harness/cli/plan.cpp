@@ -66,6 +66,7 @@ std::string plan_text(const json& p) {
     for (const json& entry : p[list]) t.rows.push_back(row(entry));
     if (t.rows.size() > 1) out += t.console();
   };
+  if (p.contains("substeps")) out += fmt::format("  substeps per frame, at most: {}\n", p["substeps"].get<int>());
   using Cells = std::vector<std::string>;
   add("Each frame", "stages", {"stage", "dispatches", "read B", "written B", "serves"}, [&](const json& s) {
     return Cells{text(s["name"]), s["dispatches"].dump(), bytes(s["read_B"]), bytes(s["write_B"]),

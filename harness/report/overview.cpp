@@ -233,9 +233,13 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
     h.facts.emplace_back(name, span ? *values.begin() + " to " + *values.rbegin() : joined(values));
   }
   std::set<std::string> trials;
-  for (const RunRecord& c : table.runs())
+  bool withheld = false;
+  for (const RunRecord& c : table.runs()) {
     if (!c.trials.empty()) trials.insert(std::to_string(c.trials.size()));
-  h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials));
+    withheld = withheld || c.withheld.contains("frame_wall_median_s");
+  }
+  const std::string none = withheld ? "withheld" : "none timed";
+  h.facts.emplace_back("trials per run", trials.empty() ? none : joined(trials));
   h.title = fmt::format("Cloth solvers on {}: {}", device.empty() ? "an unknown machine" : device,
                         studies.empty() ? "runs" : joined(studies));
   return h;

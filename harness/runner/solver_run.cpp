@@ -42,6 +42,7 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
     j["left_out"].push_back({{"what", l.what}, {"why", l.why}});
     if (!l.no_parameter.empty()) j["left_out"].back()["no_parameter"] = l.no_parameter;
   }
+  if (plan.substeps > 0) j["substeps"] = plan.substeps;
   // One per collider, so that a reader need not match names, which need not differ.
   for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k) {
     const Collider& c = scene.colliders[k];

@@ -188,6 +188,8 @@ TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   EXPECT_NE(facts().find("2026-01-01 to 2026-01-02"), std::string::npos);
   for (RunRecord& c : runs) c.header.environment = {{"gpu", nullptr}, {"git_dirty", "?"}};
   EXPECT_EQ(facts(), "trials per run none timed");
+  runs[0].withheld["frame_wall_median_s"] = "not timed alone";
+  EXPECT_EQ(facts(), "trials per run withheld");
 }
 
 // CSV and JSON: every value, exactly.

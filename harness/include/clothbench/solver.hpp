@@ -84,6 +84,7 @@ struct Plan {
   /// Distance [m] at which the solver keeps the cloth from each collider of the scene; NaN stands for the collider's
   /// margin_m, and empty for margin_m of all colliders. Metrics decide by it where the cloth touches and slips.
   std::vector<double> contact_margins_m = {};
+  int substeps = 0;  ///< maximum per frame; 0: not stated
 };
 
 /// Cost of the last step. Device times are NaN where the device has no timestamps or the solver runs on the CPU.

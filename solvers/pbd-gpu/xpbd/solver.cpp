@@ -26,11 +26,10 @@ class Xpbd final : public GpuSolver {
   std::vector<SolverCount> counts() const override {
     if (!contact_) return {};
     const ContactDiagnostics f = contact_->diagnostics();
-    return {{"contact_infeasible", "vertices that were put at the nearest place, for none was before all their planes",
-             static_cast<double>(f.infeasible_vertices)},
-            {"contact_inside", "pairs that met at a substep's start", static_cast<double>(f.inside)},
-            {"contact_overflow", "pairs that the list had no place for", static_cast<double>(f.overflow),
-             "contact: the list of pairs had no place for all of them"}};
+    return {{"contact_infeasible", "vertices without a feasible position", static_cast<double>(f.infeasible_vertices)},
+            {"contact_inside", "pairs that touch at a substep's start", static_cast<double>(f.inside)},
+            {"contact_overflow", "candidate pairs beyond the list's capacity", static_cast<double>(f.overflow),
+             "contact: candidate pairs beyond the list's capacity, which solver.tuning.contact_pairs sets"}};
   }
 
   void reset() override {
@@ -97,6 +96,7 @@ class Xpbd final : public GpuSolver {
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
+    plan_.substeps = substeps_in(scene().time.dt());
     if (adapts) reads_back_ = true;
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
       move_grips_ = grips()->add_kernel(position_buffer());
