@@ -233,13 +233,10 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
     h.facts.emplace_back(name, span ? *values.begin() + " to " + *values.rbegin() : joined(values));
   }
   std::set<std::string> trials;
-  bool withheld = false;
-  for (const RunRecord& c : table.runs()) {
-    if (!c.trials.empty()) trials.insert(std::to_string(c.trials.size()));
-    withheld = withheld || c.withheld.contains("frame_wall_median_s");
-  }
-  const std::string none = withheld ? "withheld" : "none timed";
-  h.facts.emplace_back("trials per run", trials.empty() ? none : joined(trials));
+  for (const RunRecord& c : table.runs())
+    if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
+      trials.insert(withheld ? "withheld" : std::to_string(c.trials.size()));
+  h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials));
   h.title = fmt::format("Cloth solvers on {}: {}", device.empty() ? "an unknown machine" : device,
                         studies.empty() ? "runs" : joined(studies));
   return h;
