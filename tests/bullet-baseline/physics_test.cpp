@@ -82,11 +82,8 @@ TEST_P(Bullet, FreeFallIsThatOfItsIntegrator) {
     const auto solver = make_solver(GetParam());
     const ClothState state = from_start(*solver, s, 36);
     const double fall = entry.free_fall_m(s, complete_settings(entry.info, nlohmann::json::object()), 36);
-    const double worst = free_fall_error(s, state, 36, fall);
-    printf("  %dx%d: free-fall error at 0.5 s %.2g\n", columns, rows, worst);
-    EXPECT_LE(worst, 5e-5) << columns;  // float32 positions; the deformable body takes up to 70 substeps per frame here
-    // Damped by 0.5/s, so less than g T^2/2 and more than the fall at the maximum drag.
-    EXPECT_NEAR(fall, -0.5 * 9.81 * 0.25, 0.1 * 0.5 * 9.81 * 0.25);
+    // Positions are float32, and the deformable body takes up to 70 substeps per frame here.
+    EXPECT_LE(free_fall_error(s, state, 36, fall), 5e-5) << columns;
   }
 }
 

@@ -30,13 +30,6 @@ TEST(CompareTimes, ApartAsFarAsCanBe) {
   EXPECT_NEAR(back.p, t.p, 1e-12);
 }
 
-TEST(CompareTimes, AlikeIsNoise) {
-  const TimeRatio alike = compare_times({1, 1, 1, 1, 1}, {1, 1, 1, 1, 1});
-  EXPECT_TRUE(alike.noise());
-  EXPECT_EQ(alike.p, 1);
-  EXPECT_EQ(alike.ratio, 1);
-}
-
 TEST(CompareTimes, TooFewProcessesSayNothing) {
   const std::vector<double> four(kFive.begin(), kFive.begin() + 4);
   for (const auto& [a, b] : {std::pair(four, scaled(kFive, 10)), std::pair(kFive, scaled(four, 10))}) {

@@ -167,18 +167,6 @@ TEST(Predicates, Degenerate) {
 
 // A cloth against itself: figures worked out on paper, and the same pairs as by looking at all of them.
 
-TEST(SelfContour, TwoStripsCrossAlongTheirCommonLine) {
-  // Level, 1 m x 0.2 m; upright at x = 0.37 from z = 0.05 to 0.5: they cross from z = 0.05 to 0.2.
-  const Mesh level = sheet(9, 3, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 0.2));
-  const Mesh upright = sheet(4, 7, Point<3>(0.37, -0.1, 0.05), Point<3>(0, 0.21, 0), Point<3>(0, 0, 0.45));
-  const Contour c = self_contour(together(level, upright).view());
-  EXPECT_NEAR(c.length_m, 0.15, 1e-12);
-  EXPECT_GT(c.pairs, 3);
-  const Contour apart = self_contour(together(level, upright.moved(Point<3>(0, 0.2, 0))).view());
-  EXPECT_EQ(apart.pairs, 0);
-  EXPECT_EQ(apart.length_m, 0);
-}
-
 TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
   const Mesh flat = sheet(12, 12, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 1));
   const Mesh rolled = flat.mapped([](const Point<3>& p) {

@@ -61,15 +61,6 @@ TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
       }
 }
 
-// A whole number of equal halves: no vertex at the border of the patch, none in its plane.
-TEST(Tunnel, HalfIsExactlyHalf) {
-  const auto narrow = [](double y) { return sheet(31, 31, {-0.4, y - 0.5, 0.013}, {0.8, 0, 0}, {0, 1, 0}); };
-  Watched w(patch(5), narrow(0.7));
-  EXPECT_EQ(w.move(narrow(0)), 0.5);
-  EXPECT_NEAR(w.contour_m(), 0.8, 1e-12);
-  for (const int n : w.counts()) EXPECT_TRUE(n == 0 || n == -1) << n;  // down, against the normal
-}
-
 TEST(Tunnel, RoundTheBorderAndBackCountsNothingButThroughAndRoundDoes) {
   const Mesh cloth = sheet(4, 4, {-0.1, 0, -0.1}, {0.2, 0, 0}, {0, 0, 0.2});
   const auto at = [&](double x, double y) { return cloth.moved({x, y, 0}); };

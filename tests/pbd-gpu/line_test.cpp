@@ -16,7 +16,7 @@ namespace {
 class LineScenes : public Gpu {
  protected:
   static AccuracyPass run(const Scene& scene, const nlohmann::json& given) {
-    SolverRun run({&scene, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, options(), "test");
+    clothbench::SolverRun run({&scene, &find_solver("xpbd"), complete_settings(xpbd_info(), given)}, options(), "test");
     const AccuracyPass pass = whole_pass(run, scene);
     EXPECT_EQ(run.outcome().status, "ok") << scene.name;
     return pass;

@@ -311,7 +311,7 @@ TEST_F(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
   grid["cloth"].update({{"grid", {4, 3}}, {"size_m", {1, 1}}});
   drawn["cloth"]["mesh"] = {{"drawn", {{"size_m", {1, 0.5}}, {"cells", 8}}}};
   for (const auto& [scenario, region, expected] : std::vector<std::tuple<json, json, std::string>>{
-           {mesh, {{"group", "cuff"}}, "/group: expected one of: "},
+           {mesh, {{"group", "cuff"}}, "/group: the mesh has no triangles in a group \"cuff\"; expected one of: back"},
            {mesh, {{"columns", {0, 1}}}, "/columns: expected a cloth that is a grid"},
            {mesh, json::object(), ": expected \"group\""},
            {grid, {{"group", "cuff"}}, "/group: expected a cloth that is a mesh"},

@@ -130,10 +130,8 @@ TEST_F(Process, OneChildTakesManyRunsAndIsReplacedAfterAFault) {
 
 TEST(StabilityCases, AreAllThereAndLoad) {
   std::set<std::string> cases;
-  std::size_t full = 0;
   for (const StudyLength length : {StudyLength::Quick, StudyLength::Full}) {
     const Study study = load_study("stability", {{}, length});
-    full = study.scenes.size();
     for (const Study::Item& item : study.scenes) {
       EXPECT_FALSE(item.scene.stability.name.empty()) << item.scene.name;
       EXPECT_NE(item.scene.stability.judged & 1u, 0u) << item.scene.name << " does not judge F0";
@@ -148,7 +146,6 @@ TEST(StabilityCases, AreAllThereAndLoad) {
     }
   }
   EXPECT_EQ(cases.size(), 26u);
-  EXPECT_GE(full, 140u);
 }
 
 }  // namespace

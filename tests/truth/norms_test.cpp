@@ -7,7 +7,6 @@
 
 #include "clothbench/error.hpp"
 #include "truth/reference_case.hpp"
-#include "truth/solutions.hpp"
 
 namespace clothbench::truth {
 namespace {
@@ -132,27 +131,6 @@ TEST(Norms, Stretch) {
   EXPECT_NEAR(e.p99, 0.01, 1e-15);  // the 198th of 200
   strains[7] = kNan;
   EXPECT_TRUE(std::isnan(stretch_error(strains, truth).p99));
-}
-
-// The whole way of a reference case: a strip's truth on the lattice, and a coarse chain's error against a fine one's,
-// which is spatial.
-TEST(Norms, ChainsOfTwoResolutionsOnTheLattice) {
-  const MaterialLattice lattice(0.25, 1);
-  const std::vector<double> times{0.3};
-  const auto on_lattice = [&](int links) {
-    const Mesh m = mesh(8, links, 0.25, 1);
-    const Nodes nodes = swing({links, 1, 9.81, 0.5}, times)[0];
-    const auto values = m.values([&](double u, double v) {
-      const auto p = node_position(nodes, v);
-      return std::array<double, 3>{p[0], p[1], u};
-    });
-    return LatticeSampler(lattice, m.rest, m.triangles).sample(values);
-  };
-  const auto fine = on_lattice(128);
-  const double e16 = lattice_rms_error(lattice, on_lattice(16), fine, 1),
-               e32 = lattice_rms_error(lattice, on_lattice(32), fine, 1);
-  EXPECT_LT(e16, 5e-3);
-  EXPECT_LT(e32, 0.6 * e16);
 }
 
 }  // namespace

@@ -20,9 +20,8 @@ export function copy_command(command) {
 /// A button that copies the commands of the studies that the runs come from and names their files; null if none is known.
 export function reproduce(doc, title, runs) {
   const studies = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => doc.studies[s]).filter(s => s.command);
-  const all = studies.map(s => s.command).join('\n'), files = studies.map(s => `${s.folder}/*.h5`).join(', ');
-  const label = `Reproduce ${title}: copy the command`;
-  return all ? button('reproduce', label, () => copy_command(all), {class: 'quiet', title: `${all}\nResult files: ${files}`}) : null;
+  const all = studies.map(s => s.command).join('\n'), files = `\nResult files: ${studies.map(s => `${s.folder}/*.h5`).join(', ')}`;
+  return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: all + files}) : null;
 }
 
 /// A head with an anchor; `more`: controls beside it.
