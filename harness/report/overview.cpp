@@ -137,7 +137,6 @@ std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   return out;
 }
 
-/// The first scene that ranks solvers.
 std::vector<Entry> errors(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
   std::string scene;
