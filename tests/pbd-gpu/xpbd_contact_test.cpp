@@ -102,7 +102,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
     ASSERT_EQ(series->values.size(), pass.time_s.size());
     EXPECT_EQ(series->values.back() > 0, overflow);
     if (!overflow) continue;
-    EXPECT_NE(outcome.message.find("list of pairs"), std::string::npos) << outcome.message;
+    EXPECT_NE(outcome.message.find("contact_pairs"), std::string::npos) << outcome.message;
     EXPECT_EQ(series->values[static_cast<std::size_t>(outcome.failed_frame)], series->values.back());
     EXPECT_EQ(series->values[static_cast<std::size_t>(outcome.failed_frame) - 1], 0);
   }

@@ -179,6 +179,7 @@ TEST(ManyRuns, AreRefusedBeforeAnyIsMade) {
 TEST(Recording, ZeroRadiiOfCapsulesAreNamed) {
   const ScratchFolder folder;
   json j = scene();
+  j["time"]["frame_rate_hz"] = 60;
   const auto why = [&](const char* type, float radius_m, bool capsules) {
     folder.file("hand.json", assets::to_json(recording(radius_m, capsules), "a test"));
     j["colliders"] = {{{"type", type}, {"track", "hand.json"}, {"friction", 0.3}}};
