@@ -223,18 +223,5 @@ TEST(UnitNumbers, FingertipInsideOneTriangle) {
   EXPECT_NEAR(against(cloth, mesh).contour_length_m, exact, 0.01 * exact);
 }
 
-// Tilted about x by y = z/10: cut along z = 0.
-TEST(UnitNumbers, HalfSpace) {
-  const Mesh cloth = sheet(7, 9, {-0.3, 0, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}).mapped([](const Point<3>& p) {
-    return Point<3>(p[0], 0.1 * p[2], p[2]);
-  });
-  const ContactSample s = half_space_contact(cloth.view(), {0, 0, 0}, {0, 1, 0});
-  EXPECT_NEAR(s.contour_length_m, 0.6, 1e-12);
-  EXPECT_NEAR(s.depth_max_m, 0.03, 1e-12);
-  const ContactSample above = half_space_contact(cloth.view(), {0, -1, 0}, {0, 1, 0});
-  EXPECT_EQ(above.contour_length_m, 0);
-  EXPECT_EQ(above.depth_max_m, 0);
-}
-
 }  // namespace
 }  // namespace clothbench::contact

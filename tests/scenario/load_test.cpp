@@ -249,12 +249,6 @@ TEST_F(DataFolderTest, AProgramOfUnknownPlaceStillHasItsSourceTree) {
   EXPECT_EQ(usual_places(kFolder, roots_), std::vector<fs::path>{roots_.source / "built/there"});
 }
 
-TEST(DataRoots, ShareIsBesideTheProgramsFolder) {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  EXPECT_EQ(data_roots().installed, program.parent_path().parent_path() / "share/clothbench");
-  EXPECT_EQ(data_roots().source, CLOTHBENCH_SOURCE_DIR);
-}
-
 TEST_F(DataFolderTest, ASceneByItsPathNeedsNoScenarioFolder) {
   const std::string scene = CLOTHBENCH_SOURCE_DIR "/scenarios/validation/hang-mesh.json";
   ASSERT_EQ(load_scene(scene).name, "hang-mesh");
