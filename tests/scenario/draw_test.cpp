@@ -263,6 +263,23 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
   EXPECT_NEAR(corners, 0.1 * kRounds, 0.06 * kRounds);
 }
 
+/// Settings `best` of the paper's solver are the point at which most claims hold, which the report names by its seed.
+TEST(DrawBox, TheBestOfThePaperIsAPointOfTheBox) {
+  StudyOptions o;
+  o.seed = 31;
+  o.count = 1;
+  const json point = load_study("reproduction", o).scenes.at(0).drawn_settings["paper"];
+  for (const char* name : {"table3", "penetration", "work-precision"}) {
+    int found = 0;
+    for (const StudySolver& s : load_study(name).solvers) {
+      if (s.label != "best") continue;
+      ++found;
+      for (const auto& [key, value] : s.settings.items()) EXPECT_EQ(value, point.value(key, json())) << name << key;
+    }
+    EXPECT_GT(found, 0) << name;
+  }
+}
+
 TEST(DrawBox, RefusesRangesThatAreNone) {
   ContactDrawer drawer(Assets::MayBeProcedural);
   for (const auto& [range, words] : {std::pair{json{2, 1}, "iterations: expected the lower bound first"},

@@ -151,7 +151,7 @@ class Xpbd final : public GpuSolver {
     last_dt_s_ = dt_s;
     controller_.next(cloth_m);
     // After a reset too what was recorded has the last frame's substeps and lists.
-    const int lists = lists_in(substeps_in(dt_s)), substeps = controller_.substeps();
+    const int lists = lists_in(dt_s), substeps = controller_.substeps();
     const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
     return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists;
   }
@@ -183,7 +183,7 @@ class Xpbd final : public GpuSolver {
       record_lines(apart, substeps - apart, substeps, dt_s, step);
       return;
     }
-    for (int list = 0, lists = lists_in(substeps); list < lists; ++list) {
+    for (int list = 0, lists = lists_in(dt_s); list < lists; ++list) {
       // Contact takes the substeps of a list for a frame of their own.
       const int first = substeps * list / lists, count = substeps * (list + 1) / lists - first;
       const double list_s = dt_s * (static_cast<double>(count) / substeps);
@@ -206,12 +206,12 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// Lists of pairs that a frame of so many substeps makes one after another. Moving shapes and attachments say how far
-  /// they go in the whole frame.
-  int lists_in(int substeps) const {
+  /// Lists of pairs that a frame makes one after another. Moving shapes and attachments say how far they go in the
+  /// whole frame.
+  int lists_in(double dt_s) const {
     if (!contact_ || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty()) return 1;
-    return contact_->with_itself() ? (substeps + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList
-                                   : controller_.lists();
+    return contact_->with_itself() ? (substeps_in(dt_s) + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList
+                                   : controller_.lists() * frames_in(dt_s);
   }
 
   /// A frame as long as several (a hitch) takes the substeps of several, so that a link turns no farther in a substep.

@@ -135,8 +135,9 @@ void SubstepController::next(double cloth_m) {
   constexpr double kGrain = rules::kSubstepGrain;
   now_ = wanted < max_ ? std::clamp(static_cast<int>(kGrain * std::ceil(wanted / kGrain)), smallest, max_) : max_;
   if (wanted <= base_) now_ = smallest;
-  const double most = std::max(1, now_ / rules::kMinSubstepsPerList);
-  lists_ = static_cast<int>(std::clamp(std::ceil(cloth_m / cell_m_ / rules::kCellsPerList), 1.0, most));
+  const int most = std::max(1, now_ / rules::kMinSubstepsPerList);
+  const double lists = std::ceil(cloth_m / cell_m_ / rules::kCellsPerList);
+  lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also of NaN
 }
 
 /// Cloth that lies takes half of the base, and later a quarter, until it moves.
