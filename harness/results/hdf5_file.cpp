@@ -38,25 +38,31 @@ void text_attribute(hid_t at, const std::string& name, const std::string& value)
 }
 
 template <class T>
-void number_attribute(hid_t at, const std::string& name, hid_t file_type, hid_t memory_type,
-                      const std::vector<T>& values, bool scalar) {
-  const Id space = h5::space(scalar ? Dims{} : Dims{values.size()});
-  const Id a(H5Acreate2(at, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute " + name);
-  h5::check(H5Awrite(a, memory_type, values.data()), "attribute " + name);
+hid_t type_of() {
+  if constexpr (std::is_same_v<T, double>)
+    return H5T_IEEE_F64LE;
+  else if constexpr (std::is_same_v<T, float>)
+    return H5T_IEEE_F32LE;
+  else
+    return H5T_STD_I64LE;
 }
 
-void number_attribute(hid_t at, const std::string& name, double v) {
-  number_attribute<double>(at, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {v}, true);
+template <class T>
+void number_attribute(hid_t at, const std::string& name, const std::vector<T>& values, bool scalar = true) {
+  const Id space = h5::space(scalar ? Dims{} : Dims{values.size()});
+  const Id a(H5Acreate2(at, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+             "attribute " + name);
+  h5::check(H5Awrite(a, type_of<T>(), values.data()), "attribute " + name);
 }
+
 /// A number, a text, a list of numbers: what StoredGroup's attributes may be.
 void json_attribute(hid_t at, const std::string& name, const nlohmann::json& value) {
-  if (value.is_string()) return text_attribute(at, name, value.get<std::string>());
-  const bool list = value.is_array();
-  const auto numbers = list ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
-  number_attribute(at, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, numbers, !list);
-}
-void integer_attribute(hid_t at, const std::string& name, std::int64_t v) {
-  number_attribute<std::int64_t>(at, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {v}, true);
+  if (value.is_string())
+    text_attribute(at, name, value.get<std::string>());
+  else if (value.is_array())
+    number_attribute(at, name, value.get<std::vector<double>>(), false);
+  else
+    number_attribute<double>(at, name, {value.get<double>()});
 }
 
 struct Label {
@@ -72,24 +78,6 @@ Id dataset(hid_t at, const std::string& name, hid_t type, const Dims& dims, cons
 }
 
 template <class T>
-struct Types;
-template <>
-struct Types<double> {
-  static hid_t file() { return H5T_IEEE_F64LE; }
-  static hid_t memory() { return H5T_NATIVE_DOUBLE; }
-};
-template <>
-struct Types<float> {
-  static hid_t file() { return H5T_IEEE_F32LE; }
-  static hid_t memory() { return H5T_NATIVE_FLOAT; }
-};
-template <>
-struct Types<std::int64_t> {
-  static hid_t file() { return H5T_STD_I64LE; }
-  static hid_t memory() { return H5T_NATIVE_INT64; }
-};
-
-template <class T>
 Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std::vector<T>& values, const Label& label,
                  const Dims& chunk = {}) {
   const Id properties = creation(H5P_DATASET_CREATE);
@@ -99,9 +87,9 @@ Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std:
     h5::check(H5Pset_shuffle(properties), "H5Pset_shuffle");
     h5::check(H5Pset_deflate(properties, 4), "H5Pset_deflate");
   }
-  Id d = dataset(at, name, Types<T>::file(), dims, label, properties);
+  Id d = dataset(at, name, type_of<T>(), dims, label, properties);
   if (!values.empty())
-    h5::check(H5Dwrite(d, Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
+    h5::check(H5Dwrite(d, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
   return d;
 }
 
@@ -172,7 +160,7 @@ class Writer {
 
   void root_attributes() {
     text_attribute(file_, "format", "clothbench-run");
-    integer_attribute(file_, "format_version", 2);
+    number_attribute<std::int64_t>(file_, "format_version", {2});
     text_attribute(file_, "scene", r_.header.scene);
     text_attribute(file_, "solver", r_.header.solver);
     text_attribute(file_, "setting", r_.header.setting);
@@ -180,10 +168,10 @@ class Writer {
 
   void scalars() {
     const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome");
-    for (const auto& [key, value] : r_.summary) number_attribute(summary, key, value);
+    for (const auto& [key, value] : r_.summary) number_attribute<double>(summary, key, {value});
     text_attribute(outcome, "status", r_.outcome.status);
     text_attribute(outcome, "class", r_.outcome.klass);
-    integer_attribute(outcome, "failed_frame", r_.outcome.failed_frame);
+    number_attribute<std::int64_t>(outcome, "failed_frame", {r_.outcome.failed_frame});
     text_attribute(outcome, "message", r_.outcome.message);
     text_attribute(outcome, "expect", r_.outcome.expect);
     text_attribute(outcome, "trajectory_sha256", trajectory_sha256(r_.accuracy));
@@ -314,7 +302,7 @@ std::string still_meshes(const RunRecord& record, const std::string& h5) {
 
 void write_hdf5(const std::filesystem::path& path, const RunRecord& record) {
   const std::filesystem::path temporary = temporary_name(path);
-  const h5::Quiet quiet;
+  h5::be_quiet();
   try {
     const Id properties = creation(H5P_FILE_CREATE), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "H5Pcreate");
     const Id file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, access), H5Fclose, "creating the file");

@@ -13,6 +13,7 @@ namespace {
 using h5::check;
 using h5::Dims;
 using h5::Id;
+using nlohmann::json;
 
 constexpr hsize_t kMostValues = hsize_t{1} << 31;
 
@@ -57,15 +58,24 @@ void require_text(hid_t type) {
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) <= 0) throw Error("expected variable-length text");
 }
 
-std::string text_attribute(hid_t at, const char* name) {
-  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name),
-      stored(H5Aget_type(a), H5Tclose, "H5Aget_type"), type = h5::string_type(),
-                                                       space(H5Aget_space(a), H5Sclose, "H5Aget_space");
-  require_text(stored);
-  if (H5Sget_simple_extent_npoints(space) != 1) throw Error(std::string("attribute ") + name + ": expected one text");
-  char* text = nullptr;
-  check(H5Aread(a, type, &text), std::string("attribute ") + name);
-  return take_text(text);
+/// A text, a number or a list of numbers: what write_hdf5 makes of attributes.
+json attribute(hid_t at, const std::string& name) {
+  const std::string what = "attribute " + name;
+  const Id a(H5Aopen(at, name.c_str(), H5P_DEFAULT), H5Aclose, what), stored(H5Aget_type(a), H5Tclose, "H5Aget_type"),
+      space(H5Aget_space(a), H5Sclose, "H5Aget_space");
+  const hssize_t n = H5Sget_simple_extent_npoints(space);
+  if (H5Tget_class(stored) == H5T_STRING) {
+    require_text(stored);
+    if (n != 1) throw Error(what + ": expected one text");
+    char* text = nullptr;
+    check(H5Aread(a, h5::string_type(), &text), what);
+    return take_text(text);
+  }
+  if (n < 0 || n > 64) throw Error(what + ": expected one number or a short list of numbers");
+  std::vector<double> values(static_cast<std::size_t>(n));
+  check(H5Aread(a, H5T_NATIVE_DOUBLE, values.data()), what);
+  if (H5Sget_simple_extent_type(space) == H5S_SCALAR) return values.at(0);
+  return values;
 }
 
 std::string text_dataset(hid_t at, const char* name) {
@@ -78,32 +88,22 @@ std::string text_dataset(hid_t at, const char* name) {
   return take_text(text);
 }
 
-double number_attribute(hid_t at, const char* name) {
-  const Id a(H5Aopen(at, name, H5P_DEFAULT), H5Aclose, std::string("attribute ") + name),
-      space(H5Aget_space(a), H5Sclose, "H5Aget_space");
-  if (H5Sget_simple_extent_npoints(space) != 1) throw Error(std::string("attribute ") + name + ": expected one number");
-  double v = kMissing;
-  check(H5Aread(a, H5T_NATIVE_DOUBLE, &v), std::string("attribute ") + name);
-  return v;
-}
-
-herr_t collect_name(hid_t, const char* name, const H5A_info_t*, void* out) {
-  static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-  return 0;
-}
-herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* out) {
+template <class Info>
+herr_t collect(hid_t, const char* name, const Info*, void* out) {
   static_cast<std::vector<std::string>*>(out)->emplace_back(name);
   return 0;
 }
 
-std::vector<std::string> attribute_names(hid_t at) {
+json attributes(hid_t at) {
   std::vector<std::string> names;
-  check(H5Aiterate2(at, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names), "listing attributes");
-  return names;
+  check(H5Aiterate2(at, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &names), "listing attributes");
+  json out = json::object();
+  for (const std::string& name : names) out[name] = attribute(at, name);
+  return out;
 }
 std::vector<std::string> link_names(hid_t group) {
   std::vector<std::string> names;
-  check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &names), "listing a group");
+  check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &names), "listing a group");
   return names;
 }
 
@@ -111,19 +111,18 @@ Id open_group(hid_t file, const char* name) {
   return Id(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, std::string("group ") + name);
 }
 
-/// An attribute that counts something. Throws Error if no int can hold it.
-int whole_attribute(hid_t object, const char* name) {
-  const double v = number_attribute(object, name);
+/// A stored count. Throws Error if no int can hold it.
+int whole(const json& stored, const char* name) {
+  const auto v = stored.get<double>();
   if (!(std::abs(v) <= 2e9)) throw Error(std::string("attribute ") + name + ": expected a whole number");
   return static_cast<int>(v);
 }
 
 void read_scalars(hid_t file, RunRecord& r) {
-  const Id summary = open_group(file, "summary"), outcome = open_group(file, "outcome");
-  for (const std::string& n : attribute_names(summary)) r.summary[n] = number_attribute(summary, n.c_str());
-  r.outcome = {text_attribute(outcome, "status"),        text_attribute(outcome, "class"),
-               whole_attribute(outcome, "failed_frame"), text_attribute(outcome, "message"),
-               text_attribute(outcome, "expect"),        text_attribute(outcome, "trajectory_sha256")};
+  attributes(open_group(file, "summary")).get_to(r.summary);
+  const json o = attributes(open_group(file, "outcome"));
+  r.outcome = {o.at("status"),  o.at("class"),  whole(o.at("failed_frame"), "failed_frame"),
+               o.at("message"), o.at("expect"), o.at("trajectory_sha256")};
 }
 
 void read_trials(hid_t file, RunRecord& r) {
@@ -184,8 +183,8 @@ void read_accuracy(hid_t file, RunRecord& r, std::size_t stride) {
   for (const std::string& n : link_names(metrics)) {
     if (n == "time_s" || n == "frame") continue;
     const Id d(H5Dopen2(metrics, n.c_str(), H5P_DEFAULT), H5Dclose, "opening " + n);
-    a.metrics.push_back({n, text_attribute(d, "units"), text_attribute(d, "long_name"),
-                         numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
+    a.metrics.push_back(
+        {n, attribute(d, "units"), attribute(d, "long_name"), numbers<double>(metrics, n.c_str(), H5T_NATIVE_DOUBLE)});
   }
   // Triangles of a grid follow from its size; a summary includes the triangles of a mesh.
   if (stride > 0 || r.header.scenario_json.find("\"mesh\"") != std::string::npos)
@@ -201,25 +200,10 @@ void read_accuracy(hid_t file, RunRecord& r, std::size_t stride) {
   if (!frames.empty()) a.position = positions_of(file, frames, r.header.vertices);
 }
 
-/// A text, a number or a list of numbers: what write_hdf5 makes of a StoredGroup's attributes.
-nlohmann::json attribute_value(hid_t at, const std::string& name) {
-  const Id a(H5Aopen(at, name.c_str(), H5P_DEFAULT), H5Aclose, "attribute " + name),
-      type(H5Aget_type(a), H5Tclose, "H5Aget_type"), space(H5Aget_space(a), H5Sclose, "H5Aget_space");
-  if (H5Tget_class(type) == H5T_STRING) return text_attribute(at, name.c_str());
-  const hssize_t n = H5Sget_simple_extent_npoints(space);
-  if (n < 0 || n > 64) throw Error("attribute " + name + ": expected one number or a short list of numbers");
-  std::vector<double> values(static_cast<std::size_t>(n));
-  check(H5Aread(a, H5T_NATIVE_DOUBLE, values.data()), "attribute " + name);
-  if (H5Sget_simple_extent_type(space) == H5S_SCALAR) return values.at(0);
-  return values;
-}
-
 /// Every attribute and every dataset of a group but the scales of its dimensions.
 StoredGroup read_group(hid_t file, const std::string& path) {
-  const Id group(H5Gopen2(file, path.c_str(), H5P_DEFAULT), H5Gclose, "group " + path);
-  StoredGroup g;
-  g.path = path;
-  for (const std::string& name : attribute_names(group)) g.attributes[name] = attribute_value(group, name);
+  const Id group = open_group(file, path.c_str());
+  StoredGroup g{path, attributes(group), {}};
   for (const std::string& name : link_names(group)) {
     const Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose, "opening " + name);
     // Only scales have a CLASS. H5DSis_scale frees memory twice where that attribute is damaged (HDF5 1.10.8).
@@ -247,15 +231,15 @@ void read_groups(hid_t file, const std::string& path, std::vector<StoredGroup>& 
 }  // namespace
 
 RunRecord read_hdf5(const std::filesystem::path& path, std::size_t stride) {
-  const h5::Quiet quiet;
+  h5::be_quiet();
   try {
     const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "opening the file");
-    if (text_attribute(file, "format") != "clothbench-run") throw Error("not a clothbench run (attribute format)");
-    if (const int version = whole_attribute(file, "format_version"); version != 2)
+    if (attribute(file, "format") != "clothbench-run") throw Error("not a clothbench run (attribute format)");
+    if (const int version = whole(attribute(file, "format_version"), "format_version"); version != 2)
       throw Error("format_version " + std::to_string(version) + "; this build reads 2");
     RunRecord r;
-    nlohmann::json header = nlohmann::json::parse(text_dataset(file, "header_json"));
-    header["triangles"] = nlohmann::json::array();
+    json header = json::parse(text_dataset(file, "header_json"));
+    header["triangles"] = json::array();
     r.header = header_from_json(header);
     read_scalars(file, r);
     if (exists(file, "timing")) read_trials(file, r);
@@ -263,8 +247,8 @@ RunRecord read_hdf5(const std::filesystem::path& path, std::size_t stride) {
     if (stride > 0)
       for (const char* part : {"cloth", "colliders"}) read_groups(file, part, r.replay);
     return r;
-  } catch (const nlohmann::json::exception& e) {
-    throw Error(path.string() + ": header_json, /cloth or /colliders: " + what_without_text(e));
+  } catch (const json::exception& e) {
+    throw Error(path.string() + ": header_json or an attribute: " + what_without_text(e));
   } catch (const Error& e) {
     throw Error(path.string() + ": " + e.what());
   }
