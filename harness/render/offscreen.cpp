@@ -28,19 +28,13 @@ Offscreen::Offscreen(std::shared_ptr<vulkan::Device> device, VkExtent2D extent, 
   for (std::size_t k = 0; k < count; ++k)
     images_.push_back(std::make_unique<Image>(device_, kFormat, extent, VK_SAMPLE_COUNT_1_BIT,
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+  *fence_.create(device_->handle()) = vulkan::make_fence(*device_);
   commands_ = vulkan::make_commands(*device_);
-  try {
-    fence_ = vulkan::make_fence(*device_);
-  } catch (...) {  // no destructor runs then
-    vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
-    throw;
-  }
 }
 
 Offscreen::~Offscreen() {
   if (drawn_by_ != nullptr)
     for (const auto& image : images_) drawn_by_->forget(image->handle());
-  vkDestroyFence(device_->handle(), fence_, nullptr);
   vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
 }
 
@@ -50,8 +44,9 @@ void Offscreen::submit(Record&& record) {
   record();
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   vulkan::submit(*device_, commands_, fence_);
-  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, kPatience_ns), "vkWaitForFences");
-  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  const VkFence fence = fence_;
+  check(vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, kPatience_ns), "vkWaitForFences");
+  check(vkResetFences(device_->handle(), 1, &fence), "vkResetFences");
 }
 
 void Offscreen::draw(SceneRenderer& renderer, std::span<const Camera> cameras) {

@@ -45,7 +45,7 @@ class Offscreen {
   std::vector<std::unique_ptr<Image>> images_;
   std::unique_ptr<vulkan::Buffer> pixels_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  VkFence fence_ = VK_NULL_HANDLE;
+  Owned<VkFence, vkDestroyFence> fence_;
   SceneRenderer* drawn_by_ = nullptr;
 };
 

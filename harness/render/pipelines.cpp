@@ -21,20 +21,28 @@ const std::uint32_t kSurfaceFrag[] = {
 };
 
 /// Destroyed once the pipeline is made.
-struct Module {
-  VkDevice device;
-  VkShaderModule handle = VK_NULL_HANDLE;
-  Module(VkDevice d, const std::uint32_t* words, std::size_t bytes) : device(d) {
+struct Module : Owned<VkShaderModule, vkDestroyShaderModule> {
+  Module(VkDevice device, const std::uint32_t* words, std::size_t bytes) {
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
     info.codeSize = bytes;
     info.pCode = words;
-    check(vkCreateShaderModule(device, &info, nullptr, &handle), "vkCreateShaderModule");
+    check(vkCreateShaderModule(device, &info, nullptr, create(device)), "vkCreateShaderModule");
   }
-  ~Module() { vkDestroyShaderModule(device, handle, nullptr); }
-  Module(const Module&) = delete;
-  Module& operator=(const Module&) = delete;
 };
+
+/// A view of a colour image, or of its depth.
+void create_view(VkDevice device, VkImage image, VkFormat format, Owned<VkImageView, vkDestroyImageView>& view) {
+  VkImageViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = image;
+  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  info.format = format;
+  const bool depth = format == Pipelines::kDepthFormat;
+  info.subresourceRange = {
+      static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0, 1};
+  check(vkCreateImageView(device, &info, nullptr, view.create(device)), "vkCreateImageView");
+}
 
 constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
@@ -42,28 +50,11 @@ constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAG
 
 Pipelines::Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples)
     : device_(std::move(device)) {
-  try {
-    create_pass(colour, samples);
-    create_set();
-    create_layout();
-    cloth_ = create(true, samples);
-    collider_ = create(false, samples);
-  } catch (...) {  // no destructor runs then
-    release();
-    throw;
-  }
-}
-
-Pipelines::~Pipelines() { release(); }
-
-void Pipelines::release() {
-  const VkDevice d = device_->handle();
-  vkDestroyPipeline(d, cloth_, nullptr);
-  vkDestroyPipeline(d, collider_, nullptr);
-  vkDestroyPipelineLayout(d, layout_, nullptr);
-  vkDestroyDescriptorPool(d, pool_, nullptr);
-  vkDestroyDescriptorSetLayout(d, set_layout_, nullptr);
-  vkDestroyRenderPass(d, pass_, nullptr);
+  create_pass(colour, samples);
+  create_set();
+  create_layout();
+  create(true, samples, cloth_);
+  create(false, samples, collider_);
 }
 
 /// Samples and depth never leave the pass, so a tiled GPU keeps them on the chip.
@@ -122,25 +113,28 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
   info.pSubpasses = &subpass;
   info.dependencyCount = static_cast<std::uint32_t>(orders.size());
   info.pDependencies = orders.data();
-  check(vkCreateRenderPass(device_->handle(), &info, nullptr, &pass_), "vkCreateRenderPass");
+  check(vkCreateRenderPass(device_->handle(), &info, nullptr, pass_.create(device_->handle())), "vkCreateRenderPass");
 }
 
 void Pipelines::create_set() {
   std::vector<VkDescriptorSetLayoutBinding> slots(kBindings);
   for (std::uint32_t k = 0; k < kBindings; ++k)
     slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
-  vulkan::make_storage_set(*device_, slots, set_layout_, pool_, set_);
+  vulkan::make_storage_set(*device_, slots, *set_layout_.create(device_->handle()), *pool_.create(device_->handle()),
+                           set_);
 }
 
 void Pipelines::create_layout() {
   const VkPushConstantRange range{kBoth, 0, sizeof(Drawn)};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  const VkDescriptorSetLayout set_layout = set_layout_;
   info.setLayoutCount = 1;
-  info.pSetLayouts = &set_layout_;
+  info.pSetLayouts = &set_layout;
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &range;
-  check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, &layout_), "vkCreatePipelineLayout");
+  check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, layout_.create(device_->handle())),
+        "vkCreatePipelineLayout");
 }
 
 namespace {
@@ -198,7 +192,7 @@ struct States {
 
 }  // namespace
 
-VkPipeline Pipelines::create(bool cloth, VkSampleCountFlagBits samples) const {
+void Pipelines::create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) const {
   const Module vertex = cloth ? Module(device_->handle(), kClothVert, sizeof kClothVert)
                               : Module(device_->handle(), kColliderVert, sizeof kColliderVert);
   const Module fragment(device_->handle(), kSurfaceFrag, sizeof kSurfaceFrag);
@@ -207,9 +201,9 @@ VkPipeline Pipelines::create(bool cloth, VkSampleCountFlagBits samples) const {
   const VkSpecializationInfo constants{1, &entry, sizeof is_cloth, &is_cloth};
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
   stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-  stages[0].module = vertex.handle;
+  stages[0].module = vertex;
   stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-  stages[1].module = fragment.handle;
+  stages[1].module = fragment;
   stages[1].pSpecializationInfo = &constants;
   for (auto& s : stages) {
     s.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -223,10 +217,8 @@ VkPipeline Pipelines::create(bool cloth, VkSampleCountFlagBits samples) const {
   states.fill(info);
   info.layout = layout_;
   info.renderPass = pass_;
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  check(vkCreateGraphicsPipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, to.create(device_->handle())),
         "vkCreateGraphicsPipelines");
-  return pipeline;
 }
 
 void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers) {
@@ -252,32 +244,9 @@ void Pipelines::use(VkCommandBuffer commands, bool cloth, const void* constants,
   vkCmdPushConstants(commands, layout_, kBoth, 0, bytes, constants);
 }
 
-VkImageView make_view(VkDevice device, VkImage image, VkFormat format) {
-  VkImageViewCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  info.image = image;
-  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-  info.format = format;
-  const bool depth = format == Pipelines::kDepthFormat;
-  info.subresourceRange = {
-      static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0, 1};
-  VkImageView view = VK_NULL_HANDLE;
-  check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
-  return view;
-}
-
 Image::Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples,
              VkImageUsageFlags usage)
     : device_(std::move(device)) {
-  try {
-    create(format, extent, samples, usage);
-  } catch (...) {  // no destructor runs then
-    release();
-    throw;
-  }
-}
-
-void Image::create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples, VkImageUsageFlags usage) {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -287,7 +256,7 @@ void Image::create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits sam
   info.samples = samples;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = usage;
-  check(vkCreateImage(device_->handle(), &info, nullptr, &image_), "vkCreateImage");
+  check(vkCreateImage(device_->handle(), &info, nullptr, image_.create(device_->handle())), "vkCreateImage");
   VkMemoryRequirements needs{};
   vkGetImageMemoryRequirements(device_->handle(), image_, &needs);
   VkMemoryAllocateInfo memory{};
@@ -301,17 +270,9 @@ void Image::create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits sam
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
   if (memory.memoryTypeIndex == vulkan::Device::kNoMemory)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, 0);
-  check(vkAllocateMemory(device_->handle(), &memory, nullptr, &memory_), "vkAllocateMemory");
+  check(vkAllocateMemory(device_->handle(), &memory, nullptr, memory_.create(device_->handle())), "vkAllocateMemory");
   check(vkBindImageMemory(device_->handle(), image_, memory_, 0), "vkBindImageMemory");
-  view_ = make_view(device_->handle(), image_, format);
-}
-
-Image::~Image() { release(); }
-
-void Image::release() {
-  vkDestroyImageView(device_->handle(), view_, nullptr);
-  vkDestroyImage(device_->handle(), image_, nullptr);
-  vkFreeMemory(device_->handle(), memory_, nullptr);
+  create_view(device_->handle(), image_, format, view_);
 }
 
 Targets::Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour,
@@ -325,27 +286,11 @@ Targets::Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFo
       depth_(device, Pipelines::kDepthFormat, extent, samples,
              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) {}
 
-Targets::~Targets() {
-  for (const auto& [key, held] : held_) release(held);
-}
-
-void Targets::release(const Held& h) const {
-  vkDestroyFramebuffer(device_->handle(), h.framebuffer, nullptr);
-  vkDestroyImageView(device_->handle(), h.view, nullptr);
-}
-
-void Targets::forget(VkImage image) {
-  const auto found = held_.find(image);
-  if (found == held_.end()) return;
-  release(found->second);
-  held_.erase(found);
-}
-
 VkFramebuffer Targets::framebuffer(VkImage image) {
   Held& h = held_[image];
   if (h.framebuffer != VK_NULL_HANDLE) return h.framebuffer;
-  if (h.view == VK_NULL_HANDLE) h.view = make_view(device_->handle(), image, format_);
-  const std::array views = {colour_.view(), depth_.view(), h.view};
+  if (h.view == VK_NULL_HANDLE) create_view(device_->handle(), image, format_, h.view);
+  const std::array<VkImageView, 3> views = {colour_.view(), depth_.view(), h.view};
   VkFramebufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
   info.renderPass = pass_;
@@ -354,7 +299,8 @@ VkFramebuffer Targets::framebuffer(VkImage image) {
   info.width = extent_.width;
   info.height = extent_.height;
   info.layers = 1;
-  check(vkCreateFramebuffer(device_->handle(), &info, nullptr, &h.framebuffer), "vkCreateFramebuffer");
+  check(vkCreateFramebuffer(device_->handle(), &info, nullptr, h.framebuffer.create(device_->handle())),
+        "vkCreateFramebuffer");
   return h.framebuffer;
 }
 

@@ -9,6 +9,28 @@
 
 namespace clothbench::render {
 
+/// Owns an object of a device, which it must not outlive.
+template <class Handle, void(VKAPI_PTR* kDestroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
+class Owned {
+ public:
+  Owned() = default;
+  Owned(const Owned&) = delete;
+  Owned& operator=(const Owned&) = delete;
+  ~Owned() {
+    if (handle_ != VK_NULL_HANDLE) kDestroy(device_, handle_, nullptr);
+  }
+  /// Where to create it, once.
+  Handle* create(VkDevice device) {
+    device_ = device;
+    return &handle_;
+  }
+  operator Handle() const { return handle_; }  // NOLINT: this is what the C API takes
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  Handle handle_ = VK_NULL_HANDLE;
+};
+
 /// The render pass (multisampled colour and depth, resolved to one sample) and its two pipelines, for cloth and for
 /// colliders, which share a set of buffers.
 class Pipelines {
@@ -17,9 +39,6 @@ class Pipelines {
   static constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
   Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);
-  ~Pipelines();
-  Pipelines(const Pipelines&) = delete;
-  Pipelines& operator=(const Pipelines&) = delete;
 
   VkRenderPass pass() const { return pass_; }
   /// Binds buffers[k] to binding k. No command recorded earlier may be in flight.
@@ -30,16 +49,16 @@ class Pipelines {
   void create_pass(VkFormat colour, VkSampleCountFlagBits samples);
   void create_set();
   void create_layout();
-  VkPipeline create(bool cloth, VkSampleCountFlagBits samples) const;
-  void release();
+  using Pipeline = Owned<VkPipeline, vkDestroyPipeline>;
+  void create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) const;
 
   std::shared_ptr<vulkan::Device> device_;
-  VkRenderPass pass_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  Owned<VkRenderPass, vkDestroyRenderPass> pass_;
+  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> set_layout_;
+  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  Owned<VkDescriptorPool, vkDestroyDescriptorPool> pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
-  VkPipeline cloth_ = VK_NULL_HANDLE, collider_ = VK_NULL_HANDLE;
+  Pipeline cloth_, collider_;
 };
 
 /// An image with its memory and view.
@@ -47,43 +66,30 @@ class Image {
  public:
   Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples,
         VkImageUsageFlags usage);
-  ~Image();
-  Image(const Image&) = delete;
-  Image& operator=(const Image&) = delete;
   VkImage handle() const { return image_; }
   VkImageView view() const { return view_; }
 
  private:
-  void create(VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples, VkImageUsageFlags usage);
-  void release();
-
   std::shared_ptr<vulkan::Device> device_;
-  VkImage image_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
-  VkImageView view_ = VK_NULL_HANDLE;
+  Owned<VkImage, vkDestroyImage> image_;
+  Owned<VkDeviceMemory, vkFreeMemory> memory_;
+  Owned<VkImageView, vkDestroyImageView> view_;
 };
-
-/// A view of a colour image, or of its depth.
-VkImageView make_view(VkDevice, VkImage, VkFormat);
 
 /// Render targets for pictures of one size: multisampled colour and depth, and a framebuffer for each target image.
 class Targets {
  public:
   Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples,
           VkExtent2D extent);
-  ~Targets();
-  Targets(const Targets&) = delete;
-  Targets& operator=(const Targets&) = delete;
   VkExtent2D extent() const { return extent_; }
   VkFramebuffer framebuffer(VkImage image);
-  void forget(VkImage image);
+  void forget(VkImage image) { held_.erase(image); }
 
  private:
   struct Held {
-    VkImageView view = VK_NULL_HANDLE;
-    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    Owned<VkImageView, vkDestroyImageView> view;
+    Owned<VkFramebuffer, vkDestroyFramebuffer> framebuffer;
   };
-  void release(const Held&) const;
 
   std::shared_ptr<vulkan::Device> device_;
   VkRenderPass pass_;
