@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 
-#include "assets/procedural.hpp"
 #include "base/data_folder.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"

@@ -101,9 +101,6 @@ struct SkinnedMesh {
   std::array<Eigen::Affine3d, kJointCount> inverse_bind;
 };
 
-/// Positions [m], xyz interleaved, of the mesh's vertices for these joint frames.
-std::vector<double> skinned(const SkinnedMesh&, const JointFrames&);
-
 /// Reads the WebXR generic hand (binary glTF, one mesh, one primitive, one skin with the 25 WebXR joints). Merges
 /// coincident vertices, which the file repeats along texture seams. Throws Error naming the file and what is wrong.
 SkinnedMesh parse_hand_glb(const std::string& bytes, const std::string& source);

@@ -1,10 +1,10 @@
-#include "assets/procedural.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
+
+#include "assets/assets.hpp"
 
 namespace clothbench::assets {
 namespace {

@@ -1,5 +1,3 @@
-#include "check/print.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "base/json_number.hpp"
 #include "base/table.hpp"
+#include "check/compare.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,7 +1,6 @@
 #include "base/files.hpp"
 #include "check/baseline.hpp"
 #include "check/compare.hpp"
-#include "check/print.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
 

@@ -1,4 +1,5 @@
-#include "check/print.hpp"
+#include "check/compare.hpp"
+
 #include "cli/command.hpp"
 #include "report/report.hpp"
 

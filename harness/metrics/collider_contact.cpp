@@ -7,8 +7,7 @@
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "metrics/contact/contact_probe.hpp"
-#include "metrics/contact/contour.hpp"
-#include "metrics/contact/surface.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
 
 namespace clothbench {

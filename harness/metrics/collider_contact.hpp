@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "metrics/metric.hpp"
-#include "scenario/strict_contact.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 

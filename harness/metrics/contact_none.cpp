@@ -2,7 +2,7 @@
 // any.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
 
 namespace clothbench {
 namespace {

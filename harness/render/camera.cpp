@@ -6,6 +6,9 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
+#include "render/render_shared.h"
+#include "render/surfaces.hpp"
+#include "scenario/collider_kinds.hpp"
 
 namespace clothbench::render {
 namespace {
@@ -36,6 +39,84 @@ Stand stand(std::span<const double> points, const Vec3& axis, const Vec3& back, 
     low = std::max(low, -x + tangent * z);
   }
   return {(high - low) / 2, (high + low) / (2 * tangent)};
+}
+
+constexpr double kGrip_m = 0.012;  // radius of the sphere that marks an attached vertex, for a cloth of 1 m
+
+Vec3 sum(const Vec3& a, double s, const Vec3& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = std::sqrt(dot(v, v));
+  return length > 0 ? Vec3{v[0] / length, v[1] / length, v[2] / length} : Vec3{};
+}
+
+bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+/// Two directions across one.
+std::array<Vec3, 2> across(const Vec3& axis) {
+  const Vec3 first = unit_or_zero(cross(axis, std::abs(axis[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  return {first, cross(axis, first)};
+}
+
+std::uint32_t add_vertex(Surfaces& s, const Vec3& p, const Vec3& n, int look) {
+  s.position_m.push_back(p);
+  s.normal.push_back(n);
+  s.look.push_back(static_cast<std::uint8_t>(look));
+  return static_cast<std::uint32_t>(s.position_m.size() - 1);
+}
+
+/// Rings from one pole to the other; a sphere if a = b.
+void add_capsule(Surfaces& s, const Capsule& c, int look) {
+  constexpr int kSides = 32, kRings = 10;  // rings of each half ball
+  if (!finite(c.a_m) || !finite(c.b_m) || !(c.radius_m > 0)) return;
+  Vec3 axis = unit_or_zero(sum(c.b_m, -1, c.a_m));
+  if (dot(axis, axis) == 0) axis = {0, 1, 0};
+  const auto [x, y] = across(axis);
+  const auto first = static_cast<std::uint32_t>(s.position_m.size());
+  for (int ring = 0; ring < 2 * kRings; ++ring) {
+    const bool far_end = ring >= kRings;
+    const double latitude =
+        (static_cast<double>(far_end ? ring - kRings : ring - kRings + 1) / (kRings - 1)) * std::numbers::pi / 2;
+    for (int side = 0; side < kSides; ++side) {
+      const double turn = 2 * std::numbers::pi * side / kSides;
+      Vec3 n = sum({0, 0, 0}, std::sin(latitude), axis);
+      n = sum(sum(n, std::cos(latitude) * std::cos(turn), x), std::cos(latitude) * std::sin(turn), y);
+      add_vertex(s, sum(far_end ? c.b_m : c.a_m, c.radius_m, n), n, look);
+    }
+  }
+  for (std::uint32_t ring = 0; ring + 1 < 2 * kRings; ++ring)
+    for (std::uint32_t side = 0; side < kSides; ++side) {
+      const std::uint32_t a = first + ring * kSides + side, b = first + ring * kSides + (side + 1) % kSides;
+      s.triangles.push_back({a, b, b + kSides});
+      s.triangles.push_back({a, b + kSides, a + kSides});
+    }
+}
+
+bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax({t[0][k], t[1][k], t[2][k]});
+    if (!(high >= b.low[k] && low <= b.high[k])) return false;
+  }
+  return true;
+}
+
+/// Hands are smooth, other meshes have edges.
+void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, const Bounds& near) {
+  Extent seen{sum(near.low, 1, near.high), near.diagonal() / 2};
+  for (double& x : seen.middle) x /= 2;
+  const auto [x, triangles] = kind_of(c).surface(c, pose, seen);
+  const auto first = static_cast<std::uint32_t>(s.position_m.size());
+  for (std::size_t v = 0; v < x.size(); v += 3)
+    add_vertex(s, {x[v], x[v + 1], x[v + 2]}, {}, c.moves() ? LOOK_SMOOTH : LOOK_FLAT);
+  for (const auto& t : triangles) {
+    const std::array<Vec3, 3> p = {s.position_m[first + t[0]], s.position_m[first + t[1]], s.position_m[first + t[2]]};
+    if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) continue;
+    if (c.mesh && !c.moves() && !meets(near, p)) continue;
+    const Vec3 normal = cross(sum(p[1], -1, p[0]), sum(p[2], -1, p[0]));
+    for (const std::uint32_t v : t) s.normal[first + v] = sum(s.normal[first + v], 1, normal);
+    s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  for (std::size_t v = first; v < s.normal.size(); ++v) s.normal[v] = unit_or_zero(s.normal[v]);
 }
 
 }  // namespace
@@ -108,6 +189,48 @@ std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_
     c.far_m = far_m;
   }
   return both;
+}
+
+Bounds Bounds::none() { return {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}; }
+
+void Bounds::add(const Vec3& p) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k] = std::min(low[k], p[k]);
+    high[k] = std::max(high[k], p[k]);
+  }
+}
+
+void Bounds::grow(double by_m) {
+  for (double& x : low) x -= by_m;
+  for (double& x : high) x += by_m;
+}
+
+bool Bounds::holds(const Vec3& p) const {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
+  return true;
+}
+
+double Bounds::diagonal() const { return std::sqrt(dot(sum(high, -1, low), sum(high, -1, low))); }
+
+Surfaces surfaces(const Scene& scene, int frame, const Bounds& near) {
+  Surfaces s;
+  const FrameMotion* motion = scene.motion_after(frame - 1);
+  static const ColliderPose kStill;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& c = scene.colliders[k];
+    const ColliderPose& pose = motion != nullptr && k < motion->colliders.size() ? motion->colliders[k] : kStill;
+    if (kind_of(c).capsules != nullptr)
+      for (const Capsule& one : kind_of(c).capsules(c, pose)) add_capsule(s, one, LOOK_SMOOTH);
+    else
+      add_triangles(s, c, pose, near);
+  }
+  if (motion == nullptr) return s;
+  const double radius = kGrip_m * std::max(scene.cloth.width_m, scene.cloth.height_m);
+  for (std::size_t k = 0; k < motion->grip_position_m.size(); ++k)
+    if (motion->grip_held[k] != 0)
+      add_capsule(s, {motion->grip_position_m[k], motion->grip_position_m[k], radius}, LOOK_MARK);
+  return s;
 }
 
 }  // namespace clothbench::render

@@ -9,7 +9,7 @@
 #include "results/store.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
-#include "scenario/scene_parts.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {

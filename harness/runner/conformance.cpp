@@ -13,7 +13,7 @@
 #include "metrics/metric.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/solver_run.hpp"
-#include "scenario/as_mesh.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

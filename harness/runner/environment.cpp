@@ -112,36 +112,22 @@ std::optional<std::string> line_of(const fs::path& file) {
   return line;
 }
 
-std::optional<double> number_of(const fs::path& file) {
-  const auto line = line_of(file);
-  if (!line) return std::nullopt;
-  char* end = nullptr;
-  const double value = std::strtod(line->c_str(), &end);
-  if (end == line->c_str() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 void put_number(json& into, const char* key, const fs::path& file, double scale) {
-  if (const auto value = number_of(file)) into[key] = *value * scale;
+  double value = kMissing;
+  if (std::ifstream(file) >> value && std::isfinite(value)) into[key] = value * scale;
 }
 
 void put_text(json& into, const char* key, const fs::path& file) {
   if (const auto text = line_of(file)) into[key] = *text;
 }
 
-/// Folders "<prefix><number>" in numerical order.
+/// Folders "<prefix><number>" in numerical order; numbers may be missing.
 std::vector<std::pair<int, fs::path>> numbered(const fs::path& folder, const std::string& prefix) {
+  constexpr int kMost = 1024;
   std::vector<std::pair<int, fs::path>> found;
   std::error_code ec;
-  for (const auto& entry : fs::directory_iterator(folder, ec)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() <= prefix.size() || name.compare(0, prefix.size(), prefix) != 0) continue;
-    const std::string digits = name.substr(prefix.size());
-    if (digits.size() < 6 &&
-        std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
-      found.emplace_back(std::stoi(digits), entry.path());
-  }
-  std::sort(found.begin(), found.end());
+  for (int k = 0; k < kMost; ++k)
+    if (const fs::path at = folder / (prefix + std::to_string(k)); fs::exists(at, ec)) found.emplace_back(k, at);
   return found;
 }
 

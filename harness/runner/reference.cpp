@@ -23,6 +23,7 @@
 #include "metrics/truth_errors.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/worker.hpp"
 #include "scenario/load.hpp"
 #include "truth/reference_case.hpp"
 
@@ -227,6 +228,7 @@ fs::path cache_file(const fs::path& folder, const json& key) {
 }  // namespace
 
 json reference_key(const Scene& scene, const ReferenceRules& rules) {
+  static const std::string program = sha256(content_of(own_program()));
   const SolverInfo& info = find_solver("reference").info;
   json settings = json::array();
   for (const char* integrator : {"bdf2", "conservative"})
@@ -238,7 +240,7 @@ json reference_key(const Scene& scene, const ReferenceRules& rules) {
           {"solver_settings", settings},
           {"moving_steps", rules.moving_steps},
           {"settling_substeps", rules.settling_substeps},
-          {"code_sha256", kReferenceCode}};
+          {"program_sha256", program}};
 }
 
 std::optional<ReferenceResult> read_reference(const fs::path& folder, const json& key) {

@@ -56,11 +56,8 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
                                                   const std::function<void(const std::string&)>& note,
                                                   const ReferenceRules& = {});
 
-/// SHA-256 of the sources that reference values depend on (reference_code.cmake), computed at compile time.
-extern const char* const kReferenceCode;
-
 /// Everything that a scene's reference value depends on: the scenario, the reference solver's version and complete
-/// settings, the rules of the runs, and the code of solver, truths and scenes.
+/// settings, the rules of the runs, and this program's file, in place of the code of solver, truths and scenes.
 nlohmann::json reference_key(const Scene&, const ReferenceRules&);
 
 /// The value stored in `folder` for this key. None if the file is missing, unreadable or of another key.

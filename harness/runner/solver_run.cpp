@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "clothbench/unsupported_scene.hpp"
-#include "metrics/metric_pass.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "results/store.hpp"
@@ -26,12 +25,6 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// Rules for a trial's frames, which restart the scene with every drop.
 FrameRules frame_rules(const TrialRules& rules, int frames, double max_wall_s = 0) {
   return {0, frames, rules.drop_frames, max_wall_s, rules.min_frames, kTrialsKept};
-}
-
-bool all_finite(const std::vector<double>& values) {
-  for (double v : values)
-    if (!std::isfinite(v)) return false;
-  return true;
 }
 
 nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
@@ -193,7 +186,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
       if (outcome_.status == "ok") outcome_ = {"device_lost", "F3", frame, e.what()};
       return;
     }
-    if (outcome_.status == "ok" && !(all_finite(state.position) && all_finite(state.velocity)))
+    if (outcome_.status == "ok" && !(finite(state.position) && finite(state.velocity)))
       fail(StepStatus::NotFinite, frame);
     pass.time_s.push_back(scene.time.at(frame));
     for (double x : state.position) pass.position.push_back(static_cast<float>(x));

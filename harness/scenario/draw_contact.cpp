@@ -11,8 +11,8 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
+#include "scenario/collider_reader.hpp"
 #include "scenario/recorded_hand.hpp"
-#include "scenario/table_pose.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {

@@ -5,7 +5,7 @@
 
 #include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/scene_parts.hpp"
+#include "scenario/load.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 #include "base/data_folder.hpp"
@@ -14,8 +15,6 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/scene_parts.hpp"
-#include "scenario/strict_contact.hpp"
 #include "scenario/vec3.hpp"
 
 namespace clothbench {
@@ -148,16 +147,14 @@ void check_assumed(const json& scenario, const std::string& source) {
 
 bool is_json(const std::filesystem::path& file) { return lower_case(file.extension().string()) == ".json"; }
 
-/// Names that `find_scenario` accepts, such as "paper/gravity"; studies without their folder.
+/// All files but schemas and assets: "paper/gravity", "studies/table3".
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
   std::error_code ec;
   for (std::filesystem::recursive_directory_iterator at(scenario_root(), ec), end; !ec && at != end; at.increment(ec)) {
-    std::filesystem::path name = at->path().lexically_relative(scenario_root()).replace_extension();
-    if (!is_json(at->path())) continue;
+    const std::filesystem::path name = at->path().lexically_relative(scenario_root()).replace_extension();
     const std::string folder = name.begin()->string();
-    if (folder == "studies") name = name.lexically_relative("studies");
-    if (folder != "schema" && folder != "assets") names.push_back(name.string());
+    if (is_json(at->path()) && folder != "schema" && folder != "assets") names.push_back(name.string());
   }
   return names;
 }
@@ -182,6 +179,21 @@ json& child(json& of, const std::string& key, const std::string& where) {
   return of[std::stoul(key)];
 }
 
+template <bool (*kTest)(const Collider&)>
+bool any_collider(const Scene& s) {
+  return std::any_of(s.colliders.begin(), s.colliders.end(), kTest);
+}
+
+bool touches(const Scene& s) { return !s.colliders.empty(); }
+bool always(const Scene&) { return true; }
+/// Cloth that a hand has stretched springs back when the hand releases it, and that is no fault.
+bool lets_go_of_nothing(const Scene& s) { return s.grips.vertices.empty(); }
+bool meets_itself(const Scene& s) { return s.needs.has(Feature::SelfCollision); }
+
+double upper_bound(const nlohmann::json& bounds) {
+  return bounds.value("at_most", std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 
 std::filesystem::path scenario_root() { return find_data(kScenarioFolder); }
@@ -195,15 +207,17 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
       if (std::filesystem::is_regular_file(named, ec)) return named;
     }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
-  for (const std::string& known : scenario_names()) {  // tables show the name in the file
+  std::vector<std::string> names = scenario_names();
+  for (std::string& known : names) {  // tables show the name in the file
     const std::filesystem::path file = scenario_root() / (known + ".json");
+    if (known.starts_with("studies/")) known.erase(0, 8);
     const json scene =
         std::filesystem::is_regular_file(file, ec) ? json::parse(read_text(file), nullptr, false) : json();
     if (scene.is_object() && scene.value("name", json()) == name_or_path) return file;
   }
   throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}",
                           shortened(name_or_path, kShown), scenario_root().string(),
-                          nearest_known(name_or_path, scenario_names())));
+                          nearest_known(name_or_path, names)));
 }
 
 FeatureSet derive_needs(const Scene& scene) {
@@ -297,17 +311,42 @@ Scene load_scene(const std::string& name_or_path, const std::vector<std::string>
 }
 
 std::vector<std::string> scene_names(const std::vector<std::string>& folders) {
-  std::vector<std::string> names;
-  const std::filesystem::path root = scenario_root();
-  for (const std::string& folder : folders) {
-    if (!std::filesystem::exists(root / folder)) continue;
-    const std::size_t first = names.size();
-    for (const auto& file : std::filesystem::recursive_directory_iterator(root / folder))
-      if (is_json(file.path()))
-        names.push_back(std::filesystem::relative(file.path(), root).replace_extension().string());
-    std::sort(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
-  }
+  std::vector<std::string> all = scenario_names(), names;
+  std::sort(all.begin(), all.end());
+  for (const std::string& folder : folders)
+    std::copy_if(all.begin(), all.end(), std::back_inserter(names),
+                 [&](const std::string& name) { return name.starts_with(folder + "/"); });
   return names;
+}
+
+bool has_inside(const Collider& c) { return !c.mesh || c.mesh->closed || c.mesh->skinned(); }
+
+const std::vector<StrictBound>& strict_contact() {
+  static const std::vector<StrictBound> all = {{"crossings_max", 0, touches},
+                                               {"contact_length_settled_m", 0, touches},
+                                               {"contact_length_max_m", 0.005, touches},
+                                               {"depth_max_m", 0.001, any_collider<has_inside>},
+                                               {"self_contact_length_max_m", 0, meets_itself},
+                                               {"pop_max_m", 0.01, lets_go_of_nothing},
+                                               {"stretch_max", 0.5, always},
+                                               {"stretch_max_end", 0.05, always}};
+  return all;
+}
+
+void complete_expect(nlohmann::json& expect, const Scene& scene, const std::string& source) {
+  if (!expect.contains("contact")) return;
+  if (scene.colliders.empty() && scene.grips.vertices.empty() && !meets_itself(scene))
+    refuse(source, "/expect/contact", "\"strict\" is for scenes with colliders, grips or self_collision");
+  expect.erase("contact");
+  for (const StrictBound& b : strict_contact()) {
+    if (!b.defined(scene)) continue;
+    if (!expect.contains(b.scalar)) {
+      expect[b.scalar] = {{"at_most", b.at_most}};
+    } else if (!(upper_bound(expect[b.scalar]) <= b.at_most) && !expect[b.scalar].contains("why")) {
+      refuse(source, std::string("/expect/") + b.scalar,
+             fmt::format("\"why\", the reason for a bound looser than the strict one (at most {:g})", b.at_most));
+    }
+  }
 }
 
 }  // namespace clothbench

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -156,6 +157,108 @@ tinyobj::callback_t callbacks() {
   return c;
 }
 
+using Point = std::array<double, 2>;
+
+/// Twice the signed area of a triangle; 0 within the rounding error of the difference.
+double turn(const Point& a, const Point& b, const Point& c) {
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+  const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
+  return std::abs(left - right) <= kRounding * (std::abs(left) + std::abs(right)) ? 0 : left - right;
+}
+
+double square(const Point& a, const Point& b) { return std::pow(b[0] - a[0], 2) + std::pow(b[1] - a[1], 2); }
+
+/// Whether c, on the line of a and b, is between them or at one of them.
+bool between(const Point& a, const Point& b, const Point& c) {
+  return std::min(a[0], b[0]) <= c[0] && c[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= c[1] &&
+         c[1] <= std::max(a[1], b[1]);
+}
+
+/// Whether two segments have a point in common.
+bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+  return (abc * abd < 0 && cda * cdb < 0) || (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
+         (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+}
+
+/// The polygon as seen along the axis nearest to its normal, so that it runs counter-clockwise. Dropping a coordinate
+/// rounds nothing: corners on one line stay on one line.
+std::vector<Point> seen_along_normal(const std::vector<Vec3>& corners) {
+  Vec3 normal{};
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+    normal = plus(normal, cross(minus(corners[k], corners[0]), minus(corners[k + 1], corners[0])));
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+  const std::size_t first = (axis + (normal[axis] > 0 ? 1 : 2)) % 3, second = (axis + (normal[axis] > 0 ? 2 : 1)) % 3;
+  std::vector<Point> out;
+  for (const Vec3& x : corners) out.push_back({x[first], x[second]});
+  return out;
+}
+
+/// The first side that meets another one, where neighbours may share only their corner; the number of sides if none.
+std::size_t crossing_side(const std::vector<Point>& p) {
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point &a = p[i], &b = p[(i + 1) % n], &after = p[(i + 2) % n];
+    if (turn(a, b, after) == 0 && (between(b, after, a) || between(a, b, after))) return i;  // it turns back
+    for (std::size_t j = i + 2; j < n; ++j)
+      if ((j + 1) % n != i && meet(a, b, p[j], p[(j + 1) % n])) return i;
+  }
+  return n;
+}
+
+/// Cuts ears off until a triangle is left.
+class Clipping {
+ public:
+  Clipping(const std::vector<Point>& points, double flat) : p_(points), flat_(flat) {
+    for (std::uint32_t k = 0; k < p_.size(); ++k) left_.push_back(k);
+  }
+
+  /// False if no ear was found.
+  bool cut(std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    triangles.clear();
+    while (left_.size() > 2) {
+      std::size_t best = left_.size();
+      double most = 0;
+      for (std::size_t k = 0; k < left_.size(); ++k)
+        if (const double q = quality(k); q > most && is_ear(k)) {
+          best = k;
+          most = q;
+        }
+      if (best == left_.size()) return false;
+      triangles.push_back({at(best + left_.size() - 1), at(best), at(best + 1)});
+      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    return true;
+  }
+
+ private:
+  std::uint32_t at(std::size_t k) const { return left_[k % left_.size()]; }
+
+  /// Twice the area of a corner's triangle over the square of its longest side; 0 where the corner is not convex.
+  double quality(std::size_t k) const {
+    const Point &a = p_[at(k + left_.size() - 1)], &b = p_[at(k)], &c = p_[at(k + 1)];
+    const double q = turn(a, b, c) / std::max({square(a, b), square(b, c), square(c, a)});
+    return q > flat_ ? q : 0;
+  }
+
+  /// Whether the triangle of a corner has no other corner inside or on its border.
+  bool is_ear(std::size_t k) const {
+    const std::array<std::uint32_t, 3> t = {at(k + left_.size() - 1), at(k), at(k + 1)};
+    const Point &a = p_[t[0]], &b = p_[t[1]], &c = p_[t[2]];
+    const double near = -flat_ * std::max({square(a, b), square(b, c), square(c, a)});
+    return std::none_of(left_.begin(), left_.end(), [&](std::uint32_t v) {
+      return v != t[0] && v != t[1] && v != t[2] && turn(a, b, p_[v]) >= near && turn(b, c, p_[v]) >= near &&
+             turn(c, a, p_[v]) >= near;
+    });
+  }
+
+  const std::vector<Point>& p_;
+  const double flat_;
+  std::vector<std::uint32_t> left_;
+};
+
 }  // namespace
 
 assets::MeshFile read_obj(const std::string& text, const std::string& source) {
@@ -166,6 +269,36 @@ assets::MeshFile read_obj(const std::string& text, const std::string& source) {
   std::istringstream in(statements.text);
   tinyobj::LoadObjWithCallback(in, callbacks(), &reader);
   for (const Face& face : reader.faces) reader.add_triangles(face);
+  return out;
+}
+
+// Debian has no earcut, CGAL's triangulations are GPL, and the polygon code of tinyobjloader cuts outside concave
+// faces.
+std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& corners, const std::string& where) {
+  if (corners.size() > kMostCorners)
+    throw Error(fmt::format("{}: a face of {} corners; expected at most {}", where, corners.size(), kMostCorners));
+  std::vector<std::uint32_t> number;  // of each corner that is not at the one before it
+  std::vector<Vec3> kept;
+  for (std::uint32_t k = 0; k < corners.size(); ++k)
+    if (kept.empty() || (corners[k] != kept.back() && (k + 1 < corners.size() || corners[k] != kept.front()))) {
+      number.push_back(k);
+      kept.push_back(corners[k]);
+    }
+  const std::vector<Point> points = seen_along_normal(kept);
+  double area = 0;
+  for (std::size_t k = 1; k + 1 < points.size(); ++k) area += turn(points[0], points[k], points[k + 1]);
+  if (!(area > 0)) throw Error(where + ": a face that has no area");
+  if (const std::size_t side = crossing_side(points); side < points.size())
+    throw Error(
+        fmt::format("{}: the outline of the face crosses or touches itself at the side from corner {}; "
+                    "expected a simple polygon",
+                    where, number[side] + 1));
+  // Thinner triangles than the first limit are cut where nothing else is left.
+  std::vector<std::array<std::uint32_t, 3>> out;
+  if (!Clipping(points, 1e-6).cut(out) && !Clipping(points, 0).cut(out))
+    throw Error(where + ": the face is too thin to be cut into triangles");
+  for (auto& t : out)
+    for (std::uint32_t& v : t) v = number[v];
   return out;
 }
 

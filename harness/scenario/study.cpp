@@ -11,7 +11,6 @@
 #include "base/words.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
-#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {

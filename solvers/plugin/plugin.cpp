@@ -16,7 +16,7 @@
 
 #include "base/plugin_environment.hpp"
 #include "clothbench/error.hpp"
-#include "plugin/plugin_solver.hpp"
+#include "plugin/scene_view.hpp"
 
 namespace clothbench::plugin {
 namespace {

@@ -1,5 +1,3 @@
-#include "plugin/plugin_solver.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "clothbench/scene.hpp"
@@ -46,5 +48,13 @@ class SceneView {
   int posed_ = -1;  ///< index of the frame that `now_` is the end of; -1: none
   std::vector<std::uint8_t> collider_teleports_, grip_teleports_;
 };
+
+/// Values of the settings for the C interface, in the plugin's order.
+std::vector<double> setting_values(const ClothbenchPlugin&, const nlohmann::json& settings);
+
+FeatureSet features_of(std::uint32_t bits);
+
+/// One solver of a plugin whose description was checked.
+std::unique_ptr<ClothSolver> make_solver(const ClothbenchPlugin&, const SolverInfo&, const nlohmann::json& settings);
 
 }  // namespace clothbench::plugin

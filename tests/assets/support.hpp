@@ -10,6 +10,7 @@
 #include "assets/assets.hpp"
 #include "assets/base64.hpp"
 #include "refusal.hpp"
+#include "scenario/recorded_hand.hpp"
 
 namespace clothbench::assets {
 
@@ -25,6 +26,11 @@ inline std::string error_of(const std::function<void()>& f) { return refusal(f, 
 template <class Item>
 std::string base64_of(const std::vector<Item>& items) {
   return encode_base64(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof(Item));
+}
+
+/// Positions of a hand's vertices as solvers get them.
+inline std::vector<double> skinned(const Hand& hand, const JointFrames& joints) {
+  return posed_positions(*collider_mesh(hand.mesh), mesh_pose(hand, joints, Vector::Zero()));
 }
 
 inline TriangleMesh tetrahedron() {

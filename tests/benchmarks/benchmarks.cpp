@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "runner/frame_loop.hpp"
 #include "scenario/load.hpp"
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "check/print.hpp"
+#include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 

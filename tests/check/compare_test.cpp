@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "check/baseline.hpp"
-#include "check/print.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "results.hpp"

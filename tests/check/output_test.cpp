@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "check/compare.hpp"
-#include "check/print.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "results.hpp"

@@ -5,9 +5,8 @@
 #include <random>
 
 #include "meshes.hpp"
-#include "metrics/contact/contour.hpp"
-#include "metrics/contact/predicates.hpp"
-#include "metrics/contact/tunnel.hpp"
+#include "metrics/contact/contact_probe.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "meshes.hpp"
-#include "metrics/contact/tunnel.hpp"
+#include "metrics/contact/contact_probe.hpp"
 #include "refusal.hpp"
 
 namespace clothbench::contact {

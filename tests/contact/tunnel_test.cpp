@@ -1,12 +1,10 @@
-#include "metrics/contact/tunnel.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
 #include "meshes.hpp"
-#include "metrics/contact/contour.hpp"
+#include "metrics/contact/contact_probe.hpp"
 
 namespace clothbench::contact {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fuzz.hpp"
+#include "scenario/recorded_hand.hpp"
 
 namespace {
 
@@ -36,6 +37,6 @@ void clothbench::fuzz_hand(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses([&] {
     const assets::SkinnedMesh hand = assets::parse_hand_glb(
         size > 0 && data[0] == '{' ? container(data, size) : std::string(data, data + size), "hand.glb");
-    assets::skinned(hand, hand.bind);
+    collider_mesh(hand);
   });
 }

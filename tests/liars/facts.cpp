@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "lies.hpp"
-#include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::liars {

@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "clothbench/error.hpp"
-#include "metrics/metric_pass.hpp"
-#include "metrics/motion_check/bodies.hpp"
+#include "metrics/motion_check/motion.hpp"
+#include "metrics/registry.hpp"
 #include "scenario/load.hpp"
 #include "trial.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "metrics/contact/surface.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {

@@ -9,7 +9,6 @@
 #include "refusal.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
-#include "scenario/scene_parts.hpp"
 
 namespace clothbench {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "metrics/registry.hpp"
 #include "scenario/load.hpp"
-#include "scenario/strict_contact.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,5 +1,3 @@
-#include "scenario/strict_contact.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

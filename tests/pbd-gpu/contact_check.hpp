@@ -3,7 +3,7 @@
 
 #include "gpu_fixture.hpp"
 #include "metrics/registry.hpp"
-#include "scenario/strict_contact.hpp"
+#include "scenario/load.hpp"
 
 namespace clothbench::pbd_gpu {
 

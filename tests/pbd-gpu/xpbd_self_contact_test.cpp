@@ -6,7 +6,7 @@
 #include "contact_check.hpp"
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
-#include "metrics/contact/contour.hpp"
+#include "metrics/contact/contact_probe.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"
 

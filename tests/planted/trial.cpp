@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "metrics/metric_pass.hpp"
+#include "metrics/registry.hpp"
 #include "results/replay.hpp"
 #include "runner/expect.hpp"
 #include "solvers.hpp"

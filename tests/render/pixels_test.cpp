@@ -8,7 +8,7 @@
 #include "common/gpu_solver.hpp"
 #include "render/camera.hpp"
 #include "render/offscreen.hpp"
-#include "scenario/as_mesh.hpp"
+#include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 #include "sheets.hpp"
 

@@ -35,7 +35,7 @@ TEST(ReferenceKey, NamesAllThatTheValueDependsOn) {
   EXPECT_NE(key, reference_key(s, {48, 9, 1e-8}));
   EXPECT_NE(key, reference_key(s, {48, 8, 1e-9}));
   EXPECT_EQ(key["solver_version"], find_solver("reference").info.version);
-  EXPECT_EQ(key["code_sha256"].get<std::string>().size(), 64u);
+  EXPECT_EQ(key["program_sha256"].get<std::string>().size(), 64u);
   ASSERT_EQ(key["solver_settings"].size(), 2u);
   for (const SettingSpec& setting : find_solver("reference").info.settings)
     if (setting.name != "substeps") {
@@ -58,7 +58,7 @@ TEST(ReferenceCache, FindsWhatIsOfTheSameKeyAlone) {
   EXPECT_EQ(computed, 1);
   const fs::path file = only_file(fs::path(folder.path()) / "cache");
   json stored = parse_json(read_text(file), file.string());
-  for (const char* part : {"code_sha256", "solver_version", "settling_substeps", "solver_settings"}) {
+  for (const char* part : {"program_sha256", "solver_version", "settling_substeps", "solver_settings"}) {
     json other = stored;
     other["key"][part] = "another";
     other["values"]["reference_value"] = 42;

@@ -12,7 +12,6 @@
 #include "clothbench/scene.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/load.hpp"
-#include "scenario/scene_parts.hpp"
 #include "sheets.hpp"
 #include "with_folder.hpp"
 

@@ -1,9 +1,9 @@
-#include "metrics/contact/predicates.hpp"
-
 #include <CGAL/MP_Float.h>
 
 #include <cmath>
 #include <utility>
+
+#include "metrics/contact/triangle_mesh.hpp"
 
 namespace clothbench::contact {
 namespace {

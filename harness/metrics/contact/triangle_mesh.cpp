@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -16,6 +17,11 @@ double squared_distance_to_segment(const Point<3>& p, const Point<3>& a, const P
   const Point<3> ab = b - a;
   const double t = ab.dot(p - a) / ab.squaredNorm();
   return (p - (t > 0 ? a + std::min(t, 1.0) * ab : a)).squaredNorm();
+}
+
+Point<3> direction(const Point<3>& v) {
+  const double length = v.norm();
+  return length > 0 ? Point<3>(v / length) : Point<3>(Point<3>::Zero());
 }
 
 }  // namespace
@@ -107,6 +113,149 @@ double squared_distance(const Point<3>& p, const Simplex<3>& v) {
   }
   return std::min({squared_distance_to_segment(p, v[0], v[1]), squared_distance_to_segment(p, v[1], v[2]),
                    squared_distance_to_segment(p, v[2], v[0])});
+}
+
+double axis_share(const Point<3>& p, const Capsule& c) {
+  const Point<3> axis = c.b - c.a;
+  const double squared = axis.squaredNorm();
+  return squared > 0 ? std::clamp(axis.dot(p - c.a) / squared, 0.0, 1.0) : 0.0;
+}
+
+double signed_distance(const Point<3>& p, const Capsule& c) {
+  return (p - (c.a + axis_share(p, c) * (c.b - c.a))).norm() - c.radius_m;
+}
+
+CapsuleMesh capsule_mesh(const Capsule& c) {
+  constexpr int kQuarter = kCapsuleSides / 4;
+  const Point<3> along = c.a == c.b ? Point<3>(Point<3>::UnitZ()) : Point<3>((c.b - c.a).normalized());
+  const Point<3> u = along.unitOrthogonal(), v = along.cross(u);
+  CapsuleMesh mesh;
+  const auto add = [&](const Point<3>& p) { mesh.positions.insert(mesh.positions.end(), {p[0], p[1], p[2]}); };
+  int rings = 0;
+  const auto ring = [&](const Point<3>& centre, int step) {  // `step` quarters from the equator, towards b if positive
+    const double latitude = 0.5 * std::numbers::pi * step / kQuarter;
+    for (int k = 0; k < kCapsuleSides; ++k) {
+      const double t = 2 * std::numbers::pi * k / kCapsuleSides;
+      add(centre +
+          c.radius_m * (std::sin(latitude) * along + std::cos(latitude) * (std::cos(t) * u + std::sin(t) * v)));
+    }
+    ++rings;
+  };
+  add(c.a - c.radius_m * along);
+  for (int step = 1 - kQuarter; step <= 0; ++step) ring(c.a, step);
+  for (int step = c.a == c.b ? 1 : 0; step < kQuarter; ++step) ring(c.b, step);
+  add(c.b + c.radius_m * along);
+  const auto last = static_cast<std::uint32_t>(1 + rings * kCapsuleSides);
+  const auto at = [&](int r, int k) { return static_cast<std::uint32_t>(1 + r * kCapsuleSides + k % kCapsuleSides); };
+  for (int k = 0; k < kCapsuleSides; ++k) {
+    mesh.triangles.push_back({0, at(0, k + 1), at(0, k)});
+    mesh.triangles.push_back({last, at(rings - 1, k), at(rings - 1, k + 1)});
+    for (int r = 0; r + 1 < rings; ++r) {
+      mesh.triangles.push_back({at(r, k), at(r, k + 1), at(r + 1, k + 1)});
+      mesh.triangles.push_back({at(r, k), at(r + 1, k + 1), at(r + 1, k)});
+    }
+  }
+  return mesh;
+}
+
+Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before) {
+  Nearest best{std::numeric_limits<double>::infinity(), Point<3>::Zero(), Point<3>::Zero()};
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const double t = axis_share(p, now[k]);
+    const Point<3> axis = now[k].a + t * (now[k].b - now[k].a);
+    const double distance = (p - axis).norm() - now[k].radius_m;
+    if (!(distance < best.distance_m)) continue;
+    best = {distance, direction(p - axis), axis - (before[k].a + t * (before[k].b - before[k].a))};
+  }
+  return best;
+}
+
+Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const Point<3> ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double t = d1 / (d1 - d3);
+    return {1 - t, t, 0};
+  }
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double t = d2 / (d2 - d6);
+    return {1 - t, 0, t};
+  }
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - t, t};
+  }
+  const double all = va + vb + vc;
+  return {va / all, vb / all, vc / all};
+}
+
+std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
+                               const TriangleMeshView* before) {
+  double bound = bound_m * bound_m;
+  const int found = mesh.tree().nearest(
+      p, bound, [&](int t) { return squared_distance(p, mesh.triangles()[static_cast<std::size_t>(t)]); });
+  if (found < 0) return std::nullopt;
+  const Simplex<3>& corner = mesh.triangles()[static_cast<std::size_t>(found)];
+  const Point<3> w = nearest_weights(p, corner), at = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2];
+  Nearest out{std::sqrt(bound), direction(p - at), Point<3>::Zero()};
+  if (before == nullptr) return out;
+  const Simplex<3> was = before->triangle(mesh.numbers()[static_cast<std::size_t>(found)]);
+  out.carried_m = at - (w[0] * was[0] + w[1] * was[1] + w[2] * was[2]);
+  return out;
+}
+
+bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m) {
+  bool found = false;
+  mesh.tree().for_each_overlapping(grown(box_of(triangle), reach_m), [&](int t) {
+    found = found || within(triangle, mesh.triangles()[static_cast<std::size_t>(t)], reach_m);
+  });
+  return found;
+}
+
+double squared_distance(const Point<3>& a, const Point<3>& b, const Point<3>& c, const Point<3>& d) {
+  const Point<3> u = b - a, v = d - c, w = a - c;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const auto unit = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  const double parallel = uu * vv - uv * uv;
+  double s = parallel > 0 ? unit((uv * vw - uw * vv) / parallel) : 0, t = vv > 0 ? (uv * s + vw) / vv : 0;
+  if (!(t >= 0 && t <= 1)) {
+    t = unit(t);
+    s = uu > 0 ? unit((uv * t - uw) / uu) : 0;
+  } else if (!(vv > 0)) {
+    s = uu > 0 ? unit(-uw / uu) : 0;
+  }
+  const double inner = (w + s * u - t * v).squaredNorm();
+  // Where the segments are nearly parallel, s is rounding noise; then a pair with an end of a segment is nearest.
+  const auto from = [&](const Point<3>& p, const Point<3>& start, const Point<3>& way, double squared) {
+    const double share = squared > 0 ? unit(way.dot(p - start) / squared) : 0;
+    return (p - start - share * way).squaredNorm();
+  };
+  return std::min({inner, from(a, c, v, vv), from(b, c, v, vv), from(c, a, u, uu), from(d, a, u, uu)});
+}
+
+double squared_distance(const Point<3>& a, const Point<3>& b, const Simplex<3>& v) {
+  if (crossing<3>(a, b, v) != 0) return 0;
+  return std::min({squared_distance(a, v), squared_distance(b, v), squared_distance(a, b, v[0], v[1]),
+                   squared_distance(a, b, v[1], v[2]), squared_distance(a, b, v[2], v[0])});
+}
+
+bool within(const Simplex<3>& triangle, const Capsule& c, double reach_m) {
+  const double most = c.radius_m + reach_m;
+  return squared_distance(c.a, c.b, triangle) <= most * most;
+}
+
+bool within(const Simplex<3>& triangle, const Simplex<3>& other, double reach_m) {
+  const double most = reach_m * reach_m;
+  for (int i = 0; i < 3; ++i)
+    if (squared_distance(triangle[i], triangle[(i + 1) % 3], other) <= most ||
+        squared_distance(other[i], other[(i + 1) % 3], triangle) <= most)
+      return true;
+  return false;
 }
 
 }  // namespace clothbench::contact

@@ -1,15 +1,42 @@
 #pragma once
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unsupported/Eigen/BVH>
 #include <vector>
 
 #include "clothbench/collider.hpp"
-#include "metrics/contact/predicates.hpp"
 
 namespace clothbench::contact {
+
+template <int N>
+using Point = Eigen::Matrix<double, N, 1>;
+
+/// N points of N-space: a triangle for N = 3, a tetrahedron of space-time (x, y, z, t) for N = 4.
+template <int N>
+using Simplex = std::array<Point<N>, N>;
+
+/// Exact sign (-1, 0, 1) of det(head[0] - tail[0], ..., head[N-1] - tail[N-1]), differences not rounded. N = 2, 3, 4.
+/// Uses floating point with an error bound first (after Shewchuk 1997), and exact arithmetic where that cannot decide.
+template <int N>
+int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail);
+
+/// Whether and in which direction the segment p -> q crosses the simplex: +1 along its normal, -1 against it, 0 if not.
+///
+/// Exact, also in degenerate configurations of p, q and the simplex: there the result is that for the segment
+/// translated by shift * (e, e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990,
+/// restricted to one common translation). A single translation for all tests is consistent: a path through the common
+/// edge or vertex of triangles crosses exactly those that it crosses after a small translation, and a path that ends on
+/// a surface is on a definite side of it. A simplex without volume is never crossed. The normal of a triangle (a, b, c)
+/// is (b - a) x (c - a).
+template <int N>
+int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, int shift = 1);
+
+/// Whether the area is exactly zero.
+bool is_degenerate(const Simplex<3>& triangle);
 
 inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
@@ -148,5 +175,68 @@ int BoxTree::nearest(const Point<3>& p, double& bound, SquaredDistance squared_d
   }
   return best;
 }
+
+/// All points within `radius_m` of the segment a-b; a sphere if a = b.
+struct Capsule {
+  Point<3> a, b;
+  double radius_m;
+};
+
+inline Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
+
+/// Where on the axis the point nearest to p is, from 0 at a to 1 at b; 0 for a sphere.
+double axis_share(const Point<3>& p, const Capsule&);
+
+/// Signed distance [m] to the surface, negative inside; exact.
+double signed_distance(const Point<3>& p, const Capsule&);
+
+/// Triangles that have their corners on the surface of a capsule, counter-clockwise seen from outside.
+struct CapsuleMesh {
+  std::vector<double> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  TriangleMeshView view() const { return {positions, triangles}; }
+};
+
+/// The triangles lie inside the capsule, so cloth outside it never crosses them. With kCapsuleSides sides around the
+/// axis and a quarter of that from equator to pole, they are at most 1 - cos²(π / kCapsuleSides) of the radius below
+/// the surface: kCapsuleError rounds that up.
+CapsuleMesh capsule_mesh(const Capsule&);
+inline constexpr int kCapsuleSides = 32;
+inline constexpr double kCapsuleError = 0.01;
+
+/// The surface near a point.
+struct Nearest {
+  double distance_m;   ///< signed for capsules, unsigned for triangles
+  Point<3> normal;     ///< unit, from the surface to the point; zero where the point lies on it or on an axis
+  Point<3> carried_m;  ///< displacement of that surface point since the previous frame
+};
+
+/// Nearest point of a union of capsules. `before`: the same capsules at the previous frame, as many as `now`; they may
+/// turn but do not spin about their axes.
+Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
+
+/// The nearest point of a mesh within `bound_m`, if there is one. `before`: the mesh at the previous frame; null if it
+/// is static.
+std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
+                               const TriangleMeshView* before = nullptr);
+
+/// Whether a triangle has a point at most `reach_m` from a mesh.
+bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m);
+
+/// Corner weights of the point of a triangle with area that is nearest to p; they are never negative and sum to 1
+/// (Ericson, Real-Time Collision Detection, 5.1.5).
+Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle);
+
+/// Squared distance [m2] between the segments a-b and c-d (Ericson, Real-Time Collision Detection, 5.1.9).
+double squared_distance(const Point<3>& a, const Point<3>& b, const Point<3>& c, const Point<3>& d);
+
+/// Squared distance [m2] between the segment a-b and a triangle: 0 if they cross.
+double squared_distance(const Point<3>& a, const Point<3>& b, const Simplex<3>& triangle);
+
+/// Whether a triangle has a point at most `reach_m` from the surface of a capsule, or inside the capsule.
+bool within(const Simplex<3>& triangle, const Capsule&, double reach_m);
+
+/// Whether two triangles have points at most `reach_m` apart.
+bool within(const Simplex<3>& triangle, const Simplex<3>& other, double reach_m);
 
 }  // namespace clothbench::contact

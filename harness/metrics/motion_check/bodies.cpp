@@ -1,5 +1,3 @@
-#include "metrics/motion_check/bodies.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "clothbench/motion.hpp"
 #include "metrics/motion_check/body_state.hpp"
+#include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {
 namespace {

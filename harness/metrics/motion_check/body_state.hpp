@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "metrics/contact/surface.hpp"
-#include "metrics/contact/tunnel.hpp"
-#include "metrics/motion_check/bodies.hpp"
+#include "metrics/contact/contact_probe.hpp"
+#include "metrics/contact/triangle_mesh.hpp"
+#include "metrics/motion_check/motion.hpp"
 #include "scenario/collider_kinds.hpp"
 
 namespace clothbench::motion_check {

@@ -8,7 +8,6 @@
 #include <map>
 #include <numeric>
 
-#include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {

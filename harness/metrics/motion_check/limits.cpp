@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {

@@ -10,7 +10,6 @@
 #include "clothbench/error.hpp"
 #include "clothbench/motion.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {

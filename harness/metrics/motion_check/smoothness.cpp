@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/motion_check/bodies.hpp"
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {

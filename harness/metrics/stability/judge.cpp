@@ -6,7 +6,159 @@
 #include <numeric>
 
 #include "clothbench/vector.hpp"
+#include "metrics/metric.hpp"
 #include "metrics/truth_errors.hpp"
+
+namespace clothbench::stability {
+namespace {
+
+double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
+
+/// Rest length of the straight line between two vertices [m].
+double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
+  if (c.mesh) return distance(c.mesh->vertices[a], c.mesh->vertices[b]);
+  const int ia = static_cast<int>(a) % c.columns, ib = static_cast<int>(b) % c.columns;
+  const int ja = static_cast<int>(a) / c.columns, jb = static_cast<int>(b) / c.columns;
+  return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
+}
+
+/// Held vertices, frame by frame.
+class Holders {
+ public:
+  explicit Holders(const Scene& s) : s_(s), start_(initial_positions(s)) {
+    const auto& pins = s.pins.vertices;
+    for (std::size_t i = 0; i < pins.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
+  }
+
+  /// Greatest strain between two held vertices.
+  double imposed(const FrameMotion* m) const {
+    double most = between_pins_;
+    if (m == nullptr) return most;
+    const auto& grips = s_.grips.vertices;
+    for (std::size_t i = 0; i < grips.size(); ++i) {
+      if (m->grip_held[i] == 0) continue;
+      for (std::uint32_t pin : s_.pins.vertices)
+        most = std::max(most, strain(grips[i], m->grip_position_m[i], pin, at(pin)));
+      for (std::size_t j = 0; j < i; ++j)
+        if (m->grip_held[j] != 0)
+          most = std::max(most, strain(grips[i], m->grip_position_m[i], grips[j], m->grip_position_m[j]));
+    }
+    return most;
+  }
+
+ private:
+  Vec3 at(std::uint32_t v) const { return vertex_at(start_, v); }
+  double strain(std::uint32_t a, const Vec3& xa, std::uint32_t b, const Vec3& xb) const {
+    const double rest = rest_distance(s_.cloth, a, b);
+    return rest > 0 ? distance(xa, xb) / rest - 1 : 0;
+  }
+
+  const Scene& s_;
+  const std::vector<double> start_;
+  double between_pins_ = 0;
+};
+
+/// Greatest displacement of a hand or of a capsule's end in one frame.
+double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
+  double most = 0;
+  if (hands) {
+    for (std::size_t i = 0; i < a.grip_position_m.size(); ++i)
+      if (b.grip_held[i] != 0) most = std::max(most, distance(a.grip_position_m[i], b.grip_position_m[i]));
+    return most;
+  }
+  for (std::size_t k = 0; k < a.colliders.size(); ++k)
+    for (std::size_t c = 0; c < a.colliders[k].capsules.size(); ++c) {
+      const Capsule &p = a.colliders[k].capsules[c], &q = b.colliders[k].capsules[c];
+      most = std::max({most, distance(p.a_m, q.a_m), distance(p.b_m, q.b_m)});
+    }
+  return most;
+}
+
+/// Maximum distance of the start from the sheet at rest, and the start's maximum structural strain.
+std::pair<double, double> start_of(const Scene& s) {
+  const std::vector<double> x = initial_positions(s);
+  double far = 0, strain = 0;
+  for (int j = 0; j < s.cloth.rows; ++j)
+    for (int i = 0; i < s.cloth.columns; ++i) {
+      const auto v = static_cast<std::size_t>(j * s.cloth.columns + i);
+      far = std::max(far, distance(vertex_at(x, v), s.rest_position(i, j)));
+    }
+  for (const Edge& e : edges(s.cloth, EdgeKind::Structural))
+    if (e.rest_m > 0) strain = std::max(strain, distance(vertex_at(x, e.a), vertex_at(x, e.b)) / e.rest_m - 1);
+  return {far, strain};
+}
+
+}  // namespace
+
+double greatest_stiffness(const Scene& s) {
+  double most = s.material.membrane_stiffness_N_per_m.value_or(0);
+  for (const StiffnessRegion& r : s.material.regions) most = std::max(most, r.membrane_stiffness_N_per_m.value_or(0));
+  return most;
+}
+
+std::vector<Bounds> envelope(const Scene& s) {
+  const Cloth& c = s.cloth;
+  const std::vector<double> mass = vertex_masses(s);
+  const double M = std::accumulate(mass.begin(), mass.end(), 0.0), g = length(s.gravity_m_per_s2),
+               Y = greatest_stiffness(s);
+  double softest = Y;
+  for (const StiffnessRegion& r : s.material.regions)
+    softest = std::min(softest, r.membrane_stiffness_N_per_m.value_or(softest));
+  if (s.material.membrane_stiffness_N_per_m) softest = std::min(softest, *s.material.membrane_stiffness_N_per_m);
+  const double wave = Y > 0 ? std::sqrt(Y / c.areal_density_kg_per_m2) : 0,
+               diagonal = std::hypot(c.width_m, c.height_m);
+  const double shorter = std::min(c.width_m, c.height_m);
+  const bool held = !s.pins.vertices.empty() || !s.grips.vertices.empty();
+  const auto [far, start_strain] = start_of(s);
+  const double v0 = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * diagonal / 2;
+  const double loads = softest > 0 && (held || !s.colliders.empty()) ? 2 * M * g / (softest * shorter) : 0;
+  const Holders holders(s);
+  std::vector<Bounds> out;
+  double v_hand = 0, v_collider = 0, path = 0, imposed = 0, jump_speed = 0;
+  for (int f = 0; f <= s.time.frames(); ++f) {
+    Bounds b;
+    const FrameMotion* now = s.motion.empty() ? nullptr : &s.motion[static_cast<std::size_t>(f)];
+    for (const Jump& jump : s.jumps)
+      if (jump.frame == f) {
+        b.jumped = true;
+        jump_speed = std::max(jump_speed, jump.distance_m / s.time.dt_after(f - 1));
+      }
+    // A start that is not at rest counts as a jump.
+    if (f == 0 && !c.start.at_rest()) {
+      b.jumped = c.start.shape != Start::Shape::Rest || !c.start.merged.empty() || !c.start.moved.empty();
+      if (b.jumped) jump_speed = far / s.time.dt_after(0);
+    }
+    if (f > 0 && now != nullptr) {
+      const FrameMotion& before = s.motion[static_cast<std::size_t>(f - 1)];
+      const double dt = s.time.dt_after(f - 1), hand = step_of(before, *now, true),
+                   collider = step_of(before, *now, false);
+      path += hand + collider;
+      if (!b.jumped) {
+        v_hand = std::max(v_hand, hand / dt);
+        v_collider = std::max(v_collider, collider / dt);
+      }
+    }
+    imposed = std::max(imposed, holders.imposed(now));
+    const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
+                 fall = std::sqrt(2 * g * H);
+    b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));
+    // Cloth that falls slack is stopped suddenly: v/c.
+    if (wave > 0) b.strain += (3 * v_hand + 2 * v_collider + (held || !s.colliders.empty() ? fall : 0)) / wave;
+    b.speed_m_per_s = std::max({fall, v_hand, v_collider, v0});
+    // Without compliance, stretched cloth returns within one frame.
+    b.speed_m_per_s =
+        std::max(b.speed_m_per_s, wave > 0 ? b.strain * wave : imposed * std::max(c.width_m, c.height_m) / s.time.dt());
+    b.jump_speed_m_per_s = std::max(jump_speed, far > 0 && wave > 0 ? start_strain * wave : 0);
+    const double v = 2 * std::max(v_hand, v_collider), way = std::min(path, 1e3 * diagonal);
+    b.work_J = 0.5 * M * v * v + M * g * way + Y * shorter * b.strain * way;
+    out.push_back(b);
+  }
+  return out;
+}
+
+}  // namespace clothbench::stability
 
 namespace clothbench {
 namespace {
