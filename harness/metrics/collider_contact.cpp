@@ -102,19 +102,19 @@ struct ColliderContact::Probes {
         if (found && found->distance_m <= reach_m[k]) out[v] = found;
       }
     };
-    const int before = std::max(frame - 1, 0);
+    const int previous = std::max(frame - 1, 0);
     if (kind.nearest != nullptr) {
       each([&](const Point<3>& p) {
         const SurfacePlace found = kind.nearest(c, {p[0], p[1], p[2]});
         return Nearest{found.distance_m, contact::point(found.normal), Point<3>::Zero()};
       });
     } else if (kind.capsules != nullptr) {
-      const std::vector<contact::Capsule> now = capsules_at(k, frame), was = capsules_at(k, before);
+      const std::vector<contact::Capsule> now = capsules_at(k, frame), was = capsules_at(k, previous);
       each([&](const Point<3>& p) { return contact::nearest(p, now, was); });
     } else if (!c.moves()) {
       each([&](const Point<3>& p) { return contact::nearest(p, *meshes[k], reach_m[k]); });
     } else {
-      const ColliderSurface last = kind.surface(c, pose_at(k, before), {});
+      const ColliderSurface last = kind.surface(c, pose_at(k, previous), {});
       const TriangleMeshView was{last.positions, last.triangles};
       each([&](const Point<3>& p) { return contact::nearest(p, *meshes[k], reach_m[k], &was); });
     }

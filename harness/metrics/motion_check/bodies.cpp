@@ -267,8 +267,8 @@ void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, 
       if (d < its_reach[v]) faces[frame].add(to_v3(at.normal), b.collider.friction);
     } else if (b.kind.capsules != nullptr) {
       for (const Capsule& c : pose(b, frame).capsules) {
-        const V3 a = to_v3(c.a_m), b = to_v3(c.b_m);
-        d = std::min(d, (p - a - contact::axis_share(p, {a, b, c.radius_m}) * (b - a)).norm() - c.radius_m);
+        const V3 a = to_v3(c.a_m), e = to_v3(c.b_m);
+        d = std::min(d, (p - a - contact::axis_share(p, {a, e, c.radius_m}) * (e - a)).norm() - c.radius_m);
       }
     }
     if (std::isfinite(d)) deepest = std::max(deepest, -d);
