@@ -5,7 +5,7 @@
 #                                                                 --arm64: also the cross build and the packaging of the APK
 set -euo pipefail
 
-packages=(g++ cmake make ninja-build ccache
+packages=(clang cmake make ninja-build ccache
           glslc spirv-tools spirv-headers libvulkan-dev mesa-vulkan-drivers
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libopenxr-loader1 libpng-dev fonts-dejavu-core
@@ -14,10 +14,10 @@ packages=(g++ cmake make ninja-build ccache
 command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in
-    --short) packages+=(libgtest-dev vulkan-validationlayers) ;;
-    --tests) packages+=(libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
+    --short) packages+=(g++ libgtest-dev vulkan-validationlayers) ;;
+    --tests) packages+=(g++ libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
                         libbenchmark-tools clang-format pmccabe) ;;
-    --ci) packages+=(python3-paraview chromium clang libclang-rt-dev slurm-wlm munge) ;;
+    --ci) packages+=(python3-paraview chromium libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;

@@ -103,12 +103,12 @@ in_chroot() {
 newcomer() { in_chroot "$folder/build" "$1"; }
 
 set_up() {
-  newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates clang
+  newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates
             git config --global --add safe.directory "*"; scripts/bootstrap.sh --short'
 }
 # Not optimised: half of the time to compile, and no speed is judged here. Words are split on purpose: arguments of cmake.
 options='-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-DNDEBUG'
-[ "$suite" != trixie ] || options+=' -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOTHBENCH_WERROR=ON'
+[ "$suite" != trixie ] || options+=' -DCLOTHBENCH_WERROR=ON'
 compiler="export CLOTHBENCH_CMAKE='$options'"
 monado() {
   newcomer 'apt-get install -y --no-install-recommends monado-service libopenxr1-monado openxr-layer-corevalidation

@@ -141,7 +141,7 @@ TEST_F(Pictures, PicturesSurviveTheirFile) {
   EXPECT_EQ(read_png(dir_ / "a.png").rgb, p.rgb);
 }
 
-constexpr DeviceOptions kValidated = {-1, true};
+const DeviceOptions kValidated = {-1, true};
 
 TrialRules some_frames(bool rendered) {
   TrialRules r;
