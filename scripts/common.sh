@@ -25,9 +25,8 @@ over_budget=0
 stage_logs=${CLOTHBENCH_LOGS:-build/log}
 mkdir -p "$stage_logs"
 
-# stage NAME LIMIT_MINUTES COMMAND…: runs it, in a subshell, with its output in a file, and prints one line: the time it has taken so far while
-#   it runs, the whole time afterwards. Where it fails, the end of its output and the file's name.
-# stage --show NAME …: its output is printed too.
+# stage [--show] NAME LIMIT_MINUTES COMMAND…: runs it, in a subshell, with its output in a file (--show: also printed), and prints one line: the
+#   time it has taken so far while it runs, the whole time afterwards. Where it fails, the end of its output and the file's name.
 stage() {
   local show=
   if [ "$1" = --show ]; then show=1; shift; fi
