@@ -199,9 +199,9 @@ void DifferingRuns::refuse(const std::string& a, const std::string& b) const {
       ExitCode::BadInput);
 }
 
-std::string DifferingRuns::marks() const {
+std::string DifferingRuns::marks(const std::string& what) const {
   std::string out;
-  for (const Entry& e : all_) out += fmt::format("Compared although it differs, by --allow: {}\n", line(e));
+  for (const Entry& e : all_) out += fmt::format("{}: {}\n", what, line(e));
   return out;
 }
 

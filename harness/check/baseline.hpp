@@ -45,8 +45,8 @@ class DifferingRuns {
   /// Throws Error that names every difference that is not allowed, with both values. `a`, `b`: what the sides are
   /// called.
   void refuse(const std::string& a, const std::string& b) const;
-  /// A line for each allowed difference, which marks an output; empty if there is none.
-  std::string marks() const;
+  /// A line for each difference, which marks an output and begins with `what`; empty if there is none.
+  std::string marks(const std::string& what = "Compared although it differs, by --allow") const;
   nlohmann::json json() const;
   bool empty() const { return all_.empty(); }
 

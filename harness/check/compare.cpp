@@ -248,6 +248,9 @@ Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs)
     const std::vector<Finding> findings =
         entry == entries.end() ? std::vector<Finding>{{Verdict::New, "run", "–", r->outcome.status, "", ""}}
                                : compare_run(*entry->second, *r);
+    if (entry != entries.end())
+      for (const ConditionDifference& d : differences(entry->second->conditions, now.conditions))
+        out.differing.add(name, d);
     if (!findings.empty())
       out.changes.push_back({now.key, findings});
     else if (!same_values(*entry->second, now))

@@ -106,9 +106,10 @@ Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::ve
 
 struct Updated {
   Baseline baseline;
-  std::vector<CheckedRun> changes;  ///< beyond slack, from `compare_run`
-  std::vector<RunKey> removed;      ///< runs without a result
-  std::size_t within_slack = 0;     ///< runs with changed values, all of them within slack
+  std::vector<CheckedRun> changes;            ///< beyond slack, from `compare_run`
+  std::vector<RunKey> removed;                ///< runs without a result
+  std::size_t within_slack = 0;               ///< runs with changed values, all of them within slack
+  DifferingRuns differing = DifferingRuns();  ///< conditions that differ from the old baseline's
 };
 
 /// The baseline made from the results. Throws Error if there is no result, a run is listed twice, a planned run has no

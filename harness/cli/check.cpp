@@ -19,6 +19,7 @@ void update(const CheckArguments& a, const std::vector<RunRecord>& runs, const C
   const Baseline old = fs::exists(a.baseline) ? read_baseline(a.baseline) : Baseline{};
   const Updated updated = update_baseline(old, runs);
   write_file_atomically(a.baseline, baseline_text(updated.baseline));
+  fmt::print(stderr, "{}", updated.differing.marks("The old and the new baseline differ"));
   console.print([&] { return update_json(updated, a.baseline); }, [&] { return update_text(updated, a.baseline); });
 }
 

@@ -47,7 +47,7 @@ struct Ends {
 };
 
 nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vector<RunRecord>& runs,
-                          const std::filesystem::path& out, nlohmann::json figures) {
+                          const std::filesystem::path& out) {
   std::vector<std::string> failed;
   for (const RunRecord& c : runs)
     if (verdict(c) == "fail") failed.push_back(run_name(c.header) + ": " + c.outcome.expect);
@@ -63,7 +63,7 @@ nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vec
           {"with_bound", count_verdicts(runs).runs},
           {"expect_passed", count_verdicts(runs).passed},
           {"expect_failed", failed},
-          {"runs", std::move(figures)}};
+          {"runs", figures_of(runs)}};
 }
 
 /// `part`: no report was printed, so the runs follow in short.
@@ -127,9 +127,7 @@ void execute_study(const RunPlan& plan, StudyManifest manifest, const RunFlags& 
   if (!result.faults.empty()) console.exit_code = ExitCode::CheckFailed;
   for (const std::string& fault : result.faults) fmt::print(stderr, "FAULT {}\n", fault);
   if (!console.json && !flags.part) print_console_report({out});
-  console.print(
-      [&] { return summary_of(result.faults, runs, out, flags.part ? nlohmann::json::array() : figures_of(runs)); },
-      [&] { return text_of(runs, out, flags.part); });
+  console.print([&] { return summary_of(result.faults, runs, out); }, [&] { return text_of(runs, out, flags.part); });
 }
 
 }  // namespace clothbench

@@ -79,12 +79,10 @@ std::string plan_text(const json& p) {
     return Cells{text(m["collider"]), fmt::format("{:g}", m["margin_m"].get<double>())};
   });
   if (!p["left_out"].empty()) out += "\nDisabled features\n";
-  for (const auto& l : p["left_out"])
-    out +=
-        wrapped(text(l["why"]) + (l.contains("no_parameter")
-                                      ? "; without it the cloth does not have the stiffness " + text(l["no_parameter"])
-                                      : ""),
-                30, columns, "  " + text(l["what"]));
+  for (const auto& l : p["left_out"]) {
+    const char* loss = l.contains("no_parameter") ? "; without it the cloth is not as stiff as the scene states" : "";
+    out += wrapped(text(l["why"]) + loss, 30, columns, "  " + text(l["what"]));
+  }
   return out + "\n";
 }
 

@@ -23,9 +23,9 @@ with tempfile.TemporaryDirectory() as home:
     assert not os.listdir(home)
 
     out = os.path.join(home, "run")
-    command(*STUDY, "--out", out, "--job", "1")
+    made = json.loads(command("--json", *STUDY, "--out", out, "--job", "1"))
     done = {f[:-3] for f in os.listdir(out) if f.endswith(".h5")}
-    assert done == {names[1]}, done
+    assert done == {names[1]} and made["ok"] == len(made["runs"]) == 1 and made["runs"][0]["summary"], (done, made)
     with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
         assert json.load(text)["runs"] == names, "the folder says what belongs to it"
     # The rest at the same time, in two processes; one of them begins with what is there already.
