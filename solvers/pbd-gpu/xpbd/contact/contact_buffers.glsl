@@ -53,7 +53,7 @@ layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active
 // A vertex that goes on at its speed is within the second.
 const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
-const float kRecovered = 0.1;   // fraction of the margin by which what is too near is let out a substep
+const float kRecovered = 0.1;   // of the margin: maximum depenetration per substep
 const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes
 const float kImpactMassFactor = 0.25;  // margins of a push before the solve that double a vertex' mass in it
 const float kRounding_m = 2e-7;  // of positions
@@ -91,9 +91,9 @@ uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
 uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
 #define SELF_ACTIVE_COUNT min(frame_state.self_active, ACTIVE_CAPACITY)
-// Only kinematic shapes are responded to before the lines. Static shapes would take their friction from a displacement
-// without the lines' pull: a strip over a cylinder slips at 5 % less overhang than friction holds (capstan-hold), at
-// 0.7 % less with one response.
+// Only kinematic shapes are responded to before the constraint solve (round 0). Friction of static shapes would act on
+// a displacement without the pull of the constraints: a strip over a cylinder (capstan-hold) slips at 5 % less overhang
+// than Coulomb's law holds, and at 0.7 % less without round 0.
 #define FIRST_ROUND (HAS_KINEMATIC != 0u ? 0u : 1u)
 uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame

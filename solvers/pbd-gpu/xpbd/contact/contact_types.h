@@ -32,9 +32,9 @@ struct PointSource {
 struct PairState {
   vec4 normal;   // from the convex shape to the cloth; w: lower bound of the pair's distance [m]
   vec4 weights;  // of the primitive's vertices at its nearest point; w: dot(normal, shape's nearest point at the end)
-  // First the displacement of the shape's nearest point in the substep; w: distance to keep. Then the plane; w: offset.
+  // First the displacement of the shape's nearest point in the substep; w: target gap. Then the plane; w: offset.
   vec4 displacement_or_plane;
-  // First the contact's correction over its inverse mass; w: its part that is no velocity. Then multipliers.
+  // First `velocity_part` over the point's inverse mass; w: `depenetration` over it. Then multipliers.
   vec4 correction;
 };
 

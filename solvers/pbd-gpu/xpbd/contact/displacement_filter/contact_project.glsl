@@ -25,8 +25,7 @@ float half_space(PlaneShape s) {
     ) \
   }
 
-// The same of the planes between its triangles and others of the cloth; `k`: the active pair. They are looked at a few
-// at a time: their loads do not wait for one another.
+// Planes of self-contact; `k`: the active pair. The loads of a few planes are issued together, to hide their latency.
 const uint kSelfPlaneUnroll = 4u;
 #define FOR_EACH_SELF_PLANE(BODY) \
   for (uint f = first_vertex_triangle; SELF != 0u && f < end_vertex_triangle; f += vertex_triangle_step) { \

@@ -33,7 +33,7 @@ void predict(uint i) {
   starts[i].w = max_displacement(i, at.xyz);
 }
 
-/// Where the lines have put a vertex, but no farther than `most` from where it began.
+/// `to`, but no farther than `largest` from `from`; the velocity loses what is cut off.
 vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
   vec3 displacement = to - from;
   float l = length(displacement);
@@ -42,7 +42,7 @@ vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
   v[i] = vec4(v[i].xyz + p.per_h * (kept - to), 0.0);
   return kept;
 }
-/// The same within the frame's motion bound.
+/// `to` within the frame's motion bound.
 vec3 clamp_to_bounds(uint i, vec3 to, float w) {
   vec4 bound = motion_bounds[i];
   if (SELF != 0u) {

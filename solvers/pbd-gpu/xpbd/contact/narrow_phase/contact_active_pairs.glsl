@@ -29,8 +29,7 @@ bool may_be_active(uint k) {
   return bound <= approach_of(e, pair.y) || pair.z != 0u;
 }
 
-/// Whether it is: not if the gap along the last normal, or from middle to middle, is too wide. That is a bound like any
-/// other, and costs less than nearest points.
+/// Whether the gap along the last normal, and from middle to middle, is small enough; cheaper than nearest points.
 bool is_active(uint k) {
   uvec4 pair = pairs[k];
   if (pair.z != 0u) return true;

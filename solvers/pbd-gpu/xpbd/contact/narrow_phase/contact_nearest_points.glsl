@@ -1,7 +1,6 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// A triangle that is static is its own plane where that separates the pair: no nearest points are needed, and no
-/// contact but the vertices'.
+/// Whether a static triangle's own plane separates the pair; then only pairs of the cloth's vertices have contacts.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;
   load_shape(t_begin);
@@ -49,7 +48,7 @@ uint find_contact(uvec4 e, inout PairState s) {
   return PAIR_TESTED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
 }
 
-/// Asks a pair that is active for its nearest points, unless that is done, and what its contact proposes.
+/// Nearest points of an active pair, unless they are known, and its contact's correction.
 void process_pair(uint k) {
   uvec4 pair = pairs[k];
   uvec4 e = primitives[pair.x];

@@ -1,7 +1,7 @@
 // Accumulates corrections (Jacobi averaging): each vertex takes the mean of what its contacts propose, weighted by
-// length. Before the constraint solve corrections go into velocity and position, and the inverse mass of a vertex that
-// kinematic shapes moved is reduced. The sum has a fixed order, whatever the number of lanes that share it:
-// kPartialSums partial sums, of the vertex's own pairs and of every kPartialSums-th triangle, added one after another.
+// length. In round 0 `velocity_part` changes only v, because the prediction that follows moves x by h v; and the inverse
+// mass of a vertex that kinematic shapes moved is reduced. The sum has a fixed order, whatever the number of lanes that
+// share it: kPartialSums partial sums, of the vertex's own pairs and of every kPartialSums-th triangle.
 const uint kPartialSums = 8u;
 bool any_pairs = true;  // that push the vertex
 vec3 sum, sum_velocity_part;

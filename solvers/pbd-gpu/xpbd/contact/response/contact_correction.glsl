@@ -1,13 +1,15 @@
-// Correction of a contact with a convex shape: its nearest point is moved to the contact offset.
+// Correction of a contact with a convex shape. Target gap: the smaller of the kept margin and the gap at the start.
 #include "xpbd/contact/response/friction.glsl"
 
-/// Margin that the contact keeps. Edges and faces keep less from static shapes: flat cloth would rise off its vertices.
+/// Margin that the target gap and the recovery use. With the whole margin, edges and faces would lift flat cloth off
+/// the vertices that rest on a static shape.
 float kept_margin(uvec4 e, vec3 weights) {
   bool inner = e.w == 3u && max(weights.x, max(weights.y, weights.z)) < 1.0 - kTiny;
   return shape.margin * (inner && shape.is_kinematic == 0u ? kStaticMarginFactor : 1.0);
 }
 
-/// Proposed correction of a contact over the inverse mass of its point; w: its part that is no velocity.
+/// Correction of a contact, divided by the inverse mass of its point; w: depenetration. From the narrow phase:
+/// `weights.w`: n·(shape's nearest point at the end); `displacement_or_plane`: that point's displacement, target gap.
 vec4 contact_correction(uvec4 e, PairState s) {
   if (response_round == 0u && shape.is_kinematic == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;

@@ -1,12 +1,12 @@
 // The response of every contact: with a half-space, a convex shape, or another layer (Macklin et al. 2016, XPBD's
-// position-level contact with zero compliance; Coulomb friction). A correction has a part that is velocity, and one
-// along the normal that is none.
+// position-level contact with zero compliance; Coulomb friction). `velocity_part` moves x and changes v by Δ/h';
+// `depenetration`, along the normal, only moves x.
 struct Correction {
   vec3 velocity_part;
   float depenetration;
 };
 
-/// By how much what is `lacking` [m] to a margin is let out in this round.
+/// Depenetration [m] of a contact that lacks `lacking` [m] to its margin. Round 2 enforces only the target gap.
 float recovery(float lacking, float margin) {
   return response_round < 2u ? clamp(lacking, 0.0, kRecovered * margin) : 0.0;
 }
