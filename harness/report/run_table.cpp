@@ -91,11 +91,11 @@ void compare_times(std::vector<Row>& all) {
   for (Row& r : all)
     if (r.published < 0) scenes[r.scene].push_back(&r);
   for (auto& [unused, rows] : scenes) {
-    const FrameTimes* baseline = nullptr;
+    const Row* baseline = nullptr;
     std::vector<Row*> ranked;
     for (Row* r : rows) {
       const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
-      if (good && r->solver == time_baseline() && r->setting == "default" && !baseline) baseline = &r->times->wall;
+      if (good && r->solver == time_baseline() && r->setting == "default" && !baseline) baseline = r;
       const std::string v = verdict(*r->run);
       if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
           std::isfinite(r->times->wall.median.low) && r->repeat == 1 &&
@@ -111,11 +111,6 @@ void compare_times(std::vector<Row>& all) {
 }
 
 }  // namespace
-
-double summary_value(const RunRecord& c, const std::string& name) {
-  const auto found = c.summary.find(name);
-  return found == c.summary.end() ? kMissing : found->second;
-}
 
 json scenario_of(const RunRecord& c) {
   return c.header.scenario_json.empty() ? json::object() : json::parse(c.header.scenario_json);
@@ -190,7 +185,7 @@ std::string Row::label() const {
 }
 
 std::string Row::frames_mark() const {
-  return frames() > 0 && frames() < most_frames ? fmt::format(" (first {} frames)", frames()) : "";
+  return frames() > 0 && frames() < most_frames ? fmt::format("first {} frames", frames()) : "";
 }
 
 double Row::frame_rate_hz() const {
@@ -244,7 +239,7 @@ std::string Row::trust() const {
   const json load = environment_of(*run, "load_average");
   if (load.is_number()) out += fmt::format(", load {:.1f}", load.get<double>());
   if (times && times->wall.uncertain()) out += ", ~ wide interval";
-  return out + frames_mark();
+  return out + in_brackets(frames_mark());
 }
 
 json Row::drawn() const { return at(scenario, "/drawn"); }

@@ -11,11 +11,10 @@
 #include "base/interval.hpp"
 #include "base/words.hpp"
 #include "clothbench/record.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 
-/// A summary value of a run; NaN if the run does not have it.
-double summary_value(const RunRecord&, const std::string& name);
 /// The scenario of a run; an empty object for a planned run whose scene is not known.
 nlohmann::json scenario_of(const RunRecord&);
 /// The environment's value of `key`; null if there is none.
@@ -53,6 +52,8 @@ std::string ending(const Outcome&);
 std::string status_with_class(const Outcome&);
 /// "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)".
 inline std::string short_name(const std::string& device) { return device.substr(0, device.find(" (")); }
+/// " (text)"; nothing for an empty text.
+inline std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
 /// "–" for an empty text.
 inline std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
@@ -160,13 +161,13 @@ struct Row {
   int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
-  const FrameTimes* baseline = nullptr;             ///< wall times of time_baseline() in the same scene
+  const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene
   bool is_best = false;  ///< settings of the cheapest point of `reproduction` where most claims hold
   int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
-  /// " (first 36 frames)" where the run timed fewer frames than another run of its scene; otherwise empty.
+  /// "first 36 frames" where the run timed fewer frames than another run of its scene; otherwise empty.
   std::string frames_mark() const;
   double value(const std::string& scalar) const { return summary_value(*run, scalar); }
   std::string status() const { return run->outcome.status; }

@@ -11,6 +11,8 @@
 namespace clothbench {
 namespace {
 
+constexpr std::size_t kMostAgain = 8;  // runs of a row that one command makes again
+
 /// A row of a table before its cells are known.
 struct TableRow {
   Keys keys;
@@ -90,7 +92,12 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   const std::vector<TableRow> rows = rows_of(v, runs);
   t.rows.resize(rows.size() + 1);
   t.cells.resize(rows.size());
-  for (const TableRow& r : rows) t.runs.push_back(r.runs.front());
+  for (const TableRow& r : rows) {
+    const bool is_sum =
+        r.runs.size() > kMostAgain || std::any_of(r.keys.begin(), r.keys.end(), std::mem_fn(&KeyValue::all));
+    t.runs.push_back(r.runs.front());
+    t.again.push_back(is_sum ? Group() : r.runs);
+  }
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     std::vector<Cell> cells;
     for (const TableRow& r : rows) cells.emplace_back(r.keys[k].text);

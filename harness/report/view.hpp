@@ -73,8 +73,9 @@ inline const Row* first_of(const Group& g) { return g.front(); }
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
                   Pick pick = first_of);
 
-/// The number of timed trials; the rank by wall time; how many times as fast as time_baseline(), with the least and the
-/// greatest ratio of values within both intervals.
+/// A value over another one, with the least and the greatest ratio of values within both intervals.
+Cell ratio_cell(double value, const Interval&, double by, const Interval& of_by);
+/// The number of timed trials; the rank by wall time; how many times as fast as time_baseline() the median frame is.
 Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
@@ -111,6 +112,7 @@ struct View {
 /// A table with the runs behind it, for filters and commands of the page.
 struct ViewTable : Table {
   std::vector<const Row*> runs = {};          ///< the first run of each row
+  std::vector<Group> again = {};              ///< by row: the runs that its command makes again; none of a sum
   std::size_t keys = 0;                       ///< number of columns that tell the rows apart
   std::vector<std::size_t> late = {};         ///< columns that stand last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
@@ -128,6 +130,11 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
+/// Of a criterion of the run: what its scene demands, and what was found, with units.
+std::string expected_of(const Row&, const std::string& criterion);
+Cell found_of(const Row&, const std::string& criterion);
+/// Contact offset [mm] of these runs, "3.5 to 20" where it differs; empty without colliders.
+std::string offset_of(const Group&);
 /// "S01 stiffness" of a scene that stability is judged on.
 std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if stability is not judged, the solver does not support it or it was not run.

@@ -157,13 +157,12 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
   for (const Row* r : g) {
     const int grade = grade_of(*r);
     unsupported += r->status() == "unsupported";
-    if (grade < 0) continue;
-    ++all;
+    all += grade >= 0 || r->status() == "unsupported";
     stable += grade == 0;
     const std::string& klass = r->run->outcome.klass;
     if (grade > 0) ++classes[grade][klass == "ok" || klass.empty() ? "F3" : klass];
   }
-  if (all == 0) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
+  if (all == unsupported) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
   for (const auto& [grade, counts] : classes) {
     int runs = 0;
@@ -173,32 +172,41 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
     };
     out += fmt::format(", {} {} ({})", runs, kGrades[grade], joined(counts, ", ", name));
   }
+  if (unsupported > 0) out += fmt::format(", {} unsupported", unsupported);
   return {out, static_cast<double>(stable) / all};
 }
 
 View robustness() {
-  View v{"stability", "Robustness",
-         "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
-         "(F2). Failed: any other class. Classes: F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 "
-         "budget, crash or device.",
-         in_stability};
+  View v{
+      "stability", "Robustness",
+      "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
+      "(F2). Failed: any other class. Unsupported counts as not stable. Classes: F0 not finite or out of all bounds, "
+      "F1 energy gained, F2 strain, F3 budget, crash or device.",
+      in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
   return v;
 }
 
+/// A run that reached its end can have failed for its motion.
+std::string status_of(const Row& r) {
+  const Outcome& o = r.run->outcome;
+  return o.status == "ok" ? fmt::format("ended, but {} ({})", kGrades[grade_of(r)], o.klass) : status_with_class(o);
+}
+
 View failed() {
   View v{"failed", "Runs that failed",
          "In brackets: the class of a failure (section Stability), and the first frame with it.",
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
-  v.keys = {solver_key(), key("status", [](const Row& r) { return status_with_class(r.run->outcome); }),
+  v.keys = {solver_key(), key("status", status_of),
             key("message", [](const Row& r) { return r.run->outcome.message; })};
   v.columns = {{"scenes", [](const Group& g, const Keys&) {
-                  return joined(g, ", ", [](const Row* r) {
+                  const std::string names = joined(g, ", ", [](const Row* r) {
                     const int frame = r->run->outcome.failed_frame;
                     return r->scene + (frame >= 0 ? fmt::format(" (frame {})", frame) : "");
                   });
+                  return Cell(g.size() > 1 ? fmt::format("{} runs: {}", g.size(), names) : names);
                 }}};
   return v;
 }
@@ -207,19 +215,6 @@ View failed() {
 std::string unit_of(const std::string& name) {
   const Scalar* s = find_scalar(name);
   return s == nullptr || s->units == "1" ? "" : " " + s->units;
-}
-
-/// The criterion of the scene for a summary value, as text: "at most 0.001 m".
-std::string criterion(const Row& r, const std::string& name) {
-  if (const double exact = r.value(name + kBound); std::isfinite(exact))
-    return fmt::format("at most {:.3g}{}", exact, unit_of(name));
-  const json e = r.scenario.value("expect", json::object()).value(name, json());
-  if (e.is_string()) return e.get<std::string>();
-  std::string text;
-  for (const auto& [bound, words] : {std::pair{"at_least", "at least "}, std::pair{"at_most", "at most "}})
-    if (e.is_object() && e.contains(bound))
-      text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", words, e[bound].dump(), unit_of(name));
-  return text;
 }
 
 /// A row per violated criterion. A verdict that no criterion explains stands as it is.
@@ -234,15 +229,10 @@ View violated() {
          "Motion: the check, in every run, of whether forces, collisions and attachments explain the positions.",
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability; }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
-  v.columns = {{"expected", [](const Group& g, const Keys& k) { return criterion(*g.front(), k[2].text); }},
+  v.columns = {{"expected", [](const Group& g, const Keys& k) { return Cell(expected_of(*g.front(), k[2].text)); }},
                {"found",
                 [](const Group& g, const Keys& k) {
-                  if (k[2].text == "outcome") return ending_cell(*g.front()->run);
-                  if (k[2].text == "motion") return Cell(g.front()->run->outcome.expect);  // which of its laws
-                  if (k[2].all) return Cell("fail", kMissing, "bad");
-                  const double found = g.front()->value(k[2].text);
-                  return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(k[2].text)), found)
-                                              : Cell();
+                  return k[2].all ? Cell("fail", kMissing, "bad") : found_of(*g.front(), k[2].text);
                 }},
                {"meaning", [](const Group&, const Keys& k) {
                   const Scalar* s = find_scalar(k[2].text);
@@ -311,6 +301,25 @@ Cell declared(const Group& g, const Keys& keys) {
 
 }  // namespace
 
+std::string expected_of(const Row& r, const std::string& name) {
+  if (const double exact = r.value(name + kBound); std::isfinite(exact))
+    return fmt::format("at most {:.3g}{}", exact, unit_of(name));
+  const json e = r.scenario.value("expect", json::object()).value(name, json());
+  if (e.is_string()) return e.get<std::string>();
+  std::string text;
+  for (const auto& [bound, words] : {std::pair{"at_least", "at least "}, std::pair{"at_most", "at most "}})
+    if (e.is_object() && e.contains(bound))
+      text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", words, e[bound].dump(), unit_of(name));
+  return text;
+}
+
+Cell found_of(const Row& r, const std::string& name) {
+  if (name == "outcome") return ending_cell(*r.run);
+  if (name == "motion") return Cell(r.run->outcome.expect);  // which of its laws
+  const double found = r.value(name);
+  return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(name)), found) : Cell();
+}
+
 std::string case_of(const Row& r) {
   const std::string name = r.name.size() > 4 && r.name[3] == '-' ? r.name.substr(4) : r.name;
   return r.scenario.value(json::json_pointer("/stability/case"), std::string()) + " " + name;
@@ -328,7 +337,7 @@ View feature_view() {
          [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {{"feature", [](const Row&) {
                Keys out;
-               for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name));
+               for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name), true);
                return out;
              }}};
   v.across = {key("", &Row::solver, true), declared};

@@ -31,7 +31,7 @@ std::string milliseconds(double s) { return significant(1e3 * s, 3); }
 Cell median_cell(const Row& r, const FrameTimes& t) {
   const std::string span = milliseconds(t.median.low) + "–" + milliseconds(t.median.high);
   return {milliseconds(t.at(0.5)) + (std::isfinite(t.median.low) ? " (" + span + ")" : "") +
-              (t.uncertain() ? " ~" : "") + r.frames_mark(),
+              (t.uncertain() ? " ~" : "") + in_brackets(r.frames_mark()),
           t.at(0.5)};
 }
 
@@ -51,7 +51,7 @@ void add_time_columns(View& v, const std::function<Timed(const Group&, const Key
                          }});
   };
   add("frame p50 [ms]", median_cell);
-  add("p95 / p99 / worst", [](auto&, auto& t) { return tails_cell(t); });
+  add("p95 / p99 / worst [ms]", [](auto&, auto& t) { return tails_cell(t); });
   add("missed 72 / 90 Hz [%]", [](auto&, auto& t) { return paired_cell(100 * t.missed(72), 100 * t.missed(90), 3); });
   add("real-time factor", [](auto& r, auto& t) { return number_cell(1 / (r.frame_rate_hz() * t.at(0.5)), 3); });
 }
@@ -83,7 +83,7 @@ View frame_times() {
                   "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
                   "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
                   "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
-                  "frame. Load: once, before the first frame, in ms. × bullet-soft: how many times as fast, the two "
+                  "frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, the two "
                   "intervals combined. Rank 1: no ranked run of the scene is certainly faster (has its whole interval "
                   "below the run's); runs that failed, and cloths with an edge of more than twice its length, are not "
                   "ranked. CPU threads: CPU time over wall time. ") +
@@ -105,9 +105,9 @@ View frame_times() {
   v.columns.push_back({"frames", [timed](const Group& g, const Keys& keys) {
                          return number_cell(static_cast<double>(timed(g, keys).second->sorted.size()), 1);
                        }});
-  add_wall("pipelined", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
-  add_wall("load", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
-  add_wall("× " + time_baseline(), times_as_fast_cell);
+  add_wall("pipelined [ms]", [](const Row& r) { return number_cell(1e3 * r.value("frame_pipelined_median_s"), 3); });
+  add_wall("load [ms]", [](const Row& r) { return number_cell(1e3 * r.value("load_s"), 3); });
+  add_wall("p50: × " + time_baseline(), times_as_fast_cell);
   add_wall("rank", rank_cell);
   add_conditions(v, first_of);
   v.columns.push_back(column("conditions", &Row::trust));
@@ -161,10 +161,10 @@ View in_short(std::function<bool(const Row&)> where) {
                  const double percent = 100 * r.value("stretch_max_last_second");
                  return percent > 0 && percent < 1e-3 ? Cell("<0.001", percent) : number_cell(percent, 3);
                })};
-  v.columns.push_back(column("× " + time_baseline(), times_as_fast_cell));
+  v.columns.push_back(column("p50: × " + time_baseline(), times_as_fast_cell));
   v.columns.push_back(column("rank", rank_cell));
-  v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst", &RunTimes::contact_wall, first_of));
-  v.columns.push_back(quantiles("GPU, with contact", &RunTimes::contact_device, first_of));
+  v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst [ms]", &RunTimes::contact_wall, first_of));
+  v.columns.push_back(quantiles("GPU, with contact [ms]", &RunTimes::contact_device, first_of));
   v.columns.push_back(column("trials", trials_cell));
   add_tail_columns(v, first_of);
   v.timed = true;
@@ -173,13 +173,16 @@ View in_short(std::function<bool(const Row&)> where) {
 
 }  // namespace
 
+Cell ratio_cell(double value, const Interval& i, double by, const Interval& of_by) {
+  const double low = i.low / of_by.high, high = i.high / of_by.low;
+  const std::string span = significant(low, 3) + "–" + significant(high, 3);
+  return {significant(value / by, 3) + (std::isfinite(low) && &i != &of_by ? in_brackets(span) : ""), value / by};
+}
+
 Cell times_as_fast_cell(const Row& r) {
-  const FrameTimes& mine = r.times->wall;
-  if (!r.baseline || mine.sorted.empty()) return {};
-  const double ratio = r.baseline->at(0.5) / mine.at(0.5), low = r.baseline->median.low / mine.median.high,
-               high = r.baseline->median.high / mine.median.low;
-  const std::string span = " (" + significant(low, 3) + "–" + significant(high, 3) + ")";
-  return {significant(ratio, 3) + (std::isfinite(low) && &mine != r.baseline ? span : ""), ratio};
+  if (!r.baseline || r.times->wall.sorted.empty()) return {};
+  const FrameTimes &mine = r.times->wall, &other = r.baseline->times->wall;
+  return ratio_cell(other.at(0.5), other.median, mine.at(0.5), mine.median);
 }
 
 void add_tail_columns(View& v, const Pick& pick) {
@@ -187,7 +190,7 @@ void add_tail_columns(View& v, const Pick& pick) {
     const Row* r = pick(g);
     return Timed{r, r == nullptr ? nullptr : &r->times->wall};
   });
-  v.columns.push_back(quantiles("GPU: p50 / p95 / p99 / worst", &RunTimes::device, pick));
+  v.columns.push_back(quantiles("GPU: p50 / p95 / p99 / worst [ms]", &RunTimes::device, pick));
   add_conditions(v, pick);
 }
 

@@ -209,7 +209,7 @@ View work_model() {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
                   published_samples().contains({r.sides, r.resolution.grid[0]});
          }};
-  v.keys = {{"solver", [](const Row& r) { return Keys{r.label(), std::string(kPublished)}; }, true}};
+  v.keys = {{"solver", [](const Row& r) { return Keys{r.label(), {kPublished, true}}; }, true}};
   v.by_key = true;
   const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {
     v.columns.push_back({std::move(head), [cell](const Group& g, const Keys& keys) {

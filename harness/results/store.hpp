@@ -121,4 +121,17 @@ class DeviceSamples {
   std::set<std::string> reasons_;
 };
 
+/// All runs of study folders, or result files, without trajectories. Planned runs without a file have the
+/// status "missing". Throws Error naming the file that cannot be read.
+std::vector<RunRecord> collect(const std::vector<std::filesystem::path>& results);
+
+/// A summary value of a run; NaN if the run does not have it.
+double summary_value(const RunRecord&, const std::string& name);
+
+/// Maximum number of concurrent clothbench jobs while the run was loaded and timed; NaN if it was not timed.
+inline double jobs_of(const RunRecord& c) { return summary_value(c, "jobs"); }
+
+/// The runs; one that was timed beside other jobs has no times (trials and summary), and the reason in `withheld`.
+std::vector<RunRecord> withhold_times(std::vector<RunRecord>);
+
 }  // namespace clothbench

@@ -104,19 +104,6 @@ TEST_F(SelfContacts, WithAShortListWhatTheBallStopsStaysThere) {
   }
 }
 
-/// The same bits from a second solver, and after a reset, in contact with every kind of collider.
-TEST_F(SelfContacts, RepeatBitForBit) {
-  const Scene s = two_sided(everything(folded(with_pins(sheet(13, 9)), 0.1, kContactFriction)));
-  const auto one = make("xpbd"), two = make("xpbd");
-  one->load(s);
-  two->load(s);
-  const ClothState a = after(*one, s, 8), b = after(*two, s, 8);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  one->reset();
-  EXPECT_EQ(after(*one, s, 8).position, a.position) << "reset restores everything";
-}
-
 /// The leg of a folded sheet that ends with its last column, and half of the bow, is held; the other comes at `speed`.
 Scene closing(double speed, double friction = 0) {
   Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);

@@ -299,7 +299,7 @@ TEST(Stability, RunsOfEachCaseByGrade) {
   EXPECT_EQ(t.rows[3][0] + ": " + t.rows[3][1], "all: 1/3 stable, 1 degraded (F2), 1 failed (F1)");
   const Table failures = table_of(runs, "Runs that failed");
   ASSERT_EQ(failures.rows.size(), 4u);
-  EXPECT_EQ(failures.rows[1], (std::vector<std::string>{"a", "ok (F1)", "S01-stiff-aF1 (frame 7)"}));
+  EXPECT_EQ(failures.rows[1], (std::vector<std::string>{"a", "ended, but failed (F1)", "S01-stiff-aF1 (frame 7)"}));
   EXPECT_EQ(failures.rows[3], (std::vector<std::string>{"b", "crashed (F3)", "S01-stiff-bF3 (frame 7)"}));
 }
 

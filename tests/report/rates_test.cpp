@@ -103,7 +103,7 @@ TEST(Tables, RunsThatFailedSayHow) {
   EXPECT_EQ(failed.rows[1], (std::vector<std::string>{"paper", "diverged (F1)", "edge | 40 times\nits length",
                                                       "gravity-8-single (frame 17)"}));
   EXPECT_NE(failed.markdown().find("edge \\| 40 times its length"), std::string::npos);
-  EXPECT_EQ(failed.rows[2][3], "gravity-128-single, gravity-8-double");
+  EXPECT_EQ(failed.rows[2][3], "2 runs: gravity-128-single, gravity-8-double");
   EXPECT_TRUE(tables_titled(study(), "Runs that failed").empty());
 }
 
@@ -133,15 +133,15 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
   EXPECT_TRUE(value("frame p50 [ms]").starts_with("50.0 (")) << value("frame p50 [ms]");
   EXPECT_TRUE(value("frame p50 [ms]").ends_with(" ~"))
       << "two trials that differ by a factor: " << value("frame p50 [ms]");
-  EXPECT_EQ(value("p95 / p99 / worst"), "95.0 / 99.0 / 100");
+  EXPECT_EQ(value("p95 / p99 / worst [ms]"), "95.0 / 99.0 / 100");
   EXPECT_EQ(value("missed 72 / 90 Hz [%]"), "87.0 / 89.0") << "14 to 100 ms, 12 to 100 ms";
   EXPECT_EQ(value("real-time factor"), "0.200");
   EXPECT_EQ(value("rank"), "") << "too uncertain";
   EXPECT_NE(value("conditions").find("wide interval"), std::string::npos);
   EXPECT_EQ(t.rows.size(), 2u) << "no GPU times";
   // Tables of rates have the same tails, of the largest mesh.
-  const Table rates = table_of({c}, "Speed and error");
-  for (const char* head : {"p95 / p99 / worst", "missed 72 / 90 Hz [%]", "real-time factor", "trials"})
+  const Table rates = table_of({c}, "Frame rates");
+  for (const char* head : {"p95 / p99 / worst [ms]", "missed 72 / 90 Hz [%]", "real-time factor", "trials"})
     EXPECT_EQ(entry(rates, "xpbd", head), value(head)) << head;
   EXPECT_EQ(entry(rates, "xpbd", "frame p50 [ms]"), value("frame p50 [ms]"));
   const auto csv = parse_csv(trials_csv(RunTable({c})));
@@ -149,7 +149,7 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
   EXPECT_EQ(field(csv, 1, "wall_p95_s") + ", " + field(csv, 2, "wall_max_s"), "0.048, 0.1");
   EXPECT_EQ(field(csv, 1, "device_p50_s"), "");
   c.trials[0].frame_device_s = one.frame_wall_s;
-  EXPECT_EQ(entry(table_of({c}, "Speed and error"), "xpbd", "GPU: p50 / p95 / p99 / worst"),
+  EXPECT_EQ(entry(table_of({c}, "Frame rates"), "xpbd", "GPU: p50 / p95 / p99 / worst [ms]"),
             "25.0 / 48.0 / 50.0 / 50.0");
 }
 
@@ -199,8 +199,9 @@ TEST(Intervals, RanksAreNoFinerThanThem) {
   EXPECT_EQ(value("bullet-soft", "rank"), "3");
   EXPECT_EQ(value("shaky", "rank"), "–");
   EXPECT_TRUE(tiles_of(RunTable(runs)).at(0).title.ends_with("near-a")) << "the fastest one is too uncertain";
-  EXPECT_EQ(value("near-a", "× bullet-soft"), "4.00 (3.98–4.02)") << "relative to a fixed solver, whoever is fastest";
-  EXPECT_EQ(value("bullet-soft", "× bullet-soft"), "1.00");
+  EXPECT_EQ(value("near-a", "p50: × bullet-soft"), "4.00 (3.98–4.02)")
+      << "relative to a fixed solver, whoever is fastest";
+  EXPECT_EQ(value("bullet-soft", "p50: × bullet-soft"), "1.00");
 }
 
 TEST(Intervals, ContactScenesHaveARowOverFramesWithContact) {
@@ -234,7 +235,7 @@ TEST(Overview, ScenesWithContactLeadAReportThatHasThem) {
   ASSERT_EQ(t.rows.size(), 3u);
   EXPECT_EQ(t.rows[1][0] + ", " + t.rows[2][0], "desk-1, hand-push") << "one of a kind";
   EXPECT_EQ(entry(t, "hand-push", "xpbd", "real-time factor"), "10.0");
-  EXPECT_EQ(entry(t, "hand-push", "xpbd", "with contact: p50 / p95 / p99 / worst").substr(0, 4), "1.00");
+  EXPECT_EQ(entry(t, "hand-push", "xpbd", "with contact: p50 / p95 / p99 / worst [ms]").substr(0, 4), "1.00");
   const Table times = table_of(runs, kTimes);
   const auto at =
       std::find_if(times.rows.begin(), times.rows.end(), [](auto& row) { return row[2] == "wall, with contact"; });
@@ -306,8 +307,8 @@ TEST(Tables, OtherScenesAreTablesOfTheirOwn) {
   other.header.scenario_json = R"({"name":"hang","cloth":{"grid":[9,7],"sides":"single"}})";
   runs.push_back(other);
   EXPECT_EQ(tables_titled(runs, kTable3).size(), 1u);
-  const Table t = table_of(runs, "Speed and error");
-  EXPECT_EQ(t.title, "Speed and error: hang");
+  const Table t = table_of(runs, "Frame rates");
+  EXPECT_EQ(t.title, "Frame rates: hang");
   EXPECT_EQ(t.rows[0][1] + t.rows[0][2], "9×78²");
   EXPECT_EQ(entry(t, "xpbd", "8²"), "2.0");
   EXPECT_EQ(t.markdown().find("published"), std::string::npos);

@@ -118,8 +118,8 @@ TEST(InShort, HasOutcomeTimesRatioAndRankOfEachRun) {
                                            run("quick", {2e-3, 2e-3, 2e-3}, {}), run("bullet-soft", {4e-3}, {})}));
   ASSERT_EQ(t.rows.size(), 5u);
   using Cells = std::vector<std::string>;
-  EXPECT_EQ(t.rows[0], (Cells{"scene", "solver", "outcome", "× bullet-soft", "rank", "trials", "frame p50 [ms]",
-                              "p95 / p99 / worst", "missed 72 / 90 Hz [%]"}));
+  EXPECT_EQ(t.rows[0], (Cells{"scene", "solver", "outcome", "p50: × bullet-soft", "rank", "trials", "frame p50 [ms]",
+                              "p95 / p99 / worst [ms]", "missed 72 / 90 Hz [%]"}));
   EXPECT_EQ(t.rows[1], (Cells{"drop", "bullet-soft", "ok", "1.00", "2", "1", "4.00 (4.00–4.00)", "4.00 / 4.00 / 4.00",
                               "0.00 / 0.00"}));
   EXPECT_EQ(t.rows[2], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "–", "–"}));

@@ -99,7 +99,7 @@ TEST(WorkTable, HasTailsOfTheFastestSettingToOnePercent) {
   runs[1].trials[0].frame_wall_s = {1e-3};
   runs[2].trials[0].frame_wall_s = {2e-3};
   EXPECT_TRUE(value(runs, kWork, "a", "frame p50 [ms]").starts_with("50.0 ("));
-  EXPECT_EQ(value(runs, kWork, "a", "p95 / p99 / worst"), "95.0 / 99.0 / 100");
+  EXPECT_EQ(value(runs, kWork, "a", "p95 / p99 / worst [ms]"), "95.0 / 99.0 / 100");
   EXPECT_EQ(value(runs, kWork, "a", "missed 72 / 90 Hz [%]"), "87.0 / 89.0");
   EXPECT_EQ(value(runs, kWork, "a", "real-time factor"), "0.333");
   EXPECT_EQ(value(runs, kWork, "b", "real-time factor"), "8.33") << "none to 1 %: the most accurate";

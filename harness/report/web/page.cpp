@@ -61,9 +61,13 @@ json figure_row(const Row& r) {
     if (!text.empty()) out[name] = text;
   };
   add("sides", r.sides);
+  add("frames", r.frames_mark());
   add("message", r.run->outcome.message);
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
-  for (const std::string& name : violated_bounds(*r.run)) out["violated"].push_back({name, rounded(r.value(name))});
+  if (environment_text(*r.run, "gpu") == "CPU") out["cpu"] = true;
+  if (r.repeat > 1) out["repeated"] = true;
+  for (const std::string& name : violated_bounds(*r.run))
+    out["violated"].push_back({name, found_of(r, name).text, expected_of(r, name)});
   add_times(r, out);
   if (r.part == Part::Contact)
     out.update({{"kind", kind_of_contact(r.scenario)}, {"speed", finite_or_null(r.value("imposed_speed_m_per_s"))}});
@@ -91,10 +95,7 @@ json figure_row(const Row& r) {
     out["fps_high"] = finite_or_null(r.times->wall.rate.high);
     if (r.published >= 0) out["fps_median"] = r.value("fps_at_72");
   }
-  if (r.part == Part::Stability) {
-    out["case"] = case_of(r);
-    out["grade"] = grade_of(r);
-  }
+  if (r.part == Part::Stability) out.update({{"case", case_of(r)}, {"grade", grade_of(r)}});
   if (r.part != Part::Truth) return out;
   out["wall_ms_per_s"] = finite_or_null(r.wall_ms_per_s());
   out["device_ms_per_s"] = finite_or_null(r.device_ms_per_s());
@@ -149,15 +150,14 @@ json rows_json(const ViewTable& t) {
 }
 
 json table_json(const ViewTable& t, const RunTable& table) {
-  json runs = json::array();
+  json runs = json::array(), again = json::array();
   for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
-  return {{"title", t.title},
-          {"note", t.note},
-          {"rows", rows_json(t)},
-          {"runs", runs},
-          {"keys", t.keys},
-          {"late", t.late},
-          {"solver_column", t.solver_column},
+  for (const Group& g : t.again) {
+    again.push_back(json::array());
+    for (const Row* r : g) again.back().push_back(r - table.rows().data());
+  }
+  return {{"title", t.title},    {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs},
+          {"again", again},      {"keys", t.keys}, {"late", t.late},       {"solver_column", t.solver_column},
           {"solvers", t.solvers}};
 }
 

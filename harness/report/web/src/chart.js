@@ -12,7 +12,9 @@ export const escape = text => String(text).replace(/[&<>"]/g, c => `&#${c.charCo
 
 export const paper_widths = {'': 238, '-wide': 493};  // points: 84 mm for one column of text, 174 mm for two
 const kPaperHeight = 311;                             // points: 110 mm
-const kDashes = ['', '6 3', '2 3', '8 3 2 3', '1 2'];
+const kDashes = ['', '6 3', '2 3', '8 3 2 3', '1 2', '12 4', '12 3 2 3 2 3', '5 6'];
+const kSample = 36;     // length of a line in the legend
+const kMostLabels = 4;  // lines of one panel that have their names at their ends; more have them in the legend
 const kMost = 1e4;  // and least 1e-3: beyond, numbers have a power of ten
 
 /// "0.0012", "12.5", "4.5·10⁻⁷"; "–" for what is not a number.
@@ -26,13 +28,12 @@ export function number(v, digits = 3) {
   return Number(mantissa) === 1 ? power : `${Number(mantissa)}·${power}`;
 }
 
-/// Ticks of a logarithmic axis: powers of ten, also 2 and 5 times them on short axes.
+/// Ticks of a logarithmic axis: powers of ten, on shorter axes also multiples of them.
 function decades(low, high) {
-  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), out = [];
-  const step = Math.ceil((last - first) / 8);
-  for (let e = first; e <= last; e += step)
-    for (const m of last - first > 2 ? [1] : [1, 2, 5]) out.push(Number(`${m}e${e}`));
-  return out;
+  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), step = Math.ceil((last - first) / 8);
+  const powers = Array.from({length: Math.floor((last - first) / step) + 1}, (_, k) => first + k * step);
+  const ticks = multiples => powers.flatMap(e => multiples.map(m => Number(`${m}e${e}`)).filter(t => t >= low && t <= high));
+  return [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]].map(ticks).find((t, k) => t.length > 3 || k === 2);
 }
 
 /// {at(value), ticks, text(tick)} from an axis, its data and its range in pixels.
@@ -78,6 +79,10 @@ const text = (look, x, y, words, {anchor = 'start', colour = 'var(--soft)', bold
     `<text x="${px(x)}" y="${px(y)}" text-anchor="${anchor}" font-size="${size}" style="fill:${colour}"${bold ? ' font-weight="600"' : ''}${
         rotate ? ` transform="rotate(${rotate} ${px(x)} ${px(y)})"` : ''}>${escape(words)}</text>`;
 const line = (d, colour, more = '') => `<path d="${d}" style="stroke:${colour};fill:none"${more}/>`;
+const dashed = (look, l) => ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % kDashes.length]}"` : ''}`;
+
+const toned_box = (tone, x, y, w, h, more = '') =>
+    `<rect x="${px(x)}" y="${px(y)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${tone})"${more}/>`;
 
 function draw_axes(look, panel, x, y, box, first) {
   const {left, right, top, bottom} = box;
@@ -157,7 +162,7 @@ function draw_mark(look, m, x, y, index, box) {
   const hit = ` data-i="${index}"`, {solver} = m.row, colour = look.colour(solver), drawn = m.tone ? {...look, colour: () => `var(--${m.tone})`, symbol: () => m.shape} : look;
   if (m.kind === 'cell') {
     const w = Math.max(x.step - 1, 1), h = Math.max(y.step - 1, 1), left = x.at(m.x) - w / 2, top = y.at(m.y) - h / 2;
-    const cell = `<rect class="mark" x="${px(left)}" y="${px(top)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${m.tone})"${hit}/>`;
+    const cell = toned_box(m.tone, left, top, w, h, ` class="mark"${hit}`);
     if (h <= look.size || w <= m.glyph.length * 5) return cell;
     return cell +
         text(look, x.at(m.x), y.at(m.y) + 3.5, m.glyph, {anchor: 'middle', colour: `var(--on-${m.tone})`, size: Math.min(10, look.size)});
@@ -190,9 +195,7 @@ function draw_panel(look, panel, box, first, marks) {
   const taken = [];
   for (const l of placed) {
     if (l.at.length > 1)
-      out += line(
-          `M${l.at.map(p => p.map(px).join(' ')).join('L')}`, look.colour(l.solver),
-          ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % 5]}"` : ''}`);
+      out += line(`M${l.at.map(p => p.map(px).join(' ')).join('L')}`, look.colour(l.solver), dashed(look, l));
     l.at.forEach(([a, b], k) => {
       const next = l.at[k + 1] ?? [a, b];
       for (let n = 0; n < 5; ++n)
@@ -204,22 +207,22 @@ function draw_panel(look, panel, box, first, marks) {
     out += draw_mark(look, m, x, y, index, box);
     if (m.kind !== 'cell') taken.push([x.at(m.x) - 5 * look.unit, y.at(m.y) - 5 * look.unit, 10 * look.unit, 10 * look.unit]);
   }
-  return out + draw_labels(look, placed, taken, {...box, right: box.right + look.right});
+  return out + draw_labels(look, placed.length > kMostLabels ? [] : placed, taken, {...box, right: box.right + look.right});
 }
 
 /// Below a picture: on paper solvers with their symbols; meanings of the tones of cells.
 function draw_legend(look, chart, width, top) {
-  const points = chart.panels.flatMap(p => p.marks).filter(m => !m.tone), box = (x, y, tone) =>
-      `<rect x="${px(x)}" y="${px(y - 5)}" width="10" height="10" rx="2" style="fill:var(--${tone})"/>`;
+  const points = chart.panels.flatMap(p => p.marks).filter(m => !m.tone), lines = chart.panels.flatMap(p => (p.lines ?? []).length > kMostLabels ? p.lines : []);
   const items = [
     ...(look.paper ? unique(points.map(m => m.row.solver)) : []).map(s => [s, (x, y) => symbol(look, s, x + 6, y)]),
-    ...(chart.tones ?? []).map(([tone, words]) => [words, (x, y) => box(x, y, tone)])
+    ...lines.map(l => [l.label, (x, y) => line(`M${px(x)} ${px(y)}h${kSample}`, look.colour(l.solver), dashed(look, l)), kSample]),
+    ...(chart.tones ?? []).map(([tone, words]) => [words, (x, y) => toned_box(tone, x, y - 5, 10, 10)])
   ];
   let x = 8, y = top, out = '';
-  for (const [words, picture] of items) {
-    const wide = 30 + words.length * look.size * 0.57;
+  for (const [words, picture, sample = 10] of items) {
+    const wide = 20 + sample + words.length * look.size * 0.57;
     if (x + wide > width && x > 8) [x, y] = [8, y + look.size + 6];
-    out += picture(x, y) + text(look, x + 18, y + look.size / 3, words);
+    out += picture(x, y) + text(look, x + sample + 8, y + look.size / 3, words);
     x += wide;
   }
   return {out, bottom: items.length ? y + look.size : top - 8};

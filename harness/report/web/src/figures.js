@@ -80,20 +80,20 @@ function error_time(doc) {
 // Frame rates ----------------------------------------------------------------
 
 const kRates = {
-  fps: {text: 'Fig. 4: frame rate', unit: 'frames per second', of: r => r.fps_median, still: 'fig4', is_rate: true},
-  read: {text: 'Fig. 5: peak read bandwidth', unit: 'GB/s', of: r => 1e-9 * r.bandwidth_read_peak_B_per_s, still: 'fig5'},
+  fps: {text: 'Frame rate', paper: 'Fig. 4: ', unit: 'frames per second', of: r => r.fps_median, still: 'fig4', is_rate: true},
+  read: {text: 'Peak read bandwidth', paper: 'Fig. 5: ', unit: 'GB/s', of: r => 1e-9 * r.bandwidth_read_peak_B_per_s, still: 'fig5'},
   tail: {text: 'Slow frames (95th percentile)', unit: 'wall time [ms]', of: r => 1e3 * (r.contact_wall ?? r.wall)?.[3]},
-  memory: {text: 'Device memory per vertex', unit: 'kB', of: r => 1e-3 * r.device_memory_B / (r.width * r.width)}
+  memory: {text: 'Device memory per vertex', unit: 'kB per vertex', of: r => 1e-3 * r.device_memory_B / (r.width * r.width)}
 };
 
 /// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
 function lines_of(rows) {
-  const name = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}`;
-  return by_solver(rows).flatMap(([solver, mine]) => unique(mine.map(name)).map((label, dash, all) => ({
+  const name = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
+  return by_solver(rows).flatMap(([solver, mine]) => unique(mine.map(name)).map((label, dash) => ({
     solver,
     dash,
-    label: all.length > 1 ? label : solver,
-    points: mine.filter(r => name(r) === label).sort((a, b) => a.width - b.width).map(r => [r.width, r.value])
+    label,
+    points: mine.filter(r => name(r) === label).sort((a, b) => a.size - b.size).map(r => [r.size, r.value])
   })));
 }
 
@@ -101,16 +101,18 @@ function rates(doc) {
   const all = doc.runs.filter(r => r.family && !r.published && r.fps_median > 0);
   if (!all.length) return null;
   const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
+  const is_grid = s => !of(s).some(r => r.resolution.endsWith('vertices')), in_paper = s => of(s).some(r => r.paper_table === 3);
   const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
   return {
     id: 'rates',
     section: 'rates',
     hero: true,
-    title: s => `${kRates[s.Value].text} by resolution, ${s.Scene}`,
+    title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
         'above 1 %, so the rate has no meaning. Slow frames: among frames with contact, where there are any. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
-        'per second of wall time; the bytes of CPU solvers are not known.',
+        'per second of wall time; the bytes of CPU solvers are not known. Numbers of figures are the article\'s.',
+    remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
     choices: [
       choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v]))), undefined, v => kRates[v].text),
       choice('Show', ['plain', 'all'], 'plain', v => ({plain: 'one layer, default settings', all: 'all layers and settings'})[v])
@@ -118,19 +120,19 @@ function rates(doc) {
     rows: s => {
       const mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: kRates[s.Value].of(r)}));
+      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: kRates[s.Value].of(r), size: is_grid(s) ? r.width : Math.round(r.width * r.width)}));
     },
     chart: (rows, s, width) => ({
       right: 90,
       height: Math.max(240, Math.min(340, 0.5 * width)),
       panels: [{
-        x: {type: 'log', title: 'vertices along one side', ticks: unique(rows.map(r => r.width)).sort((a, b) => a - b), format: t => String(Number(t.toPrecision(4)))},
+        x: {type: 'log', title: is_grid(s) ? 'vertices along one side' : 'vertices', ticks: unique(rows.map(r => r.size)).sort((a, b) => a - b), format: t => String(Number(t.toPrecision(4)))},
         y: {type: 'log', title: kRates[s.Value].unit},
         rules: kRates[s.Value].is_rate ? [{y: 72, text: '72 Hz', optional: true}] : [],
         lines: lines_of(rows),
         marks: rows.map(r => {
           const interval = kRates[s.Value].is_rate ? {low: r.fps_low, high: r.fps_high} : {};
-          return {kind: 'point', x: r.width, y: r.value, ...interval, along: 'y', open: r.free_fall_error > 0.01, row: r};
+          return {kind: 'point', x: r.size, y: r.value, ...interval, along: 'y', open: r.free_fall_error > 0.01, row: r};
         })
       }]
     }),
@@ -210,8 +212,9 @@ const kVerdicts = {
   missing: ['none', '·']
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
-const why = r => r.violated?.map(([name, found]) => `${name} = ${found === null ? 'not met' : number(found)}`) ?? [];
-const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–');
+const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}, expected ${expected}`) ?? [];
+/// A scene of several studies counts once, by its first run.
+const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–' && !r.repeated);
 
 function verdicts(doc) {
   const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));
@@ -290,7 +293,7 @@ function shares(runs, field, is_good, more) {
         return {
           title: label,
           solver: mine[0].solver,
-          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => t < 1 ? `${100 * t} %` : '', title: ''},
+          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => `${100 * t} %`, title: ''},
           y: {type: 'band', values: unique(rows.map(r => r[field]))},
           marks: mine.map(
               r => r.unsupported === r.runs ? {kind: 'none', x: 0.02, y: r[field], note: 'unsupported', row: r} :
@@ -311,11 +314,11 @@ const forest = doc => shares(judged(doc, 'generated').filter(r => r.status !== '
   caption: 'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
-const stability = doc => shares(doc.runs.filter(r => r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported')), 'case', r => r.grade === 0, {
+const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported'))), 'case', r => r.grade === 0, {
   id: 'stability',
   section: 'stability',
   title: () => 'Stable runs by case',
-  caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson).'
+  caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
 
 // What the article leaves open ------------------------------------------------
@@ -370,8 +373,11 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The command that makes one run again.
-export function command_of(doc, r) {
-  const plain = doc.studies[r.study]?.command ?? '';
-  return !plain || r.job === undefined || !/ study /.test(plain) ? plain : `${plain} --out again --job ${r.job}`;
+/// The commands that make runs again: one per study.
+export function command_of(doc, runs) {
+  const of = study => {
+    const plain = doc.studies[study]?.command ?? '', jobs = runs.filter(r => r.study === study).map(r => r.job);
+    return jobs.includes(undefined) || !/ study /.test(plain) ? plain : `${plain} --out again --job ${jobs.join(',')}`;
+  };
+  return unique(runs.map(r => r.study)).map(of).filter(Boolean).join('\n');
 }

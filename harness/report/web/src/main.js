@@ -79,6 +79,13 @@ function start_motions(doc, motions) {
   window.clothbench.load_viewer = load;
 }
 
+/// Blocks have their heights once they are made: all are, before the page goes to one of them.
+function go_to(id) {
+  document.documentElement.classList.add('whole');
+  dispatchEvent(new Event('beforeprint'));
+  document.getElementById(id)?.scrollIntoView();
+}
+
 function start_navigation() {
   const links = [...document.querySelectorAll('#contents a')], all = links.map(l => document.querySelector(l.hash));
   const bar = () => document.documentElement.style.setProperty('--bar', `${document.querySelector('header').offsetHeight}px`);
@@ -100,7 +107,7 @@ function start_navigation() {
     e.preventDefault();  // the address also holds the reader's choices
     save_state(link.hash.slice(1));
     open(false);
-    document.querySelector(link.hash)?.scrollIntoView();
+    go_to(link.hash.slice(1));
   });
   bar();
   spy();
@@ -121,7 +128,7 @@ function start() {
   start_figures();
   start_tables();
   start_navigation();
-  if (anchor) document.getElementById(anchor)?.scrollIntoView();
+  if (anchor) go_to(anchor);
   window.clothbench.ready_ms = performance.now();
 }
 

@@ -78,7 +78,7 @@ class Figure {
     }
     this.at = at;
     const row = this.marks[at]?.row;
-    this.command = row && command_of(this.doc, row);
+    this.command = row && command_of(this.doc, [row]);
     show_tip(row ? [...this.entry.tip(row), row.file, this.command && `Click: ${this.command}`] : [], x, y);
   }
 
@@ -123,6 +123,7 @@ class Figure {
       title: `Values: ${entry.title(this.state)}`,
       rows: [entry.columns, ...rows.map(r => entry.columns.map(name => typeof r[name] === 'number' ? [String(r[name]), r[name]] : String(r[name] ?? '')))],
       runs: [...rows.keys()],
+      again: rows.map((_, k) => [k]),
       solver_column: -1,
       solvers: []
     };

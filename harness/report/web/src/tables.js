@@ -32,7 +32,7 @@ export class ShownTable {
   constructor(doc, look, table, id) {
     Object.assign(this, {doc, look, table, id, open: false});
     this.head = table.rows[0];
-    this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]]}));
+    this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]], runs: table.again[k].map(n => doc.runs[n])}));
     this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
     this.hidden_columns = button('', null, () => this.place.scrollBy(0.6 * this.place.clientWidth, 0), {class: 'quiet', hidden: true});
@@ -99,10 +99,10 @@ export class ShownTable {
     return c;
   }
 
-  /// The button that copies the command of a row.
-  again({cells, run}) {
-    const command = run && !run.published ? command_of(this.doc, run) : null, label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
-    return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, run.file].filter(Boolean).join('\n')}) : null;
+  /// The button that copies the command of a row: of all runs that it is made of.
+  again({cells, runs}) {
+    const command = command_of(this.doc, runs.filter(r => !r.published)), label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
+    return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, ...runs.map(r => r.file)].filter(Boolean).join('\n')}) : null;
   }
 
   fill() {
