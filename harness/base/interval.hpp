@@ -9,7 +9,7 @@ struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN(), high = low;
 };
 
-/// Wilson's score interval at 95 % for the probability behind `passed` of `drawn` independent trials; [0, 1] without
+/// 95 % Wilson score interval of the pass probability, if `passed` of `drawn` independent trials passed; [0, 1] without
 /// trials. Throws Error if more passed than were drawn. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
 Interval wilson_95(std::size_t passed, std::size_t drawn);
 

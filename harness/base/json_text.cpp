@@ -241,7 +241,7 @@ void fill_defaults(nlohmann::json& value, const std::string& schema_text) {
   fill(value, schema, schema);
 }
 
-// One message from valijson's many: the deepest violation, with what was expected in its place.
+// Reduces valijson's errors to one message: the deepest violation, what was expected there, and what was found.
 
 void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
                    const std::string& base) {

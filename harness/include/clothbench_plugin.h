@@ -94,8 +94,8 @@ enum {
   CLOTHBENCH_SHAPE_MESH = 4
 };
 
-/* An obstacle that the cloth must not penetrate. ClothbenchPose has its capsules or vertices; their numbers and the
- * triangles never change. */
+/* An obstacle that the cloth must not penetrate. ClothbenchPose holds its capsules or vertices. The counts
+ * and the triangles never change. */
 typedef struct ClothbenchCollider {
   int32_t shape;
   int32_t moves;      /* 1: its pose changes from frame to frame */

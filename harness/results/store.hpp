@@ -109,9 +109,9 @@ class DeviceSamples {
   /// Throws Error naming the file and the JSON pointer.
   explicit DeviceSamples(const std::filesystem::path& file);
 
-  /// Stores as /device_samples the samples from 5 s before the run's first trial to 5 s after its last (all samples if
-  /// the trials' times are not known), each with the trial that contains its whole period. Samples inside trials give
-  /// `sampled_…` in the summary. The environment gets the reasons against trials, by their index.
+  /// Stores samples as /device_samples, from 5 s before the run's first trial to 5 s after its last (all, if the times
+  /// of trials are not known), each with the trial that contains its whole period. Samples inside trials give
+  /// `sampled_…` in the summary. `distrusted_trials` of the environment: the reasons not to trust a trial, by index.
   void attach_to(RunRecord&);
   /// The reasons against trials of all runs so far.
   const std::set<std::string>& reasons() const { return reasons_; }

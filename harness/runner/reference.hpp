@@ -49,8 +49,8 @@ ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 /// Results for these scenes by their SHA-256. Those missing from `cache` are computed on all cores and added to it (one
 /// file each, found again by reference_key; an unreadable file, or one of another key, counts as missing). `note` is
 /// called before each computation. Scenes without a reference case are skipped; so are all scenes if the build has no
-/// solver `reference`. The reference solver has no contact: for contact scenes the truth is a closed form, with no
-/// value of the reference and an uncertainty of 0.
+/// solver `reference`. The reference solver has no contact. For contact scenes the truth is a closed form;
+/// `value` is NaN and `uncertainty` is 0.
 std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes,
                                                   const std::filesystem::path& cache,
                                                   const std::function<void(const std::string&)>& note,

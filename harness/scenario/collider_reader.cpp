@@ -79,7 +79,7 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   return pose;
 }
 
-/// A runtime that does not know a radius reports 0. The pointer leads to the block that the capsules come from.
+/// Refuses a radius of 0, which a runtime reports if it does not know it. The error points to the capsules or the joints.
 void require_radii(const assets::HandRecording& recording, const std::string& file) {
   for (std::size_t f = 0; f < recording.frames.size(); ++f) {
     const auto capsules = assets::capsules(recording, recording.frames[f]);

@@ -92,7 +92,7 @@ struct Cloth {
   std::size_t vertex_count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   double du() const { return mesh ? mesh->edge_m : width_m / (columns - 1); }
   double dv() const { return mesh ? mesh->edge_m : height_m / (rows - 1); }
-  /// Rest coordinate [m] of grid line `i` along u, 0 to width_m, also for uneven cells; du() is their mean width.
+  /// Rest coordinate [m] of grid line `i` along u, 0 to width_m. Cells may be uneven; du() is the mean cell width.
   double line_u_m(int i) const;
   /// Least height [m] of a triangle at rest. Parts of a flat sheet that share no vertex are at least this far apart.
   double least_height_m() const;
