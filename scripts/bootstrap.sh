@@ -15,7 +15,7 @@ command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in
     --short) packages+=(g++ libgtest-dev vulkan-validationlayers) ;;
-    --tests) packages+=(g++ libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
+    --tests) packages+=(g++ xz-utils libgtest-dev vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
                         libbenchmark-tools clang-format pmccabe) ;;
     --ci) packages+=(python3-paraview chromium libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res

@@ -40,7 +40,7 @@ with tempfile.TemporaryDirectory() as scratch:
     stub.chmod(0o755)
     table3 = (out, "--table", "quick", "--only", "table3")
     with_stub = {"program": stub, "CALLS": str(calls), "SOURCES": "1"}
-    code, said = call(*table3, "--limit", 1, **with_stub)
+    code, said = call(*table3, "--limit", 3, **with_stub)
     assert code == 75 and "call again to continue" in said, (code, said)
     code, said = call(*table3, **with_stub)  # rows that crashed (status 1) are results
     assert code == 0 and calls.read_text().splitlines()[-1].endswith("--resume"), (code, said)
@@ -48,7 +48,7 @@ with tempfile.TemporaryDirectory() as scratch:
     assert call(*table3, **with_stub)[0] == 0 and len(calls.read_text().splitlines()) == n, "a complete study was run again"
     code, said = call(*table3, **{**with_stub, "SOURCES": "2"})
     assert code == 2 and "one state of the sources" in said, (code, said)
-    code, said = call(out, "--table", "gpu", "--only", "physics", "--limit", 1, **with_stub)  # the stub's commit is "c"
+    code, said = call(out, "--table", "gpu", "--only", "physics", "--limit", 3, **with_stub)  # the stub's commit is "c"
     assert code == 75 and "--seed 12 --count 300 " in calls.read_text().splitlines()[-1], (code, said)
     code, said = call(out, "--table", "quick", "--only", "hang", **with_stub)
     assert code == 5 and "hang: exit status 5" in said, (code, said)
