@@ -55,9 +55,8 @@ await page.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
 const doc = await page.evaluate(() => window.clothbench.document);
 const wait = ms => new Promise(done => setTimeout(done, ms));
 const aim = await page.$eval('#contents li:nth-last-child(3) a', link => (link.click(), link.hash));
-await wait(2000);
-const below = await page.$eval(aim, e => e.getBoundingClientRect().top);
-check(below > -2 && below < 200, `the first link on a new page leads to ${aim} (${below.toFixed(0)} px below the top)`);
+const is_near = hash => Math.abs(document.querySelector(hash).getBoundingClientRect().top - 99) < 101;
+check(await page.waitForFunction(is_near, {timeout: 30000}, aim).catch(() => false), `the first link on a new page leads to ${aim}`);
 
 /// Scrolls through the page, so that every figure and table is drawn.
 async function draw_all() {
