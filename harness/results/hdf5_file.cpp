@@ -266,7 +266,7 @@ class Writer {
   std::size_t frames_ = 0;
 };
 
-/// A mesh as an XDMF grid: paths of its `triangles` triangles and `vertices` vertices (`bytes` per number) in file `h5`.
+/// A mesh as an XDMF grid: paths of its triangles and vertices (`bytes` per number) in file `h5`.
 std::string mesh(const std::string& name, const std::string& h5, const std::string& triangles_at, std::size_t triangles,
                  const std::string& positions_at, std::size_t vertices, int bytes, const std::string& time) {
   return fmt::format(

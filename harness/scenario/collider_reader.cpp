@@ -79,7 +79,7 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   return pose;
 }
 
-/// Refuses a radius of 0, which a runtime reports if it does not know it. The error points to the capsules or the joints.
+/// Refuses a radius of 0, which a runtime reports if it does not know it. The error points to the capsules or joints.
 void require_radii(const assets::HandRecording& recording, const std::string& file) {
   for (std::size_t f = 0; f < recording.frames.size(); ++f) {
     const auto capsules = assets::capsules(recording, recording.frames[f]);
