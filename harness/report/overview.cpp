@@ -63,8 +63,7 @@ Cell rate_ratio_cell(const Row& r) {
   return ratio_cell(fps, r.times->wall.rate, r.baseline->value("fps_median"), r.baseline->times->wall.rate);
 }
 
-/// What the errors of these runs are; the origin of the published rows, and names of solvers that wrap an engine of
-/// one.
+/// The errors of these runs, the origin of the published rows, and solvers that wrap the engine of one.
 std::string about_rates(const Group& runs) {
   const auto any = [&](const char* name) {
     return std::any_of(runs.begin(), runs.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
@@ -98,7 +97,8 @@ View speed_and_error(bool paper) {
   v.order = [](const Group& g) {  // by sides, the fastest first; published values last
     double fps = 0;
     for (const Row* r : g) fps = r->largest && std::isfinite(r->value("fps_median")) ? r->value("fps_median") : fps;
-    return g.front()->published >= 0 ? INFINITY : kFastest * static_cast<double>(g.front()->sides.size()) - fps;
+    const double sides = g.front()->sides == "single" ? 0 : static_cast<double>(g.front()->sides.size());
+    return g.front()->published >= 0 ? INFINITY : kFastest * sides - fps;
   };
   v.keys = {key(
       "solver",
@@ -197,7 +197,7 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
     const auto& [good, runs] = share;
     const Interval i = wilson_95(good, runs.size());
     const auto all = static_cast<double>(runs.size());  // of equal shares, the one of more runs leads
-    const std::string offset = offset_of(runs);
+    const std::string offset = part == Part::Stability ? "" : offset_of(runs);
     out.push_back({solver, static_cast<double>(good) / all + 1e-9 * all, title, fmt::format("{}/{}", good, runs.size()),
                    fmt::format("{:.0f}–{:.0f} %{}", 100 * i.low, 100 * i.high,
                                offset.empty() ? "" : ", contact offset " + offset + " mm")});
@@ -266,8 +266,9 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
     if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
       trials.insert(withheld ? "withheld" : std::to_string(c.trials.size()));
   h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials));
-  h.title = fmt::format("Cloth solvers on {}: {}", device.empty() ? "an unknown machine" : device,
-                        studies.empty() ? "runs" : joined(studies));
+  if (studies.size() > 1) h.facts.emplace_back("studies", joined(studies));
+  h.title = fmt::format("Cloth solvers on {}{}", device.empty() ? "an unknown machine" : device,
+                        studies.size() == 1 ? ": " + studies.front() : "");
   return h;
 }
 

@@ -11,7 +11,7 @@
 namespace clothbench {
 namespace {
 
-constexpr std::size_t kMostAgain = 8;  // runs of a row that one command makes again
+constexpr std::size_t kMostAgain = 32;  // runs of a row that one command makes again
 
 /// A row of a table before its cells are known.
 struct TableRow {

@@ -150,28 +150,21 @@ constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 bool in_stability(const Row& r) { return r.part == Part::Stability; }
 
-/// "5/7 stable, 2 failed (F1, F2)".
+/// "5/7 stable, 2 failed (F1), 1 unsupported".
 Cell tally(const Group& g, const Keys& /*keys*/) {
-  std::map<int, std::map<std::string, int>> classes;
+  std::map<std::pair<int, std::string>, int> others;  // by grade and class
   int all = 0, stable = 0, unsupported = 0;
   for (const Row* r : g) {
     const int grade = grade_of(*r);
-    unsupported += r->status() == "unsupported";
-    all += grade >= 0 || r->status() == "unsupported";
-    stable += grade == 0;
     const std::string& klass = r->run->outcome.klass;
-    if (grade > 0) ++classes[grade][klass == "ok" || klass.empty() ? "F3" : klass];
+    all += r->status() != "missing";
+    stable += grade == 0;
+    unsupported += r->status() == "unsupported";
+    if (grade > 0) ++others[{grade, klass == "ok" || klass.empty() ? "F3" : klass}];
   }
   if (all == unsupported) return {unsupported > 0 ? "unsupported" : "", kMissing, "dim"};
   std::string out = fmt::format("{}/{} stable", stable, all);
-  for (const auto& [grade, counts] : classes) {
-    int runs = 0;
-    for (const auto& [unused, n] : counts) runs += n;
-    const auto name = [several = counts.size() > 1](auto& c) {
-      return c.first + (several ? fmt::format(" {}", c.second) : "");
-    };
-    out += fmt::format(", {} {} ({})", runs, kGrades[grade], joined(counts, ", ", name));
-  }
+  for (const auto& [kind, runs] : others) out += fmt::format(", {} {} ({})", runs, kGrades[kind.first], kind.second);
   if (unsupported > 0) out += fmt::format(", {} unsupported", unsupported);
   return {out, static_cast<double>(stable) / all};
 }

@@ -80,10 +80,17 @@ async function check_tables() {
     cells += wanted.length * width;
   }
   check(cells > 200, `${cells} cells of tables have the stored text, value and tone`);
-  const first = await page.$('.table thead button');
-  await first.evaluate(b => b.click());
+  await page.$eval('.table thead button', b => b.click());
   equal(await page.$eval('.table th[aria-sort]', e => e.getAttribute('aria-sort')), 'ascending', 'a click on the first head sorts by it');
   check((await page.evaluate(() => location.hash)).includes('.sort='), 'the address keeps the order of a table');
+  const held = await page.$$eval('.held', list => list.map(b => {
+    b.scrollLeft = 1e6;
+    const [first, second] = [...b.querySelector('tbody tr').cells].map(c => c.getBoundingClientRect());
+    return Math.abs(second.left - first.right) < 2 && b.scrollLeft > 0;
+  }));
+  check(held.filter(Boolean).length > 1, `the second key stays in sight in ${held.filter(Boolean).length} of ${held.length} tables`);
+  const tall = await page.$$eval('tbody tr', list => Math.max(...list.map(r => r.offsetHeight)));
+  check(tall < 80, `no row of a table is taller than ${tall} px`);
   const table = `#${await page.$eval('.table:has(td.n)', t => t.id)} `;
   await page.$eval(`${table} thead th.n button`, b => b.click());
   const numbers = (await page.$$eval(`${table} tbody tr`, list => list.map(r => [...r.cells].find(c => c.classList.contains('n'))?.dataset.value))).filter(v => v !== undefined).map(Number);
@@ -124,8 +131,7 @@ async function check_figures() {
       check(rows > 0, `${id} ${option ?? ''}: ${rows} values`);
     }
   }
-  if (ids.includes('rates')) await check_places('rates', Math.log, Math.log);
-  if (ids.includes('error-time')) await check_places('error-time', Math.log, Math.log);
+  for (const id of ['rates', 'error-time']) await check_places(id, Math.log, Math.log);
   // Every value in the tables behind the figures is the stored one of its run.
   const values = await page.evaluate(() => window.clothbench.figures.flatMap(f => {
     const stored = row => window.clothbench.document.runs.find(d => d.file && d.file === row.file) ?? row;
@@ -242,6 +248,11 @@ async function check_values() {
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
+  const failed = await page.evaluate(() => window.clothbench.figures.find(f => f.entry.id === 'verdicts').marks.findIndex(m => m.row.violated));
+  await (await page.$(`#verdicts [data-i="${failed}"]`)).click();  // in its middle, where its sign is
+  await page.mouse.move(5, 5);
+  check(/found \S+.*, expected \S/.test(await page.$eval('#tip:has(button)', e => e.textContent)), 'a click keeps what a run violates in view');
+  await page.keyboard.press('Escape');
   const commands = await page.$$eval('figure, .table, #sections > section', list => list.filter(e => !e.querySelector('.head button[title*="clothbench "][title*=".h5"]')).map(e => e.id));
   equal(commands.filter(id => !/-values$|features/.test(id)), [], 'figures and tables without a command that reproduces them and its files');
 }
@@ -270,19 +281,14 @@ async function check_motion() {
   await page.keyboard.press('End');
   await drawn();
   const after = await positions(), picture_after = await picture();
-  check(
-      before.every((p, k) => p.every(Number.isFinite) && after[k].some((x, n) => x !== p[n])),
-      'End moves the vertices of every panel');
+  check(before.every((p, k) => p.every(Number.isFinite) && after[k].some((x, n) => x !== p[n])), 'End moves the vertices of every panel');
   const changed = picture_before.filter((x, k) => x !== picture_after[k]).length / picture_before.length;
   check(changed > 0.005, `the picture changes (${(100 * changed).toFixed(1)} % of the pixels)`);
   await page.keyboard.press('Home');
   await drawn();
   check(JSON.stringify(await positions()) === JSON.stringify(before), 'Home brings them back');
   await page.keyboard.press('ArrowRight');
-  equal(
-      await page.evaluate(() => window.clothbench.viewer.time),
-      await page.evaluate(() => window.clothbench.viewer.times[1]),
-      'an arrow goes to the next frame');
+  check(await page.evaluate(() => window.clothbench.viewer.time === window.clothbench.viewer.times[1]), 'an arrow goes to the next frame');
   const first = await page.$('#chips button'), panels = () => page.evaluate(() => window.clothbench.viewer.panels.length), both = await panels();
   for (const wanted of [both - 1, both]) {
     await first.evaluate(b => b.click());
@@ -291,8 +297,7 @@ async function check_motion() {
   check(both > 1, `the filter of solvers hides a motion and shows it again (${both} panels)`);
   await page.focus('#viewer button');
   await page.keyboard.press('Space');
-  await page.waitForFunction(
-      () => window.clothbench.viewer.time > window.clothbench.viewer.times[2], {timeout: 10000});
+  await page.waitForFunction(() => window.clothbench.viewer.time > window.clothbench.viewer.times[2], {timeout: 10000});
   await page.keyboard.press('Space');
   equal(await page.evaluate(() => window.clothbench.viewer.playing), false, 'Space plays and stops; playing');
 }
@@ -347,12 +352,9 @@ async function check_colours() {
   // What the page shows may be greater: it counts edges that are too short, too.
   const stretched = results.filter(r => r.stored > 0.005),
         agree = stretched.filter(r => Math.abs(r.strain - r.stored) <= r.tolerance);
-  check(
-      agree.length > 0 && 2 * agree.length >= stretched.length,
-      `strain is the file's in ${agree.length} of ${stretched.length} stretched motions`);
+  check(agree.length > 0 && 2 * agree.length >= stretched.length, `strain is the file's in ${agree.length} of ${stretched.length} stretched motions`);
   const crossed = results.filter(r => r.stored_contour > 0.1);
-  check(
-      crossed.every(r => r.crossing > 0 || r.depth > 0),
+  check(crossed.every(r => r.crossing > 0 || r.depth > 0),
       `what crosses is coloured (${crossed.map(r => `${r.name} ${r.crossing}`).join(', ') || 'none'})`);
   const deep = results.filter(r => r.stored_depth > 0.005);
   check(
@@ -360,9 +362,7 @@ async function check_colours() {
       `what is deep in a collider is coloured (${
           deep.map(r => `${r.name} ${(1e3 * r.depth).toFixed(1)} mm`).join(', ') || 'none'})`);
   const clear = results.filter(r => r.stored_depth === 0 && r.stored_contour === 0);
-  check(
-      clear.every(r => (r.depth ?? 0) < 1e-4 && r.crossing === 0),
-      `what touches nothing is not (${clear.length} motions)`);
+  check(clear.every(r => (r.depth ?? 0) < 1e-4 && r.crossing === 0), `what touches nothing is not (${clear.length} motions)`);
 }
 
 try {

@@ -81,8 +81,10 @@ const text = (look, x, y, words, {anchor = 'start', colour = 'var(--soft)', bold
 const line = (d, colour, more = '') => `<path d="${d}" style="stroke:${colour};fill:none"${more}/>`;
 const dashed = (look, l) => ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % kDashes.length]}"` : ''}`;
 
+/// A filled box; "ignored" has a diagonal, which tells two greys apart.
 const toned_box = (tone, x, y, w, h, more = '') =>
-    `<rect x="${px(x)}" y="${px(y)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${tone})"${more}/>`;
+    `<rect x="${px(x)}" y="${px(y)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${tone})"${more}/>${
+        tone === 'ignored' ? line(`M${px(x)} ${px(y + h)}L${px(x + w)} ${px(y)}`, 'var(--soft)', ' pointer-events="none"') : ''}`;
 
 function draw_axes(look, panel, x, y, box, first) {
   const {left, right, top, bottom} = box;

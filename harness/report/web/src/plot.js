@@ -1,17 +1,18 @@
 // The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
 // its values.
 import {draw} from './chart.js';
-import {element, say, select} from './dom.js';
+import {button, element, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
 import {page_look, set_value, shown, state} from './state.js';
 import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
 const figures = [];
+let pinned = null;  // the figure whose value stays in view until it is closed
 export {figures as all_figures};  // for tests
 
-function show_tip(lines, x, y) {
-  tip.textContent = lines.filter(Boolean).join('\n');
+function show_tip(lines, x, y, controls = []) {
+  tip.replaceChildren(lines.filter(Boolean).join('\n'), ...controls);
   tip.hidden = !lines.length;
   if (!lines.length) return;
   const box = tip.getBoundingClientRect();
@@ -47,13 +48,14 @@ class Figure {
   }
 
   listen() {
-    const mark_of = e => Number(e.target.closest?.('[data-i]')?.dataset.i ?? -1);
-    this.plot.addEventListener('pointermove', e => this.point(mark_of(e), e.clientX, e.clientY));
-    this.plot.addEventListener('pointerleave', () => this.point(-1));
-    this.plot.addEventListener('blur', () => this.point(-1));
+    const mark_of = e => Number(e.target.closest?.('[data-i]')?.dataset.i ?? -1), leave = () => pinned || this.point(-1);
+    this.plot.addEventListener('pointermove', e => pinned || this.point(mark_of(e), e.clientX, e.clientY));
+    this.plot.addEventListener('pointerleave', leave);
+    this.plot.addEventListener('blur', leave);
     this.plot.addEventListener('click', e => {
-      this.point(mark_of(e), e.clientX, e.clientY);
-      this.copy();
+      unpin();
+      this.point(mark_of(e), e.clientX, e.clientY, true);
+      e.stopPropagation();
     });
     this.plot.addEventListener('keydown', e => {
       const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
@@ -63,15 +65,13 @@ class Figure {
         this.point(at, box?.right ?? 0, box?.bottom ?? 0);
         say(tip.textContent);
         e.preventDefault();
-      } else if (e.key === 'Enter') {
-        this.copy();
-      } else if (e.key === 'Escape') {
-        this.point(-1);
+      } else if (e.key === 'Enter' && this.command) {
+        copy_command(this.command);
       }
     });
   }
 
-  point(at, x, y) {
+  point(at, x, y, pin = false) {
     if (at !== this.at) {
       this.plot.querySelector('.on')?.classList.remove('on');
       this.plot.querySelector(`[data-i="${at}"]`)?.classList.add('on');
@@ -79,11 +79,10 @@ class Figure {
     this.at = at;
     const row = this.marks[at]?.row;
     this.command = row && command_of(this.doc, [row]);
-    show_tip(row ? [...this.entry.tip(row), row.file, this.command && `Click: ${this.command}`] : [], x, y);
-  }
-
-  copy() {
-    if (this.command) copy_command(this.command);
+    pinned = pin && row ? this : null;
+    const copy = this.command && button('Copy the command', null, () => copy_command(this.command));
+    const controls = pinned ? [element('div', {class: 'bar'}, copy, button('Close', null, unpin))] : [];
+    show_tip(row ? [...this.entry.tip(row), row.file, this.command] : [], x, y, controls);
   }
 
   settle() {
@@ -133,11 +132,15 @@ class Figure {
   }
 }
 
+const unpin = () => figures.find(f => f.at >= 0)?.point(-1);
+
 export const figure_block = (doc, look, entry) => new Figure(doc, look, entry).block;
 
 /// Draws figures as they come near the window; again after a change of the filter or the width.
 export function start_figures() {
   document.body.append(tip);
+  addEventListener('click', e => e.target.closest?.('#tip button') || unpin());
+  addEventListener('keydown', e => e.key === 'Escape' && unpin());
   near_window(figures, f => f.drawn, f => f.redraw());
   let timer = 0;
   addEventListener('resize', () => {

@@ -4,7 +4,7 @@ import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
 import {page_look, set_value, shown, state} from './state.js';
 
-const kFolded = 15, kMostKeys = 4, kShort = 40, kNarrow = matchMedia('(max-width: 760px)');
+const kFolded = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)');
 /// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
 const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
 
@@ -37,13 +37,14 @@ export class ShownTable {
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
     this.hidden_columns = button('', null, () => this.place.scrollBy(0.6 * this.place.clientWidth, 0), {class: 'quiet', hidden: true});
     new ResizeObserver(() => this.tell_hidden()).observe(this.place);
+    this.find = element('input', {type: 'search', placeholder: 'filter rows', 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFolded, oninput: () => this.fill()});
     this.more = button('Show all rows', null, () => {
       this.open = !this.open;
       this.fill();
     }, {class: 'more'});
     this.block = element(
         'div', {class: 'table', id},
-        block_head(id, table.title, table.title, [this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, element('div', {class: 'bar small'}, this.more),
+        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, element('div', {class: 'bar small'}, this.more),
         table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
   }
 
@@ -51,7 +52,8 @@ export class ShownTable {
     const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'),
                    k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
     this.sort = {k, down: way === 'down'};
-    const left = this.body.filter(r => !r.run || table.solver_column < 0 || shown(r.run.solver));
+    const words = this.find.value.toLowerCase().split(' '), has = r => words.every(w => r.cells.some(c => c.text.toLowerCase().includes(w)));
+    const left = this.body.filter(r => (!r.run || table.solver_column < 0 || shown(r.run.solver)) && has(r));
     if (k < 0) return left;
     const sign = way === 'down' ? -1 : 1;
     return left.sort((a, b) => {
@@ -69,9 +71,12 @@ export class ShownTable {
     if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
   }
 
-  /// How many columns the box hides on its right.
+  /// How many columns the box hides on its right, and whether the second key stays in sight: with the first, in at most half of it.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
+    const [first = 0, second = Infinity] = heads.map(h => h.offsetWidth), can_hold = this.table.keys > 1 && !kNarrow.matches;
+    this.place.classList.toggle('held', can_hold && first + second <= this.place.clientWidth / 2);
+    this.place.style.setProperty('--second', `${first}px`);
     const count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
     this.hidden_columns.textContent = `${count} more ${count === 1 ? 'column' : 'columns'} →`;
     this.hidden_columns.hidden = !count;
@@ -91,11 +96,11 @@ export class ShownTable {
   }
 
   cell(cells, k, run) {
-    const {text, value, tone} = cells[k], shape = this.numeric[k] ? 'n' : text.length > 60 ? 'long' : '', more = k === 0 ? this.joined : [];
+    const {text, value, tone} = cells[k], long = k > 0 && text.length > kLong, shape = long ? 'long' : this.numeric[k] ? 'n' : '', more = k === 0 ? this.joined : [];
     const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value});
     if ([k, ...more].includes(this.table.solver_column) && run && !run.published)
       c.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>`;
-    c.append(text, ...more.map(j => element('small', {}, cells[j].text)));
+    c.append(long ? element('div', {tabindex: '0'}, text) : text, ...more.map(j => element('small', {}, cells[j].text)));
     return c;
   }
 
