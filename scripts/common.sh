@@ -12,7 +12,7 @@ default_jobs() {
 }
 export JOBS=${JOBS:-$(default_jobs)}
 
-# configure PRESET [arguments of cmake…]: a first time by clang, which takes two thirds of g++'s time
+# configure PRESET [arguments of cmake…]: the first time with clang, which compiles faster than g++
 configure() {
   local extra compilers=
   [ -f build/release/CMakeCache.txt ] || compilers='-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++'

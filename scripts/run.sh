@@ -36,7 +36,7 @@ stage build 4 build
 stage assets 1 assets
 tail -1 "$fetched.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
-# Times of a software device say nothing of a GPU, and a frame takes a thousand times as long.
+# Times of a software device say nothing of a GPU, and all sizes take it many minutes.
 build/release/clothbench list devices --json | grep -q '"software": false' || form=(--quick)
 stage study 3 build/release/clothbench study "$study" --out "$out" "${form[@]}" "$@"
 stage --show report 1 build/release/clothbench report "$out" -o "$out/report"

@@ -130,7 +130,7 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
-/// Of a criterion of the run: what its scene demands, and what was found, with units.
+/// What the scene of a run demands by a criterion, and what was found, with units.
 std::string expected_of(const Row&, const std::string& criterion);
 Cell found_of(const Row&, const std::string& criterion);
 /// Contact offset [mm] of these runs, "3.5 to 20" where it differs; empty without colliders.

@@ -212,7 +212,7 @@ const kVerdicts = {
   missing: ['none', '·']
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
-const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}, expected ${expected}`) ?? [];
+const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}${expected && `, expected ${expected}`}`) ?? [];
 /// A scene of several studies counts once, by its first run.
 const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–' && !r.repeated);
 
