@@ -16,18 +16,18 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 # SEED: the first digits of the commit's hash, so that nobody can choose the scenes to suit a solver.
 studies() {
   cat <<'END'
-gpu       table3            study table3 --trials 5 --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
-gpu       hang              study hang --trials 3
-gpu       work-precision    study work-precision --trials 1 --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS
-gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS
+gpu       table3            study table3 --trials 5 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
+gpu       hang              study hang --trials 3 --jobs JOBS
+gpu       work-precision    study work-precision --trials 1 --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS --jobs JOBS
+gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
 gpu       scale             study scale --trials 3
 gpu       many-cloths       study many-cloths --trials 3
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
-software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS
-software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS
+software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
+software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  stability         study stability --solver xpbd --solver paper PEERS --jobs JOBS

@@ -33,6 +33,10 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   else if (!setup.err.empty())
     open(STDERR_FILENO, setup.err);
+#ifdef __GLIBC__
+  // A result file that another thread writes now would stay locked for as long as this child lives.
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
+#endif
   std::vector<char*> words;
   for (const std::string& word : argv) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);

@@ -71,10 +71,6 @@ void check_options(const Study& study, const StudyArguments& a) {
         "generate scenes");
   if (a.procedural)
     throw Error("--procedural: this study has no random contact scenes; set CLOTHBENCH_ASSETS=procedural instead");
-  if (a.jobs > 0 && study.protocol != "stability-map")
-    throw Error(
-        "--jobs: this study has timed trials, which must run one at a time; only studies with protocol stability-map "
-        "or contact run in parallel");
 }
 
 void run_study(StudyArguments& a, Console& console) {
@@ -142,7 +138,7 @@ void add_study(CLI::App& app, Console& console) {
                   "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
   cmd->add_option("--jobs", a.jobs,
-                  "Number of processes at a time, for a study that runs each run in its own process (default 1)")
+                  "Number of processes at a time for what is not timed (default 1); timed trials follow one at a time")
       ->check(CLI::Range(1, 256));
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =

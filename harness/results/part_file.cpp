@@ -137,7 +137,12 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
 }
 
 void take(const std::string& kind, const json& body, RunRecord& r) {
-  if (kind == "header") r.header = header_from_json(body);
+  if (kind == "header") {
+    RunHeader h = header_from_json(body);
+    expect(r.accuracy.time_s.empty() || h.vertices == r.header.vertices, "its headers are of different cloths");
+    expect(r.trials.empty() || h.stages.size() == r.header.stages.size(), "its headers differ in stages");
+    r.header = std::move(h);
+  }
   if (kind == "replay") r.replay = groups_from_json(body);
   if (kind == "frame") add_frame(body, r.header.vertices, r.accuracy);
   if (kind == "accuracy") r.accuracy.metrics = metrics_from_json(body, r.accuracy.time_s.size());
@@ -294,7 +299,7 @@ RunRecord read_part(const fs::path& path, std::uintmax_t* complete_B) {
     for (std::size_t end = end_of_item(bytes, 0); end <= bytes.size() && end > at; end = end_of_item(bytes, at)) {
       const json item = json::from_cbor(bytes.begin() + static_cast<std::ptrdiff_t>(at),
                                         bytes.begin() + static_cast<std::ptrdiff_t>(end));
-      if (!item.is_object() || item.size() != 1 || (at == 0) != item.contains("header")) break;
+      if (!item.is_object() || item.size() != 1 || (at == 0 && !item.contains("header"))) break;
       take(item.begin().key(), item.front(), r);
       at = end;
     }

@@ -53,9 +53,9 @@ nlohmann::json to_json(const std::vector<StoredGroup>&);
 
 /// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
 /// device without HDF5 it stays the final form. First "header", then as they come "replay", "frame" (one item per frame
-/// of the untimed pass, whose metrics follow as "accuracy"), "trial" (one item per trial), at last "outcome". A later
-/// item replaces an earlier one of the same kind (for trials: of the same index); frame 0 begins the pass anew. Series
-/// of numbers are byte strings as memory holds them, little-endian.
+/// of the untimed pass, whose metrics and end follow as "accuracy" and "outcome"), "trial" (one item per trial), at
+/// last "outcome". A later item replaces an earlier one of the same kind (for trials: of the same index); frame 0
+/// begins the pass anew. Series of numbers are byte strings as memory holds them, little-endian.
 
 /// Creates the file with its header, whole or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);

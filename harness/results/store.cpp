@@ -58,11 +58,8 @@ std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
 /// Live sessions store only their end.
 bool needs_motion(const RunRecord& r) {
   const nlohmann::json& e = r.header.environment;
-  const bool live = e.is_object() && e.value("protocol", "") == "xr";
-  return r.outcome.status == "ok" && r.header.vertices > 0 && !live;
+  return r.outcome.status == "ok" && r.header.vertices > 0 && !(e.is_object() && e.value("protocol", "") == "xr");
 }
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t kShown = 200;  // bytes of a path or a command in a message
 
@@ -124,6 +121,8 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
         header.settings.dump()));
   has_replay_ = !before.replay.empty();
   fs::resize_file(part_, complete_B);  // what a kill cut short
+  // The machine's state belongs to the load before the trials.
+  if (before.trials.empty()) append_to_part(part_, "header", header_to_json(header));
 }
 
 void RunWriter::write_trial(const TimedTrial& trial) { append_to_part(part_, "trial", to_json(trial)); }
@@ -132,9 +131,11 @@ void RunWriter::write_frames(const AccuracyPass& pass) {
   for (; frames_ < pass.time_s.size(); ++frames_) append_to_part(part_, "frame", frame_to_json(pass, frames_), false);
 }
 
-void RunWriter::write_accuracy(const AccuracyPass& pass) {
+void RunWriter::write_accuracy(const AccuracyPass& pass, const Outcome& outcome,
+                               const std::map<std::string, double>& summary) {
   write_frames(pass);
-  append_to_part(part_, "accuracy", to_json(pass.metrics));
+  append_to_part(part_, "accuracy", to_json(pass.metrics), false);
+  append_to_part(part_, "outcome", outcome_to_json(outcome, summary));
 }
 
 void RunWriter::write_replay(const std::vector<StoredGroup>& groups) {

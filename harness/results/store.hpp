@@ -29,8 +29,9 @@ class RunWriter {
   void write_trial(const TimedTrial&);
   /// Writes the frames of a pass that has more than before.
   void write_frames(const AccuracyPass&);
-  /// Writes the rest of its frames, and its metrics.
-  void write_accuracy(const AccuracyPass&);
+  /// Writes the rest of its frames, its metrics, and how it ended with what else is known of it: `recovered` returns
+  /// both as outcome and summary of the run so far.
+  void write_accuracy(const AccuracyPass&, const Outcome& = {}, const std::map<std::string, double>& summary = {});
   /// Writes colliders and grips, unless an interrupted attempt has written them.
   void write_replay(const std::vector<StoredGroup>&);
   /// Returns the path of the finished file.

@@ -40,8 +40,11 @@ void each_rule(Rules& r, With with) {
 }
 
 json to_json(const RunPlan& plan) {
-  json j = {
-      {"protocol", plan.protocol}, {"references", plan.references}, {"apart", plan.apart}, {"groups", json::array()}};
+  json j = {{"protocol", plan.protocol},
+            {"references", plan.references},
+            {"apart", plan.apart},
+            {"untimed", plan.untimed},
+            {"groups", json::array()}};
   each_rule(plan.rules, [&](const char* key, const auto& value) { j["rules"][key] = value; });
   for (const auto& group : plan.groups) {
     json& specs = j["groups"].emplace_back(json::array());
@@ -77,6 +80,7 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   j.at("protocol").get_to(plan.protocol);
   j.at("references").get_to(plan.references);
   j.at("apart").get_to(plan.apart);
+  j.at("untimed").get_to(plan.untimed);
   each_rule(plan.rules, [&](const char* key, auto& value) {
     const json& v = j.at("rules").at(key);  // null: infinite
     value = v.is_null() ? std::numeric_limits<std::decay_t<decltype(value)>>::infinity()
@@ -178,6 +182,42 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program
   if (first) std::rethrow_exception(first);
 }
 
+/// Runs the tasks on options.jobs workers.
+void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
+  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
+  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
+  if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
+  std::error_code ignored;
+  fs::remove_all(scratch, ignored);
+}
+
+/// The untimed passes of all runs. Those of one solver in one group are one task and keep their order, because a ladder
+/// of settings ends at its first timeout.
+void execute_untimed(const RunPlan& plan, const RunOptions& given) {
+  std::mutex mutex;
+  RunOptions options = given;
+  options.progress = [&](const std::string& what, std::size_t, std::size_t) {
+    const std::lock_guard lock(mutex);
+    if (given.progress && !what.empty()) given.progress(what, 0, plan.size());
+  };
+  std::vector<Task> tasks;
+  for (const auto& group : plan.groups) {
+    std::map<std::string, std::vector<RunSpec>> by_solver;
+    for (const RunSpec& spec : group) by_solver[spec.entry->info.name].push_back(spec);
+    for (auto& [solver, specs] : by_solver)
+      tasks.push_back([&, specs = std::move(specs)](Worker& worker) {
+        stop_if_interrupted(kTrialsKept);
+        RunPlan part;
+        part.groups = {specs};
+        part.rules = plan.rules;
+        part.protocol = plan.protocol;
+        part.untimed = true;
+        ask(worker, part, options, "", solver_limit_s(), kTrialsKept);
+      });
+  }
+  run_tasks(tasks, options);
+}
+
 /// Gives each run to a worker of its own, `jobs` at a time.
 RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
   std::size_t done = 0;
@@ -205,11 +245,7 @@ RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
       const std::lock_guard lock(mutex);
       ended(*spec);
     });
-  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
-  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
-  if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
-  std::error_code ignored;
-  fs::remove_all(scratch, ignored);
+  run_tasks(tasks, options);
   return {};
 }
 
@@ -235,8 +271,13 @@ RunRecord run_apart(Worker& worker, const RunPlan& plan, const RunSpec& spec, co
 
 RunResult execute_in_worker(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
   if (plan.apart) return execute_apart(plan, options);
+  RunOptions timed = options;
+  if (options.jobs > 1) {
+    execute_untimed(plan, options);
+    timed.resume = true;
+  }
   Worker worker(options.program);
-  return ask(worker, plan, options, eye, solver_limit_s(), kTrialsKept);
+  return ask(worker, plan, timed, eye, solver_limit_s(), kTrialsKept);
 }
 
 json execute_plan(const json& request, const WorkerProgress& progress, const SolverLookup& lookup,

@@ -158,11 +158,13 @@ int SolverRun::accuracy_frames(double duration_s) const {
   return static_cast<int>(std::lround(std::min(duration_s, time.duration_s) * time.frame_rate_hz));
 }
 
-bool SolverRun::usable(const AccuracyPass& pass, double duration_s) const {
-  if (pass.time_s.size() != static_cast<std::size_t>(accuracy_frames(duration_s)) + 1) return false;
-  if (pass.metrics.empty()) return false;  // the process ended before they were written
-  for (float x : pass.position)
-    if (!std::isfinite(x)) return false;
+bool SolverRun::take_over(const RunRecord& before, double duration_s) {
+  if (!before.summary.contains(kUntimed)) return false;
+  const bool whole = before.accuracy.time_s.size() == static_cast<std::size_t>(accuracy_frames(duration_s)) + 1;
+  if (before.outcome.status == "ok" && !whole) return false;
+  // Passes side by side share a GPU, but not a core: only there could this one end in time by itself.
+  if (before.outcome.status == "timed_out" && spec_.entry->info.on_gpu) return false;
+  outcome_ = before.outcome;
   return true;
 }
 

@@ -58,6 +58,9 @@ Outcome outcome_of(StepStatus, int frame);
 
 std::string run_name(const RunSpec&);  ///< as in its file names
 
+/// Scalar: wall time of load and untimed pass [s].
+inline constexpr char kUntimed[] = "untimed_s";
+
 /// Header of a run before its solver is loaded, or whose solver is never loaded: the run's identity on this machine.
 RunHeader header_of(const Scene&, const std::string& solver, const std::string& setting, const nlohmann::json& settings,
                     const std::string& protocol);
@@ -80,9 +83,8 @@ class SolverRun {
   /// For a loop that paces itself; null unless alive.
   ClothSolver* solver() { return solver_.get(); }
 
-  /// True if a pass recovered from an interrupted run is whole and ended well. If not, the pass must be run again, so
-  /// that a failure recurs and is not lost.
-  bool usable(const AccuracyPass& pass, double duration_s) const;
+  /// Takes over how the untimed pass ended that an earlier process stored. False if it ended none of this duration.
+  bool take_over(const RunRecord& before, double duration_s);
   /// Runs the untimed pass: positions and metrics at every frame, frame 0 = initial state. `after_frame` gets the
   /// frames so far, without metrics.
   AccuracyPass run_accuracy(const TrialRules& rules, const std::function<void(const AccuracyPass&)>& after_frame = {});

@@ -19,6 +19,8 @@
 namespace clothbench {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 /// One run with its open result file.
 struct Running {
   std::unique_ptr<SolverRun> run;
@@ -55,7 +57,10 @@ class GroupRun {
 
   void run(const std::vector<RunSpec>& group) {
     running_.reserve(group.size());
-    for (const RunSpec& spec : group) begin(spec);
+    for (const RunSpec& spec : group) {
+      begin(spec);
+      if (plan_.untimed) running_.clear();
+    }
     for (int k = 0; k < plan_.rules.trials; ++k) round(k);
     for (Running& r : running_) finish(r);
   }
@@ -98,7 +103,7 @@ class GroupRun {
 
   /// Load and untimed pass.
   void begin(const RunSpec& given) {
-    const auto start = std::chrono::steady_clock::now();
+    const Clock::time_point start = Clock::now();
     RunSpec spec = given;
     const std::string name = run_name(spec);
     if (options_.resume) remove_leftovers(options_.out, name);
@@ -110,8 +115,7 @@ class GroupRun {
     spec.over_budget = over_budget(spec);
     open(spec, name);
     Running& r = running_.back();
-    if (r.run->alive() && !r.run->usable(r.record.accuracy, plan_.rules.accuracy_duration_s)) accuracy(r);
-    r.untimed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (r.run->alive() && r.untimed_s == 0) accuracy(r, start);
     note_end(spec, r.run->outcome().status);
   }
 
@@ -126,17 +130,27 @@ class GroupRun {
       const RunRecord before = r.writer->recovered();
       for (const TimedTrial& t : before.trials)  // one without the pictures now asked for is run again
         if (!plan_.rules.rendering.make || !t.frame_rendered_s.empty()) r.record.trials.push_back(t);
-      r.record.accuracy = before.accuracy;
+      if (r.run->alive() && r.run->take_over(before, plan_.rules.accuracy_duration_s)) {
+        r.record.accuracy = before.accuracy;
+        r.untimed_s = before.summary.at(kUntimed);
+      }
     }
     if (r.run->alive()) r.writer->write_replay(replay_of(*spec.scene));
     running_.push_back(std::move(r));
   }
 
-  void accuracy(Running& r) {
+  void accuracy(Running& r, Clock::time_point start) {
     note(r.name() + ": accuracy");
     r.record.accuracy =
         r.run->run_accuracy(plan_.rules, [&](const AccuracyPass& so_far) { r.writer->write_frames(so_far); });
-    r.writer->write_accuracy(r.record.accuracy);
+    r.untimed_s = std::chrono::duration<double>(Clock::now() - start).count();
+    r.writer->write_accuracy(r.record.accuracy, outcome_of(r), {{kUntimed, r.untimed_s}});
+  }
+
+  static Outcome outcome_of(const Running& r) {
+    const int messages = r.run->validation_messages();
+    if (messages == 0) return r.run->outcome();
+    return {"error", "ok", -1, fmt::format("{} validation messages", messages)};
   }
 
   void trial(Running& r, int k, const TrialRules& rules) {
@@ -154,15 +168,13 @@ class GroupRun {
   }
 
   void finish(Running& r) {
-    Outcome outcome = r.run->outcome();
-    const int messages = r.run->validation_messages();
-    if (messages > 0) outcome = {"error", "ok", -1, fmt::format("{} validation messages", messages)};
+    Outcome outcome = outcome_of(r);
     if (outcome.status == "error" && outcome.klass != "F3") result_.faults.push_back(r.name() + ": " + outcome.message);
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
     summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
-    summary["untimed_s"] = r.untimed_s;
+    summary[kUntimed] = r.untimed_s;
     Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
     summary.merge(verdict.scalars);

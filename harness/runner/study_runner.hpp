@@ -24,6 +24,7 @@ struct RunPlan {
   /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
   bool apart = false;       ///< untimed runs of whole scenes, each in a process of its own
+  bool untimed = false;     ///< only loads and untimed passes, for the same plan with trials to go on from
   bool references = false;  ///< store the reference solution of each scene's truth with its runs
 
   std::size_t size() const;
@@ -33,7 +34,7 @@ struct RunPlan {
 struct RunOptions {
   std::filesystem::path out;
   bool resume = false;
-  int jobs = 1;                        ///< worker processes at a time, for a plan whose runs are apart
+  int jobs = 1;                        ///< worker processes at a time, for what is not timed
   std::filesystem::path program = {};  ///< executable of the workers; empty: this one
   DeviceOptions device;
   /// Called before each task with its description and the numbers of finished and of all tasks.
@@ -62,7 +63,8 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
 /// As execute_runs, but in worker processes. Timed trials of all runs take turns in one process, where everything is
-/// timed as usual; runs with a process each (`apart`) are spread over `jobs` workers, the longest first. If a process
+/// timed as usual; with `jobs` above 1 their untimed passes come first, spread over `jobs` workers. Runs with a process
+/// each (`apart`) are spread over the workers, the longest first. If a process
 /// crashes, or a run makes no frame for too long (solver_limit_s(), or (1.2 x its limit) + 5 s for a run that is
 /// apart), the current run is stored as `crashed` or `timed_out` and a new process continues with the rest. `eye`: size
 /// of the pictures that the plan renders, or empty.

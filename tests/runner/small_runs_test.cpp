@@ -1,8 +1,10 @@
 // Runs of a small scene: held in the middle of a trial as a paused activity holds them, on a ladder, resumed.
 #include <chrono>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "refusal.hpp"
 #include "runner/interrupt.hpp"
@@ -196,6 +198,43 @@ TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
   execute_runs(plan(scene_), options_);
   entry_.info.version += "-next";
   EXPECT_NE(refused(plan(scene_)).find("-next"), std::string::npos);
+}
+
+/// A plan with trials goes on from untimed passes that were made before, also from those that ended badly.
+TEST_F(Resume, UntimedPassesAreNotRepeated) {
+  int steps = 0;
+  const SolverEntry entry = ballistic_with([&](ClothSolver& inner, const nlohmann::json& s, const FrameInput& f) {
+    ++steps;
+    const StepStatus status = inner.step(f);
+    return s["substeps"] == 8 ? StepStatus::NotFinite : status;
+  });
+  RunPlan p =
+      plan_of({{&scene_, &entry, {{"substeps", 4}}, "good"}, {&scene_, &entry, {{"substeps", 8}}, "bad"}}, 1, 2);
+  const std::filesystem::path out = options_.out;
+  options_.out = out / "serial";
+  const RunResult serial = execute_runs(p, options_);
+  const int serial_steps = std::exchange(steps, 0);
+  options_.out = out / "apart";
+  p.untimed = true;
+  setenv("CLOTHBENCH_JOBS", "8", 1);
+  EXPECT_TRUE(execute_runs(p, options_).files.empty());
+  setenv("CLOTHBENCH_JOBS", "1", 1);
+  const int untimed_steps = std::exchange(steps, 0);
+  p.untimed = false;
+  const RunResult timed = execute_runs(p, options_);
+  EXPECT_GT(steps, 0);
+  EXPECT_EQ(untimed_steps + steps, serial_steps);
+  ASSERT_EQ(timed.files.size(), serial.files.size());
+  for (std::size_t k = 0; k < timed.files.size(); ++k) {
+    const RunRecord a = read_run(serial.files[k]), b = read_run(timed.files[k]);
+    EXPECT_EQ(a.outcome.status, b.outcome.status);
+    EXPECT_EQ(a.outcome.failed_frame, b.outcome.failed_frame);
+    EXPECT_EQ(a.outcome.trajectory_sha256, b.outcome.trajectory_sha256);
+    EXPECT_EQ(a.trials.size(), b.trials.size());
+    EXPECT_EQ(a.summary.size(), b.summary.size());
+    EXPECT_EQ(jobs_of(b), 1) << "processes beside the untimed pass withhold no time of a trial";
+  }
+  unsetenv("CLOTHBENCH_JOBS");
 }
 
 TEST_F(Resume, WithoutItWhatIsFinishedIsRefused) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "results/store.hpp"
+#include "runner/study_plan.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
@@ -75,6 +76,37 @@ TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
   EXPECT_EQ(fell.trials.size(), 2u);
   EXPECT_EQ(solver_faults({crashed, hung, fell, stored("loses-device")}).size(), 3u)
       << "one sentence per solver that finished none of its runs";
+}
+
+/// Untimed passes side by side give the rows of passes one after another.
+TEST_F(Process, UntimedPassesSideBySideChangeNoRow) {
+  std::deque<Scene> scenes;
+  std::deque<SolverEntry> solvers;
+  RunPlan plan;
+  plan.rules = {.trials = 1, .frames = 6, .warmup_s = 0, .drop_frames = 0, .accuracy_duration_s = 0.5};
+  for (const char* name : {"falls", "crashes", "nan"}) solvers.emplace_back().info.name = name;
+  for (const char* name : {"one", "two"}) {
+    scenes.push_back(scene_from_json(kScenario, "test"));
+    scenes.back().name = name;
+    plan.groups.emplace_back();
+    for (const SolverEntry& s : solvers)
+      plan.groups.back().push_back({&scenes.back(), &s, nlohmann::json::object(), "default"});
+  }
+  RunOptions options;
+  options.program = FAULTY_CHILD;
+  for (const int jobs : {1, 3}) {
+    options.out = dir_ / std::to_string(jobs);
+    options.jobs = jobs;
+    execute_in_worker(plan, options);
+  }
+  for (const std::string& name : run_names(plan)) {
+    SCOPED_TRACE(name);
+    const RunRecord a = read_run(finished_file(dir_ / "1", name)), b = read_run(finished_file(dir_ / "3", name));
+    EXPECT_EQ(a.outcome.status, b.outcome.status);
+    EXPECT_EQ(a.outcome.failed_frame, b.outcome.failed_frame);
+    EXPECT_EQ(a.outcome.trajectory_sha256, b.outcome.trajectory_sha256);
+    EXPECT_EQ(a.trials.size(), b.trials.size());
+  }
 }
 
 TEST_F(Process, EveryEndIsARowWithItsReason) {
