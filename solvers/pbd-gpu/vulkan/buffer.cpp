@@ -2,17 +2,12 @@
 
 namespace clothbench::vulkan {
 
+// Delegates, so that the destructor runs if this throws.
 Buffer::Buffer(std::shared_ptr<Device> device, std::string name, VkDeviceSize bytes, Place place)
-    : device_(std::move(device)), name_(std::move(name)), bytes_(bytes), place_(place) {
-  try {
-    create();
-  } catch (...) {  // no destructor runs then
-    release();
-    throw;
-  }
-}
-
-void Buffer::create() {
+    : Buffer(std::move(device)) {
+  name_ = std::move(name);
+  bytes_ = bytes;
+  place_ = place;
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes_;
@@ -38,9 +33,7 @@ void Buffer::create() {
     check(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
 }
 
-Buffer::~Buffer() { release(); }
-
-void Buffer::release() {
+Buffer::~Buffer() {
   vkDestroyBuffer(device_->handle(), buffer_, nullptr);
   vkFreeMemory(device_->handle(), memory_, nullptr);
 }

@@ -22,13 +22,12 @@ class Buffer {
   void* mapped() const { return mapped_; }  ///< host buffers only
 
  private:
-  void create();
-  void release();
+  explicit Buffer(std::shared_ptr<Device> device) : device_(std::move(device)) {}
 
   std::shared_ptr<Device> device_;
   std::string name_;
-  VkDeviceSize bytes_;
-  Place place_;
+  VkDeviceSize bytes_ = 0;
+  Place place_ = Place::Device;
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   void* mapped_ = nullptr;

@@ -18,6 +18,11 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
+/// The only profile: what is known of the Adreno 740 of a Quest 3 (Mesa, freedreno_devices.py, cs_shared_mem_size). The
+/// limit of 256 threads per group is our precaution.
+constexpr const char* kProfile = "adreno-like";
+constexpr std::uint32_t kProfileShared_B = 32u << 10, kProfileThreads = 256;
+
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   static_cast<Device*>(user)->note_message(data->pMessage);
@@ -59,18 +64,6 @@ VkApplicationInfo application() {
   return app;
 }
 
-}  // namespace
-
-Failure::Failure(const char* call, VkResult result)
-    : Error(fmt::format("{} failed: VkResult {}", call, static_cast<int>(result)), ExitCode::CheckFailed),
-      result_(result) {}
-
-void check(VkResult result, const char* call) {
-  if (result != VK_SUCCESS) throw Failure(call, result);
-}
-
-namespace {
-
 /// Devices of this process. They are kept to its end and not destroyed then: drivers fail to load again after some
 /// hundred times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
 struct Made {
@@ -86,10 +79,12 @@ Made& made() {
 
 }  // namespace
 
-const Profile& find_profile(const std::string& name) {
-  static const Profile adreno = {"adreno-like", 32u << 10, 256};
-  if (name == adreno.name) return adreno;
-  throw Error("device profile \"" + name + "\": expected " + adreno.name);
+Failure::Failure(const char* call, VkResult result)
+    : Error(fmt::format("{} failed: VkResult {}", call, static_cast<int>(result)), ExitCode::CheckFailed),
+      result_(result) {}
+
+void check(VkResult result, const char* call) {
+  if (result != VK_SUCCESS) throw Failure(call, result);
 }
 
 std::shared_ptr<Device> Device::get(const DeviceOptions& options) {
@@ -124,17 +119,13 @@ std::vector<DeviceInfo> Device::list() {
   return all;
 }
 
-Device::Device(const DeviceOptions& options, Maker* maker) {
-  try {
-    create_instance(options.validation, maker);
-    choose_physical(options.index, maker);
-    apply_profile(profile_name(options));
-    create_device(maker);
-    of_making_ = validation_messages();
-  } catch (...) {
-    release();
-    throw;
-  }
+// Delegates, so that the destructor runs if this throws.
+Device::Device(const DeviceOptions& options, Maker* maker) : Device() {
+  create_instance(options.validation, maker);
+  choose_physical(options.index, maker);
+  apply_profile(profile_name(options));
+  create_device(maker);
+  of_making_ = validation_messages();
 }
 
 void Device::create_instance(bool validation, Maker* maker) {
@@ -199,12 +190,12 @@ void Device::choose_physical(int index, Maker* maker) {
     };
     physical_ = *std::min_element(all.begin(), all.end(), [&](auto a, auto b) { return rank_of(a) < rank_of(b); });
   }
-  vkGetPhysicalDeviceProperties(physical_, &properties_);
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
   VkPhysicalDeviceSubgroupProperties subgroup{};
   subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup, {}};
   vkGetPhysicalDeviceProperties2(physical_, &properties);
+  properties_ = properties.properties;
   const bool shuffles = (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
                         (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0 &&
                         (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_VOTE_BIT) != 0;
@@ -213,11 +204,12 @@ void Device::choose_physical(int index, Maker* maker) {
 
 void Device::apply_profile(const std::string& name) {
   if (name.empty()) return;
-  profile_ = &find_profile(name);
+  if (name != kProfile) throw Error("device profile \"" + name + "\": expected " + kProfile);
+  profile_ = name;
   VkPhysicalDeviceLimits& l = properties_.limits;
-  l.maxComputeSharedMemorySize = std::min(l.maxComputeSharedMemorySize, profile_->shared_memory_B);
-  l.maxComputeWorkGroupInvocations = std::min(l.maxComputeWorkGroupInvocations, profile_->group_invocations);
-  l.maxComputeWorkGroupSize[0] = std::min(l.maxComputeWorkGroupSize[0], profile_->group_invocations);
+  l.maxComputeSharedMemorySize = std::min(l.maxComputeSharedMemorySize, kProfileShared_B);
+  l.maxComputeWorkGroupInvocations = std::min(l.maxComputeWorkGroupInvocations, kProfileThreads);
+  l.maxComputeWorkGroupSize[0] = std::min(l.maxComputeWorkGroupSize[0], kProfileThreads);
   l.maxComputeWorkGroupSize[1] = l.maxComputeWorkGroupSize[2] = 1;
 }
 
@@ -253,9 +245,7 @@ void Device::create_device(Maker* maker) {
   check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
 }
 
-Device::~Device() { release(); }
-
-void Device::release() {
+Device::~Device() {
   if (device_ != VK_NULL_HANDLE) {
     vkDeviceWaitIdle(device_);
     vkDestroyCommandPool(device_, pool_, nullptr);
@@ -271,11 +261,11 @@ void Device::release() {
 
 DeviceInfo Device::info() const {
   DeviceInfo info = describe(physical_);
-  if (profile_ == nullptr) return info;
+  if (profile_.empty()) return info;
   // Results under a profile must not be mistaken for results of the device itself.
-  info.name += " [" + profile_->name + "]";
+  info.name += " [" + profile_ + "]";
   nlohmann::json j = nlohmann::json::parse(info.properties_json);
-  j["device_profile"] = profile_->name;
+  j["device_profile"] = profile_;
   info.properties_json = j.dump();
   return info;
 }

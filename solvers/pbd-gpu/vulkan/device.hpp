@@ -35,17 +35,6 @@ class Maker {
   virtual VkResult create_device(VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*) = 0;
 };
 
-/// A class of devices that any device can emulate: its limits are reduced to these, and larger workgroups are rejected.
-struct Profile {
-  std::string name;
-  std::uint32_t shared_memory_B = 0;    ///< of a workgroup
-  std::uint32_t group_invocations = 0;  ///< workgroups are one-dimensional and at most this wide
-};
-
-/// "adreno-like": what is known of the Adreno 740 of a Quest 3, 32 KiB of shared memory (Mesa, freedreno_devices.py,
-/// cs_shared_mem_size). The limit of 256 threads per group is our precaution. Throws Error for any other name.
-const Profile& find_profile(const std::string& name);
-
 /// A Vulkan 1.1 physical device as DeviceInfo. Its JSON has identity, driver, subgroup, memory heaps and
 /// the limits that compute meets; `vulkaninfo` has all others.
 DeviceInfo describe(VkPhysicalDevice physical);
@@ -102,14 +91,14 @@ class Device {
   bool lost() const { return lost_; }
 
  private:
+  Device() = default;
   Device(const DeviceOptions& options, Maker* maker);
   void apply_profile(const std::string& name);
   void create_instance(bool validation, Maker* maker);
   void choose_physical(int index, Maker* maker);
   void create_device(Maker* maker);
-  void release();
 
-  const Profile* profile_ = nullptr;
+  std::string profile_;  ///< the limits of which class of devices it keeps to; empty: its own
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;

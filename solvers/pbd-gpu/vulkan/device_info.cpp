@@ -5,19 +5,6 @@
 #include "vulkan/device.hpp"
 
 namespace clothbench::vulkan {
-namespace {
-
-nlohmann::json limits(const VkPhysicalDeviceLimits& l) {
-  return {{"maxStorageBufferRange", l.maxStorageBufferRange},
-          {"maxPushConstantsSize", l.maxPushConstantsSize},
-          {"maxComputeSharedMemorySize", l.maxComputeSharedMemorySize},
-          {"maxComputeWorkGroupCount", l.maxComputeWorkGroupCount},
-          {"maxComputeWorkGroupInvocations", l.maxComputeWorkGroupInvocations},
-          {"maxComputeWorkGroupSize", l.maxComputeWorkGroupSize},
-          {"timestampPeriod", l.timestampPeriod}};
-}
-
-}  // namespace
 
 DeviceInfo describe(VkPhysicalDevice physical) {
   VkPhysicalDeviceDriverProperties driver{};
@@ -27,6 +14,7 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup, {}};
   vkGetPhysicalDeviceProperties2(physical, &all);
   const VkPhysicalDeviceProperties& p = all.properties;
+  const VkPhysicalDeviceLimits& l = p.limits;
   if (p.apiVersion >= VK_API_VERSION_1_2) {  // where driver properties are part of Vulkan
     subgroup.pNext = &driver;
     vkGetPhysicalDeviceProperties2(physical, &all);
@@ -36,8 +24,14 @@ DeviceInfo describe(VkPhysicalDevice physical) {
 
   nlohmann::json j = {{"vendor_id", p.vendorID},          {"device_id", p.deviceID},
                       {"device_type", p.deviceType},      {"driver_name", driver.driverName},
-                      {"driver_info", driver.driverInfo}, {"subgroup_size", subgroup.subgroupSize},
-                      {"limits", limits(p.limits)}};
+                      {"driver_info", driver.driverInfo}, {"subgroup_size", subgroup.subgroupSize}};
+  j["limits"] = {{"maxStorageBufferRange", l.maxStorageBufferRange},
+                 {"maxPushConstantsSize", l.maxPushConstantsSize},
+                 {"maxComputeSharedMemorySize", l.maxComputeSharedMemorySize},
+                 {"maxComputeWorkGroupCount", l.maxComputeWorkGroupCount},
+                 {"maxComputeWorkGroupInvocations", l.maxComputeWorkGroupInvocations},
+                 {"maxComputeWorkGroupSize", l.maxComputeWorkGroupSize},
+                 {"timestampPeriod", l.timestampPeriod}};
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     j["memory_heaps"].push_back({{"bytes", memory.memoryHeaps[i].size}, {"flags", memory.memoryHeaps[i].flags}});
 

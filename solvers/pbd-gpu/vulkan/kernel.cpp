@@ -7,9 +7,10 @@
 
 namespace clothbench::vulkan {
 
+// Delegates, so that the destructor runs if this throws.
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
                const Buffers& buffers, std::uint32_t push_bytes)
-    : device_(std::move(device)), name_(std::move(name)), code_(code) {
+    : Kernel(std::move(device), std::move(name), code) {
   for (const auto& [number, access] : accesses_of(code_)) {
     const auto found = buffers.find(number);
     if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
@@ -18,19 +19,12 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
   if (const std::uint32_t most = device_->limits().maxComputeWorkGroupInvocations; specialization.at(0) > most)
     throw Error(fmt::format("kernel {}: its workgroups of {} are larger than this device's or its profile's {}", name_,
                             specialization[0], most));
-  try {
-    create_layout(push_bytes);
-    create_set();
-    create_pipeline(specialization);
-  } catch (...) {  // no destructor runs then
-    release();
-    throw;
-  }
+  create_layout(push_bytes);
+  create_set();
+  create_pipeline(specialization);
 }
 
-Kernel::~Kernel() { release(); }
-
-void Kernel::release() {
+Kernel::~Kernel() {
   vkDestroyPipeline(device_->handle(), pipeline_, nullptr);
   vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
   vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);

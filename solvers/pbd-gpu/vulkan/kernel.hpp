@@ -53,8 +53,9 @@ class Kernel {
   void push(VkCommandBuffer commands, const std::vector<std::uint8_t>& constants) const;
 
  private:
+  Kernel(std::shared_ptr<Device> device, std::string name, SpirV code)
+      : device_(std::move(device)), name_(std::move(name)), code_(code) {}
   void create_layout(std::uint32_t push_bytes);
-  void release();
   void create_set();
   void create_pipeline(const std::vector<std::uint32_t>& specialization);
 

@@ -1,12 +1,11 @@
 #include "vulkan/program.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "clothbench/record.hpp"
 
 namespace clothbench::vulkan {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 bool meet(const std::set<const Buffer*>& a, const std::set<const Buffer*>& b) {
   return std::any_of(a.begin(), a.end(), [&](const Buffer* x) { return b.count(x) != 0; });
