@@ -24,7 +24,7 @@ std::multiset<Ends> links_of(const std::vector<ChainColour>& colours, std::size_
   std::multiset<Ends> out;
   for (const ChainColour& f : colours) {
     std::vector<int> seen(vertices, 0);
-    for (const auto& chain : f.chains) {
+    for (const auto& [chain, colour, share] : f.chains) {
       EXPECT_GE(chain.size(), 2u);
       EXPECT_LE(chain.size(), block);
       for (const std::uint32_t v : chain) EXPECT_EQ(++seen[v], 1) << v;
@@ -61,8 +61,8 @@ TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
   EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1)))
       << "diagonals of a sliver are stiff, and so is what they become";
   for (const ChainColour& f : plan_of(thin, cloth, 256))
-    for (const auto& chain : f.chains)
-      for (const std::uint32_t v : chain) EXPECT_EQ(cloth.particle[v], v);
+    for (const EdgePath& chain : f.chains)
+      for (const std::uint32_t v : chain.vertices) EXPECT_EQ(cloth.particle[v], v);
 }
 
 TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {

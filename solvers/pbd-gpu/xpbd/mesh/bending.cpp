@@ -16,6 +16,7 @@ constexpr auto kNone = static_cast<std::uint32_t>(-1);
 Vec2 minus2(const Vec2& a, const Vec2& b) { return {a[0] - b[0], a[1] - b[1]}; }
 double dot2(const Vec2& a, const Vec2& b) { return a[0] * b[0] + a[1] * b[1]; }
 double cross2(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double norm2(const Vec2& a) { return std::hypot(a[0], a[1]); }
 
 /// A linear form of the positions.
 using Form = std::vector<std::pair<std::uint32_t, double>>;
@@ -41,6 +42,10 @@ class FlatMesh {
   const std::array<Vec2, 3>& flat(std::uint32_t t) const { return flat_[t]; }
   std::uint32_t edge_of(std::uint32_t t, int k) const {
     return edges_[3 * std::size_t{t} + static_cast<std::size_t>(k)];
+  }
+  /// From corner k to the next.
+  Vec2 side(std::uint32_t t, int k) const {
+    return minus2(flat_[t][static_cast<std::size_t>((k + 1) % 3)], flat_[t][static_cast<std::size_t>(k % 3)]);
   }
   double area(std::uint32_t t) const { return cross2(flat_[t][1], flat_[t][2]) / 2; }
   std::uint32_t other(std::uint32_t edge, std::uint32_t t) const {
@@ -68,9 +73,7 @@ class Patch {
  public:
   /// The edge starts at corner k of triangle t; t lies to its left.
   Patch(const FlatMesh& mesh, std::uint32_t t, int k) : mesh_(mesh) {
-    const double l =
-        norm2(minus2(mesh.flat(t)[static_cast<std::size_t>((k + 1) % 3)], mesh.flat(t)[static_cast<std::size_t>(k)]));
-    scale_ = 1 / l;
+    scale_ = 1 / norm2(mesh.side(t, k));
     vertices_ = {mesh.corner(t, k), mesh.corner(t, k + 1)};
     at_ = {Vec2{0, 0}, Vec2{1, 0}};
     add(t, k, {0, 0}, {1, 0});
@@ -137,8 +140,6 @@ class Patch {
     std::array<Vec2, 3> corners;
   };
 
-  static double norm2(const Vec2& a) { return std::hypot(a[0], a[1]); }
-
   /// Number of the edge of triangle t that starts at vertex v.
   int side(std::uint32_t t, std::uint32_t v) const {
     int k = 0;
@@ -189,23 +190,20 @@ Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
     for (const auto& [v, share] : form) shares += std::abs(share);
     if (!grew || (form.size() >= 6 && shares <= kMaxShares)) break;
   }
-  const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>((k + 1) % 3);
-  const Vec2 e = minus2(mesh.flat(t)[j], mesh.flat(t)[i]);
-  for (auto& [v, share] : form) share /= -std::hypot(e[0], e[1]);  // from the left to the outside
+  for (auto& [v, share] : form) share /= -norm2(mesh.side(t, k));  // from the left to the outside
   return form;
 }
 
 /// The same of the linear motion of a triangle.
 Form own_across(const FlatMesh& mesh, std::uint32_t t, int k) {
   const auto normal = [&](int side) {  // times length
-    const Vec2 e = minus2(mesh.flat(t)[static_cast<std::size_t>((side + 1) % 3)],
-                          mesh.flat(t)[static_cast<std::size_t>(side % 3)]);
+    const Vec2 e = mesh.side(t, side);
     return Vec2{e[1], -e[0]};
   };
   const Vec2 n = normal(k);
   Form form;
   for (int i = 0; i < 3; ++i)
-    form.emplace_back(mesh.corner(t, i), -dot2(normal(i + 1), n) / (2 * mesh.area(t) * std::hypot(n[0], n[1])));
+    form.emplace_back(mesh.corner(t, i), -dot2(normal(i + 1), n) / (2 * mesh.area(t) * norm2(n)));
   return form;
 }
 
@@ -242,9 +240,8 @@ class Curvatures {
       to[2] += share * (normal[0] * of[1] + normal[1] * of[0]) / (std::sqrt(2.0) * area);
     };
     for (int k = 0; k < 3; ++k) {
-      const Vec2 e =
-          minus2(mesh_.flat(t)[static_cast<std::size_t>((k + 1) % 3)], mesh_.flat(t)[static_cast<std::size_t>(k)]);
-      const double l = std::hypot(e[0], e[1]);
+      const Vec2 e = mesh_.side(t, k);
+      const double l = norm2(e);
       const Vec2 normal = {e[1], -e[0]}, along = {e[0] / l, e[1] / l}, outward = {e[1] / l, -e[0] / l};
       add(mesh_.corner(t, k + 1), normal, along, 1 / l);
       add(mesh_.corner(t, k), normal, along, -1 / l);

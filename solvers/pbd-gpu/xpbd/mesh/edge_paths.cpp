@@ -240,7 +240,7 @@ std::vector<EdgePath> edge_paths(const Scene& s, const ChainCloth& cloth) {
 
 std::uint32_t ChainColour::longest() const {
   std::size_t largest = 1;
-  for (const auto& c : chains) largest = std::max(largest, c.size());
+  for (const EdgePath& c : chains) largest = std::max(largest, c.vertices.size());
   return static_cast<std::uint32_t>(largest - 1);
 }
 
@@ -285,11 +285,11 @@ std::vector<ChainColour> colours_of(std::vector<EdgePath> all, std::size_t verti
         largest = fits(best, s, from);
       }
       const auto first = s.vertices.begin() + static_cast<std::ptrdiff_t>(from);
-      colours[best].chains.emplace_back(first, first + static_cast<std::ptrdiff_t>(largest + 1));
-      colours[best].shares.emplace_back();
+      EdgePath& chain = colours[best].chains.emplace_back();
+      chain.vertices.assign(first, first + static_cast<std::ptrdiff_t>(largest + 1));
       if (!s.share.empty()) {
         const auto share = s.share.begin() + static_cast<std::ptrdiff_t>(from);
-        colours[best].shares.back().assign(share, share + static_cast<std::ptrdiff_t>(largest));
+        chain.share.assign(share, share + static_cast<std::ptrdiff_t>(largest));
       }
       for (std::size_t k = from; k <= from + largest; ++k) used[best][s.vertices[k]] = 1;
       from += largest;
@@ -315,15 +315,14 @@ std::vector<ChainEntry> entries_of(const ChainColour& colour, const Scene& scene
     if (out.size() % block + entries.size() > block) out.resize((out.size() / block + 1) * block, padding);
     out.insert(out.end(), entries.begin(), entries.end());
   };
-  for (std::size_t c = 0; c < colour.chains.size(); ++c) {
-    const std::vector<std::uint32_t>& chain = colour.chains[c];
+  for (const EdgePath& path : colour.chains) {
+    const std::vector<std::uint32_t>& chain = path.vertices;
     const auto held_ones = std::count_if(chain.begin(), chain.end(), [&](std::uint32_t v) { return held[v] != 0; });
-    const std::vector<float>& share = colour.shares[c];
     std::vector<ChainEntry> entries;
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const bool goes_on = k + 1 < chain.size();
       ChainCloth::Link l = goes_on ? cloth.link(chain[k], chain[k + 1]) : ChainCloth::Link{0, 0, -1, 0};
-      if (goes_on && !share.empty()) l.compliance_m_per_N /= share[k];
+      if (goes_on && !path.share.empty()) l.compliance_m_per_N /= path.share[k];
       entries.push_back(
           {chain[k], l.rest_m, l.compliance_m_per_N, held_ones > 1 ? static_cast<float>(kRegularisation) : 0.0f});
       seen[chain[k]] = 1;

@@ -41,9 +41,8 @@ std::vector<EdgePath> edge_paths(const Scene&, const ChainCloth&);
 
 /// One colour: chains that share no vertex.
 struct ChainColour {
-  std::vector<std::vector<std::uint32_t>> chains;  ///< each of at least two vertices and at most a block
-  std::vector<std::vector<float>> shares;          ///< of each chain's links, as in an edge path
-  std::uint32_t longest() const;                   ///< links of the longest chain
+  std::vector<EdgePath> chains;   ///< each of at least two vertices and at most a block
+  std::uint32_t longest() const;  ///< links of the longest chain
 };
 /// Cuts edge paths into chains and spreads them over few colours, without cutting much. Colours are in the order in
 /// which they are solved: the last colour has the edge paths to be solved last.
