@@ -30,7 +30,7 @@ class Paper final : public GpuSolver {
     build_stages();
   }
 
-  std::uint64_t particles() const { return layers_ * scene().cloth.vertex_count(); }
+  std::uint32_t particles() const { return static_cast<std::uint32_t>(layers_ * scene().cloth.vertex_count()); }
 
   void build_constraints() {
     const auto n = static_cast<std::uint32_t>(scene().cloth.vertex_count());
@@ -74,7 +74,7 @@ class Paper final : public GpuSolver {
     const int stage = add_stage(stage_name, with_friction(kind, shapes.friction));
     const FrameKernel* kernel =
         add_kernel(stage, name, sizeof(PaperContactConstants), contact_constants(shapes.friction));
-    contact_.emplace_back(kernel, PaperContactConstants{0, 0, shapes.count, 0, 0, 0, 0});
+    contact_.emplace_back(kernel, PaperContactConstants{particles(), 0, shapes.count, 0, 0, 0, 0});
   }
 
   /// `depth_m`: maximum distance behind a triangle at which a particle still counts as touching it.
@@ -88,8 +88,8 @@ class Paper final : public GpuSolver {
                    kGroupSize, {{BIND_TRIANGLES, meshes.triangles}, {BIND_MESH_VERTICES, meshes.positions}});
     const auto layer = static_cast<std::uint32_t>(scene().cloth.vertex_count());
     for (const MeshRange& r : meshes.ranges)
-      contact_.emplace_back(
-          kernel, PaperContactConstants{0, r.first_triangle, r.triangles, r.margin_m, depth_m, r.friction, layer});
+      contact_.emplace_back(kernel, PaperContactConstants{particles(), r.first_triangle, r.triangles, r.margin_m,
+                                                          depth_m, r.friction, layer});
   }
 
   void build_stages() {
@@ -125,7 +125,7 @@ class Paper final : public GpuSolver {
     const Vec3 g = scene().gravity_m_per_s2;
     PaperConstants c{};
     c.gravity = {static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]), 0};
-    c.particles = static_cast<std::uint32_t>(particles());
+    c.particles = particles();
     c.constraints = static_cast<std::uint32_t>(constraint_count_);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
@@ -159,10 +159,7 @@ class Paper final : public GpuSolver {
   }
 
   void record_contact() {
-    for (auto& [kernel, constants] : contact_) {
-      constants.particles = static_cast<std::uint32_t>(particles());
-      dispatch(*kernel, particles(), constants);
-    }
+    for (const auto& [kernel, constants] : contact_) dispatch(*kernel, particles(), constants);
   }
 
   int layers_ = 1;

@@ -13,7 +13,9 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-constexpr double kFlat = 1e-6;  // of the longest side
+constexpr double kFlat = 1e-6;               // of the longest side
+constexpr double kShort = 0.5, kLong = 1.5;  // of a link's rest length
+constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below what is visible
 
 /// Why a scene has no tethers, whatever its shape; empty: it may have some.
 std::string why_no_tethers(const Scene& scene, bool wanted) {
@@ -169,9 +171,6 @@ class Reach {
   }
 
   /// Straight distance at rest [m].
-  double between(std::uint32_t a, std::uint32_t b) const { return straight(a, b); }
-
- private:
   double straight(std::uint32_t a, std::uint32_t b) const {
     const Cloth& c = scene_.cloth;
     if (c.mesh) return norm(minus(c.mesh->vertices[a], c.mesh->vertices[b]));
@@ -181,6 +180,7 @@ class Reach {
     return way_through(scene_, u, v);
   }
 
+ private:
   /// Shortest paths along edges from all vertices of the group at once (Dijkstra 1959).
   std::vector<TetherEnd> along_edges(const std::vector<std::uint32_t>& group) const {
     std::vector<TetherEnd> out(scene_.cloth.vertex_count(), {0, -1});
@@ -210,6 +210,14 @@ class Reach {
   const Adjacency& edges_;
   const bool straight_;
 };
+
+/// Pseudo-random number in [-1, 1) from a counter (SplitMix64; Steele, Lea & Flood 2014).
+double scattered(std::uint64_t n) {
+  std::uint64_t z = (n + 1) * 0x9E3779B97F4A7C15u;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+}
 
 }  // namespace
 
@@ -273,7 +281,7 @@ TetherTable tether_table(const Scene& scene, bool wanted) {
   std::vector<double> widths;
   for (const auto& group : groups) {
     double width = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
-    for (const std::uint32_t a : group) width = std::max(width, reach.between(group.front(), a));
+    for (const std::uint32_t a : group) width = std::max(width, reach.straight(group.front(), a));
     widths.push_back(width);
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -294,21 +302,6 @@ bool is_tethered(const Scene& scene, const nlohmann::json& settings) {
   return settings.value("tethers", true) &&
          (needs_chain_solver(scene) ? tether_table(scene).a_vertex > 0 : !tethers_of(scene).to.empty());
 }
-
-namespace {
-
-constexpr double kShort = 0.5, kLong = 1.5;  // of a link's rest length
-constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below what is visible
-
-/// Pseudo-random number in [-1, 1) from a counter (SplitMix64; Steele, Lea & Flood 2014).
-double scattered(std::uint64_t n) {
-  std::uint64_t z = (n + 1) * 0x9E3779B97F4A7C15u;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-}
-
-}  // namespace
 
 bool starts_crumpled(const Scene& scene) {
   if (scene.cloth.start.at_rest()) return false;

@@ -9,7 +9,6 @@
 #include "clothbench/error.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
 
 /// Pairs that the list has place for: the lists of heaps and desks are a third of it, and where it does not suffice the
 /// vertices' motion bounds is cut.
@@ -24,8 +23,6 @@ constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// Responses after the constraints.
 constexpr std::uint32_t kRoundsAfter = 2;
-
-}  // namespace
 
 XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
                          const std::vector<std::uint32_t>& particle, bool second_solve)
@@ -139,12 +136,12 @@ XpbdContact::Pass XpbdContact::pass(int stage, const char* name, std::uint64_t i
           vulkan::groups_for(items, threads)};
 }
 
-void XpbdContact::add_broad_phase() {
+void XpbdContact::add_kernels() {
   if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   const std::uint32_t n = constants_.VERTICES;
+  const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   bounds_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   if (with_itself_) {
-    const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
     bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES));
     broad_phase_.push_back(
         pass(stage_pairs_, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
@@ -152,13 +149,7 @@ void XpbdContact::add_broad_phase() {
   if (constants_.SHAPES > 0)
     broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", std::min(constants_.TRIANGLES + n, kPairThreads)));
   finish_ = {pass(stage_pairs_, "contact_finish_broad_phase", n)};
-}
-
-void XpbdContact::add_kernels() {
-  add_broad_phase();
   const int stage = frame_.add_stage("ContactSubstep", serves());
-  const std::uint32_t n = constants_.VERTICES;
-  const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   const std::uint32_t at_once = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
   const std::uint64_t shared = std::uint64_t{constants_.LANES_PER_VERTEX} * n;
   const auto add = [](std::initializer_list<Phase*> phases, const Pass& one) {
@@ -232,9 +223,7 @@ void XpbdContact::record_after(int s, int substeps, double dt_s, const std::func
 }
 
 ContactDiagnostics XpbdContact::diagnostics() const {
-  ContactDiagnostics f{};
-  std::memcpy(&f, diagnostics_->mapped(), sizeof f);
-  return f;
+  return *static_cast<const ContactDiagnostics*>(diagnostics_->mapped());
 }
 
 double XpbdContact::read_max_displacement_m(bool is_single_dispatch) {

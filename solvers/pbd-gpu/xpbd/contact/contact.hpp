@@ -52,7 +52,6 @@ class XpbdContact {
   Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize);
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle);
-  void add_broad_phase();
   void run(const Phase&, const ContactConstants&);
 
   FrameBuilder& frame_;

@@ -6,13 +6,10 @@
 #include "xpbd/grid_barrier.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
 
 /// Threads of a workgroup where many share lines and contact: a line needs 32, and pairs and vertices take as many as
 /// there are. A desk takes 3.4 times as long with 32, and 256 win nothing (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;
-
-}  // namespace
 
 Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tension, bool corrects_splitting)
     : frame_(frame),
@@ -64,19 +61,6 @@ LineDevice Lines::device() const {
   return line;
 }
 
-std::uint32_t Lines::features() const {
-  const FeatureSet needs = scene_.needs;
-  std::uint32_t f = 0;
-  if (needs.has(Feature::Bend)) f |= LINES_BEND;
-  if (needs.has(Feature::Shear)) f |= LINES_SHEAR;
-  if (scene_.material.membrane_stiffness_N_per_m) f |= LINES_ELASTIC;
-  if (regularised_) f |= LINES_REGULARISED;
-  if (uses_bdf2_) f |= LINES_BDF2;
-  if (tension_) f |= LINES_TENSION;
-  if (corrects_splitting_) f |= LINES_SPLITTING;
-  return f;
-}
-
 LineSpecialization Lines::specialization(const LineShape& shape) const {
   LineSpecialization s;
   s.LANES = shape.lanes;
@@ -84,7 +68,13 @@ LineSpecialization Lines::specialization(const LineShape& shape) const {
   s.COLUMNS = static_cast<std::uint32_t>(scene_.cloth.columns);
   s.ROWS = static_cast<std::uint32_t>(scene_.cloth.rows);
   s.THREADS = shape.threads;
-  s.FEATURES = features();
+  if (scene_.needs.has(Feature::Bend)) s.FEATURES |= LINES_BEND;
+  if (scene_.needs.has(Feature::Shear)) s.FEATURES |= LINES_SHEAR;
+  if (scene_.material.membrane_stiffness_N_per_m) s.FEATURES |= LINES_ELASTIC;
+  if (regularised_) s.FEATURES |= LINES_REGULARISED;
+  if (uses_bdf2_) s.FEATURES |= LINES_BDF2;
+  if (tension_) s.FEATURES |= LINES_TENSION;
+  if (corrects_splitting_) s.FEATURES |= LINES_SPLITTING;
   s.GRIPS = static_cast<std::uint32_t>(scene_.grips.vertices.size());
   s.TETHERS = static_cast<std::uint32_t>(tethers_.to.size());
   uint* const ends[Tethers::kMax][2] = {{&s.TETHER_0, &s.TETHER_0_LAST},

@@ -43,7 +43,6 @@ class Lines {
 
  private:
   LineDevice device() const;
-  std::uint32_t features() const;
   bool add_persistent();
   void add_passes();
   LineRequest request() const;

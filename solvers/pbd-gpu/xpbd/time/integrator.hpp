@@ -47,9 +47,6 @@ bool is_contact_free(const Scene&);
 /// by the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.
 double impact_speed_m_per_s(const Scene&);
 
-/// Links along the longer side; of a mesh as many as edges of its length fit.
-double links_of_longer_side(const Cloth&);
-
 /// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps"). In a
 /// scene with contact the maximum of a frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);

@@ -11,12 +11,12 @@
 #include "xpbd/time/rules.hpp"
 
 namespace clothbench::pbd_gpu {
+namespace {
 
+/// Links along the longer side; of a mesh as many as edges of its length fit.
 double links_of_longer_side(const Cloth& c) {
   return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
 }
-
-namespace {
 
 std::size_t quality_of(const nlohmann::json& settings) {
   const std::string quality = settings.value("quality", "default");
