@@ -8,15 +8,12 @@
 #include "clothbench/record.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
 
 /// A frame that takes longer counts as lost. Software devices are slow; real ones reset themselves after some 2 s.
 constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
 
 /// As in an application that shows one frame while the next is computed.
 constexpr int kFramesInFlight = 2;
-
-}  // namespace
 
 void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
   if (const auto x = settings[key].get<double>(); !(x >= low && x <= high))
@@ -243,10 +240,8 @@ namespace clothbench {
 
 void register_pbd_gpu(std::vector<SolverEntry>& out) {
   using namespace pbd_gpu;
-  out.push_back({paper_info(), [](const nlohmann::json& s, const DeviceOptions& d) { return make_paper(s, d); },
-                 paper_free_fall_m, vulkan::Device::list});
-  out.push_back({xpbd_info(), [](const nlohmann::json& s, const DeviceOptions& d) { return make_xpbd(s, d); },
-                 xpbd_free_fall_m, vulkan::Device::list});
+  out.push_back({paper_info(), make_paper, paper_free_fall_m, vulkan::Device::list});
+  out.push_back({xpbd_info(), make_xpbd, xpbd_free_fall_m, vulkan::Device::list});
 }
 
 }  // namespace clothbench

@@ -3,7 +3,6 @@
 #include "xpbd/grid_barrier.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
 
 /// Workgroups are of so many threads or a multiple, so that lanes that share a vertex are all there.
 constexpr std::uint32_t kThreadsTogether = 32;
@@ -12,8 +11,6 @@ constexpr std::uint32_t kThreadsTogether = 32;
 constexpr std::uint32_t kWorkgroups = 96;
 /// Groups of shapes that a bit of shared memory each suffices for, in 4 KiB.
 constexpr std::uint32_t kMaxGroups = 1u << 15;
-
-}  // namespace
 
 std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
   const std::string wanted = frame.tuning()["contact_frame"];

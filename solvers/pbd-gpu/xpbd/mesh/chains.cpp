@@ -7,11 +7,8 @@
 #include "xpbd/mesh/matrices.hpp"
 
 namespace clothbench::pbd_gpu {
-namespace {
 
 constexpr std::uint32_t kBlock = 256;
-
-}  // namespace
 
 Chains::Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension,
                bool membrane)
