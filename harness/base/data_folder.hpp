@@ -36,7 +36,4 @@ std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoo
 /// lists every place if there is none.
 std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
 
-extern const char* const kSourceRoot;       ///< the source tree this was built from
-extern const char* const kDataFromProgram;  ///< from the program's folder to the installed share/clothbench
-
 }  // namespace clothbench

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "base/words.hpp"
-#include "check/baseline.hpp"
 #include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"

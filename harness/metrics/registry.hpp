@@ -4,14 +4,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "clothbench/record.hpp"
 #include "metrics/metric.hpp"
 #include "metrics/motion_check/motion_check.hpp"
 #include "metrics/truth_errors.hpp"
-#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
@@ -36,6 +35,8 @@ struct RunView {
   std::size_t settled_from() const;
   /// The check of the positions; empty without positions, or where this build cannot measure the scene's contact.
   std::span<const motion_check::Finding> findings() const;
+  /// One of them by the name of its statistic; null if it is not among them.
+  const motion_check::Finding* finding(std::string_view name) const;
   /// Only for a scene that states a truth.
   const truth::ReferenceCase& reference_case() const;
   /// The same.
@@ -84,9 +85,9 @@ struct Scalar {
   std::string name;  ///< a '*' at its end stands for any text
   Reduction from;
   Expect expect = Expect::No;
-  const Gate* gate = nullptr;                 ///< null: not checked
-  bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
-  std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
+  const Gate* gate = nullptr;                             ///< null: not checked
+  std::function<bool(const RunView&)> present = nullptr;  ///< null: in every summary, NaN if it has no value
+  std::string units = "", doc = "";                       ///< a plain phrase; both set by the registry
   Better better = Better::Less;
   bool of_machine = false;  ///< a time, or a value that depends on times: it measures the machine too
 };

@@ -7,10 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "clothbench/vector.hpp"
-#include "metrics/metric.hpp"
 #include "scenario/load.hpp"
-#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {

@@ -2,21 +2,10 @@
 #include <map>
 #include <string>
 
-#include "clothbench/record.hpp"
-#include "clothbench/scene.hpp"
-#include "clothbench/solver.hpp"
+#include "metrics/metric.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
-
-/// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, relative
-/// to the longer side. NaN if the state is not finite or the reference case has no answer.
-struct TruthErrors {
-  double e2 = kMissing;                                   ///< positions: RMS
-  double quantity = kMissing;                             ///< the reference case's quantity of this state
-  double quantity_error = kMissing;                       ///< |quantity - true| over the reference case's scale
-  double stretch_p99 = kMissing, stretch_max = kMissing;  ///< strain less true strain, edges along u
-};
 
 /// Judges the frames of one scene by its reference case.
 class TruthJudge {

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 

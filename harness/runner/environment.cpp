@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
+#include "base/files.hpp"
 #include "clothbench/record.hpp"
 #include "runner/build_info.hpp"
 

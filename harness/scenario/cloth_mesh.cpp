@@ -12,7 +12,7 @@
 #include <set>
 
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
+#include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"

@@ -10,7 +10,7 @@
 
 #include "base/data_folder.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
+#include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -60,9 +59,7 @@ Draped draped(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   s.need_gravity();
   s.need(c.drape_radius_m > 0, "\"drape\" in its pose: a strip that starts over a cylinder");
-  const Vec3 &a = c.axis_u, &b = c.axis_v;
-  const Vec3 down = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  s.need(std::abs(dot(down, s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
+  s.need(std::abs(dot(cross(c.axis_u, c.axis_v), s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
   s.need_rest();
   s.need_even_masses();
   s.need_pins({}, "no pins and no grips");
@@ -76,7 +73,7 @@ Draped draped(const Strip& s) {
     return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};
   };
   const Vec3 off = c.center_m - vec("center_m"), axis = vec("axis");
-  s.need(std::abs(std::abs(dot(axis, b)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
+  s.need(std::abs(std::abs(dot(axis, c.axis_v)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
   s.need(length(off - dot(off, axis) * axis) <= kPlace * s.length_m, "the cylinder's axis through center_m");
   s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
          "a cylinder as long as the strip is wide");
@@ -114,10 +111,8 @@ std::function<double(const Columns&)> displacement_over(const Strip& s) {
 }
 
 Columns draped_columns(const Strip& s, double displacement) {
-  Columns out;
-  for (int i = 0; i <= s.links; ++i)
-    out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + displacement));
-  return out;
+  const Cloth& c = s.scene.cloth;
+  return s.columns([&](int i) { return draped_row(c, i, c.drape_offset_m + displacement); });
 }
 
 }  // namespace
@@ -158,18 +153,13 @@ ReferenceCase incline(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
   if (whole > 0) known.quantity_scale = whole;
-  const auto at = [s, d](double displacement) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + displacement * d);
-    return out;
+  const auto rest_m = [s](auto i) { return s.length_m * static_cast<double>(i) / s.links; };
+  known.columns = [s, slope, d, rest_m](int frame) {
+    const double displacement = slide_down(slope, s.time_s(frame)).distance_m;
+    return s.columns([&](int i) { return s.start + rest_m(i) * s.along + displacement * d; });
   };
-  known.columns = [s, slope, at](int frame) { return at(slide_down(slope, s.time_s(frame)).distance_m); };
-  known.quantity = [s, d](const Columns& x) {
-    double sum = 0;  // ends carry half a cell
-    for (std::size_t i = 0; i < x.size(); ++i)
-      sum += (i == 0 || i + 1 == x.size() ? 0.5 : 1) *
-             dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
-    return sum / s.links;
+  known.quantity = [s, d, rest_m](const Columns& x) {
+    return s.mean([&](std::size_t i) { return dot(x[i] - s.start - rest_m(i) * s.along, d); });
   };
   return known;
 }

@@ -66,7 +66,22 @@ ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   return known;
 }
 
-ReferenceCase mesh_case(const Strip& s) {
+/// The exact solutions by name, and whether they also hold for a flat rectangle of triangles.
+struct Solution {
+  const char* name;
+  ReferenceCase (*of)(const Strip&);
+  bool on_mesh = false;
+};
+constexpr Solution kSolutions[] = {{"free-fall", free_fall},
+                                   {"pendulum", pendulum},
+                                   {"swing-strip", swing_strip, true},
+                                   {"heavy-strip", heavy_strip, true},
+                                   {"cantilever", cantilever, true},
+                                   {"two-hand-pull", two_hand_pull},
+                                   {"incline", incline},
+                                   {"capstan", capstan}};
+
+void need_flat_mesh(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   const bool flat = std::all_of(c.mesh->vertices.begin(), c.mesh->vertices.end(), [&](const Vec3& x) {
     return std::abs(x[2]) <= Strip::kFlat * c.width_m && std::abs(x[0]) <= (0.5 + Strip::kFlat) * c.width_m &&
@@ -74,10 +89,6 @@ ReferenceCase mesh_case(const Strip& s) {
   });
   s.need(flat && c.mesh->pattern_m.empty(),
          "a mesh that is a flat rectangle round the middle of its frame, its longer side along x");
-  if (s.scene.reference_case == "swing-strip") return on_mesh(s, swing_strip(s));
-  if (s.scene.reference_case == "heavy-strip") return on_mesh(s, heavy_strip(s));
-  s.need(s.scene.reference_case == "cantilever", "a cloth that is a grid");
-  return on_mesh(s, cantilever(s));
 }
 
 // Twice the 1 % at which work-precision diagrams read off a time: a run that is farther off is of no stated accuracy.
@@ -207,19 +218,17 @@ const Tolerance& tolerance_of(const std::string& reference_case) {
 
 std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   if (scene.reference_case.empty()) return std::nullopt;
+  const std::string& name = scene.reference_case;
+  const auto found =
+      std::find_if(std::begin(kSolutions), std::end(kSolutions), [&](auto& s) { return s.name == name; });
+  if (found == std::end(kSolutions)) throw Error(scene.source + ": /truth/case: no reference case \"" + name + "\"");
   const Strip s(scene);
-  if (scene.reference_case == "incline") return incline(s);
-  s.need_rows(scene.reference_case == "heavy-strip");
-  if (scene.reference_case == "capstan") return capstan(s);
-  s.need((scene.needs & kColliderFeatures).empty(), "no collider");
-  if (scene.cloth.mesh) return mesh_case(s);
-  if (scene.reference_case == "free-fall") return free_fall(s);
-  if (scene.reference_case == "pendulum") return pendulum(s);
-  if (scene.reference_case == "swing-strip") return swing_strip(s);
-  if (scene.reference_case == "heavy-strip") return heavy_strip(s);
-  if (scene.reference_case == "cantilever") return cantilever(s);
-  if (scene.reference_case == "two-hand-pull") return two_hand_pull(s);
-  throw Error(scene.source + ": /truth/case: no reference case \"" + scene.reference_case + "\"");
+  if (name != "incline") s.need_rows(name == "heavy-strip");
+  if (name != "incline" && name != "capstan") s.need((scene.needs & kColliderFeatures).empty(), "no collider");
+  if (!scene.cloth.mesh) return found->of(s);
+  need_flat_mesh(s);
+  s.need(found->on_mesh, "a cloth that is a grid");
+  return on_mesh(s, found->of(s));
 }
 
 LatticeSampler sampler_of(const Cloth& c) {

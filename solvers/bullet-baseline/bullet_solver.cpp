@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/unsupported_scene.hpp"
-#include "clothbench/vector.hpp"
-
 namespace clothbench::bullet_baseline {
 namespace {
 

@@ -1,10 +1,8 @@
 #include "bullet-baseline/collider_bodies.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "clothbench/error.hpp"
-#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {

@@ -5,8 +5,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "clothbench/restart_after.hpp"
-#include "clothbench/unsupported_scene.hpp"
 #include "plugin/scene_view.hpp"
 
 namespace clothbench::plugin {
@@ -27,7 +25,7 @@ StepStatus status_of(std::int32_t code) {
   }
 }
 
-class PluginSolver final : public ClothSolver, public RestartsAtMoment {
+class PluginSolver final : public ClothSolver {
  public:
   PluginSolver(const ClothbenchPlugin& c, SolverInfo info, const nlohmann::json& settings)
       : c_(c), info_(std::move(info)), settings_(setting_values(c, settings)) {}

@@ -4,7 +4,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "clothbench/vector.hpp"
 #include "integrator.hpp"
 
 namespace clothbench {

@@ -1,5 +1,5 @@
 // One process at a time writes into a folder of results, and one that died blocks nothing.
-#include "results/result_folder.hpp"
+#include "results/store.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -10,7 +10,7 @@
 
 #include "assets/assets.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "scenario/draw_contact.hpp"

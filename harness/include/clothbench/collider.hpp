@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "clothbench/feature.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench {
-
-using Vec3 = std::array<double, 3>;
 
 /// All points within `radius_m` of the segment a-b.
 struct Capsule {

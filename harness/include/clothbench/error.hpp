@@ -26,4 +26,11 @@ class SolverError : public Error {
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}
 };
 
+/// Thrown by ClothSolver::load: the solver supports every feature that the scene needs, but not this scene at these
+/// settings. The run ends as `unsupported`, with this reason.
+class UnsupportedScene : public SolverError {
+ public:
+  using SolverError::SolverError;
+};
+
 }  // namespace clothbench

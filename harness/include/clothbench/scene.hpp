@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clothbench/collider.hpp"
@@ -249,5 +248,23 @@ std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth&);
 
 /// Grid edges of one kind with their rest lengths, in a fixed order. All edges of a mesh are structural.
 std::vector<Edge> edges(const Cloth&, EdgeKind);
+
+/// Greatest frame-to-frame speed [m/s] of any collider in the scene, measured at the ends of capsules and at a sample
+/// of the vertices of a skinned mesh. Jumps do not count. 0 if all colliders are static.
+double collider_speed_m_per_s(const Scene&);
+
+/// The same without the hands of users, whose speed a live session does not know beforehand.
+double scripted_collider_speed_m_per_s(const Scene&);
+
+/// Greatest speed [m/s] of colliders and of vertices while they are held, since the frame before, one value per
+/// `scene.motion`. The first is 0.
+std::vector<double> driving_speeds_m_per_s(const Scene&);
+
+/// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.
+double grip_speed_m_per_s(const Scene&);
+
+/// Greatest strain that hands impose: growth of the straight distance between the first gripped vertex and another,
+/// over that distance at the start, while both are held. 0 if the hands are static or come closer.
+double grip_strain(const Scene&);
 
 }  // namespace clothbench

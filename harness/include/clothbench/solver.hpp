@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "clothbench/error.hpp"
 #include "clothbench/feature.hpp"
 #include "clothbench/scene.hpp"
 
@@ -150,6 +151,8 @@ class ClothSolver {
   /// Continues from positions and velocities that `read_state` gave on this scene. Returns false and changes nothing if
   /// they are not the whole state: the solver keeps more state, or the scene has motion.
   virtual bool restart(const ClothState&) { return false; }
+  /// As `restart`, for the state at the end of frame `last`, where the solver depends on the moment of the scene.
+  virtual bool restart_at(const ClothState& state, const FrameInput& /*last*/) { return restart(state); }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
   /// The same entries in the same order after every frame of a loaded scene; empty where nothing can go wrong unseen.
@@ -171,8 +174,17 @@ struct SolverEntry {
   std::function<std::vector<DeviceInfo>()> devices = nullptr;
 };
 
+/// For solvers that can bend only grids. Throws if the scene has a triangle mesh that resists bending.
+inline void refuse_mesh_bending(const Scene& scene) {
+  if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)
+    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solvers reference and xpbd have");
+}
+
 /// All registered solvers, in registration order (solvers/CMakeLists.txt).
 const std::vector<SolverEntry>& solvers();
+/// Names of the solvers whose sources this tree has, built or not: those that solvers/CMakeLists.txt lists. A study
+/// that names one which this build lacks has rows `unsupported`; any other unknown name is a spelling error.
+const std::vector<std::string>& solver_names_of_tree();
 /// Prefix of a shared library's path on the command line. Prefix and path are the plugin's SolverInfo::folder.
 inline constexpr char kPluginPrefix[] = "plugin:";
 /// A solver from a shared library (clothbench_plugin.h). `name` is "plugin:PATH", or the name of a plugin that this

@@ -83,6 +83,28 @@ bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex
   return false;
 }
 
+/// The edges at which a mesh is open.
+std::vector<Link> border_of(const TriangleMeshView& mesh) {
+  const std::vector<std::uint32_t> welded = welded_vertices(mesh);
+  std::map<Link, int> passes;
+  for (const auto& corner : mesh.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
+      if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  std::vector<Link> out;
+  for (const auto& [edge, sum] : passes)
+    if (sum != 0) out.push_back(edge);
+  return out;
+}
+
+bool crosses(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh) {
+  bool any = false;
+  mesh.tree().for_each_overlapping(
+      Box(p).extend(q), [&](int t) { any = any || (p != q && crossing<3>(p, q, mesh.triangles()[t]) != 0); });
+  return any;
+}
+
 }  // namespace
 
 ContactSample mesh_contact(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh,
@@ -244,32 +266,6 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
   });
   return sum;
 }
-
-namespace {
-
-/// The edges at which a mesh is open.
-std::vector<Link> border_of(const TriangleMeshView& mesh) {
-  const std::vector<std::uint32_t> welded = welded_vertices(mesh);
-  std::map<Link, int> passes;
-  for (const auto& corner : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
-      if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-    }
-  std::vector<Link> out;
-  for (const auto& [edge, sum] : passes)
-    if (sum != 0) out.push_back(edge);
-  return out;
-}
-
-bool crosses(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh) {
-  bool any = false;
-  mesh.tree().for_each_overlapping(
-      Box(p).extend(q), [&](int t) { any = any || (p != q && crossing<3>(p, q, mesh.triangles()[t]) != 0); });
-  return any;
-}
-
-}  // namespace
 
 std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to,
                                   const TriangleMeshView& mesh, const TriangleTree& tree, std::span<const Link> links) {

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {

@@ -1,10 +1,9 @@
 // Figures from the clock and the plan of a run: times, rates, bytes, memory.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
-#include "base/quantile.hpp"
+#include "base/statistics.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {

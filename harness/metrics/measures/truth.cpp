@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 
@@ -14,7 +13,7 @@ bool has_truth(const Scene& s) { return !s.reference_case.empty(); }
 bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
 
 auto truth_field(double TruthErrors::*field) {
-  return [field](const MetricFrame& f) { return f.truth->*field; };
+  return [field](const MetricFrame& f) { return (*f.truth).*field; };
 }
 
 /// Energy minus that at the start, over M g L.

@@ -1,10 +1,10 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
@@ -80,8 +80,18 @@ inline Box box_of(std::span<const double> positions) {
   return box;
 }
 
-struct Bodies::State {
-  State(const Motion& motion, std::span<const double> contact_offsets_m);
+struct AllBodies final : Bodies {
+  AllBodies(const Motion& motion, std::span<const double> contact_offsets_m);
+
+  bool empty() const override { return bodies.empty(); }
+  bool any_moves() const override { return std::any_of(bodies.begin(), bodies.end(), std::mem_fn(&Body::moves)); }
+  double speed() const override { return highest_speed; }
+  std::span<const Contact> contacts(std::size_t frame) override;
+  bool touched(std::size_t frame, std::size_t v) const override { return !reached[frame].empty() && reached[frame][v]; }
+  Face face(std::size_t frame) const override { return faces[frame]; }
+  double depth_ratio(std::size_t frame) const override { return depth[frame]; }
+  bool near(std::size_t frame, std::span<const V3> points, double displacement_m) override;
+  int passages(std::size_t frame) override;
 
   Pose& pose(Body& b, std::size_t frame);
   double displacement(Body& b, std::size_t frame);
@@ -101,13 +111,13 @@ struct Bodies::State {
 
   const Motion& m;
   std::vector<Body> bodies;
-  double speed = 0;
+  double highest_speed = 0;
   std::vector<contact::Link> links;
   std::vector<std::uint32_t> each;  ///< 0, 1, 2, ...
-  std::map<std::size_t, std::vector<Contact>> contacts;
+  std::map<std::size_t, std::vector<Contact>> known;
   std::vector<Contact>* found = nullptr;
   std::vector<bool>* flags = nullptr;
-  std::vector<std::vector<bool>> touched;
+  std::vector<std::vector<bool>> reached;
   std::vector<double> depth;
   std::vector<Face> faces;
 };

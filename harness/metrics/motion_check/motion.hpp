@@ -145,36 +145,29 @@ struct Face {
   void add(const V3& n, double mu);
 };
 
-/// The colliders of the scene, frame after frame.
+/// The colliders of the scene, frame after frame; these functions answer for a scene without any.
 class Bodies {
  public:
-  Bodies(const Motion&, std::span<const double> contact_offsets_m);
-  ~Bodies();
-  Bodies(const Bodies&) = delete;
-  Bodies& operator=(const Bodies&) = delete;
-
-  bool empty() const;
-  bool any_moves() const;
+  virtual ~Bodies() = default;
+  virtual bool empty() const { return true; }
+  virtual bool any_moves() const { return false; }
   /// Highest speed [m/s] of a collider between two frames, jumps included.
-  double speed() const;
+  virtual double speed() const { return 0; }
   /// Where the cloth of a frame is within reach of a collider; the reach grows with the displacements next to the
   /// frame.
-  const std::vector<Contact>& contacts(std::size_t frame);
+  virtual std::span<const Contact> contacts(std::size_t /*frame*/) { return {}; }
   /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
-  bool touched(std::size_t frame, std::size_t vertex) const;
+  virtual bool touched(std::size_t /*frame*/, std::size_t /*vertex*/) const { return false; }
   /// Surface in reach in a frame, as found by `contacts`.
-  const Face& face(std::size_t frame) const;
+  virtual Face face(std::size_t /*frame*/) const { return {}; }
   /// Largest depth of a frame over its tolerance: of vertices in solids with a signed distance.
-  double depth_ratio(std::size_t frame) const;
+  virtual double depth_ratio(std::size_t /*frame*/) const { return 0; }
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.
-  bool near(std::size_t frame, std::span<const V3> points, double displacement_m) const;
+  virtual bool near(std::size_t /*frame*/, std::span<const V3>, double /*displacement_m*/) { return false; }
   /// Points inside colliders that pass the cloth, and vertices that pass a static surface, between a frame and the one
   /// before it.
-  int passages(std::size_t frame) const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
+  virtual int passages(std::size_t /*frame*/) { return 0; }
 };
+std::unique_ptr<Bodies> bodies_of(const Motion&, std::span<const double> contact_offsets_m);
 
 }  // namespace clothbench::motion_check

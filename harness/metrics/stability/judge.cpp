@@ -5,12 +5,20 @@
 #include <limits>
 #include <numeric>
 
-#include "clothbench/vector.hpp"
-#include "metrics/metric.hpp"
-#include "metrics/truth_errors.hpp"
-
-namespace clothbench::stability {
+namespace clothbench {
 namespace {
+
+using Bounds = StabilityJudge::Bounds;
+
+// Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.
+constexpr double kSpeed = 10;        // F0: times v_char
+constexpr double kGain = 0.1;        // F1: energy gained over M g L
+constexpr double kStrain = 0.10;     // F2: maximum strain beyond the truth, for more than ...
+constexpr int kStrainFrames = 3;     // ... so many frames in a row
+constexpr double kStrainP99 = 0.05;  // F2: 99th percentile, in any frame
+constexpr double kTorn = 1;          // F2: strain beyond the truth in any frame
+constexpr double kRelaxed = 0.01;    // mean |strain| below which F1 and F2 start to count, where delayed
+constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  // F2 at the end: error of the quantity at rest
 
 double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
 
@@ -90,14 +98,19 @@ std::pair<double, double> start_of(const Scene& s) {
   return {far, strain};
 }
 
-}  // namespace
-
+/// Greatest membrane stiffness of the scene [N/m]; 0 = inextensible.
 double greatest_stiffness(const Scene& s) {
   double most = s.material.membrane_stiffness_N_per_m.value_or(0);
   for (const StiffnessRegion& r : s.material.regions) most = std::max(most, r.membrane_stiffness_N_per_m.value_or(0));
   return most;
 }
 
+/// The bounds of every frame, 0 = the start.
+///
+/// Free fall: sqrt(2 g H), H = twice the diagonal for held cloth, g t^2/2 plus the diagonal for free cloth. Waves: a
+/// strain e travels at c = sqrt(Y/rho) with particle speed e c. The static strain is M g/(Y w), w the shorter side, and
+/// twice that for sudden loads. Added to it are 3 v/c for hands (the wave and its first reflections), 2 v/c for
+/// colliders, and v/c for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s);
@@ -158,13 +171,6 @@ std::vector<Bounds> envelope(const Scene& s) {
   return out;
 }
 
-}  // namespace clothbench::stability
-
-namespace clothbench {
-namespace {
-
-using namespace stability;
-
 std::vector<Edge> structural(const Cloth& c) {
   std::vector<Edge> out;
   for (const Edge& e : edges(c, EdgeKind::Structural))
@@ -208,7 +214,7 @@ StabilityJudge::StabilityJudge(const Scene& scene)
   stiffness_ = greatest_stiffness(scene_);
 }
 
-StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const TruthErrors* truth) {
+StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const std::optional<TruthErrors>& truth) {
   StabilityFrame out;
   if (!finite(state.position) || !finite(state.velocity)) {
     out.classes = bit(0);
@@ -290,7 +296,8 @@ bool StabilityJudge::settled(int frame) const {
 
 /// F2. A reference case of a motion gives the strain of every edge; one of a shape at rest only once the cloth rests
 /// there. Without a reference case, loads and hands give an upper bound of the true strain.
-void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthErrors* truth, StabilityFrame& out) {
+void StabilityJudge::judge_strain(int frame, const Strain& strain, const std::optional<TruthErrors>& truth,
+                                  StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;
   if (!relaxed_) {
     stretched_frames_ = 0;
@@ -298,12 +305,12 @@ void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthEr
     return;
   }
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
-  const bool known = truth != nullptr && std::isfinite(truth->stretch_max) && (!at_rest_ || settled(frame));
+  const bool known = truth && std::isfinite(truth->stretch_max) && (!at_rest_ || settled(frame));
   out.strain_excess = known ? truth->stretch_max : strain.greatest - b.strain;
   const double p99 = known ? truth->stretch_p99 : strain.p99 - b.strain;
   stretched_frames_ = out.strain_excess > kStrain ? stretched_frames_ + 1 : 0;
   if (stretched_frames_ > kStrainFrames || !(p99 <= kStrainP99) || !(out.strain_excess <= kTorn)) out.classes |= bit(2);
-  if (at_rest_ && truth != nullptr && frame == scene_.time.frames()) {
+  if (at_rest_ && truth && frame == scene_.time.frames()) {
     const double right = at_rest_->quantity(at_rest_->columns(frame));
     const double most = std::max(kQuantity * std::abs(right), kQuantityLength * longer_m_);
     if (!(std::abs(truth->quantity - right) <= most)) out.classes |= bit(2);
@@ -328,15 +335,9 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   return out;
 }
 
-const char* name_of(StabilityVerdict::Grade g) {
-  static constexpr const char* kNames[] = {"stable", "degraded", "failed"};
-  return kNames[static_cast<std::size_t>(g)];
-}
-
-std::string class_name(int k) {
-  static constexpr const char* kNames[] = {"not finite or unbounded", "energy gained", "strain beyond the load",
-                                           "budget or device"};
-  return "F" + std::to_string(k) + " " + kNames[k];
+std::string StabilityVerdict::text() const {
+  static constexpr const char* kClasses[] = {"not finite or unbounded", "energy gained", "strain beyond the load"};
+  return std::string(grade == Grade::Failed ? "failed: " : "degraded: ") + klass + " " + kClasses[klass[1] - '0'];
 }
 
 }  // namespace clothbench
