@@ -12,7 +12,6 @@
 #include "metrics/collider_contact.hpp"
 #include "metrics/metric.hpp"
 #include "metrics/registry.hpp"
-#include "results/replay.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/statistics.hpp"
+#include "base/interval.hpp"
 #include "base/words.hpp"
 #include "clothbench/record.hpp"
 #include "results/store.hpp"

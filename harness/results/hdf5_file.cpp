@@ -1,5 +1,4 @@
 // Layout: results/README.md.
-#include "results/hdf5_file.hpp"
 
 #include <fmt/format.h>
 

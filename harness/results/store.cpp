@@ -19,7 +19,6 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "results/hdf5_file.hpp"
 #include "results/part_file.hpp"
 
 namespace clothbench {

@@ -1,7 +1,6 @@
-#include "bullet-baseline/collider_bodies.hpp"
-
 #include <cmath>
 
+#include "bullet-baseline/bullet_solver.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::bullet_baseline {
@@ -40,8 +39,7 @@ btTransform place(const Capsule& c, btQuaternion& turn) {
   return btTransform(turn, (to_bullet(c.a_m) + to_bullet(c.b_m)) / 2);
 }
 
-btTransform frame(const std::array<Vec3, 3>& axes, const btVector3& origin) {
-  const btVector3 x = to_bullet(axes[0]), y = to_bullet(axes[1]), z = to_bullet(axes[2]);
+btTransform frame(const btVector3& x, const btVector3& y, const btVector3& z, const btVector3& origin) {
   return btTransform(btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()), origin);
 }
 
@@ -49,10 +47,7 @@ using Corners = std::array<btVector3, 3>;
 
 Corners corners_of(const ColliderMesh& mesh, std::size_t triangle, const std::vector<double>& x) {
   Corners out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t v = mesh.triangles[triangle][k];
-    out[k] = to_bullet(vertex_at(x, v));
-  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = to_bullet(vertex_at(x, mesh.triangles[triangle][k]));
   return out;
 }
 
@@ -61,7 +56,7 @@ btTransform place(const Corners& c) {
   const btVector3 middle = (c[0] + c[1] + c[2]) / 3, along = c[1] - c[0], normal = along.cross(c[2] - c[0]);
   if (!(normal.length2() > 0)) return btTransform(btQuaternion::getIdentity(), middle);
   const btVector3 x = along.normalized(), z = normal.normalized(), y = z.cross(x);
-  return btTransform(btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()), middle);
+  return frame(x, y, z, middle);
 }
 
 /// Throws Error on a capsule that a rigid body cannot follow.
@@ -122,7 +117,8 @@ void ColliderBodies::add_static(const Collider& c) {
   if (c.shape == Collider::Shape::Sphere) {
     add(std::make_unique<btSphereShape>(static_cast<btScalar>(c.radius_m)), at, c, false);
   } else if (c.shape == Collider::Shape::Box) {
-    add(std::make_unique<btBoxShape>(to_bullet(c.half_extent_m)), frame(c.axes, center), c, false);
+    add(std::make_unique<btBoxShape>(to_bullet(c.half_extent_m)),
+        frame(to_bullet(c.axes[0]), to_bullet(c.axes[1]), to_bullet(c.axes[2]), center), c, false);
   } else {
     const auto half = static_cast<btScalar>(kGroundHalf_m);
     const btVector3 up = to_bullet(c.normal);

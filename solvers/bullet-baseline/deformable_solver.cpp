@@ -79,16 +79,14 @@ class GridSprings final : public btDeformableMassSpringForce {
 btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
 SolverInfo deformable_info() {
-  SolverInfo info = common_info();
-  info.name = "bullet-deformable";
+  SolverInfo info =
+      bullet_info("bullet-deformable",
+                  "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core",
+                  {{"substeps", "0",
+                    "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
+                   {"implicit", "false",
+                    "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"}});
   info.supports.add(Feature::Regions);
-  info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
-  info.settings = {
-      {"substeps", "0",
-       "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
-      {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
-      collision_margin_spec(),
-      voxel_spec()};
   return info;
 }
 

@@ -22,10 +22,12 @@ struct Flat {
   double area_m2;
 };
 
+std::array<Eigen::Vector3d, 3> points_of(const std::array<Vec3, 3>& x) {
+  return {Eigen::Vector3d::Map(x[0].data()), Eigen::Vector3d::Map(x[1].data()), Eigen::Vector3d::Map(x[2].data())};
+}
+
 Flat flatten(const ClothMesh& mesh, std::size_t triangle) {
-  std::array<Eigen::Vector3d, 3> p;
-  const std::array<Vec3, 3> rest = rest_corners(mesh, triangle);
-  for (int k = 0; k < 3; ++k) p[k] = Eigen::Vector3d::Map(rest[k].data());
+  const std::array<Eigen::Vector3d, 3> p = points_of(rest_corners(mesh, triangle));
   const Eigen::Vector3d u = (p[1] - p[0]).normalized();
   const Eigen::Vector3d v = (p[1] - p[0]).cross(p[2] - p[0]).normalized().cross(u);
   Flat f;
@@ -152,8 +154,7 @@ Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vec
 
 Eigen::Matrix3d triangle_compliance(const std::array<Vec3, 3>& corners, double stiffness_N_per_m) {
   constexpr double nu = kMeshPoissonRatio;
-  std::array<Eigen::Vector3d, 3> p;
-  for (std::size_t k = 0; k < 3; ++k) p[k] = Eigen::Vector3d::Map(corners[k].data());
+  const std::array<Eigen::Vector3d, 3> p = points_of(corners);
   const Eigen::Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]), u = (p[1] - p[0]).normalized(),
                         v = normal.normalized().cross(u);
   // Elongations of the edges from the strains xx, yy and 2 xy, which are constant.

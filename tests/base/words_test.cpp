@@ -9,7 +9,7 @@
 #include "base/child_process.hpp"
 #include "base/dice.hpp"
 #include "base/files.hpp"
-#include "base/statistics.hpp"
+#include "base/interval.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 

@@ -49,7 +49,7 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
 
 TEST(Robustness, NotFiniteIsNaN) {
   const Mesh cloth = wavy(8), ball = bumpy_ball(6, 0.15);
-  const Capsule shape = sphere(Point<3>::Zero(), 0.15);
+  const Capsule shape = {Point<3>::Zero(), Point<3>::Zero(), 0.15};
   for (const double bad : std::initializer_list<double>{std::nan(""), INFINITY, -INFINITY}) {
     Mesh broken = cloth;
     broken.positions[17] = bad;

@@ -8,7 +8,6 @@
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "refusal.hpp"
-#include "results/hdf5_file.hpp"
 #include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"

@@ -80,7 +80,7 @@ struct StoredArray {
   std::vector<std::string> dims;     ///< names, slowest-varying first
   std::vector<std::uint64_t> shape;  ///< one size per name in `dims`
   bool integer = false;
-  std::vector<double> values;
+  std::vector<double> values = {};
 };
 
 /// Arrays and attributes (numbers, strings, lists of numbers) of one group of the file, such as "colliders/0".
@@ -95,14 +95,12 @@ struct RunRecord {
   RunHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
-  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see results/replay.hpp
+  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of (results/store.hpp)
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< path that a report read it from; empty if it was not read from a file
-  std::vector<StoredGroup> samples =
-      {};  ///< device readings during the run (results/device_samples.hpp); not read back
-  std::map<std::string, std::string> withheld =
-      {};  ///< summary values that a report must not print, and why (report/report.hpp)
+  std::vector<StoredGroup> samples = {};  ///< device readings during the run (DeviceSamples); not read back
+  std::map<std::string, std::string> withheld = {};  ///< summary values that a report must not print, and why
 };
 
 }  // namespace clothbench

@@ -51,9 +51,6 @@ struct TriangleMeshView {
   Simplex<3> triangle(std::size_t t) const;
 };
 
-/// Throws Error, naming `what`, unless positions come in threes, indices are in range and numbers are finite.
-void validate(const TriangleMeshView&, const char* what);
-
 bool all_finite(std::span<const double>);
 
 /// For every vertex, the lowest index of a vertex at exactly the same position.
@@ -103,7 +100,7 @@ class BoxTree {
 /// The triangles of a mesh that have area, in a tree for queries. Copies the data it needs.
 class TriangleTree {
  public:
-  /// Throws Error for a mesh that `validate` rejects.
+  /// Throws Error unless positions come in threes, indices are in range and numbers are finite.
   explicit TriangleTree(const TriangleMeshView&);
 
   const std::vector<Simplex<3>>& triangles() const { return triangles_; }
@@ -181,8 +178,6 @@ struct Capsule {
   Point<3> a, b;
   double radius_m;
 };
-
-inline Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
 
 /// Where on the axis the point nearest to p is, from 0 at a to 1 at b; 0 for a sphere.
 double axis_share(const Point<3>& p, const Capsule&);

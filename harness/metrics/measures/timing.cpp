@@ -3,7 +3,7 @@
 #include <numeric>
 #include <set>
 
-#include "base/statistics.hpp"
+#include "base/quantile.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {
