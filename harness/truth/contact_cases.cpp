@@ -174,7 +174,7 @@ ReferenceCase capstan(const Strip& s) {
     Capstan cylinder = polygon;
     cylinder.turns = turns;
     return [states = slide_over(cylinder, strip.light_m, strip.heavy_m, s.times_s())](int frame) {
-      return states.at(static_cast<std::size_t>(frame)).displacement_m;
+      return states.at(static_cast<std::size_t>(frame)).distance_m;
     };
   };
   const auto displacement = moved(strip.turns), smooth = moved(0);

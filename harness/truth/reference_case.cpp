@@ -99,22 +99,20 @@ constexpr double kOnCylinder = 0.03;
 
 }  // namespace
 
-MaterialLattice::MaterialLattice(double width, double height) : width_(width), height_(height) {
+MaterialLattice::MaterialLattice(double width, double height) : longer_side_m(std::max(width, height)) {
   const double cell = width / (kSide - 1) * height / (kSide - 1);
   const auto share = [](int i) { return i == 0 || i == kSide - 1 ? 0.5 : 1.0; };
   for (int j = 0; j < kSide; ++j)
     for (int i = 0; i < kSide; ++i) {
-      points_.push_back({width * i / (kSide - 1), height * j / (kSide - 1)});
-      areas_.push_back(cell * share(i) * share(j));
+      points_m.push_back({width * i / (kSide - 1), height * j / (kSide - 1)});
+      areas_m2.push_back(cell * share(i) * share(j));
     }
 }
-
-double MaterialLattice::longer_side_m() const { return std::max(width_, height_); }
 
 LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const double> rest,
                                std::span<const std::uint32_t> triangles)
     : points_(lattice.size()) {
-  const double width = lattice.points_m().back()[0], height = lattice.points_m().back()[1];
+  const double width = lattice.points_m.back()[0], height = lattice.points_m.back()[1];
   // How far a point lies outside the best triangle so far, as its smallest barycentric weight.
   std::vector<double> inside(lattice.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
@@ -134,7 +132,7 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
     for (int j = rows[0]; j <= rows[1]; ++j)
       for (int i = columns[0]; i <= columns[1]; ++i) {
         const auto at = static_cast<std::size_t>(j * kSide + i);
-        const auto& x = lattice.points_m()[at];
+        const auto& x = lattice.points_m[at];
         const std::array<double, 3> w{cross(x, p[1], p[2]) / area, cross(p[0], x, p[2]) / area,
                                       cross(p[0], p[1], x) / area};
         const double least = std::min({w[0], w[1], w[2]});
@@ -147,7 +145,7 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
   for (std::size_t s = 0; s < inside.size(); ++s)
     if (!(inside[s] >= -1e-9))
       throw Error("argument triangles: expected to cover the rest rectangle; the point (" +
-                  std::to_string(lattice.points_m()[s][0]) + ", " + std::to_string(lattice.points_m()[s][1]) +
+                  std::to_string(lattice.points_m[s][0]) + ", " + std::to_string(lattice.points_m[s][1]) +
                   ") m is in none");
 }
 
@@ -164,8 +162,8 @@ double lattice_rms_error(const MaterialLattice& lattice, std::span<const double>
                          double scale) {
   double sum = 0, area = 0;
   for (std::size_t s = 0; s < lattice.size(); ++s) {
-    sum += lattice.areas_m2()[s] * square_distance(values, truth, s);
-    area += lattice.areas_m2()[s];
+    sum += lattice.areas_m2[s] * square_distance(values, truth, s);
+    area += lattice.areas_m2[s];
   }
   return finite_or_nan(std::sqrt(sum / area) / scale);
 }
@@ -181,7 +179,7 @@ double quantity_error(double value, double truth, double scale) {
   return finite_or_nan(std::abs(value - truth) / scale);
 }
 
-StretchError stretch_error(std::span<const double> strains, std::span<const double> truth) {
+std::array<double, 2> stretch_error(std::span<const double> strains, std::span<const double> truth) {
   std::vector<double> excess(strains.size());
   for (std::size_t i = 0; i < excess.size(); ++i) {
     excess[i] = strains[i] - truth[i];

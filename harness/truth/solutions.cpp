@@ -274,8 +274,8 @@ double greatest_overhang_m(const Capstan& c, double light_overhang) {
   return tension;
 }
 
-std::vector<SlidState> slide_over(const Capstan& c, double light_overhang, double heavy_overhang,
-                                  std::span<const double> times_s) {
+std::vector<SlideState> slide_over(const Capstan& c, double light_overhang, double heavy_overhang,
+                                   std::span<const double> times_s) {
   using Pair = std::array<double, 2>;
   const double mu = c.friction, constant = greatest_overhang_m(c, 0), ratio = greatest_overhang_m(c, 1) - constant,
                smooth = std::exp(mu * pi);
@@ -288,7 +288,7 @@ std::vector<SlidState> slide_over(const Capstan& c, double light_overhang, doubl
   };
   const bool holds = heavy_overhang <= greatest_overhang_m(c, light_overhang);
   Pair x = {0, 0};
-  std::vector<SlidState> out;
+  std::vector<SlideState> out;
   double now = 0;
   for (const double t : times_s) {
     if (!holds && t > now) integrate("capstan", rate, x, now, t, (t - now) / 4, 1e-12, 1e-12);

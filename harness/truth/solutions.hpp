@@ -129,7 +129,7 @@ struct Incline {
   double gravity_m_per_s2 = 9.81;
 };
 struct SlideState {
-  double distance_m, speed_m_per_s;  ///< downhill
+  double distance_m, speed_m_per_s;  ///< downhill, or towards the heavy side
 };
 SlideState slide_down(const Incline&, double time_s);
 
@@ -156,10 +156,7 @@ double greatest_overhang_m(const Capstan&, double light_overhang_m);
 /// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that does not slip stays static.
 /// Throws Error for a time at which the light end has reached the axis. Expects light_overhang_m <= heavy_overhang_m.
 /// Integrated as above, tolerance 1e-12.
-struct SlidState {
-  double displacement_m, speed_m_per_s;
-};
-std::vector<SlidState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
-                                  std::span<const double> times_s);
+std::vector<SlideState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
+                                   std::span<const double> times_s);
 
 }  // namespace clothbench::truth

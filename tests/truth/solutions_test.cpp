@@ -293,7 +293,7 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
   const auto atwood = slide_over({0, 0.05, 0.2, 9.81, 0}, 0.3, 0.5, times);
   const double k = std::sqrt(2 * 9.81 / (0.8 + 0.05 * pi));
   for (std::size_t f = 0; f < times.size(); ++f) {
-    EXPECT_NEAR(atwood[f].displacement_m, 0.1 * std::cosh(k * times[f]) - 0.1, 1e-10);
+    EXPECT_NEAR(atwood[f].distance_m, 0.1 * std::cosh(k * times[f]) - 0.1, 1e-10);
     EXPECT_NEAR(atwood[f].speed_m_per_s, 0.1 * k * std::sinh(k * times[f]), 1e-9);
   }
   // With friction: the tension over rho along the cylinder, from the light side, at the acceleration that it starts

@@ -80,18 +80,65 @@ class BoxTree {
 
   /// visit(item) for every item whose box meets `query`, faces included.
   template <class Visit>
-  void for_each_overlapping(const Box& query, Visit visit) const;
+  void for_each_overlapping(const Box& query, Visit visit) const {
+    if (boxes_.empty() || !query.intersects(box_)) return;
+    std::vector<int> stack{hierarchy_.getRootIndex()};
+    while (!stack.empty()) {
+      const int node = stack.back();
+      stack.pop_back();
+      Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
+      Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
+      hierarchy_.getChildren(node, volume, volume_end, item, item_end);
+      for (; volume != volume_end; ++volume)
+        if (query.intersects(hierarchy_.getVolume(*volume))) stack.push_back(*volume);
+      for (; item != item_end; ++item)
+        if (query.intersects(boxes_[*item])) visit(*item);
+    }
+  }
 
   /// The item with the smallest squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that
   /// distance. squared_distance must not be less than the squared distance from `p` to the item's box.
   template <class SquaredDistance>
-  int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const;
+  int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const {
+    int best = -1;
+    if (boxes_.empty()) return best;
+    struct Entry {
+      int node;
+      double squared;
+    };
+    std::vector<Entry> stack{{hierarchy_.getRootIndex(), 0}};
+    while (!stack.empty()) {
+      const Entry entry = stack.back();
+      stack.pop_back();
+      if (!(entry.squared < bound)) continue;
+      Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
+      Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
+      hierarchy_.getChildren(entry.node, volume, volume_end, item, item_end);
+      for (; item != item_end; ++item) {
+        if (!(boxes_[*item].squaredExteriorDistance(p) < bound)) continue;
+        const double squared = squared_distance(*item);
+        if (squared < bound) {
+          bound = squared;
+          best = *item;
+        }
+      }
+      const std::size_t first = stack.size();
+      for (; volume != volume_end; ++volume) {
+        const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
+        if (squared < bound) stack.push_back({*volume, squared});
+      }
+      // The nearer child goes on top of the stack, so that it is visited first.
+      if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
+        std::swap(stack[first], stack[first + 1]);
+    }
+    return best;
+  }
 
   const Box& box() const { return box_; }
   const std::vector<Box>& item_boxes() const { return boxes_; }
-  using Hierarchy = Eigen::KdBVH<double, 3, int>;
 
  private:
+  using Hierarchy = Eigen::KdBVH<double, 3, int>;
   std::vector<Box> boxes_;
   Box box_;
   Hierarchy hierarchy_;
@@ -119,59 +166,6 @@ class TriangleTree {
 
 /// Squared distance from a point to a triangle; accurate for slivers too.
 double squared_distance(const Point<3>& p, const Simplex<3>& triangle);
-
-template <class Visit>
-void BoxTree::for_each_overlapping(const Box& query, Visit visit) const {
-  if (boxes_.empty() || !query.intersects(box_)) return;
-  std::vector<int> stack{hierarchy_.getRootIndex()};
-  while (!stack.empty()) {
-    const int node = stack.back();
-    stack.pop_back();
-    Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
-    Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
-    hierarchy_.getChildren(node, volume, volume_end, item, item_end);
-    for (; volume != volume_end; ++volume)
-      if (query.intersects(hierarchy_.getVolume(*volume))) stack.push_back(*volume);
-    for (; item != item_end; ++item)
-      if (query.intersects(boxes_[*item])) visit(*item);
-  }
-}
-
-template <class SquaredDistance>
-int BoxTree::nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const {
-  int best = -1;
-  if (boxes_.empty()) return best;
-  struct Entry {
-    int node;
-    double squared;
-  };
-  std::vector<Entry> stack{{hierarchy_.getRootIndex(), 0}};
-  while (!stack.empty()) {
-    const Entry entry = stack.back();
-    stack.pop_back();
-    if (!(entry.squared < bound)) continue;
-    Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
-    Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
-    hierarchy_.getChildren(entry.node, volume, volume_end, item, item_end);
-    for (; item != item_end; ++item) {
-      if (!(boxes_[*item].squaredExteriorDistance(p) < bound)) continue;
-      const double squared = squared_distance(*item);
-      if (squared < bound) {
-        bound = squared;
-        best = *item;
-      }
-    }
-    const std::size_t first = stack.size();
-    for (; volume != volume_end; ++volume) {
-      const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
-      if (squared < bound) stack.push_back({*volume, squared});
-    }
-    // The nearer child goes on top of the stack, so that it is visited first.
-    if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
-      std::swap(stack[first], stack[first + 1]);
-  }
-  return best;
-}
 
 /// All points within `radius_m` of the segment a-b; a sphere if a = b.
 struct Capsule {

@@ -85,16 +85,12 @@ double truth_error(const RunView& r) {
 
 /// Bound on another scalar of a whole run.
 Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
-  return {scalar + kBound,
-          own(
-              {}, "bound on " + scalar + ": tolerance of the test case, error of the mesh, rounding",
-              [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; }, "1"),
-          Expect::No,
-          nullptr,
-          with_truth,
-          "",
-          "",
-          Better::Neither};
+  const auto value = [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; };
+  return {
+      .name = scalar + kBound,
+      .from = own({}, "bound on " + scalar + ": tolerance of the test case, error of the mesh, rounding", value, "1"),
+      .present = with_truth,
+      .better = Better::Neither};
 }
 
 /// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.

@@ -139,39 +139,35 @@ inline std::array<V3, 2> nearest_of_segments(const V3& a, const V3& b, const V3&
   return {a + s * u, c + t * v};
 }
 
+/// The nearest of pairs of points.
+struct NearestPair {
+  std::array<V3, 2> best;
+  double least = kInfinite;
+  void keep(const std::array<V3, 2>& pair) {
+    const double d = (pair[0] - pair[1]).squaredNorm();
+    if (d < least) least = d, best = pair;
+  }
+};
+
 /// Nearest points of a triangle and a segment that do not cross: on the triangle, on the segment.
 inline std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& b) {
-  std::array<V3, 2> best = {t[0], a};
-  double least = kInfinite;
-  const auto keep = [&](const V3& on_triangle, const V3& on_segment) {
-    const double d = (on_triangle - on_segment).squaredNorm();
-    if (d < least) least = d, best = {on_triangle, on_segment};
-  };
-  keep(point_of(t, contact::nearest_weights(a, t)), a);
-  keep(point_of(t, contact::nearest_weights(b, t)), b);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto [on_edge, on_segment] = nearest_of_segments(t[i], t[(i + 1) % 3], a, b);
-    keep(on_edge, on_segment);
-  }
-  return best;
+  NearestPair out{{t[0], a}};
+  out.keep({point_of(t, contact::nearest_weights(a, t)), a});
+  out.keep({point_of(t, contact::nearest_weights(b, t)), b});
+  for (std::size_t i = 0; i < 3; ++i) out.keep(nearest_of_segments(t[i], t[(i + 1) % 3], a, b));
+  return out.best;
 }
 
 /// Nearest points of two triangles that do not cross: on the first, on the second. Edges of the second outside `box`
 /// are left out.
 inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex<3>& s, const Box& box) {
-  double least = kInfinite;
-  std::array<V3, 2> best = {t[0], s[0]};
-  const auto keep = [&](const V3& on_first, const V3& on_second) {
-    const double d = (on_first - on_second).squaredNorm();
-    if (d < least) least = d, best = {on_first, on_second};
-  };
+  NearestPair out{{t[0], s[0]}};
   for (std::size_t k = 0; k < 3; ++k) {
-    keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+    out.keep({t[k], point_of(s, contact::nearest_weights(t[k], s))});
     if (!box.intersects(Box(s[k].cwiseMin(s[(k + 1) % 3]), s[k].cwiseMax(s[(k + 1) % 3])))) continue;
-    const auto [on_first, on_second] = nearest_of(t, s[k], s[(k + 1) % 3]);
-    keep(on_first, on_second);
+    out.keep(nearest_of(t, s[k], s[(k + 1) % 3]));
   }
-  return best;
+  return out.best;
 }
 
 /// The same for a triangle on one side of the plane of `s`, with its vertex that is nearest to the plane: if the foot

@@ -30,43 +30,20 @@ double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
 }
 
-/// Held vertices, frame by frame.
-class Holders {
- public:
-  explicit Holders(const Scene& s) : s_(s), start_(initial_positions(s)) {
-    const auto& pins = s.pins.vertices;
-    for (std::size_t i = 0; i < pins.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
-  }
-
-  /// Greatest strain between two held vertices.
-  double imposed(const FrameMotion* m) const {
-    double most = between_pins_;
-    if (m == nullptr) return most;
-    const auto& grips = s_.grips.vertices;
-    for (std::size_t i = 0; i < grips.size(); ++i) {
-      if (m->grip_held[i] == 0) continue;
-      for (std::uint32_t pin : s_.pins.vertices)
-        most = std::max(most, strain(grips[i], m->grip_position_m[i], pin, at(pin)));
-      for (std::size_t j = 0; j < i; ++j)
-        if (m->grip_held[j] != 0)
-          most = std::max(most, strain(grips[i], m->grip_position_m[i], grips[j], m->grip_position_m[j]));
-    }
-    return most;
-  }
-
- private:
-  Vec3 at(std::uint32_t v) const { return vertex_at(start_, v); }
-  double strain(std::uint32_t a, const Vec3& xa, std::uint32_t b, const Vec3& xb) const {
-    const double rest = rest_distance(s_.cloth, a, b);
-    return rest > 0 ? distance(xa, xb) / rest - 1 : 0;
-  }
-
-  const Scene& s_;
-  const std::vector<double> start_;
-  double between_pins_ = 0;
-};
+/// Greatest strain between two held vertices, one of which at least is an attachment; without `m` between two pins.
+double imposed_strain(const Scene& s, const std::vector<double>& start, const FrameMotion* m) {
+  std::vector<std::pair<std::uint32_t, Vec3>> held;
+  for (const std::uint32_t v : s.pins.vertices) held.emplace_back(v, vertex_at(start, v));
+  const std::size_t first = m == nullptr ? 0 : held.size();
+  for (std::size_t k = 0; m != nullptr && k < s.grips.vertices.size(); ++k)
+    if (m->grip_held[k] != 0) held.emplace_back(s.grips.vertices[k], m->grip_position_m[k]);
+  double most = 0;
+  for (std::size_t i = first; i < held.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double rest = rest_distance(s.cloth, held[i].first, held[j].first); rest > 0)
+        most = std::max(most, distance(held[i].second, held[j].second) / rest - 1);
+  return most;
+}
 
 /// Greatest displacement of a hand or of a capsule's end in one frame.
 double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
@@ -127,9 +104,9 @@ std::vector<Bounds> envelope(const Scene& s) {
   const auto [far, start_strain] = start_of(s);
   const double v0 = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * diagonal / 2;
   const double loads = softest > 0 && (held || !s.colliders.empty()) ? 2 * M * g / (softest * shorter) : 0;
-  const Holders holders(s);
+  const std::vector<double> start = initial_positions(s);
   std::vector<Bounds> out;
-  double v_hand = 0, v_collider = 0, path = 0, imposed = 0, jump_speed = 0;
+  double v_hand = 0, v_collider = 0, path = 0, imposed = imposed_strain(s, start, nullptr), jump_speed = 0;
   for (int f = 0; f <= s.time.frames(); ++f) {
     Bounds b;
     const FrameMotion* now = s.motion.empty() ? nullptr : &s.motion[static_cast<std::size_t>(f)];
@@ -153,7 +130,7 @@ std::vector<Bounds> envelope(const Scene& s) {
         v_collider = std::max(v_collider, collider / dt);
       }
     }
-    imposed = std::max(imposed, holders.imposed(now));
+    if (now != nullptr) imposed = std::max(imposed, imposed_strain(s, start, now));
     const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
                  fall = std::sqrt(2 * g * H);
     b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));
@@ -168,13 +145,6 @@ std::vector<Bounds> envelope(const Scene& s) {
     b.work_J = 0.5 * M * v * v + M * g * way + Y * shorter * b.strain * way;
     out.push_back(b);
   }
-  return out;
-}
-
-std::vector<Edge> structural(const Cloth& c) {
-  std::vector<Edge> out;
-  for (const Edge& e : edges(c, EdgeKind::Structural))
-    if (e.rest_m > 0) out.push_back(e);  // a strain needs a length
   return out;
 }
 
@@ -206,7 +176,8 @@ StabilityJudge::StabilityJudge(const Scene& scene)
       bounds_(envelope(scene_)),
       mass_(vertex_masses(scene_)),
       start_(initial_positions(scene_)),
-      edges_(structural(scene_.cloth)) {
+      edges_(edges(scene_.cloth, EdgeKind::Structural)) {
+  std::erase_if(edges_, [](const Edge& e) { return !(e.rest_m > 0); });  // a strain needs a length
   if (auto known = truth::reference_case_of(scene_); known && known->settles) at_rest_ = std::move(known);
   total_mass_ = std::accumulate(mass_.begin(), mass_.end(), 0.0);
   longer_m_ = std::max(scene_.cloth.width_m, scene_.cloth.height_m);

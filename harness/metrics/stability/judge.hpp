@@ -43,7 +43,7 @@ class StabilityJudge {
   const Scene& scene_;
   const std::vector<Bounds> bounds_;
   const std::vector<double> mass_, start_;
-  const std::vector<Edge> edges_;
+  std::vector<Edge> edges_;
   std::optional<truth::ReferenceCase> at_rest_;  ///< the scene's reference case if it describes a shape at rest
   double total_mass_ = 0, longer_m_ = 0, g_ = 0, stiffness_ = 0;
   bool relaxed_ = false, ever_relaxed_ = false;
