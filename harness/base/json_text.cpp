@@ -161,8 +161,7 @@ std::string expectation(const json& s) {
   return joined(parts);
 }
 
-/// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
-/// valijson names only the object.
+/// First key of an object that its schema does not know, with the nearest known one (valijson names only the object).
 std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
   const json s = json(sub_schema(schema, root));
   if (value.is_object() && s.contains("properties")) {

@@ -21,9 +21,8 @@ std::string what_without_text(const std::exception&);
 /// Throws Error for an invalid value that the schema cannot detect, with its place and what was expected.
 [[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected);
 
-/// Checks against one of the schemas in scenarios/schema (compiled in). Throws one Error: the deepest violation, with
-/// `source`, JSON pointer (below `pointer`, the place of the value in its file), what was expected and, for an unknown
-/// key, the nearest known one.
+/// Checks against one of the schemas in scenarios/schema (compiled in). Throws Error of the deepest violation:
+/// `source`, JSON pointer (below `pointer`, the value's place in its file), what was expected, the nearest known key.
 void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source,
                    const std::string& pointer = "");
 

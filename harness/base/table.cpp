@@ -151,8 +151,7 @@ std::string Table::markdown() const {
   return out + (note.empty() ? "" : "\n" + note + "\n");
 }
 
-/// Number of columns that are repeated where a table is too wide for one piece: those that tell its rows apart, at
-/// most 2.
+/// Number of columns that each piece of a wide table repeats: those that tell its rows apart, at most 2.
 static std::size_t label_columns(const std::vector<std::vector<std::string>>& rows) {
   std::set<std::string> names;
   for (const auto& row : rows)

@@ -113,9 +113,8 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// For every assignment of the logarithms to two sides of the same sizes but the actual one: the shift of B at which it
-/// has the same difference of means as the actual one. That is the mean of those that change sides, B's minus A's.
-/// Ascending.
+/// Ascending, for every other assignment of the logarithms to two sides of these sizes: the shift of B that gives it
+/// the actual difference of means. That is the mean of those that change sides, B's minus A's.
 std::vector<double> shifts_of(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t m = a.size(), n = m + b.size();
   const std::uint32_t actual = (1u << m) - 1, end = 1u << n;

@@ -12,8 +12,7 @@
 
 namespace clothbench {
 
-/// A condition that must be equal in two runs that are compared. `kind` is the word for `--allow`; a kind has several
-/// conditions.
+/// A condition that must be equal in two compared runs. `kind`: the word for `--allow`, shared by several conditions.
 struct Condition {
   std::string kind, what, value;  ///< `value`: "–" if the run does not state it
 };
@@ -33,8 +32,7 @@ struct ConditionDifference {
 /// Conditions that both have with different values.
 std::vector<ConditionDifference> differences(const std::vector<Condition>& a, const std::vector<Condition>& b);
 
-/// Keys of the two completed scenes that differ, with both values: "/cloth/grid/0: 8, 24"; at most four, then their
-/// number.
+/// Keys of the two completed scenes that differ, with both values: "/cloth/grid/0: 8, 24"; at most 4, then a count.
 std::string scene_difference(const RunRecord& a, const RunRecord& b);
 
 /// Differences of several runs, each with the runs that have it.
@@ -43,8 +41,7 @@ class DifferingRuns {
   explicit DifferingRuns(std::vector<std::string> allowed = {}) : allowed_(std::move(allowed)) {}
 
   void add(const std::string& run, const ConditionDifference&);
-  /// Throws Error that names every difference that is not allowed, with both values. `a`, `b`: what the sides are
-  /// called.
+  /// Throws Error that names every difference that is not allowed, with both values. `a`, `b`: names of the sides.
   void refuse(const std::string& a, const std::string& b) const;
   /// A line for each difference, which marks an output and begins with `what`; empty if there is none.
   std::string marks(const std::string& what = "Compared although it differs, by --allow") const;
@@ -103,8 +100,7 @@ std::string baseline_text(const Baseline&);
 /// results/baselines/baseline.schema.json, compiled in.
 extern const char* const kBaselineSchema;
 
-/// Rule that compares a summary scalar with its baseline, from the metric registry; nullptr if it is not compared. The
-/// result of a bound has no slack.
+/// Rule that compares a summary scalar with its baseline; nullptr: it is not compared. Results of bounds have no slack.
 const Gate* find_gate(const std::string& name);
 
 /// Whether it is the result of a bound, 1 pass or 0 fail: fail after pass fails, pass after fail is an improvement.
@@ -148,8 +144,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// taken for a difference of the builds. True if a start is not known.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts. Changed: of two builds, neither
-/// of which is right.
+/// Ordered from good to bad; a whole has the worst verdict of its parts. Changed: of two builds, neither of them right.
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
@@ -196,8 +191,7 @@ std::vector<Finding> motion_findings(const RunRecord&);
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine
-/// (relative tolerance 1e-9), and, where one differs, the maximum distance between the two motions over the longer
-/// side.
+/// (relative tolerance 1e-9), and, where one differs, the maximum distance of the motions over the longer side.
 std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
 
 /// One element per process: the runs of its folder.
@@ -237,9 +231,8 @@ nlohmann::json update_json(const Updated&, const std::string& baseline_file);
 std::string comparison_text(const Checked&);
 nlohmann::json comparison_json(const Checked&);
 
-/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a
-/// <failure> if it failed. Improvements and new runs are in <system-out>. Text that XML 1.0 or UTF-8 does not allow is
-/// replaced.
+/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a <failure>
+/// if it failed. Improvements and new runs are in <system-out>. Replaces text that XML 1.0 or UTF-8 forbids.
 std::string junit_xml(const Checked&);
 
 /// A command of GitHub Actions per failure, which shows it at the top of the job.

@@ -29,8 +29,7 @@ class ColliderContact {
   virtual ~ColliderContact() = default;
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   virtual SceneContact probe(int frame, const std::vector<double>& positions) = 0;
-  /// The same; every frame in order, since it compares with the frame before. In a frame that is not finite no vertex
-  /// touches.
+  /// The same; in the order of frames, because it compares with the one before. NaN touches nothing.
   virtual SceneTouch touch(int frame, const std::vector<double>& positions) = 0;
 };
 

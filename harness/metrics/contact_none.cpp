@@ -1,5 +1,4 @@
-// Built without CGAL, as on a device: scenes with colliders are not measured, and motion_check serves scenes without
-// any.
+// Built without CGAL, as on a device: scenes with colliders are not measured; motion_check serves the other scenes.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/motion_check/motion.hpp"

@@ -23,15 +23,13 @@ struct MetricContext {
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
-/// Contact of the cloth with all colliders of the scene in one frame (collider_contact.hpp). NaN if the cloth is not
-/// finite.
+/// Contact of the cloth with all colliders in one frame (collider_contact.hpp). NaN if the cloth is not finite.
 struct SceneContact {
   double length_m;  ///< of the curves in which cloth and colliders cross
   double depth_m;   ///< NaN if no collider has an inside
 };
 
-/// Where the cloth touches the colliders and how it slides on them, in one frame (collider_contact.hpp). NaN if the
-/// cloth is not finite.
+/// Where the cloth touches and slides on colliders in one frame (collider_contact.hpp). NaN if the cloth is not finite.
 struct SceneTouch {
   double touching_fraction;  ///< of the triangles' rest area
   double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame

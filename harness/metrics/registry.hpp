@@ -69,8 +69,7 @@ struct Gate {
   const char* why = "";
 };
 
-/// For errors: the largest difference of one solver between lavapipe and an H200 in the Table 3 study is 3.1e-7
-/// (paper).
+/// For errors: one solver differs between lavapipe and an H200 by at most 3.1e-7 (paper, in the Table 3 study).
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
                                  "three times the largest difference seen between devices"};
 
@@ -161,8 +160,7 @@ class MetricPass {
 
   /// State at the end of the next frame; the first call is frame 0, the initial state.
   void add(const ClothState&);
-  /// Whether the run has reached a stability class from which it cannot recover: not finite, or speed or energy out of
-  /// bounds.
+  /// Whether the run cannot recover from a stability class: not finite, or speed or energy out of bounds.
   bool lost() const { return lost_; }
 
   /// One series per metric, in the order of metrics().

@@ -50,8 +50,7 @@ constexpr double kNothing = 1e-12;  // a motion of rounding errors only
 
 /// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
 /// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
-/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
-/// their own.
+/// strip that slides by the law of a smooth one: its distance from that. Other grids have their own exact solution.
 double mesh_error(const TruthJudge& judge, double moved_quantity) {
   const Cloth& c = judge.scene().cloth;
   if (c.mesh) return c.mesh->edge_m / c.width_m;

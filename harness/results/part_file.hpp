@@ -76,8 +76,7 @@ inline constexpr bool kWithHdf5 = true;
 /// Writes one result file (layout in results/README.md) by tmp + fsync + rename. Throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const RunRecord&);
 
-/// Reads a result file, with positions of every `stride`-th frame and the last. Stride 0: without positions, `replay`
-/// and triangles of a grid.
+/// Reads a file, with positions of every `stride`-th frame and the last; 0: no positions, `replay` and grid triangles.
 RunRecord read_hdf5(const std::filesystem::path&, std::size_t stride);
 
 /// Writes a sidecar with which ParaView opens the trajectory and the static meshes: per frame one grid over

@@ -73,18 +73,16 @@ struct Replay {
 /// 0, stride, 2 stride, ... below `count`, and count - 1. `stride` at least 1.
 std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 
-/// Every `stride`-th frame and the last; no frames if the file has no trajectory. Throws Error naming the file and what
-/// is wrong with it.
+/// Every `stride`-th frame and the last; none without a trajectory. Throws Error naming the file and its fault.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
 /// SHA-256 of a motion in lower-case hexadecimal: the times (float64), then the positions (float32), little-endian.
 /// Files store it with the outcome, so that a verdict belongs to one motion. Empty without frames.
 std::string trajectory_sha256(const AccuracyPass&);
 
-/// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite,
-/// not one set for each time, or positions that do not match the hash in `/outcome`. Empty if nothing is wrong. A run
-/// that did not end well may lack frames and have values that are not finite. Throws Error naming the file if it cannot
-/// be read.
+/// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite, not
+/// one set for each time, or that do not match the hash in `/outcome`. Empty if nothing is wrong. A run that did not
+/// end well may lack frames and have values that are not finite. Throws Error if the file cannot be read.
 std::string trajectory_fault(const std::filesystem::path&);
 
 /// The parts of a scene that its JSON only names, as result files store them (layout in results/README.md): colliders
@@ -93,9 +91,8 @@ std::string trajectory_fault(const std::filesystem::path&);
 std::vector<StoredGroup> replay_of(const Scene&);
 
 /// Adds the capsules or triangles to draw to a collider's group that has neither, for programs that do not know the
-/// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Does not
-/// change groups of kinds that this version does not know. Throws Error or nlohmann::json::exception if something is
-/// missing or has another shape.
+/// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Leaves
+/// unknown kinds as they are. Throws Error or nlohmann::json::exception if something is missing or misshapen.
 void show_shape(StoredGroup&);
 
 /// A stored run's scene and motion, read only from its result file.
@@ -114,8 +111,7 @@ StoredMotion read_motion(const std::filesystem::path&);
 class DeviceSamples;
 
 /// Converts runs finished without HDF5 (.cbor; a file or the folder of a study) to the .h5 files that direct runs give;
-/// `samples`: the device's samples to store with them. Returns the new files. Throws Error if `file_or_folder` is a
-/// part file: it is not finished.
+/// `samples`: the device's samples to store with them. Returns the new files. Throws Error for a part file.
 std::vector<std::filesystem::path> import_runs(const std::filesystem::path& file_or_folder,
                                                DeviceSamples* samples = nullptr);
 
@@ -129,14 +125,12 @@ void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);
 
 /// Makes a folder for result files and locks it: a second process that would write the same files is refused. The
-/// kernel releases a lock with its process, so that one that died blocks nothing. Children of the process write under
-/// its lock.
+/// kernel releases a lock with its process, so one that died blocks nothing. Its children write under its lock.
 class ResultFolder {
  public:
   /// `runs`: numbers of the runs of a study that this process executes, next to processes with other runs of it; empty:
   /// no other process may write into the folder. `command_line`: for the message of a process that is refused. Throws
-  /// Error naming the folder and who writes into it, or why it cannot be made or written (a file, a path too long, no
-  /// permission).
+  /// Error naming the folder and who writes into it, or why it cannot be made or written.
   ResultFolder(const std::filesystem::path& folder, const std::vector<std::size_t>& runs,
                const std::string& command_line);
   ~ResultFolder();

@@ -17,8 +17,7 @@ struct Face {
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. For a box: the face below all four corners at the start and moved by
-/// `displacement`.
+/// The face of a collider under the sheet. For a box: below all four corners at the start and moved by `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {

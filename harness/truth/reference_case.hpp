@@ -11,9 +11,8 @@
 
 namespace clothbench::truth {
 
-/// The 33 x 33 material points at which every mesh is compared with its truth, at any resolution: a regular lattice
-/// over the rest rectangle [0, width] x [0, height], row by row (u fastest), with Voronoi areas (half a cell on an
-/// edge, a quarter at a corner).
+/// The 33 x 33 material points at which any mesh is compared with its truth: a regular lattice over the rest rectangle
+/// [0, width] x [0, height], u fastest, with Voronoi areas (half a cell at an edge, 1/4 at a corner).
 struct MaterialLattice {
   static constexpr int kSide = 33;
 
@@ -82,8 +81,7 @@ struct ReferenceCase {
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
 };
 
-/// The reference case that a scene names, or none. Throws Error with the scene's source if the scene does not meet the
-/// reference case's requirements.
+/// The reference case that a scene names, or none. Throws Error if the scene does not meet its requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
 /// The tolerance of a reference case, for any parameters: how far a run may be from the exact solution and still be

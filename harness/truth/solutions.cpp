@@ -30,9 +30,8 @@ void integrate(const char* what, Rate rate, Values& state, double begin, double 
   }
 }
 
-/// Solves a symmetric positive definite tridiagonal system in place (elimination without pivoting; allocates nothing,
-/// so it can run inside an integrator's right-hand side). `off[i]` couples i and i + 1. `diagonal` is overwritten,
-/// `rhs` becomes the solution.
+/// Solves a symmetric positive definite tridiagonal system in place (elimination without pivoting or allocation).
+/// `off[i]` couples i and i + 1. `diagonal` is overwritten, `rhs` becomes the solution.
 void solve_tridiagonal(std::span<double> diagonal, std::span<const double> off, std::span<double> rhs) {
   const std::size_t n = diagonal.size();
   for (std::size_t i = 1; i < n; ++i) {

@@ -6,8 +6,7 @@
 #include <vector>
 
 // Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
-// All values are in SI units; tensions and loads are per width. The cases of strip_cases.cpp and contact_cases.cpp have
-// checked the ranges.
+// All values are in SI units; tensions and loads are per width. Reference cases check the ranges.
 
 namespace clothbench::truth {
 
@@ -100,8 +99,7 @@ std::vector<std::vector<double>> pull(const PulledChain&, std::span<const double
 
 /// The same pull without a mesh, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
 /// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after; the wave from each end adds a strain of v0/c.
-/// A ramp of L/c or longer is needed: after a sudden start a chain overshoots by 25 %, however fine. Only
-/// rounding errors.
+/// A ramp of L/c or longer is needed: after a sudden start a chain overshoots by 25 %. Only rounding errors.
 struct PullWave {
   double length_m, wave_speed_m_per_s, hand_speed_m_per_s, ramp_s;
 

@@ -20,8 +20,7 @@ namespace {
 /// along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite where a link is
-/// compressed. These springs do not damp: Bullet's spring damping is relative to neighbours, the scenes' damping is
-/// not.
+/// compressed. They do not damp: Bullet's spring damping is relative to neighbours, the scenes' is not.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].

@@ -256,8 +256,7 @@ double collider_speed_m_per_s(const Scene&);
 /// The same without the hands of users, whose speed a live session does not know beforehand.
 double scripted_collider_speed_m_per_s(const Scene&);
 
-/// Greatest speed [m/s] of colliders and of vertices while they are held, since the frame before, one value per
-/// `scene.motion`. The first is 0.
+/// Greatest speed [m/s] of colliders and held vertices since the frame before, one per `scene.motion`; the first is 0.
 std::vector<double> driving_speeds_m_per_s(const Scene&);
 
 /// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.

@@ -278,8 +278,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
-  // A vertex cannot have moved around the border if the sum of its distances to it before and after exceeds twice its
-  // displacement.
+  // A vertex cannot have moved around the border if its distances to it before and after exceed twice its displacement.
   const std::vector<Link> border = border_of(mesh);
   const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();

@@ -26,12 +26,11 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
 
 /// Whether and in which direction the segment p -> q crosses the simplex: +1 along its normal, -1 against it, 0 if not.
 ///
-/// Exact, also in degenerate configurations of p, q and the simplex: there the result is that for the segment
-/// translated by shift * (e, e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990,
-/// restricted to one common translation). A single translation for all tests is consistent: a path through the common
-/// edge or vertex of triangles crosses exactly those that it crosses after a small translation, and a path that ends on
-/// a surface is on a definite side of it. A simplex without volume is never crossed. The normal of a triangle (a, b, c)
-/// is (b - a) x (c - a).
+/// Exact, also in degenerate configurations of p, q and the simplex: there the segment is translated by shift * (e,
+/// e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990, restricted to one common
+/// translation). One translation for all tests is consistent: a path through a common edge or vertex of triangles
+/// crosses those that it crosses after a small translation, and a path that ends on a surface is on a definite side of
+/// it. A simplex without volume is never crossed. The normal of a triangle (a, b, c) is (b - a) x (c - a).
 template <int N>
 int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, int shift = 1);
 
@@ -204,8 +203,7 @@ struct Nearest {
 /// turn but do not spin about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
-/// The nearest point of a mesh within `bound_m`, if there is one. `before`: the mesh at the previous frame; null if it
-/// is static.
+/// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.
 std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
                                const TriangleMeshView* before = nullptr);
 

@@ -70,8 +70,7 @@ struct Body {
   bool moves() const { return collider.moves(); }
 };
 
-/// Gives a plate its middle plane, as far from its border as from its faces. A bar, which is no thinner one way than
-/// another, has none.
+/// Gives a plate its middle plane, as far from its border as from its faces. A bar has none.
 void add_middle(Body& b);
 
 inline Box box_of(std::span<const double> positions) {
@@ -158,8 +157,7 @@ inline std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& 
   return out.best;
 }
 
-/// Nearest points of two triangles that do not cross: on the first, on the second. Edges of the second outside `box`
-/// are left out.
+/// Nearest points of two triangles that do not cross: on the first, on the second (without edges outside `box`).
 inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex<3>& s, const Box& box) {
   NearestPair out{{t[0], s[0]}};
   for (std::size_t k = 0; k < 3; ++k) {

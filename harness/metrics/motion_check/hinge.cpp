@@ -1,6 +1,5 @@
-// Cloth hinges on each straight line across it: links meet the line where they cross it, so what they exert on the part
-// beyond it has no moment about the line, but for the sheet's bending rigidity. So a part that nothing touches must
-// turn as gravity turns it.
+// Cloth hinges on each straight line across it: links meet the line where they cross it, so except for bending rigidity
+// they exert no moment about the line on the part beyond it. A part that nothing touches must turn as gravity turns it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -95,8 +94,7 @@ class Hinges {
     double value = 0, scale = 0, hidden = 0;  ///< [N m]
     std::size_t beyond = 0;                   ///< vertices of the part
   };
-  /// Lines along rows, columns, diagonals and the edges of the hull of what is blocked; through the middle if nothing
-  /// is.
+  /// Lines along rows, columns, diagonals and edges of the hull of what is blocked; through the middle if nothing is.
   std::vector<Line> lines_of(const std::vector<Place>& blocked) const {
     const Place last = place_.back();
     std::vector<Line> out;

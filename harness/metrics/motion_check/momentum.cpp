@@ -1,7 +1,6 @@
-// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so that no law of the
-// material is needed: what is left over gravity and damping must be a force that attachments and colliders in reach
-// can exert. The least distance to their cone is found by column generation and non-negative least squares (Lawson &
-// Hanson 1974, chapter 23).
+// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so no law of the material
+// is needed: what gravity and damping leave must be a force that attachments and colliders in reach can exert. Its
+// distance to their cone: by column generation and non-negative least squares (Lawson & Hanson 1974, 23).
 #include <algorithm>
 #include <cmath>
 
@@ -259,8 +258,7 @@ class Momentum {
     return out;
   }
 
-  /// Cloth that slides on a face is dragged by its friction times the normal force, and cloth on it by no more. Means
-  /// over `span` intervals up to k.
+  /// Friction times the normal force drags cloth that slides on a face, no more any other. Means of `span` intervals.
   void sliding(std::size_t k, std::size_t span) {
     if (k < span + 1) return;
     V3 across = V3::Zero(), drag = V3::Zero();

@@ -92,8 +92,7 @@ inline V6 wrench_of(const V3& force, const V3& arm) {
   return w;
 }
 
-/// Projection on the wrenches about `middle` that no attachment can exert around a frame. Vertices held in the frame or
-/// its neighbours count.
+/// Projection on the wrenches about `middle` that no vertex held in a frame or its neighbours can exert.
 M6 free_of_attachments(const Motion&, std::size_t frame, const V3& middle);
 
 /// Collects the largest ratio of a statistic.
@@ -153,8 +152,7 @@ class Bodies {
   virtual bool any_moves() const { return false; }
   /// Highest speed [m/s] of a collider between two frames, jumps included.
   virtual double speed() const { return 0; }
-  /// Where the cloth of a frame is within reach of a collider; the reach grows with the displacements next to the
-  /// frame.
+  /// Where the cloth of a frame is within reach of a collider, which grows with the displacements next to the frame.
   virtual std::span<const Contact> contacts(std::size_t /*frame*/) { return {}; }
   /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
   virtual bool touched(std::size_t /*frame*/, std::size_t /*vertex*/) const { return false; }
@@ -164,8 +162,7 @@ class Bodies {
   virtual double depth_ratio(std::size_t /*frame*/) const { return 0; }
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.
   virtual bool near(std::size_t /*frame*/, std::span<const V3>, double /*displacement_m*/) { return false; }
-  /// Points inside colliders that pass the cloth, and vertices that pass a static surface, between a frame and the one
-  /// before it.
+  /// Points inside colliders that pass the cloth, and vertices that pass a static surface, since the frame before.
   virtual int passages(std::size_t /*frame*/) { return 0; }
 };
 std::unique_ptr<Bodies> bodies_of(const Motion&, std::span<const double> contact_offsets_m);

@@ -1,5 +1,4 @@
-// Displacements that no impact leaves: one vertex for one frame, a frame that repeats another, vertices that stand
-// still in the air.
+// Displacements that no impact leaves: one vertex for one frame, a repeated frame, vertices that hang still.
 #include <algorithm>
 #include <cmath>
 

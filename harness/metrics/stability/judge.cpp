@@ -159,8 +159,7 @@ int least(unsigned classes) {
   return k;
 }
 
-/// Converts the strain of the diagonals to energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y;
-/// reported over Y/2.
+/// Energy of the diagonals' strain over Y/2: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y.
 double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
