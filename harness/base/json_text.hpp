@@ -7,8 +7,7 @@
 
 namespace clothbench {
 
-/// Reads a whole file. Throws Error naming the file if it is missing, a folder, unreadable or over `most_bytes`, which
-/// is checked before anything is read.
+/// Reads a whole file. Throws Error naming the file if it is missing, a folder, unreadable or over `most_bytes`.
 std::string read_text(const std::filesystem::path&, std::uintmax_t most_bytes = 16u << 20);
 
 /// Strict JSON: no duplicate keys, no NaN or Infinity, no number beyond double range, nesting <= 64. Throws Error with

@@ -61,8 +61,7 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds what differs between the first run of A and every other one. Another order is no difference of the
-/// runs, only no basis for a statement on times.
+/// Adds what differs between the first run of A and the others. Another order only gives no statement on times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);

@@ -21,9 +21,9 @@ inline constexpr Needs kColliders{"colliders",
 /// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
 /// overlap, both count); the depth is the maximum over colliders.
 ///
-/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus a tolerance: a tenth
-/// of that distance or a thousandth of the cloth's shorter side, whichever is greater. A triangle touches if any of its
-/// points does, edges and face included. Only vertices slide.
+/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus the greater of a
+/// tenth of it and a thousandth of the cloth's shorter side. A triangle touches if any of its points does, edges and
+/// face included. Only vertices slide.
 class ColliderContact {
  public:
   virtual ~ColliderContact() = default;

@@ -51,8 +51,7 @@ struct TruthErrors {
 };
 
 /// One frame rated by the outcome classes F0 not finite or unbounded, F1 energy gained, F2 strain beyond the load (F3,
-/// budget and device, is the runner's). The numbers are compared with the thresholds of stability/judge.cpp. NaN: not
-/// defined for the scene, or not yet counted.
+/// budget and device, is the runner's). Thresholds: stability/judge.cpp. NaN: not defined, or not yet counted.
 struct StabilityFrame {
   unsigned classes = 0;             ///< bit k: Fk, only classes that the scene judges
   double speed = kMissing;          ///< maximum vertex speed over v_char

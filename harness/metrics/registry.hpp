@@ -78,8 +78,7 @@ const char* name_of(Better);
 
 enum class Expect { No, Yes };  ///< whether a scene's `expect` may bound a scalar
 
-/// One number per run, a value of its result's summary. Values that depend on the machine have no gate, nor have values
-/// that may grow without a result getting worse.
+/// One number of a run's summary. Values of the machine, or that may grow without a worse result, have no gate.
 struct Scalar {
   std::string name;  ///< a '*' at its end stands for any text
   Reduction from;

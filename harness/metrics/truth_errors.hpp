@@ -18,8 +18,7 @@ class TruthJudge {
   /// The ranking error of frames judged at these times, as a run's `truth_error`: RMS over time, at rest the last.
   double ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>&) const;
   /// The ranking error (see ReferenceCase) of the mesh's own truth against the continuum: a lower bound that no smaller
-  /// time step removes. NaN for a sheet that shears, whose continuum has no known answer, and for a mesh, which has no
-  /// truth of its own (see compute_reference).
+  /// time step removes. NaN for a sheet that shears and for a mesh, whose truth is not known (see compute_reference).
   double space_error() const;
 
  private:
@@ -32,8 +31,7 @@ class TruthJudge {
   truth::LatticeSampler sampler_;
 };
 
-/// Scenes whose strips conserve the sum of kinetic, gravitational and spring energy (metric energy_rise): no damping,
-/// shear, bending, hands or colliders.
+/// Scenes whose strips conserve energy (metric energy_rise): no damping, shear, bending, hands or colliders.
 bool keeps_energy(const Scene&);
 
 /// How much a scene's truth depends on its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is the

@@ -103,8 +103,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
   return out;
 }
 
-/// Adds the scalar of a series with a role: the mean within trials, or the maximum of a temperature. Bandwidths come
-/// only from trials with at least kMinSamples samples.
+/// Adds the scalar of a series with a role: mean in trials (bandwidths: kMinSamples or more), or maximum.
 void summarise(const std::string& role, double scale, const Taken& taken, const std::vector<double>& values,
                std::map<std::string, double>& summary) {
   std::map<double, int> samples;

@@ -66,8 +66,7 @@ void create_part(const std::filesystem::path&, const RunHeader&);
 void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
 /// Reads all complete items and ignores what follows them: a killed process leaves an incomplete item at the end.
-/// `complete_B`: receives the length of the complete items. Throws Error naming the file if it has no header, or if a
-/// complete item is not what it should be.
+/// `complete_B`: receives their length. Throws Error naming the file without a header or with a wrong item.
 RunRecord read_part(const std::filesystem::path&, std::uintmax_t* complete_B = nullptr);
 
 #ifdef CLOTHBENCH_HAS_HDF5

@@ -21,8 +21,8 @@ Finish best_finish();
 
 /// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item for each finished trial and for each frame of the
 /// accuracy pass (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename)
-/// and removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL at any moment
-/// loses at most data not yet passed to this class.
+/// and removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL loses at most
+/// what it was not yet passed.
 class RunWriter {
  public:
   /// Continues a part file of the same run. Throws Error naming both if scenario_sha256 or settings differ.

@@ -85,8 +85,7 @@ struct ReferenceCase {
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
 /// The tolerance of a reference case, for any parameters: how far a run may be from the exact solution and still be
-/// right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
-/// and the error by which runs are ranked.
+/// right (errors of mesh and float32 come on top, metrics/truth_errors.hpp), and the error by which runs are ranked.
 struct Tolerance {
   std::string reference_case;
   /// Share of the exact motion: a cloth that keeps its start has the error 1. It holds for every parameter, and a

@@ -105,8 +105,8 @@ Nodes nodes_of(const SwingingChain& c, const State& state) {
   return out;
 }
 
-/// Angles of the links at a share of the load, from a guess; nothing if Newton's method fails. Energy over B/L: n sum
-/// of (1 - cos(turn)) - sum of pull_i sin(angle_i)/n.
+/// Angles of the links at a share of the load, from a guess, if Newton's method converges. Energy over B/L: n sum of (1
+/// - cos(turn)) - sum of pull_i sin(angle_i)/n.
 std::optional<State> bent(double own_weight, State angle, double share) {
   const std::size_t n = angle.size();
   const auto cells = static_cast<double>(n);

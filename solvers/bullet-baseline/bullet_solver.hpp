@@ -27,8 +27,7 @@ class ColliderBodies {
   ColliderBodies(const ColliderBodies&) = delete;
   ColliderBodies& operator=(const ColliderBodies&) = delete;
 
-  /// Moves dynamic colliders to `share` of the straight path from one instant to the next. Bullet derives their
-  /// velocities in the step that follows.
+  /// Moves dynamic colliders to `share` of the path between two instants. Bullet's next step derives their velocities.
   void move(const FrameMotion& from, const FrameMotion& to, double share);
 
  private:

@@ -6,8 +6,7 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// Half the side of the box whose top stands for a plane. Large against any cloth; distances inside it are computed in
-/// float32, so not larger than need be.
+/// Half the side of the box whose top stands for a plane: large against any cloth, but distances in it are float32.
 constexpr double kGroundHalf_m = 10;
 /// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;

@@ -120,8 +120,7 @@ class Integrator {
 /// order 2, damps unresolved frequencies. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
 ///
 /// `conservative`: where the cloth has compliance, the implicit midpoint with tensions at the midpoint: order 2,
-/// conserves momentum, no damping of its own. Otherwise RATTLE (Andersen 1983): order 2, symplectic; bending and
-/// gravity explicit.
+/// conserves momentum, no damping of its own. Otherwise RATTLE (Andersen 1983): order 2, symplectic; explicit forces.
 std::unique_ptr<Integrator> make_integrator(bool conservative, Model&, Tolerance);
 
 }  // namespace clothbench::reference

@@ -48,8 +48,7 @@ Eigen::Vector3d curvature(const Flat& f, int k, const Eigen::Vector2d& of) {
   return {n.x() * of.x(), n.y() * of.y(), (n.x() * of.y() + n.y() * of.x()) / std::sqrt(2.0)};
 }
 
-/// The unknowns: positions of vertices, then derivatives across edges, along the outward normal of the triangle that
-/// goes from the lower to the higher vertex.
+/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle that has them ascending.
 class Unknowns {
  public:
   Unknowns(const ClothMesh& mesh, const std::vector<std::uint32_t>& pinned) : vertices_(mesh.vertices.size()) {

@@ -25,8 +25,8 @@ class SolverError : public Error {
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}
 };
 
-/// Thrown by ClothSolver::load: the solver supports every feature that the scene needs, but not this scene at these
-/// settings. The run ends as `unsupported`, with this reason.
+/// Thrown by ClothSolver::load for a scene that it cannot run at its settings. The run ends as `unsupported`, with
+/// this.
 class UnsupportedScene : public SolverError {
  public:
   using SolverError::SolverError;

@@ -7,9 +7,8 @@
 
 namespace clothbench {
 
-/// A property of scenes that solvers must support: one per row of feature_table.hpp. The loader derives the required
-/// features from the scenario (`derive_needs`); a solver never does. A run fails unless its stages serve exactly the
-/// features that the scene needs (`check_stages`).
+/// A property of scenes that solvers must support: one per row of feature_table.hpp. Only the loader derives them from
+/// the scenario (`derive_needs`). A run fails unless its stages serve exactly what the scene needs (`check_stages`).
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"

@@ -51,12 +51,10 @@ struct TimedTrial {
   double pipelined_wall_s = kMissing;
   /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. It
-  /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread the time of the stepping
-  /// thread, for others the sum over its threads.
+  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. Time of the process
+  /// (CLOCK_PROCESS_CPUTIME_ID), the sum over its threads.
   std::vector<double> frame_cpu_s = {};
-  /// System time at which the first timed frame began and the last one ended [s since 1970 UTC]. It matches the trial
-  /// with samples that other programs took at that time.
+  /// System time of the first timed frame's begin and the last one's end [s since 1970 UTC], for other programs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }

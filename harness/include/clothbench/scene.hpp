@@ -97,8 +97,7 @@ struct Cloth {
   double least_height_m() const;
 };
 
-/// A membrane stiffness that replaces the sheet's in the cells of columns `first` to `last` of a grid (the first cell
-/// is 0), or in some triangles of a mesh.
+/// A membrane stiffness for the cells of columns `first` to `last` of a grid (from 0), or for some triangles of a mesh.
 struct StiffnessRegion {
   int first = 0, last = 0;
   std::optional<double> membrane_stiffness_N_per_m;
@@ -119,8 +118,7 @@ struct Pins {
   std::vector<std::uint32_t> vertices;
 };
 
-/// Vertices with prescribed motion, held by hands or bars. They are held from t = 0 until their release (see
-/// FrameMotion::grip_held) and are never held again.
+/// Vertices with prescribed motion, held by hands or bars from t = 0 until their release (FrameMotion::grip_held).
 struct Grips {
   std::vector<std::uint32_t> vertices;
 };
@@ -196,8 +194,7 @@ std::vector<double> vertex_masses(const Scene&);
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
 
-/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: the sum of velocity and spin about center_m. Pinned
-/// vertices have one too, but a solver still holds them.
+/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity plus spin about center_m, also if pinned.
 std::vector<double> initial_velocities(const Scene&);
 
 /// Y [N/m] of a structural or shear edge of a grid: its cell's Y, or the mean of its two cells for an edge along v. In

@@ -158,8 +158,7 @@ class ClothSolver {
   virtual int validation_messages() const { return 0; }
 };
 
-/// An entry that a solver folder registers: its description and a factory. The `settings` of `make` are complete: every
-/// SettingSpec is present with its declared type.
+/// An entry that a solver folder registers. The `settings` of `make` are complete: every SettingSpec with its type.
 struct SolverEntry {
   SolverInfo info;
   std::function<std::unique_ptr<ClothSolver>(const nlohmann::json& settings, const DeviceOptions&)> make;

@@ -23,8 +23,7 @@ double depth_in(const Simplex<3>& triangle, const Capsule& c) {
   return c.radius_m - std::sqrt(squared_distance(c.a, c.b, triangle));
 }
 
-/// Whether a point of the surface of capsule `own` lies inside another. Capsules that share a joint share its surface,
-/// which counts for the first of them.
+/// Whether a point on capsule `own` lies inside another. A surface that capsules share counts for the first of them.
 bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own) {
   for (std::size_t k = 0; k < shapes.size(); ++k)
     if (k != own && signed_distance(p, shapes[k]) < (k < own ? 0 : -kCapsuleError * shapes[k].radius_m)) return true;

@@ -39,8 +39,7 @@ double greatest_error(const std::vector<double>& values, double scale, Exact exa
   return std::sqrt(most);
 }
 
-/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. The rest is
-/// rounding and forces that should not be there.
+/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0.
 double free_fall_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;

@@ -70,8 +70,7 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// The maximum number of clothbench processes that ran at the same time while the run was loaded and timed; missing if
-/// any part of the run does not state it.
+/// Maximum of concurrent clothbench processes while the run was loaded and timed; missing if a part does not state it.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;

@@ -168,7 +168,7 @@ inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex
   return out.best;
 }
 
-/// The same for a triangle on one side of the plane of `s`, with its vertex that is nearest to the plane: if the foot
+/// The same for a triangle on one side of the plane of `s`: with its vertex that is nearest to that plane. If the foot
 /// of this vertex is inside `s`, nothing is nearer.
 inline std::array<V3, 2> nearest_to_plane(const Simplex<3>& t, const Simplex<3>& s, std::size_t lowest,
                                           const Box& box) {

@@ -9,8 +9,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// An impulse acts at a third of a frame from the stored one on average (the mean of the hat weights of a second
-/// difference); so far may its lever be wrong.
+/// Mean distance [frames] of an impulse from its stored frame, the mean hat weight of a second difference.
 constexpr double kChord = 1.0 / 3;
 /// Tolerance [weights] of a force that lasts, and the share of a tolerance below which distances are not resolved.
 constexpr double kLasting = 0.05, kResolved = 0.1;
@@ -61,8 +60,7 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
   return rest;
 }
 
-/// The unit force of a contact that does most against a direction; zero if none does anything. `coulomb`: within the
-/// cone of friction; otherwise any force that does not pull.
+/// Unit force of a contact that does most against a direction, or zero. `coulomb`: in friction's cone; else any push.
 V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   if (c.any_force) return h.normalized();
   const double along = h.dot(c.normal);

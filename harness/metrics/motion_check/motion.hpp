@@ -17,8 +17,7 @@ inline V3 to_v3(const Vec3& v) { return {v[0], v[1], v[2]}; }
 /// Share of the cloth's longer side below which nothing is judged.
 inline constexpr double kResolution = 1e-4;
 
-/// Coefficients of free flight with linear damping c around a stored frame: the displacement before it is
-/// a1 v + b1 g, the displacement after it a2 v + b2 g.
+/// Free flight with linear damping c around a stored frame; displacements before and after: a1 v + b1 g, a2 v + b2 g.
 struct Flight {
   double a1, b1, a2, b2;
   Flight(double before_s, double after_s, double c);
