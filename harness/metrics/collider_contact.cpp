@@ -21,14 +21,6 @@ using contact::Point;
 using contact::TriangleMeshView;
 using contact::TriangleTree;
 
-std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>& capsules) {
-  std::vector<contact::Capsule> out;
-  for (const Capsule& c : capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
-  return out;
-}
-
-Point<3> vertex_of(const std::vector<double>& x, std::size_t v) { return Point<3>::Map(&x[3 * v]); }
-
 class Probes final : public ColliderContact {
  public:
   Probes(const Scene& s, const std::vector<double>& held_at_m)
@@ -78,7 +70,7 @@ class Probes final : public ColliderContact {
       const std::vector<std::optional<Nearest>> found = near(k, frame, x);
       for (std::size_t v = 0; v < found.size(); ++v) {
         if (found[v] && touched[k][v] != 0 && !before.empty()) {
-          const Point<3> way = vertex_of(x, v) - vertex_of(before, v) - found[v]->carried_m;
+          const Point<3> way = contact::point_at(x, v) - contact::point_at(before, v) - found[v]->carried_m;
           slid += (way - found[v]->normal.dot(way) * found[v]->normal).norm();
           kept += 1;
         }
@@ -120,8 +112,11 @@ class Probes final : public ColliderContact {
   }
 
   std::vector<contact::Capsule> capsules_at(std::size_t k, int frame) const {
-    const Collider& c = scene.colliders[k];
-    return contact_capsules(kind_of(c).capsules(c, pose_at(k, frame)));
+    const Collider& collider = scene.colliders[k];
+    std::vector<contact::Capsule> out;
+    for (const Capsule& c : kind_of(collider).capsules(collider, pose_at(k, frame)))
+      out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
+    return out;
   }
 
   contact::ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) const {
@@ -140,7 +135,7 @@ class Probes final : public ColliderContact {
     std::vector<std::optional<Nearest>> out(x.size() / 3);
     const auto each = [&](auto find) {
       for (std::size_t v = 0; v < out.size(); ++v) {
-        const std::optional<Nearest> found = find(vertex_of(x, v));
+        const std::optional<Nearest> found = find(contact::point_at(x, v));
         if (found && found->distance_m <= reach_m[k]) out[v] = found;
       }
     };

@@ -81,11 +81,6 @@ bool lock(int file, std::size_t first, int count) {
   return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // a file system without locks
 }
 
-std::string holder(const fs::path& file) {
-  const std::string text = content_of(file);
-  return text.empty() ? "another process" : shortened(text, kShown);
-}
-
 /// Record of a planned run without a result, from its name "<scene>__<solver>__<setting>".
 RunRecord missing_run(const std::string& name, bool started) {
   RunRecord c;
@@ -329,9 +324,9 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::vector<std::size_t
     if (lock_ < 0) refuse_folder(folder, std::string("no file can be made in it: ") + std::strerror(errno));
     if (runs.empty() ? !lock(lock_, 0, 0)
                      : !std::all_of(runs.begin(), runs.end(), [&](std::size_t run) { return lock(lock_, run, 1); })) {
-      const std::string by = holder(file_);
+      const std::string by = content_of(file_);
       close(lock_);
-      refuse_folder(folder, fmt::format("{} writes its results there", by));
+      refuse_folder(folder, (by.empty() ? "another process" : shortened(by, kShown)) + " writes its results there");
     }
     if (is_named(lock_, file_)) break;
     close(lock_);

@@ -143,8 +143,6 @@ std::optional<State> bent(double own_weight, State angle, double share) {
   return std::nullopt;
 }
 
-double weight_of(const Capstan& c) { return c.areal_density_kg_per_m2 * c.gravity_m_per_s2; }
-
 }  // namespace
 
 std::array<double, 2> node_position(const Nodes& nodes, double share) {
@@ -256,7 +254,7 @@ SlideState slide_down(const Incline& i, double t) {
 }
 
 double greatest_overhang_m(const Capstan& c, double light_overhang) {
-  const double weight = weight_of(c), mu = c.friction;
+  const double weight = c.areal_density_kg_per_m2 * c.gravity_m_per_s2, mu = c.friction;
   if (c.turns <= 0) {
     // Particular solution A sin + B cos of the linear equation.
     const double on = weight * c.radius_m, a = on * (1 - mu * mu) / (1 + mu * mu), b = -2 * mu * on / (1 + mu * mu);

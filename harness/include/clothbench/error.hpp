@@ -25,8 +25,7 @@ class SolverError : public Error {
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}
 };
 
-/// Thrown by ClothSolver::load for a scene that it cannot run at its settings. The run ends as `unsupported`, with
-/// this.
+/// Thrown by ClothSolver::load for a scene that the solver cannot run at its settings: the run ends as `unsupported`.
 class UnsupportedScene : public SolverError {
  public:
   using SolverError::SolverError;

@@ -69,8 +69,6 @@ void add_pair(Contour& to, const Simplex<3>& cloth, const Simplex<3>& object) {
 
 Point<4> at_time(const Point<3>& p, double t) { return {p[0], p[1], p[2], t}; }
 
-Point<3> vertex_of(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
-
 /// Whether a coordinate separates the motion p -> q from the triangle that moves from `from` to `to`. Both motions are
 /// linear, so a strict separation at the start and at the end holds in between, and a translation by e changes nothing.
 bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex<3>& from, const Simplex<3>& to) {
@@ -269,11 +267,11 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
 std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to,
                                   const TriangleMeshView& mesh, const TriangleTree& tree, std::span<const Link> links) {
   std::vector<int> step(from.size() / 3);
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(vertex_of(from, i), vertex_of(to, i), tree);
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(point_at(from, i), point_at(to, i), tree);
   const auto differ = [&](const Link& l) { return step[l[0]] != step[l[1]]; };
   const auto crosses_at = [&](std::span<const double> x) {
     return std::any_of(links.begin(), links.end(),
-                       [&](const Link& l) { return crosses(vertex_of(x, l[0]), vertex_of(x, l[1]), tree); });
+                       [&](const Link& l) { return crosses(point_at(x, l[0]), point_at(x, l[1]), tree); });
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
@@ -287,7 +285,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   std::vector<bool> proven(step.size(), false);
   for (std::size_t i = 0; i < step.size(); ++i) {
-    const Point<3> p = vertex_of(from, i), q = vertex_of(to, i);
+    const Point<3> p = point_at(from, i), q = point_at(to, i);
     proven[i] = step[i] != 0 && distance(p) + distance(q) > 2 * (q - p).norm();
   }
   for (bool changed = true; changed;) {

@@ -38,6 +38,8 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
 bool is_degenerate(const Simplex<3>& triangle);
 
 inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+/// Point `i` of coordinates, xyz interleaved.
+inline Point<3> point_at(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
 /// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from the
 /// side the normal points to. Triangles may be degenerate, and vertices may be repeated instead of shared.
@@ -46,7 +48,7 @@ struct TriangleMeshView {
   std::span<const std::array<std::uint32_t, 3>> triangles;
 
   std::size_t vertex_count() const { return positions.size() / 3; }
-  Point<3> vertex(std::size_t i) const { return Point<3>::Map(positions.data() + 3 * i); }
+  Point<3> vertex(std::size_t i) const { return point_at(positions, i); }
   Simplex<3> triangle(std::size_t t) const;
 };
 

@@ -47,7 +47,6 @@ class Motion {
   std::vector<double> start_velocity;  ///< [m/s] xyz interleaved
   double start_speed = 0;              ///< the highest of them [m/s]
   double grip_speed = 0;               ///< [m/s] the highest of an attachment between two frames, jumps included
-  bool even = true;                    ///< all frames have the same length
 
   V3 at(std::size_t frame, std::size_t vertex) const {
     const float* x = position_.data() + 3 * (frame * vertices + vertex);

@@ -171,7 +171,6 @@ Motion::Motion(const Scene& s, const Frames& f)
   triangles = clothbench::triangles(s.cloth);
   start_velocity = initial_velocities(s);
   for (std::size_t v = 0; v < vertices; ++v) start_speed = std::max(start_speed, start_velocity_of(v).norm());
-  even = s.time.ends_s.empty();
   for (std::size_t k = 1; k < frames; ++k) {
     const FrameMotion *was = scripted(k - 1), *now = scripted(k);
     if (was == nullptr || now == nullptr) break;

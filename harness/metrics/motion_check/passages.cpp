@@ -28,7 +28,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
     double all = 0;
     for (std::size_t v = 0; v < m.vertex_count(); ++v) {
       const double w = weight_of(m, v, j);
-      sum += w * V3(V3::Map(m.positions.data() + 3 * v));
+      sum += w * contact::point_at(m.positions, v);
       all += w;
     }
     if (all >= 1) out.push_back({j, sum / all});
@@ -38,8 +38,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
   const V3 middle = out.back().at_rest, along = (middle - out[out.size() - 2].at_rest).normalized();
   double ahead = 0;
   for (std::size_t v = 0; v < m.vertex_count(); ++v)
-    if (weight_of(m, v, end) >= 0.5)
-      ahead = std::max(ahead, along.dot(V3(V3::Map(m.positions.data() + 3 * v)) - middle));
+    if (weight_of(m, v, end) >= 0.5) ahead = std::max(ahead, along.dot(contact::point_at(m.positions, v) - middle));
   if (ahead > 0) out.push_back({end, middle + 0.5 * ahead * along});
   return out;
 }
@@ -167,7 +166,6 @@ int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& t
   Box swept;
   swept.extend(box_of(was)).extend(box_of(now));
   if (!swept.intersects(tree.tree().box())) return 0;
-  const auto of = [](const std::vector<double>& x, std::size_t v) { return V3(V3::Map(x.data() + 3 * v)); };
   const auto crossed = [&](const V3& p, const V3& q, auto note) {
     tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
       const Simplex<3>& s = tree.triangles()[static_cast<std::size_t>(t)];
@@ -178,7 +176,7 @@ int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& t
   bool any = false;
   for (std::size_t v = 0; v < m.vertices; ++v) {
     std::vector<V3> normals;
-    crossed(of(was, v), of(now, v), [&](const V3& n) { normals.push_back(n); });
+    crossed(contact::point_at(was, v), contact::point_at(now, v), [&](const V3& n) { normals.push_back(n); });
     any = any || !normals.empty();
     bool opposed = false;
     for (const V3& a : normals)

@@ -25,7 +25,7 @@ class Smoothness {
   void run() {
     freeze();
     stuck();
-    if (!m_.even || m_.frames < 9 || m_.vertices <= 20) return;
+    if (!m_.scene.time.ends_s.empty() || m_.frames < 9 || m_.vertices <= 20) return;
     found_.define("spike");
     std::vector<Field> around;
     for (std::size_t k = 2; k + 2 < m_.frames; ++k) {
