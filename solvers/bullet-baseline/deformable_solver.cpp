@@ -16,6 +16,9 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
+/// From the first end to the second, where Bullet evaluates forces.
+btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
+
 /// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
 /// along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
@@ -26,7 +29,7 @@ class GridSprings final : public btDeformableMassSpringForce {
   /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].
   explicit GridSprings(std::vector<btScalar> stiffness) : stiffness_(std::move(stiffness)) {}
 
-  void addScaledElasticForce(btScalar scale, TVStack& force) {
+  void addScaledElasticForce(btScalar scale, TVStack& force) override {
     for (int i = 0; i < body().m_links.size(); ++i) {
       const btSoftBody::Link& l = body().m_links[i];
       const btVector3 d = reach(l);
@@ -38,7 +41,7 @@ class GridSprings final : public btDeformableMassSpringForce {
     }
   }
 
-  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) {
+  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) override {
     for (int i = 0; i < body().m_links.size(); ++i) {
       const btSoftBody::Link& l = body().m_links[i];
       const btVector3 d = reach(l);
@@ -54,7 +57,7 @@ class GridSprings final : public btDeformableMassSpringForce {
     }
   }
 
-  double totalElasticEnergy(btScalar) {
+  double totalElasticEnergy(btScalar) override {
     double energy = 0;
     for (int i = 0; i < body().m_links.size(); ++i) {
       const btSoftBody::Link& l = body().m_links[i];
@@ -73,9 +76,6 @@ class GridSprings final : public btDeformableMassSpringForce {
 
   const std::vector<btScalar> stiffness_;
 };
-
-/// From the first end to the second, where Bullet evaluates forces.
-btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
 SolverInfo deformable_info() {
   SolverInfo info =

@@ -286,10 +286,10 @@ std::unique_ptr<Bodies> bodies_of(const Motion& m, std::span<const double> conta
 }
 
 std::span<const Contact> AllBodies::contacts(std::size_t frame) {
-  const auto at = known.find(frame);
-  if (at != known.end()) return at->second;
-  while (known.size() >= kFramesKept) known.erase(known.begin());
-  found = &known[frame];
+  const auto at = kept.find(frame);
+  if (at != kept.end()) return at->second;
+  while (kept.size() >= kFramesKept) kept.erase(kept.begin());
+  found = &kept[frame];
   reached[frame].assign(m.vertices, false);
   flags = &reached[frame];
   std::vector<V3> x;

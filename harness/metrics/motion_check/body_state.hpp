@@ -113,7 +113,7 @@ struct AllBodies final : Bodies {
   double highest_speed = 0;
   std::vector<contact::Link> links;
   std::vector<std::uint32_t> each;  ///< 0, 1, 2, ...
-  std::map<std::size_t, std::vector<Contact>> known;
+  std::map<std::size_t, std::vector<Contact>> kept;
   std::vector<Contact>* found = nullptr;
   std::vector<bool>* flags = nullptr;
   std::vector<std::vector<bool>> reached;
