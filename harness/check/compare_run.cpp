@@ -10,8 +10,6 @@
 #include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/metric.hpp"
-#include "metrics/registry.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {

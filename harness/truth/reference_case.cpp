@@ -230,9 +230,8 @@ std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
 }
 
 LatticeSampler sampler_of(const Cloth& c) {
-  std::vector<std::uint32_t> corners;
-  for (const auto& t : triangles(c)) corners.insert(corners.end(), t.begin(), t.end());
-  return {MaterialLattice(c.width_m, c.height_m), rest_uv(c), corners};
+  const auto all = triangles(c);
+  return {MaterialLattice(c.width_m, c.height_m), rest_uv(c), {all.front().data(), 3 * all.size()}};
 }
 
 std::vector<Vec3> column_means(const Cloth& c, const std::vector<double>& values) {

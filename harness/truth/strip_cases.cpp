@@ -20,11 +20,6 @@ constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet that shears
 // Links of the chain that is used as the continuum of a cantilever: off by 2.4e-7 of its length at Gamma = 10.
 constexpr int kSmooth = 2048;
 
-/// Distance of the last column from the middle of edge u0 along `direction`.
-std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& direction) {
-  return [=](const Columns& c) { return dot(c.back() - start, direction); };
-}
-
 /// Positions of a sheet that shears: away from its pinned edge it also narrows, by a third of its strain.
 std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Columns& columns) {
   const Cloth& c = s.scene.cloth;
@@ -138,7 +133,7 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
          "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   ReferenceCase known = s.reference_case();
-  known.quantity = tip(s.start, s.along);
+  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along); };
   using States = std::vector<Nodes>;
   const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5}, s.times_s()));
   known.columns = [s, states](int frame) {
@@ -204,7 +199,7 @@ ReferenceCase cantilever(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.settles = true;
   known.quantity_scale = free_m;
-  known.quantity = tip(s.start, -1 * s.up);
+  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, -1 * s.up); };
   known.columns = [s, cell, free_m, nodes = cantilever_nodes(s.links - 1, gamma)](int) {
     Columns out = {s.start};
     for (const auto& [x, y] : nodes) out.push_back(s.at(cell + free_m * x, -free_m * y));

@@ -6,18 +6,13 @@
 #include <cmath>
 
 namespace clothbench::bullet_baseline {
-namespace {
-
-std::string version() { return "Bullet " + std::to_string(btGetVersion()); }
-
-}  // namespace
 
 SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings) {
   SolverInfo info;
   info.name = name;
   info.folder = "solvers/bullet-baseline";
   info.summary = summary;
-  info.version = version();
+  info.version = "Bullet " + std::to_string(btGetVersion());
   info.precision = sizeof(btScalar) == 4 ? "float32" : "float64";
   info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,       Feature::Damping,
                    Feature::Pins,     Feature::MovingPins,  Feature::Sphere,     Feature::Box,
@@ -62,7 +57,7 @@ BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
                 settings["collision_margin_m"].dump());
 }
 
-DeviceInfo BulletSolver::device() const { return {"CPU", version(), "C++", false, "{}"}; }
+DeviceInfo BulletSolver::device() const { return {"CPU", info_.version, "C++", false, "{}"}; }
 
 void BulletSolver::load(const Scene& scene) {
   refuse_mesh_bending(scene);

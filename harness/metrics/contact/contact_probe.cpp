@@ -208,15 +208,13 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
 bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
   const Box& box = mesh.tree().box();
   if (mesh.triangles().empty() || !box.contains(p)) return false;
-  int axis = 0;
-  bool up = true;
-  double least = box.max()[0] - p[0];
-  for (int k = 0; k < 3; ++k) {
-    if (box.max()[k] - p[k] < least) axis = k, up = true, least = box.max()[k] - p[k];
-    if (p[k] - box.min()[k] < least) axis = k, up = false, least = p[k] - box.min()[k];
-  }
+  Eigen::Index up = 0, down = 0;
+  const double above = (box.max() - p).minCoeff(&up), below = (p - box.min()).minCoeff(&down);
   Point<3> outside = p;
-  outside[axis] = up ? box.max()[axis] + box.diagonal().norm() : box.min()[axis] - box.diagonal().norm();
+  if (below < above)
+    outside[down] = box.min()[down] - box.diagonal().norm();
+  else
+    outside[up] = box.max()[up] + box.diagonal().norm();
   return signed_crossings(p, outside, mesh) > 0;
 }
 
