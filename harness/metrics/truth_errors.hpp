@@ -51,8 +51,7 @@ struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };
 
-/// The judge's scene is the one that was run, with drawn and overridden parameters. Throws Error if its reference case
-/// has no tolerance (truth/reference_case.hpp).
+/// The judge's scene is the one that was run. Throws Error if its reference case has no tolerance.
 ExactBound exact_bound(const TruthJudge&);
 
 }  // namespace clothbench

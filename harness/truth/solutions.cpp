@@ -57,8 +57,7 @@ double p2(double x) {
 
 double rate_of(const Pendulum& p) { return std::sqrt(p.gravity_m_per_s2 / p.length_m); }
 
-// Time in units of sqrt(L/g) and length in units of L, so that tolerances mean the same at any scale. State: angles
-// below the horizontal, then their rates.
+// Units are sqrt(L/g) and L, so that tolerances hold at any scale. State: angles below the horizontal, their rates.
 class ChainMotion {
  public:
   ChainMotion(int links, double end_mass_ratio)

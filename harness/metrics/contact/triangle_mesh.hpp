@@ -201,8 +201,7 @@ struct Nearest {
   Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest point of a union of capsules. `before`: the same capsules at the previous frame, as many as `now`; they may
-/// turn but do not spin about their axes.
+/// Nearest point of a union of capsules. `before`: the same ones at the previous frame, not spun about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
 /// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.
@@ -212,8 +211,7 @@ std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, doub
 /// Whether a triangle has a point at most `reach_m` from a mesh.
 bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m);
 
-/// Corner weights of the point of a triangle with area that is nearest to p; they are never negative and sum to 1
-/// (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Corner weights, 0 to 1, of the point of a triangle nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
 Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle);
 
 /// Squared distance [m2] between the segments a-b and c-d (Ericson, Real-Time Collision Detection, 5.1.9).
