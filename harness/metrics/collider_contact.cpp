@@ -164,16 +164,12 @@ class Probes final : public ColliderContact {
     const ColliderKind& kind = kind_of(scene.colliders[k]);
     if (kind.half_space) return;
     const TriangleMeshView cloth{x, triangles};
-    const Point<3> margin = Point<3>::Constant(reach_m[k]);
     std::vector<contact::Capsule> capsules;
     std::vector<contact::Box> boxes;
     contact::Box all;
     if (kind.capsules != nullptr) capsules = capsules_at(k, frame);
-    for (const contact::Capsule& s : capsules) {
-      contact::Box box = contact::Box(s.a).extend(s.b);
-      const Point<3> out = margin + Point<3>::Constant(s.radius_m);
-      all.extend(boxes.emplace_back(box.min() - out, box.max() + out));
-    }
+    for (const contact::Capsule& s : capsules)
+      all.extend(boxes.emplace_back(contact::grown(contact::Box(s.a).extend(s.b), reach_m[k] + s.radius_m)));
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto& [p, q, r] = triangles[t];
       if (touched[k][p] || touched[k][q] || touched[k][r]) continue;

@@ -102,17 +102,6 @@ class Unknowns {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges_, clamp_of_;
 };
 
-Sparse part(const Triplets& all, int first_row, int rows, int first_column, int columns) {
-  Triplets in;
-  for (const auto& t : all) {
-    const int r = t.row() - first_row, c = t.col() - first_column;
-    if (r >= 0 && r < rows && c >= 0 && c < columns) in.emplace_back(r, c, t.value());
-  }
-  Sparse out(rows, columns);
-  out.setFromTriplets(in.begin(), in.end());
-  return out;
-}
-
 }  // namespace
 
 Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vector<std::uint32_t>& pinned) {
@@ -132,11 +121,13 @@ Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vec
         all.emplace_back(static_cast<int>(i), static_cast<int>(j), rigidity_N_m * f.area_m2 * a.dot(b));
   }
   const int n = static_cast<int>(unknowns.vertices()), m = static_cast<int>(unknowns.count()) - n;
-  Sparse across = part(all, n, m, n, m);
+  Sparse whole(n + m, n + m);
+  whole.setFromTriplets(all.begin(), all.end());
+  Sparse across = whole.block(n, n, m, m);
   // The derivative across an edge between clamped triangles is no unknown: a row without entries.
   for (int e = 0; e < m; ++e)
     if (!(across.coeff(e, e) > 0)) across.coeffRef(e, e) = 1;
-  const Sparse vertex = part(all, 0, n, 0, n), mixed = part(all, n, m, 0, n);
+  const Sparse vertex = whole.block(0, 0, n, n), mixed = whole.block(n, 0, m, n);
   const Eigen::SimplicialLLT<Sparse> solver(across);
   Triplets kept;
   const double least = 1e-13 * vertex.diagonal().maxCoeff();

@@ -291,11 +291,10 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   StabilityVerdict out;
   const auto series = std::find_if(pass.metrics.begin(), pass.metrics.end(),
                                    [](const MetricSeries& m) { return m.name == "stability_classes"; });
-  const std::vector<double>* classes = series == pass.metrics.end() ? nullptr : &series->values;
-  if (classes == nullptr) return out;
+  if (series == pass.metrics.end()) return out;
   for (const bool fatal : {true, false})
-    for (std::size_t f = 0; f < classes->size(); ++f) {
-      const auto set = static_cast<unsigned>((*classes)[f]) & (fatal ? ~kDegrading : kDegrading);
+    for (std::size_t f = 0; f < series->values.size(); ++f) {
+      const auto set = static_cast<unsigned>(series->values[f]) & (fatal ? ~kDegrading : kDegrading);
       if (set == 0) continue;
       out.grade = fatal ? StabilityVerdict::Grade::Failed : StabilityVerdict::Grade::Degraded;
       out.klass = "F" + std::to_string(least(set));
