@@ -20,12 +20,7 @@ constexpr std::size_t kGap = 2;
 /// A bar or line break inside a cell would end it.
 std::string markdown_cell(const std::string& text) {
   std::string out;
-  for (const char c : text) {
-    if (c == '|')
-      out += "\\|";
-    else
-      out += c == '\n' || c == '\r' ? ' ' : c;
-  }
+  for (const char c : text) out += c == '|' ? "\\|" : std::string(1, c == '\n' || c == '\r' ? ' ' : c);
   return out;
 }
 

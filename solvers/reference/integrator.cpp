@@ -213,8 +213,7 @@ class Rattle final : public Integrator {
 }  // namespace
 
 /// Without compliance the lower block is 0 and a factorisation without pivoting meets zero pivots. A little is taken
-/// off it (quasi-definite matrices work in every ordering: Vanderbei 1995), and refinement by the true matrix undoes
-/// it.
+/// off it (quasi-definite: every ordering works, Vanderbei 1995); refinement by the true matrix undoes it.
 void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   constexpr double kShift =
       1e-9;  // relative to the largest diagonal entry of G A^-1 G^T, which is 2 / smallest diagonal of A
