@@ -44,7 +44,7 @@ class ColliderBodies {
     std::size_t collider, triangle, body;
   };
 
-  void add(std::unique_ptr<btCollisionShape>, const btTransform&, const Collider&, bool moves);
+  void add(std::unique_ptr<btCollisionShape>, const btTransform&, const Collider&);
   void add_static(const Collider&);
   void add_mesh(const Scene&, std::size_t collider);
   void add_capsules(const Scene&, std::size_t collider);

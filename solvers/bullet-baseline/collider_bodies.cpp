@@ -93,15 +93,14 @@ ColliderBodies::~ColliderBodies() {
   for (Body& b : bodies_) world_.removeRigidBody(b.body.get());
 }
 
-void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c,
-                         bool moves) {
+void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c) {
   Body b;
   b.shape = std::move(shape);
   b.motion = std::make_unique<btDefaultMotionState>(at);
   btRigidBody::btRigidBodyConstructionInfo made_of(0, b.motion.get(), b.shape.get());
   made_of.m_friction = static_cast<btScalar>(c.friction);
   b.body = std::make_unique<btRigidBody>(made_of);
-  if (moves) {
+  if (c.moves()) {
     b.body->setCollisionFlags(b.body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     b.body->setActivationState(DISABLE_DEACTIVATION);
   }
@@ -114,15 +113,15 @@ void ColliderBodies::add_static(const Collider& c) {
   btTransform at = btTransform::getIdentity();
   at.setOrigin(center);
   if (c.shape == Collider::Shape::Sphere) {
-    add(std::make_unique<btSphereShape>(static_cast<btScalar>(c.radius_m)), at, c, false);
+    add(std::make_unique<btSphereShape>(static_cast<btScalar>(c.radius_m)), at, c);
   } else if (c.shape == Collider::Shape::Box) {
     add(std::make_unique<btBoxShape>(to_bullet(c.half_extent_m)),
-        frame(to_bullet(c.axes[0]), to_bullet(c.axes[1]), to_bullet(c.axes[2]), center), c, false);
+        frame(to_bullet(c.axes[0]), to_bullet(c.axes[1]), to_bullet(c.axes[2]), center), c);
   } else {
     const auto half = static_cast<btScalar>(kGroundHalf_m);
     const btVector3 up = to_bullet(c.normal);
     add(std::make_unique<btBoxShape>(btVector3(half, half, half)),
-        btTransform(shortestArcQuat(btVector3(0, 1, 0), up), center - up * half), c, false);
+        btTransform(shortestArcQuat(btVector3(0, 1, 0), up), center - up * half), c);
   }
 }
 
@@ -137,7 +136,7 @@ void ColliderBodies::add_mesh(const Scene& scene, std::size_t collider) {
     auto shape = std::make_unique<btTriangleShape>(back * corners[0], back * corners[1], back * corners[2]);
     shape->setMargin(kTriangleMargin_m);
     if (c.moves()) triangles_.push_back({collider, t, bodies_.size()});
-    add(std::move(shape), at, c, c.moves());
+    add(std::move(shape), at, c);
   }
 }
 
@@ -149,7 +148,7 @@ void ColliderBodies::add_capsules(const Scene& scene, std::size_t collider) {
     capsules_.push_back({collider, k, bodies_.size(), turn});
     add(std::make_unique<btCapsuleShape>(static_cast<btScalar>(c.capsules[k].radius_m),
                                          static_cast<btScalar>(length(c.capsules[k]))),
-        at, c, true);
+        at, c);
   }
 }
 

@@ -31,10 +31,9 @@ bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own)
 }
 
 double depth_in_mesh(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh) {
-  const Box& box = mesh.tree().box();
   double most = 0;
   const auto at = [&](const Point<3>& p) {
-    if (box.contains(p) && is_inside(p, mesh)) most = std::max(most, mesh.distance(p));
+    if (is_inside(p, mesh)) most = std::max(most, mesh.distance(p));
   };
   for (std::size_t v = 0; v < cloth.vertex_count(); ++v) at(cloth.vertex(v));
   for (const auto& [a, b] : links) at(0.5 * (cloth.vertex(a) + cloth.vertex(b)));

@@ -225,17 +225,13 @@ double StabilityJudge::visible_energy(const ClothState& s) const {
 /// F0 and F1, and the frame from which F1 and F2 count.
 void StabilityJudge::judge_motion(int frame, const ClothState& state, const Strain& strain, StabilityFrame& out) {
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
-  const Bounds& base = bounds_[0];
   const auto set_base = [&] {
     const double area = scene_.cloth.width_m * scene_.cloth.height_m;
     energy_base_J_ = visible_energy(state) +
                      0.5 * stiffness_ * area * (strain.rms * strain.rms + shear_square(scene_, state.position));
     work_base_J_ = b.work_J;
   };
-  if (frame == 0) {
-    set_base();
-    work_base_J_ = base.work_J;
-  }
+  if (frame == 0) set_base();
   const StabilityRules& rules = scene_.stability;
   if (!rules.when_relaxed)
     relaxed_ = true;
