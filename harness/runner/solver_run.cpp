@@ -213,8 +213,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
   if (verdict.klass != "ok" && outcome_.klass != "F3") {
     outcome_.klass = verdict.klass;
     outcome_.failed_frame = verdict.frame;
-    if (outcome_.message.empty() || outcome_.status == "diverged")
-      outcome_.message = verdict.text();
+    if (outcome_.message.empty() || outcome_.status == "diverged") outcome_.message = verdict.text();
   }
   return pass;
 }
