@@ -7,6 +7,8 @@
 namespace clothbench::contact {
 namespace {
 
+Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
+
 /// A wavy cloth through a bumpy ball: every figure is nonzero and nothing is special.
 Mesh wavy(int cells) {
   return sheet(cells, cells, {-0.3, 0.11, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}).mapped([](const Point<3>& p) {
@@ -49,7 +51,7 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
 
 TEST(Robustness, NotFiniteIsNaN) {
   const Mesh cloth = wavy(8), ball = bumpy_ball(6, 0.15);
-  const Capsule shape = {Point<3>::Zero(), Point<3>::Zero(), 0.15};
+  const Capsule shape = sphere(Point<3>::Zero(), 0.15);
   for (const double bad : std::initializer_list<double>{std::nan(""), INFINITY, -INFINITY}) {
     Mesh broken = cloth;
     broken.positions[17] = bad;
