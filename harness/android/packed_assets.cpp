@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "base/files.hpp"
-#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench::android {

@@ -48,15 +48,9 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
 }  // namespace
 
 std::string ChildEnd::text() const {
-  switch (how) {
-    case How::Exited:
-      return fmt::format("exit status {}", code);
-    case How::Signalled:
-      return fmt::format("signal {} ({})", code, strsignal(code));
-    case How::TimedOut:
-      return fmt::format("killed after {:.1f} s", wall_s);
-  }
-  return "";
+  if (how == How::Exited) return fmt::format("exit status {}", code);
+  if (how == How::Signalled) return fmt::format("signal {} ({})", code, strsignal(code));
+  return fmt::format("killed after {:.1f} s", wall_s);
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetup& setup) {

@@ -19,10 +19,10 @@ std::string listed(const std::vector<fs::path>& places) {
 }  // namespace
 
 DataRoots data_roots() {
-  DataRoots roots{{}, kSourceRoot};
+  DataRoots roots{{}, CLOTHBENCH_SOURCE_ROOT};
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  if (!unknown) roots.installed = (program.parent_path() / kDataFromProgram).lexically_normal();
+  if (!unknown) roots.installed = (program.parent_path() / CLOTHBENCH_DATA_FROM_PROGRAM).lexically_normal();
   return roots;
 }
 

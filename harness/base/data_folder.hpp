@@ -32,11 +32,7 @@ std::string named_data(const DataFolder&);
 /// Places to search if the variable is not set: the installed tree, then the source tree.
 std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoots& = data_roots());
 
-/// The folder that the variable names; if it is not set, the first of the usual places that exists. Throws Error that
-/// lists every place if there is none.
+/// The folder that the variable names; if not set, the first usual place that exists. Throws Error with all places.
 std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
-
-extern const char* const kSourceRoot;       ///< the source tree this was built from
-extern const char* const kDataFromProgram;  ///< from the program's folder to the installed share/clothbench
 
 }  // namespace clothbench

@@ -6,8 +6,7 @@
 
 namespace clothbench {
 
-/// Random numbers that are the same on every machine: the engine is the standard's, and the distributions are these,
-/// because the standard leaves its own to each library.
+/// Random numbers that are the same on every machine: the standard fixes its engines but not its distributions.
 class Dice {
  public:
   /// One sequence for each pair of a seed and a word.

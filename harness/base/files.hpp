@@ -19,4 +19,7 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
 /// Writes a temporary file and publishes it, so that readers see the old or the new file, never a part.
 void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
+/// SHA-256 of `data` in lower-case hexadecimal (FIPS 180-4).
+std::string sha256(const std::string& data);
+
 }  // namespace clothbench

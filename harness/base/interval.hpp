@@ -1,6 +1,10 @@
 #pragma once
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
+
+#include "clothbench/error.hpp"
 
 namespace clothbench {
 
@@ -11,6 +15,14 @@ struct Interval {
 
 /// 95 % Wilson score interval of the pass probability, if `passed` of `drawn` independent trials passed; [0, 1] without
 /// trials. Throws Error if more passed than were drawn. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
-Interval wilson_95(std::size_t passed, std::size_t drawn);
+inline Interval wilson_95(std::size_t passed, std::size_t drawn) {
+  if (passed > drawn)
+    throw Error("Wilson's interval: " + std::to_string(passed) + " of " + std::to_string(drawn) + " passed");
+  if (drawn == 0) return {0, 1};
+  constexpr double z = 1.959963984540054;  // 97.5 % point of the normal distribution
+  const double n = static_cast<double>(drawn), p = static_cast<double>(passed) / n, zz = z * z / n;
+  const double middle = (p + zz / 2) / (1 + zz), half = z / (1 + zz) * std::sqrt(p * (1 - p) / n + zz / (4 * n));
+  return {passed == 0 ? 0 : std::max(0.0, middle - half), passed == drawn ? 1 : std::min(1.0, middle + half)};
+}
 
 }  // namespace clothbench

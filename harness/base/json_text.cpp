@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -14,6 +16,7 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 
 namespace clothbench {
@@ -158,8 +161,7 @@ std::string expectation(const json& s) {
   return joined(parts);
 }
 
-/// First key of an object that its schema does not know, with the nearest known one; searched depth first, because
-/// valijson names only the object.
+/// First key of an object that its schema does not know, with the nearest known one (valijson names only the object).
 std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
   const json s = json(sub_schema(schema, root));
   if (value.is_object() && s.contains("properties")) {
@@ -269,6 +271,35 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
   throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),
                           shortened(found.dump(-1, ' ', false, json::error_handler_t::replace), 60)));
+}
+
+json finite_or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
+
+json number_to_json(double v) {
+  if (std::isnan(v)) return nullptr;
+  if (std::isinf(v)) return v > 0 ? "inf" : "-inf";
+  return v;
+}
+
+double number_from_json(const json& j, const std::string& name) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (j.is_number()) return j.get<double>();
+  if (j.is_null()) return kMissing;
+  if (j == "inf") return kInfinity;
+  if (j == "-inf") return -kInfinity;
+  throw Error(name + R"(: expected a number, null, "inf" or "-inf"; found )" + shortened(j.dump(), 60));
+}
+
+json numbers_to_json(const std::map<std::string, double>& values) {
+  json j = json::object();
+  for (const auto& [name, v] : values) j[name] = number_to_json(v);
+  return j;
+}
+
+std::map<std::string, double> numbers_from_json(const json& j) {
+  std::map<std::string, double> values;
+  for (const auto& [name, v] : j.items()) values[name] = number_from_json(v, name);
+  return values;
 }
 
 }  // namespace clothbench

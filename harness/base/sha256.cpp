@@ -1,8 +1,8 @@
-#include "base/sha256.hpp"
-
 #include <array>
 #include <bit>
 #include <cstdint>
+
+#include "base/files.hpp"
 
 namespace clothbench {
 namespace {

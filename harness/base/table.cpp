@@ -20,12 +20,7 @@ constexpr std::size_t kGap = 2;
 /// A bar or line break inside a cell would end it.
 std::string markdown_cell(const std::string& text) {
   std::string out;
-  for (const char c : text) {
-    if (c == '|')
-      out += "\\|";
-    else
-      out += c == '\n' || c == '\r' ? ' ' : c;
-  }
+  for (const char c : text) out += c == '|' ? "\\|" : std::string(1, c == '\n' || c == '\r' ? ' ' : c);
   return out;
 }
 
@@ -151,8 +146,7 @@ std::string Table::markdown() const {
   return out + (note.empty() ? "" : "\n" + note + "\n");
 }
 
-/// Number of columns that are repeated where a table is too wide for one piece: those that tell its rows apart, at
-/// most 2.
+/// Number of columns that each piece of a wide table repeats: those that tell its rows apart, at most 2.
 static std::size_t label_columns(const std::vector<std::vector<std::string>>& rows) {
   std::set<std::string> names;
   for (const auto& row : rows)

@@ -1,5 +1,3 @@
-#include "check/baseline.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/json_text.hpp"
 #include "base/words.hpp"
+#include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "results/store.hpp"

@@ -61,8 +61,7 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds what differs between the first run of A and every other one. Another order is no difference of the
-/// runs, only no basis for a statement on times.
+/// Adds what differs between the first run of A and the others. Another order only gives no statement on times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);
@@ -113,9 +112,8 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// For every assignment of the logarithms to two sides of the same sizes but the actual one: the shift of B at which it
-/// has the same difference of means as the actual one. That is the mean of those that change sides, B's minus A's.
-/// Ascending.
+/// Ascending, for every other assignment of the logarithms to two sides of these sizes: the shift of B that gives it
+/// the actual difference of means. That is the mean of those that change sides, B's minus A's.
 std::vector<double> shifts_of(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t m = a.size(), n = m + b.size();
   const std::uint32_t actual = (1u << m) - 1, end = 1u << n;

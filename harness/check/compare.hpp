@@ -1,13 +1,118 @@
 #pragma once
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "check/baseline.hpp"
 #include "clothbench/record.hpp"
+#include "metrics/registry.hpp"
 
 namespace clothbench {
+
+/// A condition that must be equal in two compared runs. `kind`: the word for `--allow`, shared by several conditions.
+struct Condition {
+  std::string kind, what, value;  ///< `value`: "–" if the run does not state it
+};
+
+/// The kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
+const std::vector<std::string>& condition_kinds();
+
+/// All conditions of a run, in the order of the kinds. A run that did not end well has no "length", since it is the
+/// result that is shorter; one without timed trials has no "trials".
+std::vector<Condition> conditions_of(const RunRecord&);
+
+struct ConditionDifference {
+  std::string kind, what, a, b;
+  bool operator==(const ConditionDifference&) const = default;
+};
+
+/// Conditions that both have with different values.
+std::vector<ConditionDifference> differences(const std::vector<Condition>& a, const std::vector<Condition>& b);
+
+/// Keys of the two completed scenes that differ, with both values: "/cloth/grid/0: 8, 24"; at most 4, then a count.
+std::string scene_difference(const RunRecord& a, const RunRecord& b);
+
+/// Differences of several runs, each with the runs that have it.
+class DifferingRuns {
+ public:
+  explicit DifferingRuns(std::vector<std::string> allowed = {}) : allowed_(std::move(allowed)) {}
+
+  void add(const std::string& run, const ConditionDifference&);
+  /// Throws Error that names every difference that is not allowed, with both values. `a`, `b`: names of the sides.
+  void refuse(const std::string& a, const std::string& b) const;
+  /// A line for each difference, which marks an output and begins with `what`; empty if there is none.
+  std::string marks(const std::string& what = "Compared although it differs, by --allow") const;
+  nlohmann::json json() const;
+  bool empty() const { return all_.empty(); }
+
+ private:
+  struct Entry {
+    ConditionDifference difference;
+    std::vector<std::string> runs;
+  };
+  std::string line(const Entry&) const;
+
+  std::vector<std::string> allowed_;
+  std::vector<Entry> all_;
+};
+
+/// Key of a run.
+struct RunKey {
+  std::string scene, solver, setting;
+  // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
+  bool operator==(const RunKey&) const = default;
+  bool operator<(const RunKey& o) const {
+    return std::tie(scene, solver, setting) < std::tie(o.scene, o.solver, o.setting);
+  }
+
+  std::string file_name() const;  ///< "<scene>__<solver>__<setting>", as the result file is called
+};
+
+/// The part of a run that does not depend on the machine.
+struct BaselineRun {
+  RunKey key;
+  std::vector<Condition> conditions;  ///< under which its values hold, scene included, but no machine, driver or trials
+  std::string status, klass;
+  int failed_frame = -1;
+  std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
+  std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
+};
+
+struct Baseline {
+  std::vector<BaselineRun> runs;  ///< sorted by key, no key twice
+};
+
+/// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
+BaselineRun gated_part(const RunRecord&);
+/// The same with every scalar that does not depend on the machine.
+BaselineRun whole_part(const RunRecord&);
+
+/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a
+/// key that is unknown or missing, a scalar that has no gate, or a run that is listed twice.
+Baseline read_baseline(const std::filesystem::path&);
+
+/// The file's text: one line per value, sorted; numbers read back exactly.
+std::string baseline_text(const Baseline&);
+
+/// results/baselines/baseline.schema.json, compiled in.
+extern const char* const kBaselineSchema;
+
+/// Rule that compares a summary scalar with its baseline; nullptr: it is not compared. Results of bounds have no slack.
+const Gate* find_gate(const std::string& name);
+
+/// Whether it is the result of a bound, 1 pass or 0 fail: fail after pass fails, pass after fail is an improvement.
+bool is_verdict(const std::string& name);
+
+std::vector<std::string> gated_names();
+
+/// Allowed deviation from `baseline` in either direction [unit of the scalar]. `length_m`: shorter side of the cloth.
+double slack(const Gate&, double baseline, double length_m);
+
+/// "0.01 L + 10 %; none at 0", where L is the shorter side.
+std::string slack_text(const Gate&);
 
 /// Processes that each side needs for a statement about times. With 5 and 5 the test has a size of 4.8 %.
 inline constexpr std::size_t kMinProcesses = 5;
@@ -39,8 +144,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// taken for a difference of the builds. True if a start is not known.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts. Changed: of two builds, neither
-/// of which is right.
+/// Ordered from good to bad; a whole has the worst verdict of its parts. Changed: of two builds, neither of them right.
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
@@ -87,8 +191,7 @@ std::vector<Finding> motion_findings(const RunRecord&);
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine
-/// (relative tolerance 1e-9), and, where one differs, the maximum distance between the two motions over the longer
-/// side.
+/// (relative tolerance 1e-9), and, where one differs, the maximum distance of the motions over the longer side.
 std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
 
 /// One element per process: the runs of its folder.
@@ -96,12 +199,12 @@ using Processes = std::vector<std::vector<RunRecord>>;
 
 /// Compares two builds run by run: the results of each side's first process, and the times of all processes. The runs
 /// of A come first, then the runs that only B has. Throws Error if paired runs, or processes of one side, differ in a
-/// condition whose kind is not in `allowed` (check/baseline.hpp), or if a process has a run twice.
+/// condition whose kind is not in `allowed`, or if a process has a run twice.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline without a result fails, and so does a planned run without a
 /// result. A run that is not in the baseline is new. Throws Error if a run is twice among the results, or if a
-/// condition of a kind that is not in `allowed` differs from the baseline's (check/baseline.hpp).
+/// condition of a kind that is not in `allowed` differs from the baseline's.
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {
@@ -128,9 +231,8 @@ nlohmann::json update_json(const Updated&, const std::string& baseline_file);
 std::string comparison_text(const Checked&);
 nlohmann::json comparison_json(const Checked&);
 
-/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a
-/// <failure> if it failed. Improvements and new runs are in <system-out>. Text that XML 1.0 or UTF-8 does not allow is
-/// replaced.
+/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a <failure>
+/// if it failed. Improvements and new runs are in <system-out>. Replaces text that XML 1.0 or UTF-8 forbids.
 std::string junit_xml(const Checked&);
 
 /// A command of GitHub Actions per failure, which shows it at the top of the job.

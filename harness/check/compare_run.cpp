@@ -7,13 +7,9 @@
 #include <set>
 
 #include "base/words.hpp"
-#include "check/baseline.hpp"
 #include "check/compare.hpp"
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
-#include "metrics/metric.hpp"
-#include "metrics/registry.hpp"
-#include "results/replay.hpp"
 #include "results/store.hpp"
 
 namespace clothbench {
@@ -150,8 +146,7 @@ std::vector<float> positions_of(const RunRecord& c) {
   return !c.accuracy.position.empty() || c.file.empty() ? c.accuracy.position : read_run(c.file).accuracy.position;
 }
 
-/// Maximum distance of a vertex between the two motions, over the longer side of the cloth; NaN if they have different
-/// frames or the scene has no cloth size.
+/// Maximum distance of a vertex between the motions, over the longer side; NaN with other frames or no cloth size.
 double motion_distance(const RunRecord& a, const RunRecord& b) {
   const std::vector<float> p = positions_of(a), q = positions_of(b);
   const auto size = cloth_size_m(a);

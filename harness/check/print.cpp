@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "base/table.hpp"
 #include "check/compare.hpp"
 

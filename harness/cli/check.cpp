@@ -1,5 +1,4 @@
 #include "base/files.hpp"
-#include "check/baseline.hpp"
 #include "check/compare.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"

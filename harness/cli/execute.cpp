@@ -8,7 +8,7 @@
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"
-#include "results/result_folder.hpp"
+#include "results/store.hpp"
 #include "runner/environment.hpp"
 #include "runner/study_plan.hpp"
 

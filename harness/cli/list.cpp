@@ -6,7 +6,7 @@
 #include "base/json_text.hpp"
 #include "base/table.hpp"
 #include "base/words.hpp"
-#include "check/baseline.hpp"
+#include "check/compare.hpp"
 #include "cli/command.hpp"
 #include "metrics/registry.hpp"
 #include "report/view.hpp"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"

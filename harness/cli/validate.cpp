@@ -1,5 +1,5 @@
 #include "cli/command.hpp"
-#include "results/result_folder.hpp"
+#include "results/store.hpp"
 #include "runner/study_plan.hpp"
 #include "scenario/study.hpp"
 

@@ -21,17 +21,8 @@ using contact::Point;
 using contact::TriangleMeshView;
 using contact::TriangleTree;
 
-std::vector<contact::Capsule> contact_capsules(const std::vector<Capsule>& capsules) {
-  std::vector<contact::Capsule> out;
-  for (const Capsule& c : capsules) out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
-  return out;
-}
-
-Point<3> vertex_of(const std::vector<double>& x, std::size_t v) { return Point<3>::Map(&x[3 * v]); }
-
-}  // namespace
-
-struct ColliderContact::Probes {
+class Probes final : public ColliderContact {
+ public:
   Probes(const Scene& s, const std::vector<double>& held_at_m)
       : scene(s),
         triangles(clothbench::triangles(s.cloth)),
@@ -56,6 +47,49 @@ struct ColliderContact::Probes {
       area.push_back(contact::area(TriangleMeshView{rest, triangles}.triangle(t)));
   }
 
+  SceneContact probe(int frame, const std::vector<double>& positions) override {
+    advance(frame);
+    SceneContact all{0, any_inside ? 0 : kMissing};
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const contact::ContactSample s = sample(k, frame, positions);
+      all.length_m += s.contour_length_m;
+      if (has_inside(scene.colliders[k])) all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
+    }
+    return all;
+  }
+
+  SceneTouch touch(int frame, const std::vector<double>& x) override {
+    if (!contact::all_finite(x)) {
+      before.clear();
+      return {kMissing, kMissing};
+    }
+    advance(frame);
+    std::vector<bool> touching(triangles.size(), false);
+    double slid = 0, kept = 0;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const std::vector<std::optional<Nearest>> found = near(k, frame, x);
+      for (std::size_t v = 0; v < found.size(); ++v) {
+        if (found[v] && touched[k][v] != 0 && !before.empty()) {
+          const Point<3> way = contact::point_at(x, v) - contact::point_at(before, v) - found[v]->carried_m;
+          slid += (way - found[v]->normal.dot(way) * found[v]->normal).norm();
+          kept += 1;
+        }
+        touched[k][v] = found[v].has_value();
+      }
+      for (std::size_t t = 0; t < triangles.size(); ++t)
+        for (const std::uint32_t v : triangles[t]) touching[t] = touching[t] || touched[k][v];
+      touch_between(k, frame, x, [&](std::size_t t) { touching[t] = true; });
+    }
+    double all = 0, part = 0;
+    for (std::size_t t = 0; t < touching.size(); ++t) {
+      all += area[t];
+      if (touching[t]) part += area[t];
+    }
+    before = x;
+    return {part / all, kept > 0 ? slid / kept : 0};
+  }
+
+ private:
   /// Pose of a collider at the end of a frame, 0 = the start.
   const ColliderPose& pose_at(std::size_t k, int frame) const {
     static const ColliderPose still;
@@ -78,8 +112,11 @@ struct ColliderContact::Probes {
   }
 
   std::vector<contact::Capsule> capsules_at(std::size_t k, int frame) const {
-    const Collider& c = scene.colliders[k];
-    return contact_capsules(kind_of(c).capsules(c, pose_at(k, frame)));
+    const Collider& collider = scene.colliders[k];
+    std::vector<contact::Capsule> out;
+    for (const Capsule& c : kind_of(collider).capsules(collider, pose_at(k, frame)))
+      out.push_back({contact::point(c.a_m), contact::point(c.b_m), c.radius_m});
+    return out;
   }
 
   contact::ContactSample sample(std::size_t k, int frame, const std::vector<double>& positions) const {
@@ -98,7 +135,7 @@ struct ColliderContact::Probes {
     std::vector<std::optional<Nearest>> out(x.size() / 3);
     const auto each = [&](auto find) {
       for (std::size_t v = 0; v < out.size(); ++v) {
-        const std::optional<Nearest> found = find(vertex_of(x, v));
+        const std::optional<Nearest> found = find(contact::point_at(x, v));
         if (found && found->distance_m <= reach_m[k]) out[v] = found;
       }
     };
@@ -127,16 +164,12 @@ struct ColliderContact::Probes {
     const ColliderKind& kind = kind_of(scene.colliders[k]);
     if (kind.half_space) return;
     const TriangleMeshView cloth{x, triangles};
-    const Point<3> margin = Point<3>::Constant(reach_m[k]);
     std::vector<contact::Capsule> capsules;
     std::vector<contact::Box> boxes;
     contact::Box all;
     if (kind.capsules != nullptr) capsules = capsules_at(k, frame);
-    for (const contact::Capsule& s : capsules) {
-      contact::Box box = contact::Box(s.a).extend(s.b);
-      const Point<3> out = margin + Point<3>::Constant(s.radius_m);
-      all.extend(boxes.emplace_back(box.min() - out, box.max() + out));
-    }
+    for (const contact::Capsule& s : capsules)
+      all.extend(boxes.emplace_back(contact::grown(contact::Box(s.a).extend(s.b), reach_m[k] + s.radius_m)));
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto& [p, q, r] = triangles[t];
       if (touched[k][p] || touched[k][q] || touched[k][r]) continue;
@@ -162,52 +195,10 @@ struct ColliderContact::Probes {
   std::vector<double> before;  ///< positions at the last frame; empty at the start and after a state that is not finite
 };
 
-ColliderContact::ColliderContact(const Scene& scene, const std::vector<double>& held_at_m)
-    : probes_(std::make_unique<Probes>(scene, held_at_m)) {}
-ColliderContact::~ColliderContact() = default;
+}  // namespace
 
-SceneContact ColliderContact::probe(int frame, const std::vector<double>& positions) {
-  Probes& p = *probes_;
-  p.advance(frame);
-  SceneContact all{0, p.any_inside ? 0 : kMissing};
-  for (std::size_t k = 0; k < p.meshes.size(); ++k) {
-    const contact::ContactSample s = p.sample(k, frame, positions);
-    all.length_m += s.contour_length_m;
-    if (has_inside(p.scene.colliders[k])) all.depth_m = max_or_nan(all.depth_m, s.depth_max_m);
-  }
-  return all;
-}
-
-SceneTouch ColliderContact::touch(int frame, const std::vector<double>& x) {
-  Probes& p = *probes_;
-  if (!contact::all_finite(x)) {
-    p.before.clear();
-    return {kMissing, kMissing};
-  }
-  p.advance(frame);
-  std::vector<bool> touching(p.triangles.size(), false);
-  double slid = 0, kept = 0;
-  for (std::size_t k = 0; k < p.meshes.size(); ++k) {
-    const std::vector<std::optional<Nearest>> found = p.near(k, frame, x);
-    for (std::size_t v = 0; v < found.size(); ++v) {
-      if (found[v] && p.touched[k][v] != 0 && !p.before.empty()) {
-        const Point<3> way = vertex_of(x, v) - vertex_of(p.before, v) - found[v]->carried_m;
-        slid += (way - found[v]->normal.dot(way) * found[v]->normal).norm();
-        kept += 1;
-      }
-      p.touched[k][v] = found[v].has_value();
-    }
-    for (std::size_t t = 0; t < p.triangles.size(); ++t)
-      for (const std::uint32_t v : p.triangles[t]) touching[t] = touching[t] || p.touched[k][v];
-    p.touch_between(k, frame, x, [&](std::size_t t) { touching[t] = true; });
-  }
-  double all = 0, part = 0;
-  for (std::size_t t = 0; t < touching.size(); ++t) {
-    all += p.area[t];
-    if (touching[t]) part += p.area[t];
-  }
-  p.before = x;
-  return {part / all, kept > 0 ? slid / kept : 0};
+std::unique_ptr<ColliderContact> collider_contact(const Scene& scene, const std::vector<double>& held_at_m) {
+  return std::make_unique<Probes>(scene, held_at_m);
 }
 
 SelfContact self_contact(const std::vector<double>& positions,

@@ -21,28 +21,21 @@ inline constexpr Needs kColliders{"colliders",
 /// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
 /// overlap, both count); the depth is the maximum over colliders.
 ///
-/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus a tolerance: a tenth
-/// of that distance or a thousandth of the cloth's shorter side, whichever is greater. A triangle touches if any of its
-/// points does, edges and face included. Only vertices slide.
+/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus the greater of a
+/// tenth of it and a thousandth of the cloth's shorter side. A triangle touches if any of its points does, edges and
+/// face included. Only vertices slide.
 class ColliderContact {
  public:
-  /// `scene` outlives this. `held_at_m`: how far off each collider the solver keeps cloth, as in
-  /// Plan::contact_margins_m; its margin where it does not say. Throws Error naming the collider that cannot be probed.
-  explicit ColliderContact(const Scene& scene, const std::vector<double>& held_at_m = {});
-  ~ColliderContact();
-  ColliderContact(const ColliderContact&) = delete;
-  ColliderContact& operator=(const ColliderContact&) = delete;
-
+  virtual ~ColliderContact() = default;
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
-  SceneContact probe(int frame, const std::vector<double>& positions);
-  /// The same; every frame in order, since it compares with the frame before. In a frame that is not finite no vertex
-  /// touches.
-  SceneTouch touch(int frame, const std::vector<double>& positions);
-
- private:
-  struct Probes;
-  std::unique_ptr<Probes> probes_;
+  virtual SceneContact probe(int frame, const std::vector<double>& positions) = 0;
+  /// The same; in the order of frames, because it compares with the one before. NaN touches nothing.
+  virtual SceneTouch touch(int frame, const std::vector<double>& positions) = 0;
 };
+
+/// `scene` outlives the result. `held_at_m`: how far off each collider the solver keeps cloth, as in
+/// Plan::contact_margins_m; its margin where it does not say. Throws Error naming the collider that cannot be probed.
+std::unique_ptr<ColliderContact> collider_contact(const Scene& scene, const std::vector<double>& held_at_m = {});
 
 /// Self-intersection of a cloth with these triangles; exact (contact::self_contour).
 SelfContact self_contact(const std::vector<double>& positions,

@@ -117,7 +117,7 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
     series_.push_back({m.name, m.units, m.long_name, {}});
   }
   if (kWithContactMetrics && !context.scene.colliders.empty())
-    contact_ = std::make_unique<ColliderContact>(context.scene, context.contact_margins_m);
+    contact_ = collider_contact(context.scene, context.contact_margins_m);
   if (kWithContactMetrics && context.scene.needs.has(Feature::SelfCollision))
     triangles_ = triangles(context.scene.cloth);
   if (!context.scene.reference_case.empty()) judge_ = std::make_unique<TruthJudge>(context.scene);
@@ -127,27 +127,15 @@ MetricPass::MetricPass(const MetricContext& context) : context_(context) {
 MetricPass::~MetricPass() = default;
 
 void MetricPass::add(const ClothState& state) {
-  SceneContact contact{};
-  SceneTouch touch{};
+  MetricFrame frame{context_, frame_, state};
   if (contact_) {
-    contact = contact_->probe(frame_, state.position);
-    touch = contact_->touch(frame_, state.position);
+    frame.contact = contact_->probe(frame_, state.position);
+    frame.touch = contact_->touch(frame_, state.position);
   }
-  SelfContact self{};
-  if (!triangles_.empty()) self = self_contact(state.position, triangles_);
-  TruthErrors truth;
-  if (judge_) truth = judge_->judge(frame_, state);
-  StabilityFrame stability;
-  if (stability_) stability = stability_->judge(frame_, state, judge_ ? &truth : nullptr);
-  lost_ = lost_ || stability.lost();
-  const MetricFrame frame{context_,
-                          frame_,
-                          state,
-                          contact_ ? &contact : nullptr,
-                          contact_ ? &touch : nullptr,
-                          judge_ ? &truth : nullptr,
-                          stability_ ? &stability : nullptr,
-                          triangles_.empty() ? nullptr : &self};
+  if (!triangles_.empty()) frame.self_contact = self_contact(state.position, triangles_);
+  if (judge_) frame.truth = judge_->judge(frame_, state);
+  if (stability_) frame.stability = stability_->judge(frame_, state, frame.truth);
+  lost_ = lost_ || (stability_ && frame.stability->lost());
   for (std::size_t m = 0; m < wanted_.size(); ++m) series_[m].values.push_back(wanted_[m]->value(frame));
   ++frame_;
 }
@@ -171,6 +159,12 @@ std::span<const motion_check::Finding> RunView::findings() const {
                                        plan == nullptr ? std::vector<double>() : plan->contact_margins_m);
   }
   return *findings_;
+}
+
+const motion_check::Finding* RunView::finding(std::string_view name) const {
+  const auto all = findings();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.statistic->name == name; });
+  return at == all.end() ? nullptr : &*at;
 }
 
 const ExactBound& RunView::exact_bound() const {

@@ -4,14 +4,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "clothbench/record.hpp"
 #include "metrics/metric.hpp"
 #include "metrics/motion_check/motion_check.hpp"
 #include "metrics/truth_errors.hpp"
-#include "truth/reference_case.hpp"
 
 namespace clothbench {
 
@@ -36,6 +35,8 @@ struct RunView {
   std::size_t settled_from() const;
   /// The check of the positions; empty without positions, or where this build cannot measure the scene's contact.
   std::span<const motion_check::Finding> findings() const;
+  /// One of them by the name of its statistic; null if it is not among them.
+  const motion_check::Finding* finding(std::string_view name) const;
   /// Only for a scene that states a truth.
   const truth::ReferenceCase& reference_case() const;
   /// The same.
@@ -68,8 +69,7 @@ struct Gate {
   const char* why = "";
 };
 
-/// For errors: the largest difference of one solver between lavapipe and an H200 in the Table 3 study is 3.1e-7
-/// (paper).
+/// For errors: one solver differs between lavapipe and an H200 by at most 3.1e-7 (paper, in the Table 3 study).
 inline constexpr Gate kErrorGate{1e-6, SlackUnit::One, 0.1, false,
                                  "three times the largest difference seen between devices"};
 
@@ -78,15 +78,14 @@ const char* name_of(Better);
 
 enum class Expect { No, Yes };  ///< whether a scene's `expect` may bound a scalar
 
-/// One number per run, a value of its result's summary. Values that depend on the machine have no gate, nor have values
-/// that may grow without a result getting worse.
+/// One number of a run's summary. Values of the machine, or that may grow without a worse result, have no gate.
 struct Scalar {
   std::string name;  ///< a '*' at its end stands for any text
   Reduction from;
   Expect expect = Expect::No;
-  const Gate* gate = nullptr;                 ///< null: not checked
-  bool (*present)(const RunView&) = nullptr;  ///< null: in every summary, NaN if it has no value
-  std::string units = "", doc = "";           ///< a plain phrase; both set by the registry
+  const Gate* gate = nullptr;                             ///< null: not checked
+  std::function<bool(const RunView&)> present = nullptr;  ///< null: in every summary, NaN if it has no value
+  std::string units = "", doc = "";                       ///< a plain phrase; both set by the registry
   Better better = Better::Less;
   bool of_machine = false;  ///< a time, or a value that depends on times: it measures the machine too
 };
@@ -160,8 +159,7 @@ class MetricPass {
 
   /// State at the end of the next frame; the first call is frame 0, the initial state.
   void add(const ClothState&);
-  /// Whether the run has reached a stability class from which it cannot recover: not finite, or speed or energy out of
-  /// bounds.
+  /// Whether the run cannot recover from a stability class: not finite, or speed or energy out of bounds.
   bool lost() const { return lost_; }
 
   /// One series per metric, in the order of metrics().

@@ -7,10 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "clothbench/vector.hpp"
-#include "metrics/metric.hpp"
 #include "scenario/load.hpp"
-#include "truth/reference_case.hpp"
 
 namespace clothbench {
 namespace {
@@ -53,8 +50,7 @@ constexpr double kNothing = 1e-12;  // a motion of rounding errors only
 
 /// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
 /// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
-/// strip that slides by the law of a smooth one: its distance from that one. Other grids have the exact solution of
-/// their own.
+/// strip that slides by the law of a smooth one: its distance from that. Other grids have their own exact solution.
 double mesh_error(const TruthJudge& judge, double moved_quantity) {
   const Cloth& c = judge.scene().cloth;
   if (c.mesh) return c.mesh->edge_m / c.width_m;
@@ -95,7 +91,7 @@ TruthJudge::TruthJudge(const Scene& scene)
       sampler_(truth::sampler_of(scene.cloth)) {}
 
 double TruthJudge::lattice_e2(const std::vector<double>& a, const std::vector<double>& b) const {
-  return truth::lattice_rms_error(lattice_, a, b, lattice_.longer_side_m());
+  return truth::lattice_rms_error(lattice_, a, b, lattice_.longer_side_m);
 }
 
 TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
@@ -108,9 +104,9 @@ TruthErrors TruthJudge::judge(int frame, const ClothState& state) const {
   out.e2 = lattice_e2(here, there);
   out.quantity = case_.quantity(truth::column_means(c, state.position));
   out.quantity_error = truth::quantity_error(out.quantity, case_.quantity(columns), case_.quantity_scale);
-  const truth::StretchError stretch = truth::stretch_error(strains(c, state.position), strains(c, vertices));
-  out.stretch_p99 = stretch.p99;
-  out.stretch_max = stretch.greatest;
+  const auto [p99, most] = truth::stretch_error(strains(c, state.position), strains(c, vertices));
+  out.stretch_p99 = p99;
+  out.stretch_max = most;
   return out;
 }
 
@@ -130,7 +126,7 @@ double TruthJudge::space_error(int frame) const {
     return truth::quantity_error(case_.quantity(columns), case_.quantity(smooth), case_.quantity_scale);
   }
   std::vector<double> smooth;
-  for (const auto& [u, v] : lattice_.points_m()) {
+  for (const auto& [u, v] : lattice_.points_m) {
     const Vec3 x = case_.continuum(u / c.width_m, frame);
     for (std::size_t k = 0; k < 3; ++k) smooth.push_back(x[k] + (v - c.height_m / 2) * c.axis_v[k]);
   }

@@ -2,21 +2,10 @@
 #include <map>
 #include <string>
 
-#include "clothbench/record.hpp"
-#include "clothbench/scene.hpp"
-#include "clothbench/solver.hpp"
+#include "metrics/metric.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
-
-/// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, relative
-/// to the longer side. NaN if the state is not finite or the reference case has no answer.
-struct TruthErrors {
-  double e2 = kMissing;                                   ///< positions: RMS
-  double quantity = kMissing;                             ///< the reference case's quantity of this state
-  double quantity_error = kMissing;                       ///< |quantity - true| over the reference case's scale
-  double stretch_p99 = kMissing, stretch_max = kMissing;  ///< strain less true strain, edges along u
-};
 
 /// Judges the frames of one scene by its reference case.
 class TruthJudge {
@@ -29,8 +18,7 @@ class TruthJudge {
   /// The ranking error of frames judged at these times, as a run's `truth_error`: RMS over time, at rest the last.
   double ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>&) const;
   /// The ranking error (see ReferenceCase) of the mesh's own truth against the continuum: a lower bound that no smaller
-  /// time step removes. NaN for a sheet that shears, whose continuum has no known answer, and for a mesh, which has no
-  /// truth of its own (see compute_reference).
+  /// time step removes. NaN for a sheet that shears and for a mesh, whose truth is not known (see compute_reference).
   double space_error() const;
 
  private:
@@ -43,8 +31,7 @@ class TruthJudge {
   truth::LatticeSampler sampler_;
 };
 
-/// Scenes whose strips conserve the sum of kinetic, gravitational and spring energy (metric energy_rise): no damping,
-/// shear, bending, hands or colliders.
+/// Scenes whose strips conserve energy (metric energy_rise): no damping, shear, bending, hands or colliders.
 bool keeps_energy(const Scene&);
 
 /// How much a scene's truth depends on its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is the
@@ -64,8 +51,7 @@ struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };
 
-/// The judge's scene is the one that was run, with drawn and overridden parameters. Throws Error if its reference case
-/// has no tolerance (truth/reference_case.hpp).
+/// The judge's scene is the one that was run. Throws Error if its reference case has no tolerance.
 ExactBound exact_bound(const TruthJudge&);
 
 }  // namespace clothbench

@@ -12,7 +12,6 @@
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "results/replay.hpp"
 #include "results/store.hpp"
 
 namespace clothbench::render {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "metrics/registry.hpp"
 #include "report/report.hpp"
 

@@ -46,8 +46,6 @@ constexpr char kSchema[] = R"({
   }
 })";
 
-double number(const json& v) { return v.is_number() ? v.get<double>() : kMissing; }
-
 /// Conditions on a group that the schema cannot state.
 void check_group(const std::string& file, const std::string& at, const json& g) {
   const json& times = g["time_unix_s"];
@@ -103,8 +101,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
   return out;
 }
 
-/// Adds the scalar of a series with a role: the mean within trials, or the maximum of a temperature. Bandwidths come
-/// only from trials with at least kMinSamples samples.
+/// Adds the scalar of a series with a role: mean in trials (bandwidths: kMinSamples or more), or maximum.
 void summarise(const std::string& role, double scale, const Taken& taken, const std::vector<double>& values,
                std::map<std::string, double>& summary) {
   std::map<double, int> samples;
@@ -140,7 +137,8 @@ StoredGroup store_group(const json& group, const RunRecord& r, std::map<std::str
   add("trial", "1", "trial that contains the whole sample; -1: none", true, taken.trial);
   for (const json& s : group["series"]) {
     std::vector<double> values;
-    for (const std::size_t k : taken.index) values.push_back(number(s["values"][k]));
+    for (const std::size_t k : taken.index)
+      values.push_back(s["values"][k].is_number() ? s["values"][k].get<double>() : kMissing);
     summarise(s.value("role", ""), s.value("scale", 1.0), taken, values, summary);
     add(s["name"], s["units"], s["long_name"], false, std::move(values));
   }

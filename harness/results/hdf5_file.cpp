@@ -1,5 +1,4 @@
 // Layout: results/README.md.
-#include "results/hdf5_file.hpp"
 
 #include <fmt/format.h>
 
@@ -139,8 +138,14 @@ class Writer {
   }
 
   void write() {
-    root_attributes();
-    write_strings(file_, "header_json", {header_text()}, {"1", "everything known before the first frame, as JSON"});
+    text_attribute(file_, "format", "clothbench-run");
+    number_attribute<std::int64_t>(file_, "format_version", {2});
+    text_attribute(file_, "scene", r_.header.scene);
+    text_attribute(file_, "solver", r_.header.solver);
+    text_attribute(file_, "setting", r_.header.setting);
+    nlohmann::json header = header_to_json(r_.header);
+    header.erase("triangles");
+    write_strings(file_, "header_json", {header.dump()}, {"1", "everything known before the first frame, as JSON"});
     scalars();
     if (!r_.trials.empty()) timing();
     for (const StoredGroup& g : r_.replay) stored(g);
@@ -152,20 +157,6 @@ class Writer {
   }
 
  private:
-  std::string header_text() const {
-    nlohmann::json j = header_to_json(r_.header);
-    j.erase("triangles");
-    return j.dump();
-  }
-
-  void root_attributes() {
-    text_attribute(file_, "format", "clothbench-run");
-    number_attribute<std::int64_t>(file_, "format_version", {2});
-    text_attribute(file_, "scene", r_.header.scene);
-    text_attribute(file_, "solver", r_.header.solver);
-    text_attribute(file_, "setting", r_.header.setting);
-  }
-
   void scalars() {
     const Id summary = make_group(file_, "summary"), outcome = make_group(file_, "outcome");
     for (const auto& [key, value] : r_.summary) number_attribute<double>(summary, key, {value});

@@ -1,8 +1,6 @@
-#include <algorithm>
 #include <cmath>
 
 #include "base/json_text.hpp"
-#include "results/hdf5_file.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/part_file.hpp"
 #include "results/store.hpp"

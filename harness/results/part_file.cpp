@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "base/json_number.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
@@ -116,13 +115,8 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
     groups.push_back({g.at("path"), g.at("attributes"), {}});
     for (const json& a : g.at("arrays")) {
       StoredArray& array = groups.back().arrays.emplace_back();
-      array = {a.at("name"),
-               a.at("units"),
-               a.at("long_name"),
-               a.at("dims"),
-               whole<decltype(array.shape)>(a.at("shape")),
-               a.at("integer"),
-               {}};
+      array = {a.at("name"), a.at("units"), a.at("long_name"), a.at("dims"), {}, a.at("integer")};
+      get_whole(a.at("shape"), array.shape);
       unpack(a.at("values"), array.values);
       std::size_t left = array.values.size();  // divided, so that no product can overflow
       for (const std::uint64_t n : array.shape) {

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 
 namespace clothbench {
@@ -60,13 +61,35 @@ nlohmann::json to_json(const std::vector<StoredGroup>&);
 /// Creates the file with its header, whole or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);
 
-/// Appends an item and, if `sync`, calls fsync, without which only a killed machine loses it. Throws Error naming the
-/// file; the file then is as it was before.
+/// Appends an item and, if `sync`, calls fsync. Throws Error naming the file, which then is as it was before.
 void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
 /// Reads all complete items and ignores what follows them: a killed process leaves an incomplete item at the end.
-/// `complete_B`: receives the length of the complete items. Throws Error naming the file if it has no header, or if a
-/// complete item is not what it should be.
+/// `complete_B`: receives their length. Throws Error naming the file without a header or with a wrong item.
 RunRecord read_part(const std::filesystem::path&, std::uintmax_t* complete_B = nullptr);
+
+#ifdef CLOTHBENCH_HAS_HDF5
+inline constexpr bool kWithHdf5 = true;
+
+/// Writes one result file (layout in results/README.md) by tmp + fsync + rename. Throws Error naming the file.
+void write_hdf5(const std::filesystem::path&, const RunRecord&);
+
+/// Reads a file, with positions of every `stride`-th frame and the last; 0: no positions, `replay` and grid triangles.
+RunRecord read_hdf5(const std::filesystem::path&, std::size_t stride);
+
+/// Writes a sidecar with which ParaView opens the trajectory and the static meshes: per frame one grid over
+/// /frames/NNNNNN of `h5_name`, or a collection of the cloth and the static meshes if there are any.
+void write_xdmf(const std::filesystem::path&, const std::string& h5_name, const RunRecord&);
+#else
+inline constexpr bool kWithHdf5 = false;
+
+inline void write_hdf5(const std::filesystem::path& path, const RunRecord&) {
+  throw Error(path.string() + ": this build writes no HDF5; convert the run with `clothbench import` elsewhere");
+}
+inline RunRecord read_hdf5(const std::filesystem::path& path, std::size_t) {
+  throw Error(path.string() + ": this build reads no HDF5");
+}
+inline void write_xdmf(const std::filesystem::path&, const std::string&, const RunRecord&) {}
+#endif
 
 }  // namespace clothbench

@@ -1,5 +1,3 @@
-#include "results/replay.hpp"
-
 #include <fmt/format.h>
 
 #include <map>
@@ -32,8 +30,7 @@ json attributes_of(Collider c) {
 }
 
 StoredArray capsules_of(const Scene& scene, std::size_t k) {
-  StoredArray out{"capsules", "m", "ends a and b and radius of each capsule", {"frame", "capsule", "value"}, {},
-                  false,      {}};
+  StoredArray out{"capsules", "m", "ends a and b and radius of each capsule", {"frame", "capsule", "value"}, {}};
   out.shape = {scene.motion.size(), scene.colliders[k].capsules.size(), 7};
   for (const FrameMotion& m : scene.motion)
     for (const Capsule& c : m.colliders[k].capsules)
@@ -45,8 +42,8 @@ void add_triangles(std::vector<double> positions, std::span<const std::array<std
                    std::vector<StoredArray>& out) {
   const std::uint64_t vertices = positions.size() / 3;
   out.push_back({"position_m", "m", "vertices", {"vertex", "xyz"}, {vertices, 3}, false, std::move(positions)});
-  StoredArray triangles{"triangles", "1", "vertices of each triangle", {"triangle", "corner"}, {corners.size(), 3},
-                        true,        {}};
+  StoredArray triangles{"triangles",         "1", "vertices of each triangle", {"triangle", "corner"},
+                        {corners.size(), 3}, true};
   for (const auto& t : corners) triangles.values.insert(triangles.values.end(), t.begin(), t.end());
   out.push_back(std::move(triangles));
 }
@@ -58,8 +55,8 @@ void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) 
   add_triangles(mesh.positions, mesh.triangles, out);
   if (!mesh.skinned()) return;
   out[out.size() - 2].long_name = "vertices before skinning";
-  StoredArray joint{"joint_index", "1", "joints that a vertex follows", {"vertex", "slot"}, {vertices, 4}, true, {}};
-  StoredArray weight{"joint_weight", "1", "share of each of them", {"vertex", "slot"}, {vertices, 4}, false, {}};
+  StoredArray joint{"joint_index", "1", "joints that a vertex follows", {"vertex", "slot"}, {vertices, 4}, true};
+  StoredArray weight{"joint_weight", "1", "share of each of them", {"vertex", "slot"}, {vertices, 4}};
   for (std::size_t v = 0; v < vertices; ++v) {
     joint.values.insert(joint.values.end(), mesh.joints[v].begin(), mesh.joints[v].end());
     weight.values.insert(weight.values.end(), mesh.weights[v].begin(), mesh.weights[v].end());
@@ -68,9 +65,7 @@ void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) 
                      "1 and m",
                      "skinning matrix of each joint: rows of (linear part, translation)",
                      {"frame", "joint", "row", "column"},
-                     {scene.motion.size(), mesh.joint_count, 3, 4},
-                     false,
-                     {}};
+                     {scene.motion.size(), mesh.joint_count, 3, 4}};
   for (const FrameMotion& m : scene.motion)
     for (const Affine& a : m.colliders[k].joints)
       for (const auto& row : a) matrix.values.insert(matrix.values.end(), row.begin(), row.end());
@@ -79,11 +74,10 @@ void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) 
 
 StoredGroup grips_of(const Scene& scene) {
   const std::uint64_t grips = scene.grips.vertices.size(), frames = scene.motion.size();
-  StoredArray vertex{"held_vertex", "1", "cloth vertex that a hand holds", {"grip"}, {grips}, true, {}};
+  StoredArray vertex{"held_vertex", "1", "cloth vertex that a hand holds", {"grip"}, {grips}, true};
   vertex.values.assign(scene.grips.vertices.begin(), scene.grips.vertices.end());
-  StoredArray target{"target_m", "m", "where it is while held", {"frame", "grip", "xyz"}, {frames, grips, 3},
-                     false,      {}};
-  StoredArray held{"held", "1", "1 while held, 0 once let go", {"frame", "grip"}, {frames, grips}, true, {}};
+  StoredArray target{"target_m", "m", "where it is while held", {"frame", "grip", "xyz"}, {frames, grips, 3}};
+  StoredArray held{"held", "1", "1 while held, 0 once let go", {"frame", "grip"}, {frames, grips}, true};
   for (const FrameMotion& m : scene.motion) {
     for (const Vec3& p : m.grip_position_m) target.values.insert(target.values.end(), p.begin(), p.end());
     held.values.insert(held.values.end(), m.grip_held.begin(), m.grip_held.end());
@@ -93,8 +87,8 @@ StoredGroup grips_of(const Scene& scene) {
 
 void add_jumps(const Scene& scene, std::vector<StoredArray>& out) {
   if (scene.jumps.empty()) return;
-  StoredArray frame{"jump_frame", "1", "first frame that ends after a jump", {"jump"}, {scene.jumps.size()}, true, {}};
-  StoredArray distance{"jump_m", "m", "distance of the jump", {"jump"}, {scene.jumps.size()}, false, {}};
+  StoredArray frame{"jump_frame", "1", "first frame that ends after a jump", {"jump"}, {scene.jumps.size()}, true};
+  StoredArray distance{"jump_m", "m", "distance of the jump", {"jump"}, {scene.jumps.size()}};
   for (const Jump& j : scene.jumps) {
     frame.values.push_back(j.frame);
     distance.values.push_back(j.distance_m);
@@ -108,19 +102,18 @@ void add_cloth(const ClothMesh& mesh, std::vector<StoredGroup>& out) {
   cloth.path = "cloth";
   cloth.attributes = {{"count", mesh.groups.size()}};
   StoredArray position{
-      "position_m", "m", "vertices in the frame of the mesh", {"vertex", "xyz"}, {mesh.vertices.size(), 3}, false, {}};
+      "position_m", "m", "vertices in the frame of the mesh", {"vertex", "xyz"}, {mesh.vertices.size(), 3}};
   for (const Vec3& x : mesh.vertices) position.values.insert(position.values.end(), x.begin(), x.end());
   cloth.arrays.push_back(std::move(position));
   if (!mesh.pattern_m.empty()) {
-    StoredArray pattern{"pattern_m", "m", "corners of each triangle at rest", {"triangle", "corner", "xy"}, {},
-                        false,       {}};
+    StoredArray pattern{"pattern_m", "m", "corners of each triangle at rest", {"triangle", "corner", "xy"}, {}};
     pattern.shape = {mesh.pattern_m.size(), 3, 2};
     for (const auto& triangle : mesh.pattern_m)
       for (const auto& corner : triangle) pattern.values.insert(pattern.values.end(), corner.begin(), corner.end());
     cloth.arrays.push_back(std::move(pattern));
   }
   for (std::size_t k = 0; const auto& [name, vertices] : mesh.groups) {
-    StoredArray members{"vertex", "1", "vertices of the group", {"member"}, {vertices.size()}, true, {}};
+    StoredArray members{"vertex", "1", "vertices of the group", {"member"}, {vertices.size()}, true};
     members.values.assign(vertices.begin(), vertices.end());
     out.push_back({"cloth/" + std::to_string(k++), {{"name", name}}, {std::move(members)}});
   }

@@ -16,13 +16,10 @@
 
 #include "base/files.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "results/hdf5_file.hpp"
 #include "results/part_file.hpp"
-#include "results/result_folder.hpp"
 
 namespace clothbench {
 namespace {
@@ -84,9 +81,39 @@ bool lock(int file, std::size_t first, int count) {
   return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // a file system without locks
 }
 
-std::string holder(const fs::path& file) {
-  const std::string text = content_of(file);
-  return text.empty() ? "another process" : shortened(text, kShown);
+/// Record of a planned run without a result, from its name "<scene>__<solver>__<setting>".
+RunRecord missing_run(const std::string& name, bool started) {
+  RunRecord c;
+  const std::size_t first = name.find("__"), last = name.rfind("__");
+  c.header.scene = name.substr(0, first);
+  if (first != std::string::npos && last > first) {
+    c.header.solver = name.substr(first + 2, last - first - 2);
+    c.header.setting = name.substr(last + 2);
+  }
+  c.outcome = {"missing", "ok", -1, started ? "started, not finished" : "planned, not run"};
+  return c;
+}
+
+void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
+  const std::size_t first = runs.size();
+  const StudyManifest manifest = read_manifest(dir);
+  for (const std::string& name : manifest.runs) {
+    const fs::path file = finished_file(dir, name);
+    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
+  }
+  // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
+  for (std::size_t k = first; k < runs.size(); ++k)
+    for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
+      if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
+        runs[k].header.scenario_json = runs[j].header.scenario_json;
+}
+
+/// Whether a summary value is a time, or a rate computed from a time.
+bool is_time(const std::string& name) {
+  if (name == "load_s" || name == "untimed_s") return true;
+  for (const char* start : {"fps_", "frame_", "bandwidth_", "stage_device_"})
+    if (name.starts_with(start)) return true;
+  return false;
 }
 
 }  // namespace
@@ -297,9 +324,9 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::vector<std::size_t
     if (lock_ < 0) refuse_folder(folder, std::string("no file can be made in it: ") + std::strerror(errno));
     if (runs.empty() ? !lock(lock_, 0, 0)
                      : !std::all_of(runs.begin(), runs.end(), [&](std::size_t run) { return lock(lock_, run, 1); })) {
-      const std::string by = holder(file_);
+      const std::string by = content_of(file_);
       close(lock_);
-      refuse_folder(folder, fmt::format("{} writes its results there", by));
+      refuse_folder(folder, (by.empty() ? "another process" : shortened(by, kShown)) + " writes its results there");
     }
     if (is_named(lock_, file_)) break;
     close(lock_);
@@ -326,45 +353,6 @@ void require_short_name(const fs::path& folder, const std::string& run) {
   if (fs::absolute(folder).string().size() + kMostRunName + 56 > PATH_MAX)
     refuse_folder(folder, "the paths of result files in it would be too long");
 }
-
-namespace {
-
-/// Record of a planned run without a result, from its name "<scene>__<solver>__<setting>".
-RunRecord missing_run(const std::string& name, bool started) {
-  RunRecord c;
-  const std::size_t first = name.find("__"), last = name.rfind("__");
-  c.header.scene = name.substr(0, first);
-  if (first != std::string::npos && last > first) {
-    c.header.solver = name.substr(first + 2, last - first - 2);
-    c.header.setting = name.substr(last + 2);
-  }
-  c.outcome = {"missing", "ok", -1, started ? "started, not finished" : "planned, not run"};
-  return c;
-}
-
-void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
-  const std::size_t first = runs.size();
-  const StudyManifest manifest = read_manifest(dir);
-  for (const std::string& name : manifest.runs) {
-    const fs::path file = finished_file(dir, name);
-    runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
-  }
-  // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
-  for (std::size_t k = first; k < runs.size(); ++k)
-    for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
-      if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
-        runs[k].header.scenario_json = runs[j].header.scenario_json;
-}
-
-/// Whether a summary value is a time, or a rate computed from a time.
-bool is_time(const std::string& name) {
-  if (name == "load_s" || name == "untimed_s") return true;
-  for (const char* start : {"fps_", "frame_", "bandwidth_", "stage_device_"})
-    if (name.starts_with(start)) return true;
-  return false;
-}
-
-}  // namespace
 
 double summary_value(const RunRecord& c, const std::string& name) {
   const auto found = c.summary.find(name);

@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "clothbench/record.hpp"
+#include "clothbench/scene.hpp"
 
 namespace clothbench {
 
@@ -20,8 +21,8 @@ Finish best_finish();
 
 /// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item for each finished trial and for each frame of the
 /// accuracy pass (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename)
-/// and removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL at any moment
-/// loses at most data not yet passed to this class.
+/// and removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL loses at most
+/// what it was not yet passed.
 class RunWriter {
  public:
   /// Continues a part file of the same run. Throws Error naming both if scenario_sha256 or settings differ.
@@ -72,25 +73,45 @@ struct Replay {
 /// 0, stride, 2 stride, ... below `count`, and count - 1. `stride` at least 1.
 std::vector<std::size_t> every(std::size_t count, std::size_t stride);
 
-/// Every `stride`-th frame and the last; no frames if the file has no trajectory. Throws Error naming the file and what
-/// is wrong with it.
+/// Every `stride`-th frame and the last; none without a trajectory. Throws Error naming the file and its fault.
 Replay read_replay(const std::filesystem::path&, std::size_t stride);
 
 /// SHA-256 of a motion in lower-case hexadecimal: the times (float64), then the positions (float32), little-endian.
 /// Files store it with the outcome, so that a verdict belongs to one motion. Empty without frames.
 std::string trajectory_sha256(const AccuracyPass&);
 
-/// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite,
-/// not one set for each time, or positions that do not match the hash in `/outcome`. Empty if nothing is wrong. A run
-/// that did not end well may lack frames and have values that are not finite. Throws Error naming the file if it cannot
-/// be read.
+/// The fault of the motion in a result file, whatever its summary states: positions that are missing, not finite, not
+/// one set for each time, or that do not match the hash in `/outcome`. Empty if nothing is wrong. A run that did not
+/// end well may lack frames and have values that are not finite. Throws Error if the file cannot be read.
 std::string trajectory_fault(const std::filesystem::path&);
+
+/// The parts of a scene that its JSON only names, as result files store them (layout in results/README.md): colliders
+/// and grips at every frame, and a cloth's mesh. A replay then needs neither the scenario's files nor this program.
+/// Empty for a grid without colliders and grips.
+std::vector<StoredGroup> replay_of(const Scene&);
+
+/// Adds the capsules or triangles to draw to a collider's group that has neither, for programs that do not know the
+/// kinds of colliders: arrays of the same names and shapes, and whether the triangles bound a convex body. Leaves
+/// unknown kinds as they are. Throws Error or nlohmann::json::exception if something is missing or misshapen.
+void show_shape(StoredGroup&);
+
+/// A stored run's scene and motion, read only from its result file.
+struct StoredMotion {
+  Scene scene;                  ///< complete: cloth, pins, colliders and grips with their motion
+  std::vector<double> time_s;   ///< of each stored frame; frame 0 is the initial state
+  std::vector<float> position;  ///< (frame, vertex, xyz) [m], time_s.size() x vertex_count() x 3 values
+  /// Distance [m] at which the solver kept the cloth from each collider. Empty: `margin_m` of the colliders.
+  std::vector<double> contact_margins_m;
+};
+
+/// Reads a result file; opens no other file. All is empty if the run has no trajectory.
+/// Throws Error naming the file and what is wrong with it, such as a number of positions that differs from the scene.
+StoredMotion read_motion(const std::filesystem::path&);
 
 class DeviceSamples;
 
 /// Converts runs finished without HDF5 (.cbor; a file or the folder of a study) to the .h5 files that direct runs give;
-/// `samples`: the device's samples to store with them. Returns the new files. Throws Error if `file_or_folder` is a
-/// part file: it is not finished.
+/// `samples`: the device's samples to store with them. Returns the new files. Throws Error for a part file.
 std::vector<std::filesystem::path> import_runs(const std::filesystem::path& file_or_folder,
                                                DeviceSamples* samples = nullptr);
 
@@ -102,6 +123,30 @@ struct StudyManifest {
 };
 void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);
+
+/// Makes a folder for result files and locks it: a second process that would write the same files is refused. The
+/// kernel releases a lock with its process, so one that died blocks nothing. Its children write under its lock.
+class ResultFolder {
+ public:
+  /// `runs`: numbers of the runs of a study that this process executes, next to processes with other runs of it; empty:
+  /// no other process may write into the folder. `command_line`: for the message of a process that is refused. Throws
+  /// Error naming the folder and who writes into it, or why it cannot be made or written.
+  ResultFolder(const std::filesystem::path& folder, const std::vector<std::size_t>& runs,
+               const std::string& command_line);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int lock_ = -1;
+};
+
+/// Bytes that a file's name may have before the endings of result files.
+inline constexpr std::size_t kMostRunName = 200;
+
+/// Throws Error unless the files of a run of this name can be made in the folder.
+void require_short_name(const std::filesystem::path& folder, const std::string& run);
 
 /// Values that a device reported during runs: frame rate, bandwidth, clocks, temperature. Each series has the sampling
 /// rate and the name of its source. `samples.json` of scripts/quest_run.py, format 2 (results/README.md).

@@ -8,7 +8,6 @@
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/unsupported_scene.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
 #include "runner/frame_loop.hpp"

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/files.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
 #include "clothbench/record.hpp"
 #include "runner/build_info.hpp"
 

@@ -15,8 +15,7 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "base/json_number.hpp"
-#include "base/sha256.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"

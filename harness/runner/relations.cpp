@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
-#include "clothbench/restart_after.hpp"
 #include "clothbench/vector.hpp"
 #include "metrics/metric.hpp"
 #include "runner/conformance.hpp"
@@ -78,7 +77,7 @@ class RelationCheck {
     Motion so_far;
     if (case_.relation == "restart") {
       const std::size_t half = base.size() / 2;
-      if (!restart_after(*solver, base[half], frame_input(scene, static_cast<int>(half) - 1))) {
+      if (!solver->restart_at(base[half], frame_input(scene, static_cast<int>(half) - 1))) {
         out.unsupported = entry_.info.name + ": positions and velocities are not its whole state";
         return out;
       }

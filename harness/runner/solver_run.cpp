@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "clothbench/unsupported_scene.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/stability/judge.hpp"
 #include "results/store.hpp"
@@ -214,8 +213,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
   if (verdict.klass != "ok" && outcome_.klass != "F3") {
     outcome_.klass = verdict.klass;
     outcome_.failed_frame = verdict.frame;
-    if (outcome_.message.empty() || outcome_.status == "diverged")
-      outcome_.message = fmt::format("{}: {}", name_of(verdict.grade), class_name(verdict.klass[1] - '0'));
+    if (outcome_.message.empty() || outcome_.status == "diverged") outcome_.message = verdict.text();
   }
   return pass;
 }

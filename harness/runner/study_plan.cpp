@@ -12,8 +12,6 @@
 #include "base/plugin_environment.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/solver_names.hpp"
-#include "results/result_folder.hpp"
 #include "results/store.hpp"
 #include "runner/study_runner.hpp"
 

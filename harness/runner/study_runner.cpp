@@ -10,7 +10,7 @@
 #include "metrics/collider_contact.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
-#include "results/replay.hpp"
+#include "results/store.hpp"
 #include "runner/environment.hpp"
 #include "runner/expect.hpp"
 #include "runner/interrupt.hpp"

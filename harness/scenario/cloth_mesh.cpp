@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/files.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"

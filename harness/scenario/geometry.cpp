@@ -4,7 +4,6 @@
 #include <numbers>
 #include <tuple>
 
-#include "clothbench/motion.hpp"
 #include "clothbench/scene.hpp"
 #include "clothbench/vector.hpp"
 

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/data_folder.hpp"
+#include "base/files.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
 #include "base/words.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"

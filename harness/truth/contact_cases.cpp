@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -18,8 +17,7 @@ struct Face {
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. For a box: the face below all four corners at the start and moved by
-/// `displacement`.
+/// The face of a collider under the sheet. For a box: below all four corners at the start and moved by `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {
@@ -50,51 +48,6 @@ const Collider& only_collider(const Strip& s, const char* what) {
   return s.scene.colliders[0];
 }
 
-/// A strip over a cylinder, as the scene says.
-struct Draped {
-  double radius_m, cell_m, light_m, heavy_m, friction;  ///< overhangs below the axis
-  int turns;
-};
-
-Draped draped(const Strip& s) {
-  const Cloth& c = s.scene.cloth;
-  s.need_gravity();
-  s.need(c.drape_radius_m > 0, "\"drape\" in its pose: a strip that starts over a cylinder");
-  const Vec3 &a = c.axis_u, &b = c.axis_v;
-  const Vec3 down = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  s.need(std::abs(dot(down, s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
-  s.need_rest();
-  s.need_even_masses();
-  s.need_pins({}, "no pins and no grips");
-  s.need_inextensible();
-  s.need_no_bending();
-  s.need_damping(false);
-  const Collider& collider = only_collider(s, "a cylinder");
-  const nlohmann::json j = nlohmann::json::parse(s.scene.json).at("colliders").at(0);
-  s.need(j.at("type") == "cylinder", "one collider: a cylinder");
-  const auto vec = [&](const char* key) {
-    return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};
-  };
-  const Vec3 off = c.center_m - vec("center_m"), axis = vec("axis");
-  s.need(std::abs(std::abs(dot(axis, b)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
-  s.need(length(off - dot(off, axis) * axis) <= kPlace * s.length_m, "the cylinder's axis through center_m");
-  s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
-         "a cylinder as long as the strip is wide");
-  s.need(std::abs(j.at("radius_m").get<double>() + collider.margin_m - c.drape_radius_m) <= kPlace * s.length_m,
-         "a drape radius that is the cylinder's and its margin");
-  const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c),
-               middle = s.links / 2.0 - c.drape_offset_m / cell;
-  const int m = static_cast<int>(std::lround(turns));
-  const double first = middle - (m - 1) / 2.0, light = std::round(first);
-  s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
-         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
-         "cells to suit");
-  const double heavy = s.links - (m - 1) - light;
-  s.need(light >= 1 && heavy >= 1, "ends that hang");
-  s.need(heavy >= light, "an offset towards u1, or none");
-  return {c.drape_radius_m, cell, (light - 0.5) * cell, (heavy - 0.5) * cell, collider.friction, m};
-}
-
 /// How far the strip has run towards u1: by what of it is on top.
 std::function<double(const Columns&)> displacement_over(const Strip& s) {
   const Cloth& c = s.scene.cloth;
@@ -114,10 +67,8 @@ std::function<double(const Columns&)> displacement_over(const Strip& s) {
 }
 
 Columns draped_columns(const Strip& s, double displacement) {
-  Columns out;
-  for (int i = 0; i <= s.links; ++i)
-    out.push_back(draped_row(s.scene.cloth, i, s.scene.cloth.drape_offset_m + displacement));
-  return out;
+  const Cloth& c = s.scene.cloth;
+  return s.columns([&](int i) { return draped_row(c, i, c.drape_offset_m + displacement); });
 }
 
 }  // namespace
@@ -158,36 +109,62 @@ ReferenceCase incline(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.by_quantity = true;
   if (whole > 0) known.quantity_scale = whole;
-  const auto at = [s, d](double displacement) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i) out.push_back(s.start + (s.length_m * i / s.links) * s.along + displacement * d);
-    return out;
+  const auto rest_m = [s](auto i) { return s.length_m * static_cast<double>(i) / s.links; };
+  known.columns = [s, slope, d, rest_m](int frame) {
+    const double displacement = slide_down(slope, s.time_s(frame)).distance_m;
+    return s.columns([&](int i) { return s.start + rest_m(i) * s.along + displacement * d; });
   };
-  known.columns = [s, slope, at](int frame) { return at(slide_down(slope, s.time_s(frame)).distance_m); };
-  known.quantity = [s, d](const Columns& x) {
-    double sum = 0;  // ends carry half a cell
-    for (std::size_t i = 0; i < x.size(); ++i)
-      sum += (i == 0 || i + 1 == x.size() ? 0.5 : 1) *
-             dot(x[i] - s.start - (s.length_m * static_cast<double>(i) / s.links) * s.along, d);
-    return sum / s.links;
+  known.quantity = [s, d, rest_m](const Columns& x) {
+    return s.mean([&](std::size_t i) { return dot(x[i] - s.start - rest_m(i) * s.along, d); });
   };
   return known;
 }
 
 ReferenceCase capstan(const Strip& s) {
-  const Draped strip = draped(s);
-  const double half_turn = std::numbers::pi / (2 * strip.turns);
-  s.need(strip.friction > 0 && strip.friction * std::tan(half_turn) < 1,
+  const Cloth& c = s.scene.cloth;
+  s.need_gravity();
+  s.need(c.drape_radius_m > 0, "\"drape\" in its pose: a strip that starts over a cylinder");
+  s.need(std::abs(dot(cross(c.axis_u, c.axis_v), s.up) + 1) <= Strip::kLevel, "axis_u x axis_v down");
+  s.need_rest();
+  s.need_even_masses();
+  s.need_pins({}, "no pins and no grips");
+  s.need_inextensible();
+  s.need_no_bending();
+  s.need_damping(false);
+  const Collider& collider = only_collider(s, "a cylinder");
+  const nlohmann::json j = nlohmann::json::parse(s.scene.json).at("colliders").at(0);
+  s.need(j.at("type") == "cylinder", "one collider: a cylinder");
+  const auto vec = [&](const char* key) {
+    return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};
+  };
+  const Vec3 off = c.center_m - vec("center_m"), axis = vec("axis");
+  s.need(std::abs(std::abs(dot(axis, c.axis_v)) - 1) <= Strip::kLevel, "the cylinder's axis along axis_v");
+  s.need(length(off - dot(off, axis) * axis) <= kPlace * s.length_m, "the cylinder's axis through center_m");
+  s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
+         "a cylinder as long as the strip is wide");
+  s.need(std::abs(j.at("radius_m").get<double>() + collider.margin_m - c.drape_radius_m) <= kPlace * s.length_m,
+         "a drape radius that is the cylinder's and its margin");
+  const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c),
+               middle = s.links / 2.0 - c.drape_offset_m / cell;
+  const int m = static_cast<int>(std::lround(turns));
+  const double first = middle - (m - 1) / 2.0, light = std::round(first);
+  s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
+         "cells to suit");
+  const double heavy = s.links - (m - 1) - light;
+  s.need(light >= 1 && heavy >= 1, "ends that hang");
+  s.need(heavy >= light, "an offset towards u1, or none");
+  const double half_turn = std::numbers::pi / (2 * m), friction = collider.friction;
+  s.need(friction > 0 && friction * std::tan(half_turn) < 1,
          "friction above 0 and below 1 / tan(half a turn of the strip)");
-  const Capstan polygon{strip.friction, strip.radius_m, s.scene.cloth.areal_density_kg_per_m2, s.g, strip.turns};
-  const auto moved = [&](int turns) {
-    Capstan cylinder = polygon;
-    cylinder.turns = turns;
-    return [states = slide_over(cylinder, strip.light_m, strip.heavy_m, s.times_s())](int frame) {
-      return states.at(static_cast<std::size_t>(frame)).displacement_m;
+  const double light_m = (light - 0.5) * cell, heavy_m = (heavy - 0.5) * cell;  // overhangs below the axis
+  const auto moved = [&](int rows) {
+    const Capstan cylinder{friction, c.drape_radius_m, c.areal_density_kg_per_m2, s.g, rows};
+    return [states = slide_over(cylinder, light_m, heavy_m, s.times_s())](int frame) {
+      return states.at(static_cast<std::size_t>(frame)).distance_m;
     };
   };
-  const auto displacement = moved(strip.turns), smooth = moved(0);
+  const auto displacement = moved(m), smooth = moved(0);
   const double end = displacement(s.scene.time.frames());
   ReferenceCase known = s.reference_case();
   known.by_quantity = known.smooth_law = true;

@@ -11,23 +11,17 @@
 
 namespace clothbench::truth {
 
-/// The 33 x 33 material points at which every mesh is compared with its truth, at any resolution: a regular lattice
-/// over the rest rectangle [0, width] x [0, height], row by row (u fastest), with Voronoi areas (half a cell on an
-/// edge, a quarter at a corner).
-class MaterialLattice {
- public:
+/// The 33 x 33 material points at which any mesh is compared with its truth: a regular lattice over the rest rectangle
+/// [0, width] x [0, height], u fastest, with Voronoi areas (half a cell at an edge, 1/4 at a corner).
+struct MaterialLattice {
   static constexpr int kSide = 33;
 
   MaterialLattice(double width_m, double height_m);
-  std::size_t size() const { return points_.size(); }
-  const std::vector<std::array<double, 2>>& points_m() const { return points_; }
-  const std::vector<double>& areas_m2() const { return areas_; }
-  double longer_side_m() const;
+  std::size_t size() const { return points_m.size(); }
 
- private:
-  double width_, height_;
-  std::vector<std::array<double, 2>> points_;
-  std::vector<double> areas_;
+  double longer_side_m;
+  std::vector<std::array<double, 2>> points_m;
+  std::vector<double> areas_m2;
 };
 
 /// Interpolates values at a mesh's vertices to the lattice's points, barycentrically in the rest rectangle. Made once
@@ -63,10 +57,7 @@ double time_rms(std::span<const double> times_s, std::span<const double> errors)
 double quantity_error(double value, double truth, double scale);
 
 /// Statistics of (strain - true strain) over edges, signed: the 99th percentile (nearest rank) and the maximum.
-struct StretchError {
-  double p99, greatest;
-};
-StretchError stretch_error(std::span<const double> strains, std::span<const double> truth);
+std::array<double, 2> stretch_error(std::span<const double> strains, std::span<const double> truth);
 
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
 /// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
@@ -90,13 +81,11 @@ struct ReferenceCase {
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
 };
 
-/// The reference case that a scene names, or none. Throws Error with the scene's source if the scene does not meet the
-/// reference case's requirements.
+/// The reference case that a scene names, or none. Throws Error if the scene does not meet its requirements.
 std::optional<ReferenceCase> reference_case_of(const Scene&);
 
 /// The tolerance of a reference case, for any parameters: how far a run may be from the exact solution and still be
-/// right (the error of the mesh and of float32 positions come on top, metrics/exact_bound.hpp),
-/// and the error by which runs are ranked.
+/// right (errors of mesh and float32 come on top, metrics/truth_errors.hpp), and the error by which runs are ranked.
 struct Tolerance {
   std::string reference_case;
   /// Share of the exact motion: a cloth that keeps its start has the error 1. It holds for every parameter, and a

@@ -30,9 +30,8 @@ void integrate(const char* what, Rate rate, Values& state, double begin, double 
   }
 }
 
-/// Solves a symmetric positive definite tridiagonal system in place (elimination without pivoting; allocates nothing,
-/// so it can run inside an integrator's right-hand side). `off[i]` couples i and i + 1. `diagonal` is overwritten,
-/// `rhs` becomes the solution.
+/// Solves a symmetric positive definite tridiagonal system in place (elimination without pivoting or allocation).
+/// `off[i]` couples i and i + 1. `diagonal` is overwritten, `rhs` becomes the solution.
 void solve_tridiagonal(std::span<double> diagonal, std::span<const double> off, std::span<double> rhs) {
   const std::size_t n = diagonal.size();
   for (std::size_t i = 1; i < n; ++i) {
@@ -58,8 +57,7 @@ double p2(double x) {
 
 double rate_of(const Pendulum& p) { return std::sqrt(p.gravity_m_per_s2 / p.length_m); }
 
-// Time in units of sqrt(L/g) and length in units of L, so that tolerances mean the same at any scale. State: angles
-// below the horizontal, then their rates.
+// Units are sqrt(L/g) and L, so that tolerances hold at any scale. State: angles below the horizontal, their rates.
 class ChainMotion {
  public:
   ChainMotion(int links, double end_mass_ratio)
@@ -106,8 +104,8 @@ Nodes nodes_of(const SwingingChain& c, const State& state) {
   return out;
 }
 
-/// Angles of the links at a share of the load, from a guess; nothing if Newton's method fails. Energy over B/L: n sum
-/// of (1 - cos(turn)) - sum of pull_i sin(angle_i)/n.
+/// Angles of the links at a share of the load, from a guess, if Newton's method converges. Energy over B/L: n sum of (1
+/// - cos(turn)) - sum of pull_i sin(angle_i)/n.
 std::optional<State> bent(double own_weight, State angle, double share) {
   const std::size_t n = angle.size();
   const auto cells = static_cast<double>(n);
@@ -143,8 +141,6 @@ std::optional<State> bent(double own_weight, State angle, double share) {
   }
   return std::nullopt;
 }
-
-double weight_of(const Capstan& c) { return c.areal_density_kg_per_m2 * c.gravity_m_per_s2; }
 
 }  // namespace
 
@@ -257,7 +253,7 @@ SlideState slide_down(const Incline& i, double t) {
 }
 
 double greatest_overhang_m(const Capstan& c, double light_overhang) {
-  const double weight = weight_of(c), mu = c.friction;
+  const double weight = c.areal_density_kg_per_m2 * c.gravity_m_per_s2, mu = c.friction;
   if (c.turns <= 0) {
     // Particular solution A sin + B cos of the linear equation.
     const double on = weight * c.radius_m, a = on * (1 - mu * mu) / (1 + mu * mu), b = -2 * mu * on / (1 + mu * mu);
@@ -274,8 +270,8 @@ double greatest_overhang_m(const Capstan& c, double light_overhang) {
   return tension;
 }
 
-std::vector<SlidState> slide_over(const Capstan& c, double light_overhang, double heavy_overhang,
-                                  std::span<const double> times_s) {
+std::vector<SlideState> slide_over(const Capstan& c, double light_overhang, double heavy_overhang,
+                                   std::span<const double> times_s) {
   using Pair = std::array<double, 2>;
   const double mu = c.friction, constant = greatest_overhang_m(c, 0), ratio = greatest_overhang_m(c, 1) - constant,
                smooth = std::exp(mu * pi);
@@ -288,7 +284,7 @@ std::vector<SlidState> slide_over(const Capstan& c, double light_overhang, doubl
   };
   const bool holds = heavy_overhang <= greatest_overhang_m(c, light_overhang);
   Pair x = {0, 0};
-  std::vector<SlidState> out;
+  std::vector<SlideState> out;
   double now = 0;
   for (const double t : times_s) {
     if (!holds && t > now) integrate("capstan", rate, x, now, t, (t - now) / 4, 1e-12, 1e-12);

@@ -6,8 +6,7 @@
 #include <vector>
 
 // Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
-// All values are in SI units; tensions and loads are per width. The cases of strip_cases.cpp and contact_cases.cpp have
-// checked the ranges.
+// All values are in SI units; tensions and loads are per width. Reference cases check the ranges.
 
 namespace clothbench::truth {
 
@@ -100,8 +99,7 @@ std::vector<std::vector<double>> pull(const PulledChain&, std::span<const double
 
 /// The same pull without a mesh, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
 /// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after; the wave from each end adds a strain of v0/c.
-/// A ramp of L/c or longer is needed: after a sudden start a chain overshoots by 25 %, however fine. Only
-/// rounding errors.
+/// A ramp of L/c or longer is needed: after a sudden start a chain overshoots by 25 %. Only rounding errors.
 struct PullWave {
   double length_m, wave_speed_m_per_s, hand_speed_m_per_s, ramp_s;
 
@@ -129,7 +127,7 @@ struct Incline {
   double gravity_m_per_s2 = 9.81;
 };
 struct SlideState {
-  double distance_m, speed_m_per_s;  ///< downhill
+  double distance_m, speed_m_per_s;  ///< downhill, or towards the heavy side
 };
 SlideState slide_down(const Incline&, double time_s);
 
@@ -156,10 +154,7 @@ double greatest_overhang_m(const Capstan&, double light_overhang_m);
 /// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that does not slip stays static.
 /// Throws Error for a time at which the light end has reached the axis. Expects light_overhang_m <= heavy_overhang_m.
 /// Integrated as above, tolerance 1e-12.
-struct SlidState {
-  double displacement_m, speed_m_per_s;
-};
-std::vector<SlidState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
-                                  std::span<const double> times_s);
+std::vector<SlideState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,
+                                   std::span<const double> times_s);
 
 }  // namespace clothbench::truth

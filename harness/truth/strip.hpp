@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "clothbench/error.hpp"
-#include "clothbench/vector.hpp"
 #include "truth/reference_case.hpp"
 
 // Only for the reference cases: their requirements on a scene.
@@ -16,9 +15,6 @@ using Columns = std::vector<Vec3>;
 inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Vec3 operator*(double k, const Vec3& a) { return {k * a[0], k * a[1], k * a[2]}; }
-
-/// std::max would lose a NaN.
-inline double greater(double a, double b) { return b <= a || a != a ? a : b; }
 
 /// A scene as a strip, with checks that throw Error if a reference case's requirement is not met.
 struct Strip {
@@ -102,6 +98,20 @@ struct Strip {
     std::vector<double> out;
     for (int f = 0; f <= scene.time.frames(); ++f) out.push_back(time_s(f));
     return out;
+  }
+  /// One position per column: `at(i)` for i from 0 to `links`.
+  template <class At>
+  Columns columns(At at) const {
+    Columns out;
+    for (int i = 0; i <= links; ++i) out.push_back(at(i));
+    return out;
+  }
+  /// Mean of `value(i)` over the columns; the two at the ends carry half a cell.
+  template <class Value>
+  double mean(Value value) const {
+    double sum = 0;
+    for (int i = 0; i <= links; ++i) sum += (i == 0 || i == links ? 0.5 : 1) * value(static_cast<std::size_t>(i));
+    return sum / links;
   }
   ReferenceCase reference_case() const {
     ReferenceCase c;

@@ -20,9 +20,51 @@ constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet that shears
 // Links of the chain that is used as the continuum of a cantilever: off by 2.4e-7 of its length at Gamma = 10.
 constexpr int kSmooth = 2048;
 
-/// Distance of the last column from the middle of edge u0 along `direction`.
-std::function<double(const Columns&)> tip(const Vec3& start, const Vec3& direction) {
-  return [=](const Columns& c) { return dot(c.back() - start, direction); };
+/// Positions of a sheet that shears: away from its pinned edge it also narrows, by a third of its strain.
+std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Columns& columns) {
+  const Cloth& c = s.scene.cloth;
+  std::vector<double> out = vertex_values(c, columns);
+  for (int j = 0; j < c.rows; ++j)
+    for (int i = 1; i < c.columns; ++i) {
+      const double below = strip.areal_density_kg_per_m2 * strip.gravity_m_per_s2 * (c.columns - 1 - i) * c.du(),
+                   strain = (below + strip.end_load_N_per_m) / strip.membrane_stiffness_N_per_m,
+                   by = strain * kPoissonRatio * (j * c.dv() - c.height_m / 2);
+      for (std::size_t k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(j * c.columns + i) + k] -= by * c.axis_v[k];
+    }
+  return out;
+}
+
+/// Width [m] of the pinned part of a mesh next to edge u0. Throws Error if other vertices are pinned, or only the edge.
+double clamp_of_mesh_m(const Strip& s) {
+  const Cloth& c = s.scene.cloth;
+  double width_m = 0;
+  for (const std::uint32_t v : s.scene.pins.vertices)
+    width_m = std::max(width_m, c.mesh->vertices[v][0] + c.width_m / 2);
+  s.need(width_m > Strip::kFlat * c.width_m && width_m < 0.5 * c.width_m,
+         "a clamp: the vertices of edge u0 and of a line next to it pinned");
+  s.need_pins(s.up_to(width_m), "every vertex from edge u0 to the end of the clamp pinned, and no other pins or grips");
+  return width_m;
+}
+
+/// Two hands that pull alike and opposite, from the scene's file.
+PullWave hands_of(const Strip& s) {
+  const nlohmann::json grips = nlohmann::json::parse(s.scene.json).at("grips");
+  const auto velocity = [&](std::size_t k) {
+    const nlohmann::json v = grips.at(k).value("velocity_m_per_s", nlohmann::json::array({0, 0, 0}));
+    return Vec3{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
+  };
+  const char* kBars = "two grips: edge u0 moved along -axis_u and edge u1 along axis_u, equally fast, with one ramp_s";
+  s.need(grips.size() == 2 && grips[0].value("edge", "") == "u0" && grips[1].value("edge", "") == "u1", kBars);
+  const double speed = dot(velocity(1), s.along), ramp_s = grips[0].at("ramp_s").get<double>();
+  const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed &&
+                     length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
+                     grips[1].at("ramp_s").get<double>() == ramp_s;
+  for (const nlohmann::json& grip : grips)
+    for (const char* key : {"stop_s", "release_s", "jumps"})
+      s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
+  s.need_even_masses();
+  s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
+  return {s.length_m, std::sqrt(s.need_stiffness() / s.scene.cloth.areal_density_kg_per_m2), speed, ramp_s};
 }
 
 }  // namespace
@@ -42,15 +84,11 @@ ReferenceCase free_fall(const Strip& s) {
            fall_height_m(body(0, s.g), t) * s.up;
   };
   known.columns = [s, fallen](int frame) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i) out.push_back(fallen(static_cast<double>(i) / s.links, frame));
-    return out;
+    return s.columns([&](int i) { return fallen(static_cast<double>(i) / s.links, frame); });
   };
   known.quantity = [s](const Columns& c) {
-    double sum = 0;  // ends carry half a cell
-    for (std::size_t i = 0; i < c.size(); ++i)
-      sum += (i == 0 || i + 1 == c.size() ? 0.5 : 1) * dot(c[i] - s.start, s.up);
-    return -(sum / s.links - s.length_m / 2 * dot(s.along, s.up));
+    const double height = s.mean([&](std::size_t i) { return dot(c[i] - s.start, s.up); });
+    return -(height - s.length_m / 2 * dot(s.along, s.up));
   };
   return known;
 }
@@ -95,7 +133,7 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
          "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
   ReferenceCase known = s.reference_case();
-  known.quantity = tip(s.start, s.along);
+  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along); };
   using States = std::vector<Nodes>;
   const auto states = std::make_shared<States>(swing({s.links, s.length_m, s.g, 0.5}, s.times_s()));
   known.columns = [s, states](int frame) {
@@ -114,37 +152,6 @@ ReferenceCase swing_strip(const Strip& s) {
   return known;
 }
 
-namespace {
-
-/// Positions of a sheet that shears: away from its pinned edge it also narrows, by a third of its strain.
-std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Columns& columns) {
-  const Cloth& c = s.scene.cloth;
-  std::vector<double> out = vertex_values(c, columns);
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 1; i < c.columns; ++i) {
-      const double below = strip.areal_density_kg_per_m2 * strip.gravity_m_per_s2 * (c.columns - 1 - i) * c.du(),
-                   strain = (below + strip.end_load_N_per_m) / strip.membrane_stiffness_N_per_m,
-                   by = strain * kPoissonRatio * (j * c.dv() - c.height_m / 2);
-      for (std::size_t k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(j * c.columns + i) + k] -= by * c.axis_v[k];
-    }
-  return out;
-}
-
-/// A strip that does not stretch stays where it starts, whatever its masses.
-ReferenceCase hanging_at_rest_length(const Strip& s) {
-  ReferenceCase known = s.reference_case();
-  known.settles = known.by_quantity = true;
-  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
-  known.columns = [s](int) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i) out.push_back(s.at(s.length_m * i / s.links, 0));
-    return out;
-  };
-  return known;
-}
-
-}  // namespace
-
 ReferenceCase heavy_strip(const Strip& s) {
   s.need_gravity();
   s.need(std::abs(dot(s.along, s.up) + 1) <= Strip::kLevel, "a sheet whose axis_u points down");
@@ -152,48 +159,29 @@ ReferenceCase heavy_strip(const Strip& s) {
   s.need_pins(s.edge("u0"), "edge u0 pinned, and no other pins or grips");
   s.need_no_bending();
   s.need_damping(true);
-  if (!s.scene.material.membrane_stiffness_N_per_m) return hanging_at_rest_length(s);
-  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g,
-                         s.end_load_N_per_m()};
   ReferenceCase known = s.reference_case();
   known.settles = known.by_quantity = true;
-  known.quantity_scale = hang_displacement_m(strip, s.length_m);
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
+  if (!s.scene.material.membrane_stiffness_N_per_m) {  // it stays where it starts, whatever its masses
+    known.columns = [s](int) { return s.columns([&](int i) { return s.at(s.length_m * i / s.links, 0); }); };
+    return known;
+  }
+  const HeavyStrip strip{s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness(), s.g,
+                         s.end_load_N_per_m()};
+  known.quantity_scale = hang_displacement_m(strip, s.length_m);
   const bool sheet = s.scene.needs.has(Feature::Shear);
   if (s.mesh() || sheet) {
     // The pinned edge keeps its width. The half at it is therefore stiffer than a strip, the other one is not.
     known.quantity_scale -= hang_displacement_m(strip, s.length_m / 2);
     known.quantity = [s](const Columns& c) { return dot(c.back() - c[c.size() / 2], s.along) - s.length_m / 2; };
   }
-  known.columns = [s, strip](int) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i)
-      out.push_back(s.at(s.length_m * i / s.links + hang_displacement_m(strip, s.length_m * i / s.links), 0));
-    return out;
-  };
+  const auto hanging = [s, strip](double rest_m) { return s.at(rest_m + hang_displacement_m(strip, rest_m), 0); };
+  known.columns = [s, hanging](int) { return s.columns([&](int i) { return hanging(s.length_m * i / s.links); }); };
   if (sheet)
     known.vertices = [s, strip, columns = known.columns](int frame) { return narrowed(s, strip, columns(frame)); };
-  known.continuum = [s, strip](double share, int) {
-    return s.at(share * s.length_m + hang_displacement_m(strip, share * s.length_m), 0);
-  };
+  known.continuum = [s, hanging](double share, int) { return hanging(share * s.length_m); };
   return known;
 }
-
-namespace {
-
-/// Width [m] of the pinned part of a mesh next to edge u0. Throws Error if other vertices are pinned, or only the edge.
-double clamp_of_mesh_m(const Strip& s) {
-  const Cloth& c = s.scene.cloth;
-  double width_m = 0;
-  for (const std::uint32_t v : s.scene.pins.vertices)
-    width_m = std::max(width_m, c.mesh->vertices[v][0] + c.width_m / 2);
-  s.need(width_m > Strip::kFlat * c.width_m && width_m < 0.5 * c.width_m,
-         "a clamp: the vertices of edge u0 and of a line next to it pinned");
-  s.need_pins(s.up_to(width_m), "every vertex from edge u0 to the end of the clamp pinned, and no other pins or grips");
-  return width_m;
-}
-
-}  // namespace
 
 ReferenceCase cantilever(const Strip& s) {
   s.need_level();
@@ -211,7 +199,7 @@ ReferenceCase cantilever(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.settles = true;
   known.quantity_scale = free_m;
-  known.quantity = tip(s.start, -1 * s.up);
+  known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, -1 * s.up); };
   known.columns = [s, cell, free_m, nodes = cantilever_nodes(s.links - 1, gamma)](int) {
     Columns out = {s.start};
     for (const auto& [x, y] : nodes) out.push_back(s.at(cell + free_m * x, -free_m * y));
@@ -225,31 +213,6 @@ ReferenceCase cantilever(const Strip& s) {
   };
   return known;
 }
-
-namespace {
-
-/// Two hands that pull alike and opposite, from the scene's file.
-PullWave hands_of(const Strip& s) {
-  const nlohmann::json grips = nlohmann::json::parse(s.scene.json).at("grips");
-  const auto velocity = [&](std::size_t k) {
-    const nlohmann::json v = grips.at(k).value("velocity_m_per_s", nlohmann::json::array({0, 0, 0}));
-    return Vec3{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};
-  };
-  const char* kBars = "two grips: edge u0 moved along -axis_u and edge u1 along axis_u, equally fast, with one ramp_s";
-  s.need(grips.size() == 2 && grips[0].value("edge", "") == "u0" && grips[1].value("edge", "") == "u1", kBars);
-  const double speed = dot(velocity(1), s.along), ramp_s = grips[0].at("ramp_s").get<double>();
-  const bool alike = length(velocity(0) + velocity(1)) <= 1e-9 * speed &&
-                     length(velocity(1) - speed * s.along) <= 1e-9 * speed &&
-                     grips[1].at("ramp_s").get<double>() == ramp_s;
-  for (const nlohmann::json& grip : grips)
-    for (const char* key : {"stop_s", "release_s", "jumps"})
-      s.need(!grip.contains(key), std::string("bars without \"") + key + "\"");
-  s.need_even_masses();
-  s.need(speed > 0 && alike && s.scene.pins.vertices.empty(), kBars);
-  return {s.length_m, std::sqrt(s.need_stiffness() / s.scene.cloth.areal_density_kg_per_m2), speed, ramp_s};
-}
-
-}  // namespace
 
 ReferenceCase two_hand_pull(const Strip& s) {
   s.need(s.g == 0, "no gravity");
@@ -274,11 +237,8 @@ ReferenceCase two_hand_pull(const Strip& s) {
   const auto states = std::make_shared<States>(
       pull({s.links, s.length_m, s.scene.cloth.areal_density_kg_per_m2, s.need_stiffness()}, s.times_s(), first, last));
   known.columns = [s, states](int frame) {
-    Columns out;
-    for (int i = 0; i <= s.links; ++i)
-      out.push_back(
-          s.at(s.length_m * i / s.links + states->at(static_cast<std::size_t>(frame))[static_cast<std::size_t>(i)], 0));
-    return out;
+    const std::vector<double>& moved = states->at(static_cast<std::size_t>(frame));
+    return s.columns([&](int i) { return s.at(s.length_m * i / s.links + moved[static_cast<std::size_t>(i)], 0); });
   };
   known.continuum = [s, hands](double share, int frame) {
     const double x = std::clamp(share - 0.5, -0.5, 0.5) * s.length_m;
@@ -286,7 +246,7 @@ ReferenceCase two_hand_pull(const Strip& s) {
   };
   known.quantity = [cell = s.length_m / s.links](const Columns& c) {
     double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + 1 < c.size(); ++i) most = greater(most, length(c[i + 1] - c[i]) / cell - 1);
+    for (std::size_t i = 0; i + 1 < c.size(); ++i) most = max_or_nan(most, length(c[i + 1] - c[i]) / cell - 1);
     return most;
   };
   return known;

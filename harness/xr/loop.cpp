@@ -8,8 +8,6 @@
 
 #include "clothbench/vector.hpp"
 #include "common/gpu_solver.hpp"
-#include "results/replay.hpp"
-#include "results/result_folder.hpp"
 #include "results/store.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"

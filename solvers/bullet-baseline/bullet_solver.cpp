@@ -5,35 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/unsupported_scene.hpp"
-#include "clothbench/vector.hpp"
-
 namespace clothbench::bullet_baseline {
-namespace {
 
-std::string version() { return "Bullet " + std::to_string(btGetVersion()); }
-
-}  // namespace
-
-SolverInfo common_info() {
+SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings) {
   SolverInfo info;
+  info.name = name;
   info.folder = "solvers/bullet-baseline";
-  info.version = version();
+  info.summary = summary;
+  info.version = "Bullet " + std::to_string(btGetVersion());
   info.precision = sizeof(btScalar) == 4 ? "float32" : "float64";
   info.supports = {Feature::Stretch,  Feature::Shear,       Feature::Bend,       Feature::Damping,
                    Feature::Pins,     Feature::MovingPins,  Feature::Sphere,     Feature::Box,
                    Feature::Plane,    Feature::Capsules,    Feature::StaticMesh, Feature::MovingMesh,
                    Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin,
                    Feature::ClothMesh};
+  info.settings = std::move(settings);
+  info.settings.push_back(
+      {"collision_margin_m", "0.02", "contact offset [m]: PyBullet's default. 0: the scene's margin_m"});
+  info.settings.push_back(
+      {"sdf_voxel_m", "0.01", "voxel of the colliders' distance fields [m]; Bullet's own default is 0.25"});
   return info;
-}
-
-SettingSpec collision_margin_spec() {
-  return {"collision_margin_m", "0.02", "contact offset [m]: PyBullet's default. 0: the scene's margin_m"};
-}
-
-SettingSpec voxel_spec() {
-  return {"sdf_voxel_m", "0.01", "voxel of the colliders' distance fields [m]; Bullet's own default is 0.25"};
 }
 
 double kept_share(const Scene& scene, double h) {
@@ -66,7 +57,7 @@ BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
                 settings["collision_margin_m"].dump());
 }
 
-DeviceInfo BulletSolver::device() const { return {"CPU", version(), "C++", false, "{}"}; }
+DeviceInfo BulletSolver::device() const { return {"CPU", info_.version, "C++", false, "{}"}; }
 
 void BulletSolver::load(const Scene& scene) {
   refuse_mesh_bending(scene);
@@ -131,8 +122,8 @@ std::unique_ptr<btSoftBody> BulletSolver::new_body(btSoftBodyWorldInfo& info) {
   made->setActivationState(DISABLE_DEACTIVATION);
   const std::vector<double> v = initial_velocities(*scene_);
   for (int i = 0; i < made->m_nodes.size(); ++i) {
-    const auto k = 3 * static_cast<std::size_t>(i);
-    if (made->m_nodes[i].m_im > 0) made->m_nodes[i].m_v = made->m_nodes[i].m_vn = to_bullet({v[k], v[k + 1], v[k + 2]});
+    btSoftBody::Node& n = made->m_nodes[i];
+    if (n.m_im > 0) n.m_v = n.m_vn = to_bullet(vertex_at(v, static_cast<std::size_t>(i)));
   }
   return made;
 }
@@ -203,13 +194,10 @@ void BulletSolver::read_state(ClothState& out) const {
 bool BulletSolver::restart(const ClothState& state) {
   if (!scene_->motion.empty()) return false;
   reset();
-  const auto at = [](const std::vector<double>& of, std::size_t i) {
-    return to_bullet({of.at(3 * i), of.at(3 * i + 1), of.at(3 * i + 2)});
-  };
   for (int i = 0; i < body_->m_nodes.size(); ++i) {
     btSoftBody::Node& n = body_->m_nodes[i];
-    n.m_x = n.m_q = at(state.position, static_cast<std::size_t>(i));
-    n.m_v = n.m_vn = at(state.velocity, static_cast<std::size_t>(i));
+    n.m_x = n.m_q = to_bullet(vertex_at(state.position, static_cast<std::size_t>(i)));
+    n.m_v = n.m_vn = to_bullet(vertex_at(state.velocity, static_cast<std::size_t>(i)));
   }
   return true;
 }

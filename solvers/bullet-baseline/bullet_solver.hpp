@@ -1,21 +1,65 @@
 #pragma once
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <BulletSoftBody/btSoftBody.h>
+#include <btBulletDynamicsCommon.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bullet-baseline/collider_bodies.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 
 namespace clothbench::bullet_baseline {
 
-/// The part that both solvers of this folder share; each adds its own name, summary and settings.
-SolverInfo common_info();
+btVector3 to_bullet(const Vec3&);
 
-SettingSpec collision_margin_spec();
-SettingSpec voxel_spec();
+/// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
+///
+/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, like the ground in
+/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. A mesh is a thin body for each
+/// triangle; triangles of a moving mesh keep the shape they have at the start.
+class ColliderBodies {
+ public:
+  /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
+  ColliderBodies(const Scene&, btDiscreteDynamicsWorld& world);
+  ~ColliderBodies();
+  ColliderBodies(const ColliderBodies&) = delete;
+  ColliderBodies& operator=(const ColliderBodies&) = delete;
+
+  /// Moves dynamic colliders to `share` of the path between two instants. Bullet's next step derives their velocities.
+  void move(const FrameMotion& from, const FrameMotion& to, double share);
+
+ private:
+  struct Body {
+    std::unique_ptr<btCollisionShape> shape;
+    std::unique_ptr<btDefaultMotionState> motion;
+    std::unique_ptr<btRigidBody> body;
+  };
+  struct MovingCapsule {
+    std::size_t collider, capsule, body;
+    btQuaternion turn;
+  };
+  struct MovingTriangle {
+    std::size_t collider, triangle, body;
+  };
+
+  void add(std::unique_ptr<btCollisionShape>, const btTransform&, const Collider&);
+  void add_static(const Collider&);
+  void add_mesh(const Scene&, std::size_t collider);
+  void add_capsules(const Scene&, std::size_t collider);
+
+  void move_triangles(const FrameMotion& from, const FrameMotion& to, double share);
+
+  const std::vector<Collider>& colliders_;
+  btDiscreteDynamicsWorld& world_;
+  std::vector<Body> bodies_;
+  std::vector<MovingCapsule> capsules_;
+  std::vector<MovingTriangle> triangles_;  ///< triangles of one mesh are contiguous
+};
+
+/// Description of a solver of this folder. Settings of contact, which both share, follow its own.
+SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings);
 
 /// Share of its velocity that a node keeps in a step of h [s]: e^(-c h), or 1 without damping.
 double kept_share(const Scene&, double h);

@@ -1,16 +1,12 @@
-#include "bullet-baseline/collider_bodies.hpp"
-
-#include <algorithm>
 #include <cmath>
 
+#include "bullet-baseline/bullet_solver.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// Half the side of the box whose top stands for a plane. Large against any cloth; distances inside it are computed in
-/// float32, so not larger than need be.
+/// Half the side of the box whose top stands for a plane: large against any cloth, but distances in it are float32.
 constexpr double kGroundHalf_m = 10;
 /// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;
@@ -42,8 +38,7 @@ btTransform place(const Capsule& c, btQuaternion& turn) {
   return btTransform(turn, (to_bullet(c.a_m) + to_bullet(c.b_m)) / 2);
 }
 
-btTransform frame(const std::array<Vec3, 3>& axes, const btVector3& origin) {
-  const btVector3 x = to_bullet(axes[0]), y = to_bullet(axes[1]), z = to_bullet(axes[2]);
+btTransform frame(const btVector3& x, const btVector3& y, const btVector3& z, const btVector3& origin) {
   return btTransform(btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()), origin);
 }
 
@@ -51,10 +46,7 @@ using Corners = std::array<btVector3, 3>;
 
 Corners corners_of(const ColliderMesh& mesh, std::size_t triangle, const std::vector<double>& x) {
   Corners out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t v = mesh.triangles[triangle][k];
-    out[k] = to_bullet(vertex_at(x, v));
-  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = to_bullet(vertex_at(x, mesh.triangles[triangle][k]));
   return out;
 }
 
@@ -63,7 +55,7 @@ btTransform place(const Corners& c) {
   const btVector3 middle = (c[0] + c[1] + c[2]) / 3, along = c[1] - c[0], normal = along.cross(c[2] - c[0]);
   if (!(normal.length2() > 0)) return btTransform(btQuaternion::getIdentity(), middle);
   const btVector3 x = along.normalized(), z = normal.normalized(), y = z.cross(x);
-  return btTransform(btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()), middle);
+  return frame(x, y, z, middle);
 }
 
 /// Throws Error on a capsule that a rigid body cannot follow.
@@ -101,15 +93,14 @@ ColliderBodies::~ColliderBodies() {
   for (Body& b : bodies_) world_.removeRigidBody(b.body.get());
 }
 
-void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c,
-                         bool moves) {
+void ColliderBodies::add(std::unique_ptr<btCollisionShape> shape, const btTransform& at, const Collider& c) {
   Body b;
   b.shape = std::move(shape);
   b.motion = std::make_unique<btDefaultMotionState>(at);
   btRigidBody::btRigidBodyConstructionInfo made_of(0, b.motion.get(), b.shape.get());
   made_of.m_friction = static_cast<btScalar>(c.friction);
   b.body = std::make_unique<btRigidBody>(made_of);
-  if (moves) {
+  if (c.moves()) {
     b.body->setCollisionFlags(b.body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     b.body->setActivationState(DISABLE_DEACTIVATION);
   }
@@ -122,14 +113,15 @@ void ColliderBodies::add_static(const Collider& c) {
   btTransform at = btTransform::getIdentity();
   at.setOrigin(center);
   if (c.shape == Collider::Shape::Sphere) {
-    add(std::make_unique<btSphereShape>(static_cast<btScalar>(c.radius_m)), at, c, false);
+    add(std::make_unique<btSphereShape>(static_cast<btScalar>(c.radius_m)), at, c);
   } else if (c.shape == Collider::Shape::Box) {
-    add(std::make_unique<btBoxShape>(to_bullet(c.half_extent_m)), frame(c.axes, center), c, false);
+    add(std::make_unique<btBoxShape>(to_bullet(c.half_extent_m)),
+        frame(to_bullet(c.axes[0]), to_bullet(c.axes[1]), to_bullet(c.axes[2]), center), c);
   } else {
     const auto half = static_cast<btScalar>(kGroundHalf_m);
     const btVector3 up = to_bullet(c.normal);
     add(std::make_unique<btBoxShape>(btVector3(half, half, half)),
-        btTransform(shortestArcQuat(btVector3(0, 1, 0), up), center - up * half), c, false);
+        btTransform(shortestArcQuat(btVector3(0, 1, 0), up), center - up * half), c);
   }
 }
 
@@ -144,7 +136,7 @@ void ColliderBodies::add_mesh(const Scene& scene, std::size_t collider) {
     auto shape = std::make_unique<btTriangleShape>(back * corners[0], back * corners[1], back * corners[2]);
     shape->setMargin(kTriangleMargin_m);
     if (c.moves()) triangles_.push_back({collider, t, bodies_.size()});
-    add(std::move(shape), at, c, c.moves());
+    add(std::move(shape), at, c);
   }
 }
 
@@ -156,7 +148,7 @@ void ColliderBodies::add_capsules(const Scene& scene, std::size_t collider) {
     capsules_.push_back({collider, k, bodies_.size(), turn});
     add(std::make_unique<btCapsuleShape>(static_cast<btScalar>(c.capsules[k].radius_m),
                                          static_cast<btScalar>(length(c.capsules[k]))),
-        at, c, true);
+        at, c);
   }
 }
 

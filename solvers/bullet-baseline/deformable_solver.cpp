@@ -12,25 +12,61 @@
 #include <cmath>
 
 #include "bullet-baseline/bullet_solver.hpp"
-#include "clothbench/vector.hpp"
 
 namespace clothbench::bullet_baseline {
 namespace {
+
+/// From the first end to the second, where Bullet evaluates forces.
+btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
 /// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
 /// along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite where a link is
-/// compressed. These springs do not damp: Bullet's spring damping is relative to neighbours, the scenes' damping is
-/// not.
+/// compressed. They do not damp: Bullet's spring damping is relative to neighbours, the scenes' is not.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].
   explicit GridSprings(std::vector<btScalar> stiffness) : stiffness_(std::move(stiffness)) {}
 
-  void addScaledElasticForce(btScalar scale, TVStack& force) override;
-  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) override;
-  double totalElasticEnergy(btScalar dt) override;
+  void addScaledElasticForce(btScalar scale, TVStack& force) override {
+    for (int i = 0; i < body().m_links.size(); ++i) {
+      const btSoftBody::Link& l = body().m_links[i];
+      const btVector3 d = reach(l);
+      const btScalar length = d.length();
+      if (!(length > SIMD_EPSILON)) continue;  // no direction to push in
+      const btVector3 pull = d * (scale * stiffness_[static_cast<std::size_t>(i)] * (1 - l.m_rl / length));
+      force[l.m_n[0]->index] += pull;
+      force[l.m_n[1]->index] -= pull;
+    }
+  }
+
+  void addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) override {
+    for (int i = 0; i < body().m_links.size(); ++i) {
+      const btSoftBody::Link& l = body().m_links[i];
+      const btVector3 d = reach(l);
+      const btScalar length = d.length();
+      if (!(length > SIMD_EPSILON)) continue;
+      // dF = k (n n^T + (1 - r/|d|) (1 - n n^T)) (dx_1 - dx_0)
+      const btVector3 n = d / length, apart = dx[l.m_n[1]->index] - dx[l.m_n[0]->index];
+      const btScalar along = n.dot(apart), slack = l.m_rl / length;
+      const btVector3 change =
+          (apart * (1 - slack) + n * (along * slack)) * (scale * stiffness_[static_cast<std::size_t>(i)]);
+      df[l.m_n[0]->index] += change;
+      df[l.m_n[1]->index] -= change;
+    }
+  }
+
+  double totalElasticEnergy(btScalar) override {
+    double energy = 0;
+    for (int i = 0; i < body().m_links.size(); ++i) {
+      const btSoftBody::Link& l = body().m_links[i];
+      const double longer = static_cast<double>(reach(l).length() - l.m_rl);
+      energy += 0.5 * static_cast<double>(stiffness_[static_cast<std::size_t>(i)]) * longer * longer;
+    }
+    return energy;
+  }
+
   void addScaledDampingForce(btScalar, TVStack&) override {}
   void addScaledDampingForceDifferential(btScalar, const TVStack&, TVStack&) override {}
   void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
@@ -41,58 +77,15 @@ class GridSprings final : public btDeformableMassSpringForce {
   const std::vector<btScalar> stiffness_;
 };
 
-/// From the first end to the second, where Bullet evaluates forces.
-btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
-
-void GridSprings::addScaledElasticForce(btScalar scale, TVStack& force) {
-  for (int i = 0; i < body().m_links.size(); ++i) {
-    const btSoftBody::Link& l = body().m_links[i];
-    const btVector3 d = reach(l);
-    const btScalar length = d.length();
-    if (!(length > SIMD_EPSILON)) continue;  // no direction to push in
-    const btVector3 pull = d * (scale * stiffness_[static_cast<std::size_t>(i)] * (1 - l.m_rl / length));
-    force[l.m_n[0]->index] += pull;
-    force[l.m_n[1]->index] -= pull;
-  }
-}
-
-void GridSprings::addScaledElasticForceDifferential(btScalar scale, const TVStack& dx, TVStack& df) {
-  for (int i = 0; i < body().m_links.size(); ++i) {
-    const btSoftBody::Link& l = body().m_links[i];
-    const btVector3 d = reach(l);
-    const btScalar length = d.length();
-    if (!(length > SIMD_EPSILON)) continue;
-    // dF = k (n n^T + (1 - r/|d|) (1 - n n^T)) (dx_1 - dx_0)
-    const btVector3 n = d / length, apart = dx[l.m_n[1]->index] - dx[l.m_n[0]->index];
-    const btScalar along = n.dot(apart), slack = l.m_rl / length;
-    const btVector3 change =
-        (apart * (1 - slack) + n * (along * slack)) * (scale * stiffness_[static_cast<std::size_t>(i)]);
-    df[l.m_n[0]->index] += change;
-    df[l.m_n[1]->index] -= change;
-  }
-}
-
-double GridSprings::totalElasticEnergy(btScalar) {
-  double energy = 0;
-  for (int i = 0; i < body().m_links.size(); ++i) {
-    const btSoftBody::Link& l = body().m_links[i];
-    const double longer = static_cast<double>(reach(l).length() - l.m_rl);
-    energy += 0.5 * static_cast<double>(stiffness_[static_cast<std::size_t>(i)]) * longer * longer;
-  }
-  return energy;
-}
-
 SolverInfo deformable_info() {
-  SolverInfo info = common_info();
-  info.name = "bullet-deformable";
+  SolverInfo info =
+      bullet_info("bullet-deformable",
+                  "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core",
+                  {{"substeps", "0",
+                    "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
+                   {"implicit", "false",
+                    "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"}});
   info.supports.add(Feature::Regions);
-  info.summary = "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core";
-  info.settings = {
-      {"substeps", "0",
-       "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
-      {"implicit", "false", "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"},
-      collision_margin_spec(),
-      voxel_spec()};
   return info;
 }
 

@@ -8,16 +8,11 @@ namespace clothbench::bullet_baseline {
 namespace {
 
 SolverInfo soft_info() {
-  SolverInfo info = common_info();
-  info.name = "bullet-soft";
-  info.summary = "Bullet's position-based soft body (btSoftBody) on one CPU core";
-  info.settings = {
-      {"iterations", "10", "position iterations per substep (piterations)"},
-      {"substeps", "4", "substeps per frame"},
-      {"relaxation", "1.0", "kLST: fraction of a link's error removed per iteration, 0 to 1; not a stiffness"},
-      collision_margin_spec(),
-      voxel_spec()};
-  return info;
+  return bullet_info(
+      "bullet-soft", "Bullet's position-based soft body (btSoftBody) on one CPU core",
+      {{"iterations", "10", "position iterations per substep (piterations)"},
+       {"substeps", "4", "substeps per frame"},
+       {"relaxation", "1.0", "kLST: fraction of a link's error removed per iteration, 0 to 1; not a stiffness"}});
 }
 
 /// The objects of a Bullet world with rigid bodies; members in the order of construction.
@@ -57,8 +52,7 @@ class BulletSoft final : public BulletSolver {
     body_->updateLinkConstants();
     if (!touching_) return;
     body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
-    // The nodes' boxes were made with Bullet's default margin of 0.25 m, and Bullet keeps a box until its node leaves
-    // it.
+    // The nodes' boxes have Bullet's default margin of 0.25 m, and Bullet keeps a box until its node leaves it.
     body_->m_sst.radmrg = body_->getCollisionShape()->getMargin();
     body_->updateNodeTree(false, true);
     touching_->world.setGravity(to_bullet(scene().gravity_m_per_s2));

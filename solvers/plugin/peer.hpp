@@ -80,8 +80,7 @@ inline std::vector<Spring> springs(const ClothbenchScene& s) {
   return out;
 }
 
-/// Centre of the cloth's bounds [m]. The engines work in float32 around it, so a cloth far from the origin keeps its
-/// digits.
+/// Centre of the cloth's bounds [m]. Engines work in float32 around it, so that far cloth keeps its digits.
 inline Point centre(const ClothbenchScene& s) {
   Point low = point(s.position_m, 0), high = low;
   for (std::uint32_t v = 1; v < s.vertex_count; ++v)
@@ -161,8 +160,7 @@ struct About {
 };
 
 /// The C functions over an adapter: `Settings` from an array of values, in the order of `settings`; `Solver`, an
-/// Adapter, from settings and a scene; and `obstacle(settings, scene)`, the reason why the engine cannot run the scene,
-/// empty if it can.
+/// Adapter, from settings and a scene; and `obstacle(settings, scene)`, why the engine cannot run it, or empty.
 template <typename Solver, typename Settings, std::uint32_t kCount>
 ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[kCount]) {
   ClothbenchPlugin p{};

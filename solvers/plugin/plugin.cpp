@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -150,8 +149,8 @@ SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
   info.version = c.solver_version;
   info.precision = c.precision;
   info.on_gpu = c.device_s != nullptr;
-  info.supports = features_of(c.supports);
-  info.ignores = features_of(c.ignores);
+  info.supports = FeatureSet(c.supports);
+  info.ignores = FeatureSet(c.ignores);
   info.time_order = c.time_order;
   if (c.engine != nullptr) info.engine = c.engine;
   for (std::uint32_t k = 0; k < c.setting_count; ++k) {

@@ -6,8 +6,8 @@
 namespace clothbench::plugin {
 
 /// The solver in the shared library `path`, loaded once a process and never unloaded. Throws Error naming the file and
-/// the fault: it does not load or crashes (tried in a child process), its version differs, its sizes do not fit, its
-/// description is incomplete, or its name is taken.
+/// the fault: it does not load or crashes (tried in a child process), version or sizes differ, incomplete description,
+/// name taken.
 const SolverEntry& load(const std::string& path);
 
 /// A solver of a library that this process has loaded, or that $CLOTHBENCH_PLUGINS names (paths, separated by colons).

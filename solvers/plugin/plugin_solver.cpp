@@ -5,29 +5,21 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "clothbench/restart_after.hpp"
-#include "clothbench/unsupported_scene.hpp"
 #include "plugin/scene_view.hpp"
 
 namespace clothbench::plugin {
 namespace {
 
+/// The interface's codes are in the order of StepStatus; one that it does not know counts as diverged.
 StepStatus status_of(std::int32_t code) {
-  switch (code) {
-    case CLOTHBENCH_OK:
-      return StepStatus::Ok;
-    case CLOTHBENCH_NOT_FINITE:
-      return StepStatus::NotFinite;
-    case CLOTHBENCH_DEVICE_LOST:
-      return StepStatus::DeviceLost;
-    case CLOTHBENCH_TIMED_OUT:
-      return StepStatus::TimedOut;
-    default:  // CLOTHBENCH_DIVERGED, and what the interface does not know
-      return StepStatus::Diverged;
-  }
+  static_assert(static_cast<int>(StepStatus::NotFinite) == CLOTHBENCH_NOT_FINITE &&
+                static_cast<int>(StepStatus::Diverged) == CLOTHBENCH_DIVERGED &&
+                static_cast<int>(StepStatus::DeviceLost) == CLOTHBENCH_DEVICE_LOST &&
+                static_cast<int>(StepStatus::TimedOut) == CLOTHBENCH_TIMED_OUT);
+  return code >= CLOTHBENCH_OK && code <= CLOTHBENCH_TIMED_OUT ? static_cast<StepStatus>(code) : StepStatus::Diverged;
 }
 
-class PluginSolver final : public ClothSolver, public RestartsAtMoment {
+class PluginSolver final : public ClothSolver {
  public:
   PluginSolver(const ClothbenchPlugin& c, SolverInfo info, const nlohmann::json& settings)
       : c_(c), info_(std::move(info)), settings_(setting_values(c, settings)) {}
@@ -116,7 +108,7 @@ class PluginSolver final : public ClothSolver, public RestartsAtMoment {
     for (std::uint32_t k = 0; stages != nullptr && k < count; ++k) {
       const ClothbenchStage& s = stages[k];
       out.stages.push_back(
-          {s.name != nullptr ? s.name : "unnamed", features_of(s.serves), s.dispatches, s.read_B, s.write_B});
+          {s.name != nullptr ? s.name : "unnamed", FeatureSet(s.serves), s.dispatches, s.read_B, s.write_B});
     }
     for (std::uint32_t k = 0; c_.contact_margin_m != nullptr && k < view_->scene()->collider_count; ++k)
       out.contact_margins_m.push_back(c_.contact_margin_m(self_, k));
@@ -141,13 +133,6 @@ std::vector<double> setting_values(const ClothbenchPlugin& c, const nlohmann::js
     out.push_back(v.is_number() ? v.get<double>() : c.settings[k].default_value);
   }
   out.push_back(0);  // a pointer to nothing would be none
-  return out;
-}
-
-FeatureSet features_of(std::uint32_t bits) {
-  FeatureSet out;
-  for (std::size_t k = 0; k < kFeatureCount; ++k)
-    if ((bits >> k & 1u) != 0) out.add(static_cast<Feature>(k));
   return out;
 }
 

@@ -15,34 +15,18 @@ static_assert(sizeof(Capsule) == 7 * sizeof(double) && sizeof(Vec3) == 3 * sizeo
 static_assert(static_cast<int>(Collider::Shape::Plane) == CLOTHBENCH_SHAPE_PLANE &&
               static_cast<int>(Collider::Shape::Mesh) == CLOTHBENCH_SHAPE_MESH);
 
-/// The piece of cloth that a skip edge stands for, on a grid of even cells.
-EdgeCell skip_cell(const Cloth& c, const Edge& e) {
-  const bool along_u = e.b - e.a == 2;
-  return {e.rest_m / 2, along_u ? c.dv() : c.du()};
-}
-
 template <std::size_t N, class From>
 void copy(double (&to)[N], const From& from) {
   std::copy(std::begin(from), std::end(from), to);
 }
 
-/// In the cloth's frame, the middle of a grid at 0.
-Vec3 local_rest(const Cloth& c, std::size_t v) {
-  if (c.mesh) return c.mesh->vertices[v];
-  const int i = static_cast<int>(v) % c.columns, j = static_cast<int>(v) / c.columns;
-  return {c.line_u_m(i) - c.width_m / 2, j * c.dv() - c.height_m / 2, 0};
-}
-
-/// The cloth at rest in world coordinates, 3 numbers per vertex.
+/// The cloth at rest in world coordinates, 3 numbers per vertex: flat, wherever it starts.
 std::vector<double> rest_positions(const Cloth& c) {
-  const Vec3 &u = c.axis_u, &v = c.axis_v;
-  const Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  std::vector<double> out;
-  for (std::size_t k = 0; k < c.vertex_count(); ++k) {
-    const Vec3 at = local_rest(c, k);
-    for (std::size_t d = 0; d < 3; ++d) out.push_back(c.center_m[d] + at[0] * u[d] + at[1] * v[d] + at[2] * n[d]);
-  }
-  return out;
+  Scene flat;
+  flat.cloth = c;
+  flat.cloth.span_m = flat.cloth.drape_radius_m = 0;
+  flat.cloth.start = {};
+  return initial_positions(flat);
 }
 
 /// Whether one of the points, x y z each, moved by more than `distance_m`.
@@ -66,7 +50,7 @@ SceneView::SceneView(const Scene& s)
   if (s.needs.has(Feature::Bend)) add_edges(EdgeKind::SkipOne, skip_);
   add_colliders();
   ClothbenchScene& v = view_;
-  s.needs.for_each([&](Feature f) { v.needs |= 1u << static_cast<unsigned>(f); });
+  v.needs = s.needs.bits();
   v.columns = static_cast<std::uint32_t>(s.cloth.columns);
   v.rows = static_cast<std::uint32_t>(s.cloth.rows);
   v.vertex_count = static_cast<std::uint32_t>(s.cloth.vertex_count());
@@ -100,23 +84,20 @@ SceneView::SceneView(const Scene& s)
 }
 
 void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {
+  constexpr double kInextensible = std::numeric_limits<double>::infinity();
+  const Cloth& c = scene_.cloth;
   const bool skip = kind == EdgeKind::SkipOne;
-  const std::vector<Edge> all = edges(scene_.cloth, kind);
-  std::vector<std::optional<double>> stiffnesses(all.size(), 0.0);
-  if (kind == EdgeKind::Structural) stiffnesses = edge_stiffnesses(scene_);
+  const std::vector<Edge> all = edges(c, kind);
+  std::vector<std::optional<double>> Y(all.size(), 0.0);
+  if (kind == EdgeKind::Structural) Y = edge_stiffnesses(scene_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Edge& e = all[k];
-    const EdgeCell cell = skip ? skip_cell(scene_.cloth, e) : edge_cell(scene_.cloth, e);
-    if (kind == EdgeKind::Shear) stiffnesses[k] = membrane_stiffness(scene_, e);
-    constexpr double kInextensible = std::numeric_limits<double>::infinity();
-    const double stiffness = stiffnesses[k].value_or(kInextensible);
-    double spring = 0;
-    if (!skip) {
-      const auto Y = membrane_stiffness(scene_, e);
-      spring = Y ? spring_N_per_m(scene_, e, *Y) : kInextensible;
-    }
-    const double share = kind != EdgeKind::Shear && on_border(scene_.cloth, e) ? 0.5 : 1;
-    out.push_back({e.a, e.b, e.rest_m, stiffness, cell.along_m, share * cell.across_m, spring});
+    // A skip edge stands for a piece of cloth on a grid of even cells.
+    const EdgeCell cell = skip ? EdgeCell{e.rest_m / 2, e.b - e.a == 2 ? c.dv() : c.du()} : edge_cell(c, e);
+    if (kind == EdgeKind::Shear) Y[k] = membrane_stiffness(scene_, e);
+    const double spring = skip ? 0 : Y[k] ? spring_N_per_m(scene_, e, *Y[k]) : kInextensible;
+    const double share = kind != EdgeKind::Shear && on_border(c, e) ? 0.5 : 1;
+    out.push_back({e.a, e.b, e.rest_m, Y[k].value_or(kInextensible), cell.along_m, share * cell.across_m, spring});
   }
 }
 

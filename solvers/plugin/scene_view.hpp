@@ -17,8 +17,7 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
-  /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which counts as solver
-  /// time as in all solvers.
+  /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which is solver time.
   const ClothbenchFrame* frame(const FrameInput&);
   /// The state at the end of frame `last`; valid as above and while `state` is unchanged.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
@@ -51,8 +50,6 @@ class SceneView {
 
 /// Values of the settings for the C interface, in the plugin's order.
 std::vector<double> setting_values(const ClothbenchPlugin&, const nlohmann::json& settings);
-
-FeatureSet features_of(std::uint32_t bits);
 
 /// One solver of a plugin whose description was checked.
 std::unique_ptr<ClothSolver> make_solver(const ClothbenchPlugin&, const SolverInfo&, const nlohmann::json& settings);

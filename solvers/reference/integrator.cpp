@@ -16,10 +16,12 @@ Vector masses3(const Model& m) {
   return out;
 }
 
-/// Takes the free entries of a 3-per-vertex vector, or puts them back (adding).
-void gather(const Model& m, const Vector& full, Vector& out) {
+/// The free entries of a 3-per-vertex vector.
+Vector gather(const Model& m, const Vector& full) {
+  Vector out(m.free_dofs());
   for (std::size_t v = 0; v < m.vertices(); ++v)
     if (!m.held(v)) out.segment<3>(m.dof(v)) = full.segment<3>(static_cast<Eigen::Index>(3 * v));
+  return out;
 }
 
 void put_held(const Model& m, const Vector& from, Vector& to) {
@@ -52,17 +54,13 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
     m.add_tension(y, lambda, f);
     const Vector r = f - mass_scale * mass.cwiseProduct(y - base);
     const Vector c = m.elongations(lambda) - m.constraints(y);
-    Vector rhs(all), acceleration = Vector::Zero(std::max(n, 1));
-    Vector free_part = Vector::Zero(n);
-    gather(m, r, free_part);
-    rhs.head(n) = free_part;
-    rhs.tail(all - n) = c;
-    gather(m, r.cwiseQuotient(mass), acceleration);
-    const double residual = std::max(largest(acceleration), mass_scale * largest(c));
+    Vector rhs(all);
+    rhs << gather(m, r), c;
+    const double residual = std::max(largest(gather(m, r.cwiseQuotient(mass))), mass_scale * largest(c));
     Triplets lower;
     add_mass(m, mass_scale, lower);
-    m.add_stiffness(y, lambda, 1, lower);
-    m.add_gradient(y, 1, n, lower);
+    m.add_stiffness(y, lambda, lower);
+    m.add_gradient(y, n, lower);
     m.add_compliance(1, n, lower);
     system.solve(all, lower, rhs);
     if (!system.ok() || !rhs.allFinite()) return StepStatus::NotFinite;
@@ -172,8 +170,7 @@ class Rattle final : public Integrator {
       const Vector c = model_.constraints(x);
       if (!c.allFinite()) return StepStatus::NotFinite;
       if (largest(c) <= tolerance_.length_m) return StepStatus::Ok;
-      Vector zero = Vector::Zero(model_.free_dofs());
-      const Vector correction = multipliers(from, zero, c);
+      const Vector correction = multipliers(from, c);
       if (!system_.ok()) return StepStatus::NotFinite;
       lambda += correction / scale;
     }
@@ -188,8 +185,7 @@ class Rattle final : public Integrator {
                             dv = v.segment<3>(3 * k.b) - v.segment<3>(3 * k.a);
       rate[static_cast<Eigen::Index>(s)] = d.normalized().dot(dv);
     }
-    Vector zero = Vector::Zero(model_.free_dofs());
-    const Vector impulse = multipliers(x, zero, rate);
+    const Vector impulse = multipliers(x, rate);
     if (!system_.ok()) return StepStatus::NotFinite;
     Vector pull = Vector::Zero(x.size());
     model_.add_tension(x, impulse, pull);
@@ -200,16 +196,15 @@ class Rattle final : public Integrator {
     return v.allFinite() ? StepStatus::Ok : StepStatus::NotFinite;
   }
 
-  /// lambda with G M^-1 G^T lambda = c, from [M G^T; G 0] [y; -lambda] = [0; ...].
-  Vector multipliers(const Vector& x, Vector& top, const Vector& c) {
+  /// lambda with G M^-1 G^T lambda = c, from [M G^T; G 0] [y; -lambda] = [0; -c].
+  Vector multipliers(const Vector& x, const Vector& c) {
     const int n = model_.free_dofs(), all = n + static_cast<int>(model_.springs());
     Triplets lower;
     add_mass(model_, 1, lower);
-    model_.add_gradient(x, 1, n, lower);
+    model_.add_gradient(x, n, lower);
     model_.add_compliance(0, n, lower);
     Vector rhs(all);
-    rhs.head(n) = top;
-    rhs.tail(all - n) = -c;
+    rhs << Vector::Zero(n), -c;
     system_.solve(all, lower, rhs);
     return rhs.tail(all - n);
   }
@@ -218,8 +213,7 @@ class Rattle final : public Integrator {
 }  // namespace
 
 /// Without compliance the lower block is 0 and a factorisation without pivoting meets zero pivots. A little is taken
-/// off it (the matrix is then quasi-definite, and every ordering works: Vanderbei 1995), and refinement against the
-/// true matrix takes the difference out again.
+/// off it (quasi-definite: every ordering works, Vanderbei 1995); refinement by the true matrix undoes it.
 void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   constexpr double kShift =
       1e-9;  // relative to the largest diagonal entry of G A^-1 G^T, which is 2 / smallest diagonal of A
@@ -251,8 +245,10 @@ void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   }
 }
 
-std::unique_ptr<Integrator> make_bdf2(Model& m, Tolerance t) { return std::make_unique<Bdf2>(m, t); }
-std::unique_ptr<Integrator> make_midpoint(Model& m, Tolerance t) { return std::make_unique<Midpoint>(m, t); }
-std::unique_ptr<Integrator> make_rattle(Model& m, Tolerance t) { return std::make_unique<Rattle>(m, t); }
+std::unique_ptr<Integrator> make_integrator(bool conservative, Model& m, Tolerance t) {
+  if (!conservative) return std::make_unique<Bdf2>(m, t);
+  if (m.inextensible()) return std::make_unique<Rattle>(m, t);
+  return std::make_unique<Midpoint>(m, t);
+}
 
 }  // namespace clothbench::reference

@@ -1,11 +1,81 @@
 #pragma once
 #include <Eigen/SparseCholesky>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "clothbench/solver.hpp"
-#include "model.hpp"
 
 namespace clothbench::reference {
+
+using Vector = Eigen::VectorXd;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// C(x) = |x_b - x_a| - rest, with a multiplier: C = compliance * lambda, so that compliance 0 is a constraint and not
+/// a large stiffness. lambda [N] is the tension. The springs of an elastic mesh are three a triangle, along its edges,
+/// and their compliance is the triangle's matrix (mesh_energy.hpp).
+struct Spring {
+  std::uint32_t a, b;
+  double rest_m, compliance;
+};
+
+/// E = 1/2 stiffness |x_a - 2 x_b + x_c|^2, for a line of equal cells.
+struct BendLine {
+  std::uint32_t a, b, c;
+  double stiffness;  // N/m
+};
+
+/// The discrete cloth: springs and bending from the continuum (README), vertex masses, and degrees of freedom.
+class Model {
+ public:
+  explicit Model(const Scene&);
+
+  std::size_t vertices() const { return mass_.size(); }
+  std::size_t springs() const { return springs_.size(); }
+  const std::vector<Spring>& spring_list() const { return springs_; }
+  const std::vector<double>& mass() const { return mass_; }
+  bool inextensible() const { return inextensible_; }
+  double damping_per_s() const { return damping_per_s_; }
+
+  /// Sets which vertices are held; all keep their state. `held` is 1 for vertices whose position is given.
+  void hold(const std::vector<std::uint8_t>& held);
+  bool held(std::size_t vertex) const { return dof_[vertex] < 0; }
+  /// First degree of freedom of a free vertex; negative if held.
+  int dof(std::size_t vertex) const { return dof_[vertex]; }
+  int free_dofs() const { return free_dofs_; }
+
+  /// C of every spring at x (3 * vertices).
+  Vector constraints(const Vector& x) const;
+  /// Elongation of every spring [m] under the tensions lambda.
+  Vector elongations(const Vector& lambda) const;
+  /// Appends the compliance times -scale at rows and columns `first`..., lower triangle.
+  void add_compliance(double scale, int first, Triplets& out) const;
+  /// Gravity and bending force [N] at x, 3 * vertices.
+  Vector force(const Vector& x) const;
+  /// Adds -G(x)^T lambda [N] to `out`, 3 * vertices.
+  void add_tension(const Vector& x, const Vector& lambda, Vector& out) const;
+  /// Appends d(-force)/dx + sum lambda d^2 C/dx^2 of the free degrees of freedom, lower triangle.
+  void add_stiffness(const Vector& x, const Vector& lambda, Triplets& out) const;
+  /// Appends G(x) at rows `first_row`...; columns of held vertices left out.
+  void add_gradient(const Vector& x, int first_row, Triplets& out) const;
+
+  /// Highest frequency [1/s] of the bending forces, for the explicit integrator's limit.
+  double highest_bending_frequency() const;
+
+ private:
+  void add_triangles(const Scene&);
+
+  std::vector<double> mass_;
+  std::vector<Spring> springs_;
+  std::vector<Eigen::Matrix3d> triangles_;  // compliance of three springs each, of an elastic mesh, else empty
+  std::vector<BendLine> lines_;
+  Eigen::SparseMatrix<double> bending_;  // of a mesh, else empty
+  std::vector<int> dof_;
+  int free_dofs_ = 0;
+  bool inextensible_ = false;
+  double damping_per_s_ = 0;
+  Eigen::Vector3d gravity_;
+};
 
 /// Positions, velocities (3 * vertices) and spring tensions.
 struct State {
@@ -48,10 +118,9 @@ class Integrator {
 
 /// BDF2 (first step: backward Euler), positions, velocities and tensions all at the step's end: stiffly accurate,
 /// order 2, damps unresolved frequencies. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
-std::unique_ptr<Integrator> make_bdf2(Model&, Tolerance);
-/// Implicit midpoint with tensions at the midpoint: order 2, conserves momentum, no damping of its own. Compliance > 0.
-std::unique_ptr<Integrator> make_midpoint(Model&, Tolerance);
-/// RATTLE (Andersen 1983): order 2, symplectic, for compliance 0; bending and gravity explicit.
-std::unique_ptr<Integrator> make_rattle(Model&, Tolerance);
+///
+/// `conservative`: where the cloth has compliance, the implicit midpoint with tensions at the midpoint: order 2,
+/// conserves momentum, no damping of its own. Otherwise RATTLE (Andersen 1983): order 2, symplectic; explicit forces.
+std::unique_ptr<Integrator> make_integrator(bool conservative, Model&, Tolerance);
 
 }  // namespace clothbench::reference

@@ -22,10 +22,12 @@ struct Flat {
   double area_m2;
 };
 
+std::array<Eigen::Vector3d, 3> points_of(const std::array<Vec3, 3>& x) {
+  return {Eigen::Vector3d::Map(x[0].data()), Eigen::Vector3d::Map(x[1].data()), Eigen::Vector3d::Map(x[2].data())};
+}
+
 Flat flatten(const ClothMesh& mesh, std::size_t triangle) {
-  std::array<Eigen::Vector3d, 3> p;
-  const std::array<Vec3, 3> rest = rest_corners(mesh, triangle);
-  for (int k = 0; k < 3; ++k) p[k] = Eigen::Vector3d::Map(rest[k].data());
+  const std::array<Eigen::Vector3d, 3> p = points_of(rest_corners(mesh, triangle));
   const Eigen::Vector3d u = (p[1] - p[0]).normalized();
   const Eigen::Vector3d v = (p[1] - p[0]).cross(p[2] - p[0]).normalized().cross(u);
   Flat f;
@@ -46,8 +48,7 @@ Eigen::Vector3d curvature(const Flat& f, int k, const Eigen::Vector2d& of) {
   return {n.x() * of.x(), n.y() * of.y(), (n.x() * of.y() + n.y() * of.x()) / std::sqrt(2.0)};
 }
 
-/// The unknowns: positions of vertices, then derivatives across edges, along the outward normal of the triangle that
-/// goes from the lower to the higher vertex.
+/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle that has them ascending.
 class Unknowns {
  public:
   Unknowns(const ClothMesh& mesh, const std::vector<std::uint32_t>& pinned) : vertices_(mesh.vertices.size()) {
@@ -101,17 +102,6 @@ class Unknowns {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges_, clamp_of_;
 };
 
-Sparse part(const Triplets& all, int first_row, int rows, int first_column, int columns) {
-  Triplets in;
-  for (const auto& t : all) {
-    const int r = t.row() - first_row, c = t.col() - first_column;
-    if (r >= 0 && r < rows && c >= 0 && c < columns) in.emplace_back(r, c, t.value());
-  }
-  Sparse out(rows, columns);
-  out.setFromTriplets(in.begin(), in.end());
-  return out;
-}
-
 }  // namespace
 
 Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vector<std::uint32_t>& pinned) {
@@ -131,11 +121,13 @@ Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vec
         all.emplace_back(static_cast<int>(i), static_cast<int>(j), rigidity_N_m * f.area_m2 * a.dot(b));
   }
   const int n = static_cast<int>(unknowns.vertices()), m = static_cast<int>(unknowns.count()) - n;
-  Sparse across = part(all, n, m, n, m);
+  Sparse whole(n + m, n + m);
+  whole.setFromTriplets(all.begin(), all.end());
+  Sparse across = whole.block(n, n, m, m);
   // The derivative across an edge between clamped triangles is no unknown: a row without entries.
   for (int e = 0; e < m; ++e)
     if (!(across.coeff(e, e) > 0)) across.coeffRef(e, e) = 1;
-  const Sparse vertex = part(all, 0, n, 0, n), mixed = part(all, n, m, 0, n);
+  const Sparse vertex = whole.block(0, 0, n, n), mixed = whole.block(n, 0, m, n);
   const Eigen::SimplicialLLT<Sparse> solver(across);
   Triplets kept;
   const double least = 1e-13 * vertex.diagonal().maxCoeff();
@@ -152,8 +144,7 @@ Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vec
 
 Eigen::Matrix3d triangle_compliance(const std::array<Vec3, 3>& corners, double stiffness_N_per_m) {
   constexpr double nu = kMeshPoissonRatio;
-  std::array<Eigen::Vector3d, 3> p;
-  for (std::size_t k = 0; k < 3; ++k) p[k] = Eigen::Vector3d::Map(corners[k].data());
+  const std::array<Eigen::Vector3d, 3> p = points_of(corners);
   const Eigen::Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]), u = (p[1] - p[0]).normalized(),
                         v = normal.normalized().cross(u);
   // Elongations of the edges from the strains xx, yy and 2 xy, which are constant.

@@ -1,9 +1,8 @@
-#include "model.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "clothbench/error.hpp"
+#include "integrator.hpp"
 #include "mesh_energy.hpp"
 
 namespace clothbench::reference {
@@ -149,13 +148,13 @@ void Model::add_tension(const Vector& x, const Vector& lambda, Vector& out) cons
   }
 }
 
-void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, Triplets& out) const {
+void Model::add_stiffness(const Vector& x, const Vector& lambda, Triplets& out) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const Eigen::Vector3d d = at(x, springs_[s].b) - at(x, springs_[s].a);
     const double length = d.norm();
     const Eigen::Vector3d n = d / length;
     const Eigen::Matrix3d H =
-        scale * lambda[static_cast<Eigen::Index>(s)] / length * (Eigen::Matrix3d::Identity() - n * n.transpose());
+        lambda[static_cast<Eigen::Index>(s)] / length * (Eigen::Matrix3d::Identity() - n * n.transpose());
     const int a = dof_[springs_[s].a], b = dof_[springs_[s].b];
     add_block(H, a, a, out);
     add_block(H, b, b, out);
@@ -167,16 +166,16 @@ void Model::add_stiffness(const Vector& x, const Vector& lambda, double scale, T
     for (int p = 0; p < 3; ++p)
       for (int q = 0; q < 3; ++q)
         if (dof[p] >= dof[q])
-          add_block(scale * l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
+          add_block(l.stiffness * kStencil[p] * kStencil[q] * Eigen::Matrix3d::Identity(), dof[p], dof[q], out);
   }
   for_each_entry(bending_, [&](std::uint32_t i, std::uint32_t j, double k) {
-    if (dof_[i] >= dof_[j]) add_block(scale * k * Eigen::Matrix3d::Identity(), dof_[i], dof_[j], out);
+    if (dof_[i] >= dof_[j]) add_block(k * Eigen::Matrix3d::Identity(), dof_[i], dof_[j], out);
   });
 }
 
-void Model::add_gradient(const Vector& x, double scale, int first_row, Triplets& out) const {
+void Model::add_gradient(const Vector& x, int first_row, Triplets& out) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    const Eigen::Vector3d n = scale * (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized();
+    const Eigen::Vector3d n = (at(x, springs_[s].b) - at(x, springs_[s].a)).normalized();
     const int row = first_row + static_cast<int>(s), a = dof_[springs_[s].a], b = dof_[springs_[s].b];
     for (int k = 0; k < 3; ++k) {
       if (a >= 0) out.emplace_back(row, a + k, -n[k]);

@@ -4,7 +4,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "clothbench/vector.hpp"
 #include "integrator.hpp"
 
 namespace clothbench {
@@ -33,7 +32,7 @@ class Reference final : public ClothSolver {
  public:
   explicit Reference(const nlohmann::json& settings)
       : substeps_(settings["substeps"].get<int>()),
-        integrator_name_(settings["integrator"].get<std::string>()),
+        conservative_(settings["integrator"] == "conservative"),
         tolerance_(settings["tolerance"].get<double>()) {}
 
   const SolverInfo& info() const override { return info_; }
@@ -48,13 +47,10 @@ class Reference final : public ClothSolver {
     const Scene& s = *scene_;
     model_ = std::make_unique<Model>(s);
     const double L = std::max(s.cloth.width_m, s.cloth.height_m);
-    const Vec3& g = s.gravity_m_per_s2;
-    double acceleration = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    double acceleration = length(s.gravity_m_per_s2);
     if (acceleration == 0) acceleration = L / (s.time.duration_s * s.time.duration_s);
     const Tolerance t{tolerance_ * acceleration, 1e-12 * L};
-    integrator_ = integrator_name_ == "bdf2" ? make_bdf2(*model_, t)
-                  : model_->inextensible()   ? make_rattle(*model_, t)
-                                             : make_midpoint(*model_, t);
+    integrator_ = make_integrator(conservative_, *model_, t);
     const auto n = static_cast<Eigen::Index>(3 * model_->vertices());
     const std::vector<double> start = initial_positions(s);
     state_.x = Vector::Map(start.data(), n);
@@ -126,7 +122,7 @@ class Reference final : public ClothSolver {
 
   const SolverInfo info_ = describe();
   const int substeps_;
-  const std::string integrator_name_;
+  const bool conservative_;
   const double tolerance_;
   const Scene* scene_ = nullptr;
   std::unique_ptr<Model> model_;

@@ -14,7 +14,6 @@
 
 #include "android/packed_assets.hpp"
 #include "base/files.hpp"
-#include "base/sha256.hpp"
 #include "refusal.hpp"
 #include "runner/interrupt.hpp"
 #include "scenario/load.hpp"

@@ -7,6 +7,8 @@
 namespace clothbench::contact {
 namespace {
 
+Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
+
 /// A wavy cloth through a bumpy ball: every figure is nonzero and nothing is special.
 Mesh wavy(int cells) {
   return sheet(cells, cells, {-0.3, 0.11, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}).mapped([](const Point<3>& p) {

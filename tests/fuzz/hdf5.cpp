@@ -10,7 +10,7 @@
 
 #include "../results/sample_run.hpp"
 #include "fuzz.hpp"
-#include "results/hdf5_file.hpp"
+#include "results/part_file.hpp"
 #include "results/store.hpp"
 
 namespace {

@@ -47,7 +47,8 @@ bool slides(const motion_check::Motion& m, const Facts& f) {
 Facts facts_of(const Motion& motion) {
   const Scene& s = *motion.scene;
   const motion_check::Motion m(s, {motion.time_s, motion.position});
-  motion_check::Bodies bodies(m, motion.contact_offsets_m);
+  const std::unique_ptr<motion_check::Bodies> own = motion_check::bodies_of(m, motion.contact_offsets_m);
+  motion_check::Bodies& bodies = *own;
   Facts f;
   f.falls = m.gravity.norm() > 0;
   f.up = f.falls ? V3(-m.gravity.normalized()) : V3(V3::UnitY());

@@ -45,11 +45,11 @@ nlohmann::json cost_of(const std::string& name, const std::string& solver) {
   nlohmann::json out = {{"cost", name}, {"solver", solver}, {"vertices", m->vertices()}, {"other_metrics_ms", others}};
   out["check_ms"] = time_ms(m->frames(), [&] { (void)motion_check::verify(*scene, frames, m->contact_offsets_m); });
   const motion_check::Motion motion(*scene, frames);
-  motion_check::Bodies bodies(motion, m->contact_offsets_m);
+  const std::unique_ptr<motion_check::Bodies> bodies = motion_check::bodies_of(motion, m->contact_offsets_m);
   for (const motion_check::Part& part : motion_check::parts())
     out["parts_ms"][part.name] = time_ms(m->frames(), [&] {
       motion_check::Findings found;
-      part.run(motion, bodies, found);
+      part.run(motion, *bodies, found);
     });
   return out;
 }

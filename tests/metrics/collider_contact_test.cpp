@@ -14,7 +14,7 @@ namespace {
 SceneContact at_height(const Scene& scene, double y) {
   std::vector<double> x = initial_positions(scene);
   for (std::size_t k = 1; k < x.size(); k += 3) x[k] = y;
-  return ColliderContact(scene).probe(0, x);
+  return collider_contact(scene)->probe(0, x);
 }
 
 TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
@@ -33,10 +33,10 @@ TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
 TEST(ColliderContact, CapsulesAreWhereTheirFrameHasThem) {
   const Scene scene = load_scene("paper/capsule-sweep", {"cloth.grid=[17,17]"});
   const std::vector<double> x = initial_positions(scene);
-  ColliderContact contact(scene);
+  const auto contact = collider_contact(scene);
   int inside = 0;
   for (int frame = 0; frame <= scene.time.frames(); ++frame) {
-    const SceneContact s = contact.probe(frame, x);
+    const SceneContact s = contact->probe(frame, x);
     double deepest = 0;
     for (std::size_t v = 0; v < x.size(); v += 3)
       for (const Capsule& c : scene.motion[static_cast<std::size_t>(frame)].colliders[0].capsules) {

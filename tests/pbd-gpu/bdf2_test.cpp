@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/motion.hpp"
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"

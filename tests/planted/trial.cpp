@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "metrics/registry.hpp"
-#include "results/replay.hpp"
+#include "results/store.hpp"
 #include "runner/expect.hpp"
 #include "solvers.hpp"
 

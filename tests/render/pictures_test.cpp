@@ -9,7 +9,6 @@
 #include "clothbench/error.hpp"
 #include "common/gpu_solver.hpp"
 #include "render/offscreen.hpp"
-#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "runner/solver_run.hpp"
 #include "scenario/load.hpp"

@@ -6,9 +6,8 @@
 #include <random>
 
 #include "base/files.hpp"
-#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "refusal.hpp"
-#include "results/hdf5_file.hpp"
 #include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"

@@ -11,7 +11,7 @@
 
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
-#include "results/hdf5_file.hpp"
+#include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
 #include "with_folder.hpp"

@@ -1,6 +1,4 @@
 // One process at a time writes into a folder of results, and one that died blocks nothing.
-#include "results/result_folder.hpp"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -9,6 +7,7 @@
 #include <fstream>
 
 #include "refusal.hpp"
+#include "results/store.hpp"
 #include "with_folder.hpp"
 
 namespace clothbench {

@@ -6,7 +6,6 @@
 #include "assets/assets.hpp"
 #include "base/data_folder.hpp"
 #include "refusal.hpp"
-#include "results/replay.hpp"
 #include "results/store.hpp"
 #include "scenario/load.hpp"
 #include "with_folder.hpp"

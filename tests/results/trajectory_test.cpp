@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "refusal.hpp"
-#include "results/hdf5_file.hpp"
+#include "results/part_file.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
 #include "with_folder.hpp"

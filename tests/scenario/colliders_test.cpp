@@ -7,7 +7,7 @@
 #include <set>
 
 #include "assets/assets.hpp"
-#include "base/sha256.hpp"
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/scene.hpp"
 #include "scenario/collider_kinds.hpp"

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "assets/assets.hpp"
+#include "base/files.hpp"
 #include "base/json_text.hpp"
-#include "base/sha256.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "scenario/draw_contact.hpp"

@@ -33,7 +33,7 @@ class Judge : public ::testing::Test {
     rest_.velocity.assign(rest_.position.size(), 0);
     next_ = 0;
   }
-  StabilityFrame add(const ClothState& s) { return judge_->judge(next_++, s, nullptr); }
+  StabilityFrame add(const ClothState& s) { return judge_->judge(next_++, s, {}); }
   ClothState stretched(double factor) const {
     ClothState s = rest_;
     for (std::size_t v = 0; v < s.position.size() / 3; ++v)

@@ -293,13 +293,13 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
   const auto atwood = slide_over({0, 0.05, 0.2, 9.81, 0}, 0.3, 0.5, times);
   const double k = std::sqrt(2 * 9.81 / (0.8 + 0.05 * pi));
   for (std::size_t f = 0; f < times.size(); ++f) {
-    EXPECT_NEAR(atwood[f].displacement_m, 0.1 * std::cosh(k * times[f]) - 0.1, 1e-10);
+    EXPECT_NEAR(atwood[f].distance_m, 0.1 * std::cosh(k * times[f]) - 0.1, 1e-10);
     EXPECT_NEAR(atwood[f].speed_m_per_s, 0.1 * k * std::sinh(k * times[f]), 1e-9);
   }
   // With friction: the tension over rho along the cylinder, from the light side, at the acceleration that it starts
   // with.
   const double mu = 0.3, R = 0.05, g = 9.81, light = 0.2, heavy = 0.7, t = 1e-4;
-  const double a = 2 * slide_over({mu, R, 0.2, g, 0}, light, heavy, State{0, t}).back().displacement_m / (t * t);
+  const double a = 2 * slide_over({mu, R, 0.2, g, 0}, light, heavy, State{0, t}).back().distance_m / (t * t);
   const State tension = integrated({light * (g + a)}, pi, [&](const State& y, State& d, double phi) {
     d[0] = mu * (y[0] + g * R * std::sin(phi)) + g * R * std::cos(phi) + R * a;
   });
@@ -308,8 +308,8 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
   for (const int turns : {0, 12}) {
     const Capstan rough{0.3, 0.05, 0.2, 9.81, turns};
     const double most = greatest_overhang_m(rough, 0.2);
-    EXPECT_EQ(slide_over(rough, 0.2, 0.999 * most, times).back().displacement_m, 0);
-    const double slow = slide_over(rough, 0.2, 1.001 * most, times).back().displacement_m;
+    EXPECT_EQ(slide_over(rough, 0.2, 0.999 * most, times).back().distance_m, 0);
+    const double slow = slide_over(rough, 0.2, 1.001 * most, times).back().distance_m;
     EXPECT_TRUE(slow > 0 && slow < 1e-3) << slow;
   }
   EXPECT_THROW(slide_over({}, 0.2, 5, State{0, 0.5}), Error) << "the light end is over";

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "clothbench/feature.hpp"
+#include "clothbench/vector.hpp"
 
 namespace clothbench {
-
-using Vec3 = std::array<double, 3>;
 
 /// All points within `radius_m` of the segment a-b.
 struct Capsule {
@@ -66,8 +65,7 @@ struct ColliderPose {
   std::vector<Affine> joints;  ///< of a skinned mesh: one matrix per joint
 };
 
-/// Poses of all dynamic colliders and grips at one instant. Between two instants capsule ends, skinned vertices and
-/// gripped vertices move in straight lines.
+/// Poses of all dynamic colliders and grips at one instant. Between instants ends and vertices move in straight lines.
 struct FrameMotion {
   std::vector<ColliderPose> colliders;  ///< one per Scene::colliders
   std::vector<Vec3> grip_position_m;    ///< one per Scene::grips.vertices: its position while held

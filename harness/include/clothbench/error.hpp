@@ -8,8 +8,7 @@ namespace clothbench {
 enum class ExitCode : int { Ok = 0, CheckFailed = 1, BadInput = 2, NoDevice = 3, Interrupted = 130 };
 
 /// Base class of all exceptions of the project. The message is complete: it names the file and JSON pointer, the
-/// argument, or the Vulkan call, and what was expected. A solver that diverges is not an error but a result
-/// (StepStatus).
+/// argument, or the Vulkan call, and what was expected. A solver that diverges is a result (StepStatus).
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, ExitCode code = ExitCode::BadInput)
@@ -24,6 +23,12 @@ class Error : public std::runtime_error {
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}
+};
+
+/// Thrown by ClothSolver::load for a scene that the solver cannot run at its settings: the run ends as `unsupported`.
+class UnsupportedScene : public SolverError {
+ public:
+  using SolverError::SolverError;
 };
 
 }  // namespace clothbench

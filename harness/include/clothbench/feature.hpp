@@ -7,9 +7,8 @@
 
 namespace clothbench {
 
-/// A property of scenes that solvers must support: one per row of feature_table.hpp. The loader derives the required
-/// features from the scenario (`derive_needs`); a solver never does. A run fails unless its stages serve exactly the
-/// features that the scene needs (`check_stages`).
+/// A property of scenes that solvers must support: one per row of feature_table.hpp. Only the loader derives them from
+/// the scenario (`derive_needs`). A run fails unless its stages serve exactly what the scene needs (`check_stages`).
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"
@@ -43,11 +42,14 @@ constexpr std::string_view name_of(Feature f) { return kFeatures[static_cast<std
 class FeatureSet {
  public:
   constexpr FeatureSet() = default;
+  /// Bit k stands for the kth feature; bits beyond the last one are dropped.
+  constexpr explicit FeatureSet(std::uint32_t bits) : bits_(bits & ((1u << kFeatureCount) - 1)) {}
   constexpr FeatureSet(std::initializer_list<Feature> features) {
     for (Feature f : features) bits_ |= bit(f);
   }
   constexpr bool has(Feature f) const { return (bits_ & bit(f)) != 0; }
   constexpr bool empty() const { return bits_ == 0; }
+  constexpr std::uint32_t bits() const { return bits_; }
   constexpr void add(Feature f) { bits_ |= bit(f); }
   constexpr FeatureSet operator|(FeatureSet o) const { return FeatureSet(bits_ | o.bits_); }
   constexpr FeatureSet operator&(FeatureSet o) const { return FeatureSet(bits_ & o.bits_); }
@@ -65,7 +67,6 @@ class FeatureSet {
   }
 
  private:
-  constexpr explicit FeatureSet(std::uint32_t bits) : bits_(bits) {}
   static constexpr std::uint32_t bit(Feature f) { return 1u << static_cast<unsigned>(f); }
   std::uint32_t bits_ = 0;
 };

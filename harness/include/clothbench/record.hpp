@@ -51,12 +51,10 @@ struct TimedTrial {
   double pipelined_wall_s = kMissing;
   /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. It
-  /// is the time of the process (CLOCK_PROCESS_CPUTIME_ID): for a solver with one thread the time of the stepping
-  /// thread, for others the sum over its threads.
+  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. Time of the process
+  /// (CLOCK_PROCESS_CPUTIME_ID), the sum over its threads.
   std::vector<double> frame_cpu_s = {};
-  /// System time at which the first timed frame began and the last one ended [s since 1970 UTC]. It matches the trial
-  /// with samples that other programs took at that time.
+  /// System time of the first timed frame's begin and the last one's end [s since 1970 UTC], for other programs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
@@ -80,7 +78,7 @@ struct StoredArray {
   std::vector<std::string> dims;     ///< names, slowest-varying first
   std::vector<std::uint64_t> shape;  ///< one size per name in `dims`
   bool integer = false;
-  std::vector<double> values;
+  std::vector<double> values = {};
 };
 
 /// Arrays and attributes (numbers, strings, lists of numbers) of one group of the file, such as "colliders/0".
@@ -95,14 +93,12 @@ struct RunRecord {
   RunHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
-  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see results/replay.hpp
+  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of (results/store.hpp)
   Outcome outcome;
   std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
   std::string file = {};                  ///< path that a report read it from; empty if it was not read from a file
-  std::vector<StoredGroup> samples =
-      {};  ///< device readings during the run (results/device_samples.hpp); not read back
-  std::map<std::string, std::string> withheld =
-      {};  ///< summary values that a report must not print, and why (report/report.hpp)
+  std::vector<StoredGroup> samples = {};  ///< device readings during the run (DeviceSamples); not read back
+  std::map<std::string, std::string> withheld = {};  ///< summary values that a report must not print, and why
 };
 
 }  // namespace clothbench

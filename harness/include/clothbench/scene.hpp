@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clothbench/collider.hpp"
@@ -98,8 +97,7 @@ struct Cloth {
   double least_height_m() const;
 };
 
-/// A membrane stiffness that replaces the sheet's in the cells of columns `first` to `last` of a grid (the first cell
-/// is 0), or in some triangles of a mesh.
+/// A membrane stiffness for the cells of columns `first` to `last` of a grid (from 0), or for some triangles of a mesh.
 struct StiffnessRegion {
   int first = 0, last = 0;
   std::optional<double> membrane_stiffness_N_per_m;
@@ -120,8 +118,7 @@ struct Pins {
   std::vector<std::uint32_t> vertices;
 };
 
-/// Vertices with prescribed motion, held by hands or bars. They are held from t = 0 until their release (see
-/// FrameMotion::grip_held) and are never held again.
+/// Vertices with prescribed motion, held by hands or bars from t = 0 until their release (FrameMotion::grip_held).
 struct Grips {
   std::vector<std::uint32_t> vertices;
 };
@@ -197,8 +194,7 @@ std::vector<double> vertex_masses(const Scene&);
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
 
-/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: the sum of velocity and spin about center_m. Pinned
-/// vertices have one too, but a solver still holds them.
+/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity plus spin about center_m, also if pinned.
 std::vector<double> initial_velocities(const Scene&);
 
 /// Y [N/m] of a structural or shear edge of a grid: its cell's Y, or the mean of its two cells for an edge along v. In
@@ -249,5 +245,22 @@ std::vector<std::array<std::uint32_t, 3>> triangles(const Cloth&);
 
 /// Grid edges of one kind with their rest lengths, in a fixed order. All edges of a mesh are structural.
 std::vector<Edge> edges(const Cloth&, EdgeKind);
+
+/// Greatest frame-to-frame speed [m/s] of any collider in the scene, measured at the ends of capsules and at a sample
+/// of the vertices of a skinned mesh. Jumps do not count. 0 if all colliders are static.
+double collider_speed_m_per_s(const Scene&);
+
+/// The same without the hands of users, whose speed a live session does not know beforehand.
+double scripted_collider_speed_m_per_s(const Scene&);
+
+/// Greatest speed [m/s] of colliders and held vertices since the frame before, one per `scene.motion`; the first is 0.
+std::vector<double> driving_speeds_m_per_s(const Scene&);
+
+/// Greatest frame-to-frame speed [m/s] of the gripped vertices while they are held.
+double grip_speed_m_per_s(const Scene&);
+
+/// Greatest strain that hands impose: growth of the straight distance between the first gripped vertex and another,
+/// over that distance at the start, while both are held. 0 if the hands are static or come closer.
+double grip_strain(const Scene&);
 
 }  // namespace clothbench

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "clothbench/error.hpp"
 #include "clothbench/feature.hpp"
 #include "clothbench/scene.hpp"
 
@@ -17,8 +18,7 @@ struct SettingSpec {
   std::string name, default_json, doc;
 };
 
-/// Description and capabilities of a solver. A scene that needs a feature outside `supports | ignores` gives a row
-/// `unsupported`.
+/// Description of a solver. A scene that needs a feature outside `supports | ignores` gives a row `unsupported`.
 struct SolverInfo {
   std::string name;     ///< as on the command line: "xpbd"
   std::string folder;   ///< source folder, such as "solvers/pbd-gpu"
@@ -32,8 +32,7 @@ struct SolverInfo {
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
   int time_order = 1;  ///< declared order of accuracy of the integrator in the time step, with exact inner solves
-  /// Settings only for tests and measurements, members of one object setting: "tuning": {"shuffles": false}. They
-  /// appear in no list.
+  /// Settings only for tests and measurements, members of one object: "tuning": {"shuffles": false}. No list has them.
   std::vector<SettingSpec> tuning = {};
   std::string engine = {};  ///< that a plugin wraps, as clothbench_plugin.h states it; empty for other solvers
 };
@@ -58,8 +57,7 @@ struct StagePlan {
   std::string name;
   FeatureSet serves;
   int dispatches = 0;  ///< per frame; 0 on a CPU
-  /// Bytes that shaders load and store in every frame, not the traffic on the memory bus. NaN if they are not known
-  /// before a frame, or on a CPU.
+  /// Bytes that shaders load and store per frame, not bus traffic. NaN if not known before a frame, or on a CPU.
   double read_B = 0, write_B = 0;
 };
 
@@ -150,6 +148,8 @@ class ClothSolver {
   /// Continues from positions and velocities that `read_state` gave on this scene. Returns false and changes nothing if
   /// they are not the whole state: the solver keeps more state, or the scene has motion.
   virtual bool restart(const ClothState&) { return false; }
+  /// As `restart`, for the state at the end of frame `last`, where the solver depends on the moment of the scene.
+  virtual bool restart_at(const ClothState& state, const FrameInput& /*last*/) { return restart(state); }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
   /// The same entries in the same order after every frame of a loaded scene; empty where nothing can go wrong unseen.
@@ -158,26 +158,32 @@ class ClothSolver {
   virtual int validation_messages() const { return 0; }
 };
 
-/// An entry that a solver folder registers: its description and a factory. The `settings` of `make` are complete: every
-/// SettingSpec is present with its declared type.
+/// An entry that a solver folder registers. The `settings` of `make` are complete: every SettingSpec with its type.
 struct SolverEntry {
   SolverInfo info;
   std::function<std::unique_ptr<ClothSolver>(const nlohmann::json& settings, const DeviceOptions&)> make;
   /// Vertical displacement [m] (downwards negative) of a body in free fall after `frames` frames, from the scene's
-  /// vertical gravity, vertical initial velocity and damping. It follows the integrator's exact order of updates and
-  /// serves the free-fall check.
+  /// vertical gravity, vertical initial velocity and damping. It follows the integrator's exact order of updates.
   std::function<double(const Scene&, const nlohmann::json& settings, int frames)> free_fall_m;
   /// Devices that this solver can run on, in the order of --device; empty function = only the CPU.
   std::function<std::vector<DeviceInfo>()> devices = nullptr;
 };
 
+/// For solvers that can bend only grids. Throws if the scene has a triangle mesh that resists bending.
+inline void refuse_mesh_bending(const Scene& scene) {
+  if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)
+    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solvers reference and xpbd have");
+}
+
 /// All registered solvers, in registration order (solvers/CMakeLists.txt).
 const std::vector<SolverEntry>& solvers();
+/// Names of the solvers whose sources this tree has, built or not: those that solvers/CMakeLists.txt lists. A study
+/// that names one which this build lacks has rows `unsupported`; any other unknown name is a spelling error.
+const std::vector<std::string>& solver_names_of_tree();
 /// Prefix of a shared library's path on the command line. Prefix and path are the plugin's SolverInfo::folder.
 inline constexpr char kPluginPrefix[] = "plugin:";
 /// A solver from a shared library (clothbench_plugin.h). `name` is "plugin:PATH", or the name of a plugin that this
-/// process or its parent process has loaded before. Null if it is neither. Throws Error if the library is not a
-/// solver.
+/// process or its parent has loaded; null otherwise. Throws Error if the library is not a solver.
 const SolverEntry* external_solver(const std::string& name);
 inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
 /// Finds a solver by name or "plugin:PATH". Throws Error naming the nearest known solver.

@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <cmath>
-
-#include "clothbench/collider.hpp"
+#include <cstddef>
 
 namespace clothbench {
+
+using Vec3 = std::array<double, 3>;
 
 /// Vertex `v` of a list of coordinates (x, y, z of the first, of the second, …).
 template <class Numbers>
@@ -19,5 +21,8 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 /// Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
+
+/// Greater of two numbers, and NaN if either is: std::max would lose it.
+inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
 }  // namespace clothbench

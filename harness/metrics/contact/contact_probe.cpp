@@ -23,8 +23,7 @@ double depth_in(const Simplex<3>& triangle, const Capsule& c) {
   return c.radius_m - std::sqrt(squared_distance(c.a, c.b, triangle));
 }
 
-/// Whether a point of the surface of capsule `own` lies inside another. Capsules that share a joint share its surface,
-/// which counts for the first of them.
+/// Whether a point on capsule `own` lies inside another. A surface that capsules share counts for the first of them.
 bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own) {
   for (std::size_t k = 0; k < shapes.size(); ++k)
     if (k != own && signed_distance(p, shapes[k]) < (k < own ? 0 : -kCapsuleError * shapes[k].radius_m)) return true;
@@ -32,10 +31,9 @@ bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own)
 }
 
 double depth_in_mesh(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh) {
-  const Box& box = mesh.tree().box();
   double most = 0;
   const auto at = [&](const Point<3>& p) {
-    if (box.contains(p) && is_inside(p, mesh)) most = std::max(most, mesh.distance(p));
+    if (is_inside(p, mesh)) most = std::max(most, mesh.distance(p));
   };
   for (std::size_t v = 0; v < cloth.vertex_count(); ++v) at(cloth.vertex(v));
   for (const auto& [a, b] : links) at(0.5 * (cloth.vertex(a) + cloth.vertex(b)));
@@ -70,8 +68,6 @@ void add_pair(Contour& to, const Simplex<3>& cloth, const Simplex<3>& object) {
 
 Point<4> at_time(const Point<3>& p, double t) { return {p[0], p[1], p[2], t}; }
 
-Point<3> vertex_of(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
-
 /// Whether a coordinate separates the motion p -> q from the triangle that moves from `from` to `to`. Both motions are
 /// linear, so a strict separation at the start and at the end holds in between, and a translation by e changes nothing.
 bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex<3>& from, const Simplex<3>& to) {
@@ -81,6 +77,28 @@ bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex
     if ((p[k] < low_from && q[k] < low_to) || (p[k] > high_from && q[k] > high_to)) return true;
   }
   return false;
+}
+
+/// The edges at which a mesh is open.
+std::vector<Link> border_of(const TriangleMeshView& mesh) {
+  const std::vector<std::uint32_t> welded = welded_vertices(mesh);
+  std::map<Link, int> passes;
+  for (const auto& corner : mesh.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
+      if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  std::vector<Link> out;
+  for (const auto& [edge, sum] : passes)
+    if (sum != 0) out.push_back(edge);
+  return out;
+}
+
+bool crosses(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh) {
+  bool any = false;
+  mesh.tree().for_each_overlapping(
+      Box(p).extend(q), [&](int t) { any = any || (p != q && crossing<3>(p, q, mesh.triangles()[t]) != 0); });
+  return any;
 }
 
 }  // namespace
@@ -189,15 +207,13 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
 bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
   const Box& box = mesh.tree().box();
   if (mesh.triangles().empty() || !box.contains(p)) return false;
-  int axis = 0;
-  bool up = true;
-  double least = box.max()[0] - p[0];
-  for (int k = 0; k < 3; ++k) {
-    if (box.max()[k] - p[k] < least) axis = k, up = true, least = box.max()[k] - p[k];
-    if (p[k] - box.min()[k] < least) axis = k, up = false, least = p[k] - box.min()[k];
-  }
+  Eigen::Index up = 0, down = 0;
+  const double above = (box.max() - p).minCoeff(&up), below = (p - box.min()).minCoeff(&down);
   Point<3> outside = p;
-  outside[axis] = up ? box.max()[axis] + box.diagonal().norm() : box.min()[axis] - box.diagonal().norm();
+  if (below < above)
+    outside[down] = box.min()[down] - box.diagonal().norm();
+  else
+    outside[up] = box.max()[up] + box.diagonal().norm();
   return signed_crossings(p, outside, mesh) > 0;
 }
 
@@ -245,45 +261,18 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
   return sum;
 }
 
-namespace {
-
-/// The edges at which a mesh is open.
-std::vector<Link> border_of(const TriangleMeshView& mesh) {
-  const std::vector<std::uint32_t> welded = welded_vertices(mesh);
-  std::map<Link, int> passes;
-  for (const auto& corner : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t a = welded[corner[i]], b = welded[corner[(i + 1) % 3]];
-      if (a != b) passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-    }
-  std::vector<Link> out;
-  for (const auto& [edge, sum] : passes)
-    if (sum != 0) out.push_back(edge);
-  return out;
-}
-
-bool crosses(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh) {
-  bool any = false;
-  mesh.tree().for_each_overlapping(
-      Box(p).extend(q), [&](int t) { any = any || (p != q && crossing<3>(p, q, mesh.triangles()[t]) != 0); });
-  return any;
-}
-
-}  // namespace
-
 std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to,
                                   const TriangleMeshView& mesh, const TriangleTree& tree, std::span<const Link> links) {
   std::vector<int> step(from.size() / 3);
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(vertex_of(from, i), vertex_of(to, i), tree);
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = signed_crossings(point_at(from, i), point_at(to, i), tree);
   const auto differ = [&](const Link& l) { return step[l[0]] != step[l[1]]; };
   const auto crosses_at = [&](std::span<const double> x) {
     return std::any_of(links.begin(), links.end(),
-                       [&](const Link& l) { return crosses(vertex_of(x, l[0]), vertex_of(x, l[1]), tree); });
+                       [&](const Link& l) { return crosses(point_at(x, l[0]), point_at(x, l[1]), tree); });
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
-  // A vertex cannot have moved around the border if the sum of its distances to it before and after exceeds twice its
-  // displacement.
+  // A vertex cannot have moved around the border if its distances to it before and after exceed twice its displacement.
   const std::vector<Link> border = border_of(mesh);
   const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();
@@ -293,7 +282,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   std::vector<bool> proven(step.size(), false);
   for (std::size_t i = 0; i < step.size(); ++i) {
-    const Point<3> p = vertex_of(from, i), q = vertex_of(to, i);
+    const Point<3> p = point_at(from, i), q = point_at(to, i);
     proven[i] = step[i] != 0 && distance(p) + distance(q) > 2 * (q - p).norm();
   }
   for (bool changed = true; changed;) {

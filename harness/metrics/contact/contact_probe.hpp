@@ -15,14 +15,13 @@ struct ContactSample {
 
 /// Contact with a mesh as it is: the contour is exact (`contour`), the depth is the largest distance from the surface
 /// of all vertices, edge midpoints and centroids that are inside. Vertices only would miss a finger that comes up
-/// through the middle of a triangle. A mesh with an inside is closed, with outward normals. `links`: edges_of the
-/// cloth.
+/// through the middle of a triangle. A mesh with an inside is closed, normals outward. `links`: edges_of the cloth.
 ContactSample mesh_contact(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh,
                            bool has_inside);
 
 /// Contact with capsules, whose radii are positive. They are triangles for the contour (capsule_mesh), which is at most
-/// kCapsuleError of the radius too far inside; segments inside another capsule are left out. The depth is exact: of the
-/// deepest point of a triangle in any single capsule.
+/// kCapsuleError of the radius too far inside; segments inside another capsule are left out. The depth is exact, in any
+/// single capsule.
 ContactSample capsule_contact(const TriangleMeshView& cloth, std::span<const Capsule> shapes);
 
 /// Contact of a cloth with the half-space behind a plane, opposite to its unit normal. Exact: depth is linear on a flat
@@ -43,10 +42,9 @@ std::optional<std::array<Point<3>, 2>> intersection(const Simplex<3>& cloth, con
 /// The length is summed over pairs of triangles; it is the quantity minimised by Volino & Magnenat-Thalmann (Resolving
 /// surface collisions through intersection contour minimization, 2006). In degenerate configurations it is the length
 /// for the cloth translated by (e, e^2, e^3), e -> 0+ (crossing): a piece of the curve along an edge shared by
-/// triangles counts once, not once for each of them, and coplanar triangles do not cross. Touching pairs, including
-/// coplanar ones, count once as pairs, with no length. Triangles of zero area, on either side, are ignored: their
-/// neighbours contain the same points.
-/// The cloth must be finite.
+/// triangles counts once, and coplanar triangles do not cross. Touching pairs, including coplanar ones, count once as
+/// pairs, with no length. Triangles of zero area are ignored: their neighbours contain the same points. The cloth must
+/// be finite.
 Contour contour(const TriangleMeshView& cloth, const TriangleTree& object);
 
 /// Where a cloth crosses itself: pairs of its triangles that share no vertex, each once. Every self-intersection begins
@@ -54,13 +52,11 @@ Contour contour(const TriangleMeshView& cloth, const TriangleTree& object);
 /// turned inside out within the triangles of one vertex is missed. Otherwise as above.
 Contour self_contour(const TriangleMeshView& cloth);
 
-/// Signed crossings of the straight path p -> q with a static mesh: the number along the normals minus the number
-/// against. Exact (crossing): a path through a common edge or vertex, or one that ends on the surface, is counted
-/// once.
+/// Signed crossings of the straight path p -> q with a static mesh: those along the normals minus those against. Exact
+/// (crossing): a path through a common edge or vertex, or that ends on the surface, counts once.
 int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& mesh);
 
-/// Whether a point is inside a closed mesh with outward normals: its winding number, which is the number of signed
-/// crossings on a ray to infinity, is positive. Exact.
+/// Whether a point is inside a closed mesh with outward normals: signed crossings of a ray are positive. Exact.
 bool is_inside(const Point<3>& p, const TriangleTree& mesh);
 
 /// A mesh whose vertices move from `from` to `to` during one step.
@@ -93,8 +89,7 @@ class SweptMesh {
 ///
 /// The straight path between two frames may cut a border that the vertex moved around. If no link crosses the mesh
 /// before or after the step, a link between a vertex that crossed and one that did not leads around a border. Then the
-/// crossings of linked vertices that crossed alike count only if they have no link to others, or if the border is out
-/// of reach for one of them.
+/// crossings of linked vertices that crossed alike count only without a link to others or with the border out of reach.
 std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to, const TriangleMeshView&,
                                   const TriangleTree&, std::span<const Link> links);
 

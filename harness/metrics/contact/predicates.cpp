@@ -35,8 +35,7 @@ int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N
   return static_cast<int>(CGAL::sign(determinant<CGAL::MP_Float, N>(m)));
 }
 
-/// Sign of the determinant with its last row translated by shift * (e, e^2, e^3, 0): the first nonzero cofactor of that
-/// row decides.
+/// Sign of the determinant with its last row moved by shift * (e, e^2, e^3, 0): its first nonzero cofactor decides.
 template <int N>
 int perturbed_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail, int shift) {
   if (const int sign = sign_of_determinant<N>(head, tail)) return sign;

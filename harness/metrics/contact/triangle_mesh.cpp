@@ -24,19 +24,9 @@ Point<3> direction(const Point<3>& v) {
   return length > 0 ? Point<3>(v / length) : Point<3>(Point<3>::Zero());
 }
 
-}  // namespace
-
-Simplex<3> TriangleMeshView::triangle(std::size_t t) const {
-  const auto& corner = triangles[t];
-  return {vertex(corner[0]), vertex(corner[1]), vertex(corner[2])};
-}
-
-bool all_finite(std::span<const double> numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-}
-
-void validate(const TriangleMeshView& mesh, const char* what) {
-  const std::string name = what;
+/// Throws Error unless positions come in threes, indices are in range and numbers are finite.
+void validate(const TriangleMeshView& mesh) {
+  const std::string name = "contact object";
   if (mesh.positions.size() % 3 != 0)
     throw Error(name + ": expected 3 numbers per vertex, got " + std::to_string(mesh.positions.size()) + " in all");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -46,6 +36,17 @@ void validate(const TriangleMeshView& mesh, const char* what) {
                     ", expected less than " + std::to_string(mesh.vertex_count()));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     if (!std::isfinite(mesh.positions[i])) throw Error(name + ": vertex " + std::to_string(i / 3) + " is not finite");
+}
+
+}  // namespace
+
+Simplex<3> TriangleMeshView::triangle(std::size_t t) const {
+  const auto& corner = triangles[t];
+  return {vertex(corner[0]), vertex(corner[1]), vertex(corner[2])};
+}
+
+bool all_finite(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
 std::vector<std::uint32_t> welded_vertices(const TriangleMeshView& mesh) {
@@ -83,7 +84,7 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
 }
 
 TriangleTree::TriangleTree(const TriangleMeshView& mesh) {
-  validate(mesh, "contact object");
+  validate(mesh);
   std::vector<Box> boxes;
   triangles_.reserve(mesh.triangles.size());
   boxes.reserve(mesh.triangles.size());

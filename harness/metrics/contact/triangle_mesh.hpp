@@ -26,12 +26,11 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
 
 /// Whether and in which direction the segment p -> q crosses the simplex: +1 along its normal, -1 against it, 0 if not.
 ///
-/// Exact, also in degenerate configurations of p, q and the simplex: there the result is that for the segment
-/// translated by shift * (e, e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990,
-/// restricted to one common translation). A single translation for all tests is consistent: a path through the common
-/// edge or vertex of triangles crosses exactly those that it crosses after a small translation, and a path that ends on
-/// a surface is on a definite side of it. A simplex without volume is never crossed. The normal of a triangle (a, b, c)
-/// is (b - a) x (c - a).
+/// Exact, also in degenerate configurations of p, q and the simplex: there the segment is translated by shift * (e,
+/// e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990, restricted to one common
+/// translation). One translation for all tests is consistent: a path through a common edge or vertex of triangles
+/// crosses those that it crosses after a small translation, and a path that ends on a surface is on a definite side of
+/// it. A simplex without volume is never crossed. The normal of a triangle (a, b, c) is (b - a) x (c - a).
 template <int N>
 int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, int shift = 1);
 
@@ -39,6 +38,8 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
 bool is_degenerate(const Simplex<3>& triangle);
 
 inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+/// Point `i` of coordinates, xyz interleaved.
+inline Point<3> point_at(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
 /// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from the
 /// side the normal points to. Triangles may be degenerate, and vertices may be repeated instead of shared.
@@ -47,12 +48,9 @@ struct TriangleMeshView {
   std::span<const std::array<std::uint32_t, 3>> triangles;
 
   std::size_t vertex_count() const { return positions.size() / 3; }
-  Point<3> vertex(std::size_t i) const { return Point<3>::Map(positions.data() + 3 * i); }
+  Point<3> vertex(std::size_t i) const { return point_at(positions, i); }
   Simplex<3> triangle(std::size_t t) const;
 };
-
-/// Throws Error, naming `what`, unless positions come in threes, indices are in range and numbers are finite.
-void validate(const TriangleMeshView&, const char* what);
 
 bool all_finite(std::span<const double>);
 
@@ -83,18 +81,65 @@ class BoxTree {
 
   /// visit(item) for every item whose box meets `query`, faces included.
   template <class Visit>
-  void for_each_overlapping(const Box& query, Visit visit) const;
+  void for_each_overlapping(const Box& query, Visit visit) const {
+    if (boxes_.empty() || !query.intersects(box_)) return;
+    std::vector<int> stack{hierarchy_.getRootIndex()};
+    while (!stack.empty()) {
+      const int node = stack.back();
+      stack.pop_back();
+      Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
+      Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
+      hierarchy_.getChildren(node, volume, volume_end, item, item_end);
+      for (; volume != volume_end; ++volume)
+        if (query.intersects(hierarchy_.getVolume(*volume))) stack.push_back(*volume);
+      for (; item != item_end; ++item)
+        if (query.intersects(boxes_[*item])) visit(*item);
+    }
+  }
 
   /// The item with the smallest squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that
   /// distance. squared_distance must not be less than the squared distance from `p` to the item's box.
   template <class SquaredDistance>
-  int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const;
+  int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const {
+    int best = -1;
+    if (boxes_.empty()) return best;
+    struct Entry {
+      int node;
+      double squared;
+    };
+    std::vector<Entry> stack{{hierarchy_.getRootIndex(), 0}};
+    while (!stack.empty()) {
+      const Entry entry = stack.back();
+      stack.pop_back();
+      if (!(entry.squared < bound)) continue;
+      Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
+      Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
+      hierarchy_.getChildren(entry.node, volume, volume_end, item, item_end);
+      for (; item != item_end; ++item) {
+        if (!(boxes_[*item].squaredExteriorDistance(p) < bound)) continue;
+        const double squared = squared_distance(*item);
+        if (squared < bound) {
+          bound = squared;
+          best = *item;
+        }
+      }
+      const std::size_t first = stack.size();
+      for (; volume != volume_end; ++volume) {
+        const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
+        if (squared < bound) stack.push_back({*volume, squared});
+      }
+      // The nearer child goes on top of the stack, so that it is visited first.
+      if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
+        std::swap(stack[first], stack[first + 1]);
+    }
+    return best;
+  }
 
   const Box& box() const { return box_; }
   const std::vector<Box>& item_boxes() const { return boxes_; }
-  using Hierarchy = Eigen::KdBVH<double, 3, int>;
 
  private:
+  using Hierarchy = Eigen::KdBVH<double, 3, int>;
   std::vector<Box> boxes_;
   Box box_;
   Hierarchy hierarchy_;
@@ -103,7 +148,7 @@ class BoxTree {
 /// The triangles of a mesh that have area, in a tree for queries. Copies the data it needs.
 class TriangleTree {
  public:
-  /// Throws Error for a mesh that `validate` rejects.
+  /// Throws Error unless positions come in threes, indices are in range and numbers are finite.
   explicit TriangleTree(const TriangleMeshView&);
 
   const std::vector<Simplex<3>>& triangles() const { return triangles_; }
@@ -123,66 +168,11 @@ class TriangleTree {
 /// Squared distance from a point to a triangle; accurate for slivers too.
 double squared_distance(const Point<3>& p, const Simplex<3>& triangle);
 
-template <class Visit>
-void BoxTree::for_each_overlapping(const Box& query, Visit visit) const {
-  if (boxes_.empty() || !query.intersects(box_)) return;
-  std::vector<int> stack{hierarchy_.getRootIndex()};
-  while (!stack.empty()) {
-    const int node = stack.back();
-    stack.pop_back();
-    Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
-    Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
-    hierarchy_.getChildren(node, volume, volume_end, item, item_end);
-    for (; volume != volume_end; ++volume)
-      if (query.intersects(hierarchy_.getVolume(*volume))) stack.push_back(*volume);
-    for (; item != item_end; ++item)
-      if (query.intersects(boxes_[*item])) visit(*item);
-  }
-}
-
-template <class SquaredDistance>
-int BoxTree::nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const {
-  int best = -1;
-  if (boxes_.empty()) return best;
-  struct Entry {
-    int node;
-    double squared;
-  };
-  std::vector<Entry> stack{{hierarchy_.getRootIndex(), 0}};
-  while (!stack.empty()) {
-    const Entry entry = stack.back();
-    stack.pop_back();
-    if (!(entry.squared < bound)) continue;
-    Hierarchy::VolumeIterator volume = nullptr, volume_end = nullptr;
-    Hierarchy::ObjectIterator item = nullptr, item_end = nullptr;
-    hierarchy_.getChildren(entry.node, volume, volume_end, item, item_end);
-    for (; item != item_end; ++item) {
-      if (!(boxes_[*item].squaredExteriorDistance(p) < bound)) continue;
-      const double squared = squared_distance(*item);
-      if (squared < bound) {
-        bound = squared;
-        best = *item;
-      }
-    }
-    const std::size_t first = stack.size();
-    for (; volume != volume_end; ++volume) {
-      const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
-      if (squared < bound) stack.push_back({*volume, squared});
-    }
-    // The nearer child goes on top of the stack, so that it is visited first.
-    if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
-      std::swap(stack[first], stack[first + 1]);
-  }
-  return best;
-}
-
 /// All points within `radius_m` of the segment a-b; a sphere if a = b.
 struct Capsule {
   Point<3> a, b;
   double radius_m;
 };
-
-inline Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
 
 /// Where on the axis the point nearest to p is, from 0 at a to 1 at b; 0 for a sphere.
 double axis_share(const Point<3>& p, const Capsule&);
@@ -211,20 +201,17 @@ struct Nearest {
   Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest point of a union of capsules. `before`: the same capsules at the previous frame, as many as `now`; they may
-/// turn but do not spin about their axes.
+/// Nearest point of a union of capsules. `before`: the same ones at the previous frame, not spun about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
-/// The nearest point of a mesh within `bound_m`, if there is one. `before`: the mesh at the previous frame; null if it
-/// is static.
+/// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.
 std::optional<Nearest> nearest(const Point<3>& p, const TriangleTree& mesh, double bound_m,
                                const TriangleMeshView* before = nullptr);
 
 /// Whether a triangle has a point at most `reach_m` from a mesh.
 bool within(const Simplex<3>& triangle, const TriangleTree& mesh, double reach_m);
 
-/// Corner weights of the point of a triangle with area that is nearest to p; they are never negative and sum to 1
-/// (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Corner weights, 0 to 1, of the point of a triangle nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
 Point<3> nearest_weights(const Point<3>& p, const Simplex<3>& triangle);
 
 /// Squared distance [m2] between the segments a-b and c-d (Ericson, Real-Time Collision Detection, 5.1.9).

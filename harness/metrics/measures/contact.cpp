@@ -13,9 +13,8 @@ bool has_depth(const Scene& s) {
 
 /// The continuous check counts them (metrics/motion_check).
 double crossings(const RunView& r) {
-  for (const motion_check::Finding& f : r.findings())
-    if (std::string_view(f.statistic->name) == "crossing") return motion_check::kCrossingTolerance * f.ratio;
-  return kMissing;
+  const motion_check::Finding* f = r.finding("crossing");
+  return f == nullptr ? kMissing : motion_check::kCrossingTolerance * f->ratio;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {
@@ -25,20 +24,14 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. The rest is
-/// rounding and forces that should not be there.
-double free_fall_error(const MetricFrame& f) {
-  if (f.index == 0) return kMissing;
-  const Scene& s = f.context.scene;
-  const double t = s.time.at(f.index);
-  const Vec3 g = s.gravity_m_per_s2, way = fall(f.context, f.index);
-  const double scale = 0.5 * length(g) * t * t;
-  const std::vector<double> start = initial_positions(s);
+/// Greatest distance of a vertex's vector from the exact one, over `scale`; `exact(i, k)`: component k, entry i of all.
+template <class Exact>
+double greatest_error(const std::vector<double>& values, double scale, Exact exact) {
   double most = 0;
-  for (std::size_t v = 0; v < start.size(); v += 3) {
+  for (std::size_t v = 0; v < values.size(); v += 3) {
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double d = (f.state.position[v + k] - (start[v + k] + way[k])) / scale;
+      const double d = (values[v + k] - exact(v + k, k)) / scale;
       squared += d * d;
     }
     most = max_or_nan(most, squared);
@@ -46,22 +39,26 @@ double free_fall_error(const MetricFrame& f) {
   return std::sqrt(most);
 }
 
+/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0.
+double free_fall_error(const MetricFrame& f) {
+  if (f.index == 0) return kMissing;
+  const Scene& s = f.context.scene;
+  const double t = s.time.at(f.index);
+  const Vec3 g = s.gravity_m_per_s2, way = fall(f.context, f.index);
+  const std::vector<double> start = initial_positions(s);
+  return greatest_error(f.state.position, 0.5 * length(g) * t * t,
+                        [&](std::size_t i, std::size_t k) { return start[i] + way[k]; });
+}
+
 /// Greatest error of a vertex's velocity after a free fall without damping, divided by |g| T; NaN at T = 0. Every
 /// integrator of this field is exact here, so it shows velocities that do not belong to the motion.
 double free_fall_velocity_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;
-  const double t = s.time.at(f.index), scale = length(s.gravity_m_per_s2) * t;
-  double most = 0;
-  for (std::size_t v = 0; v < f.state.velocity.size(); v += 3) {
-    double squared = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double exact = s.cloth.initial_velocity_m_per_s[k] + s.gravity_m_per_s2[k] * t;
-      squared += std::pow((f.state.velocity[v + k] - exact) / scale, 2);
-    }
-    most = max_or_nan(most, squared);
-  }
-  return std::sqrt(most);
+  const double t = s.time.at(f.index);
+  return greatest_error(f.state.velocity, length(s.gravity_m_per_s2) * t, [&](std::size_t, std::size_t k) {
+    return s.cloth.initial_velocity_m_per_s[k] + s.gravity_m_per_s2[k] * t;
+  });
 }
 
 /// Integrators declare their fall only for even frames.

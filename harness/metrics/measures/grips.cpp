@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "clothbench/motion.hpp"
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {

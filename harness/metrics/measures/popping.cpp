@@ -4,8 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "clothbench/motion.hpp"
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {

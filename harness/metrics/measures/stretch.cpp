@@ -1,4 +1,3 @@
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {
@@ -17,15 +16,12 @@ double for_each_strain(const Cloth& c, const ClothState& state, Fn fn) {
     for (const Edge& e : c.mesh->edges) strain(e.a, e.b, e.rest_m);
     return count;
   }
-  const auto columns = static_cast<std::size_t>(c.columns), rows = static_cast<std::size_t>(c.rows);
-  for (std::size_t j = 0; j < rows; ++j)
-    for (std::size_t i = 0; i < columns; ++i) {
-      const std::size_t v = j * columns + i;
-      if (i + 1 < columns)
-        strain(
-            v, v + 1,
-            c.column_factors.empty() ? c.du() : c.line_u_m(static_cast<int>(i) + 1) - c.line_u_m(static_cast<int>(i)));
-      if (j + 1 < rows) strain(v, v + columns, c.dv());
+  for (int j = 0; j < c.rows; ++j)
+    for (int i = 0; i < c.columns; ++i) {
+      const auto v = static_cast<std::size_t>(j * c.columns + i), below = v + static_cast<std::size_t>(c.columns);
+      const bool even = c.column_factors.empty();
+      if (i + 1 < c.columns) strain(v, v + 1, even ? c.du() : c.line_u_m(i + 1) - c.line_u_m(i));
+      if (j + 1 < c.rows) strain(v, below, c.dv());
     }
   return count;
 }

@@ -1,8 +1,6 @@
 // Figures from the clock and the plan of a run: times, rates, bytes, memory.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <set>
 
 #include "base/quantile.hpp"
 #include "metrics/registry.hpp"
@@ -71,8 +69,7 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// The maximum number of clothbench processes that ran at the same time while the run was loaded and timed; missing if
-/// any part of the run does not state it.
+/// Maximum of concurrent clothbench processes while the run was loaded and timed; missing if a part does not state it.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
@@ -103,44 +100,36 @@ bool timed(const RunView& r) { return r.run != nullptr; }
 bool on_host(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_cpu_s).empty(); }
 bool rendered(const RunView& r) { return timed(r) && !of_frames(r, &TimedTrial::frame_rendered_s).empty(); }
 
-Scalar reported(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value) {
-  return {name, own({}, doc, std::move(value), units), Expect::No, nullptr, timed};
+Scalar reported(Better better, const char* name, const char* units, const char* doc,
+                std::function<double(const RunView&)> value) {
+  return {.name = name,
+          .from = own({}, doc, std::move(value), units),
+          .present = timed,
+          .better = better,
+          .of_machine = true};
 }
 
-Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list) {
-  return reported(name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); });
+/// A value that follows from the solver's buffers and kernels on any machine.
+Scalar of_solver(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
+                 const Gate* gate = nullptr) {
+  return {.name = name, .from = own({}, doc, std::move(value), units), .gate = gate, .present = timed};
 }
 
-Scalar bandwidth_scalar(const char* name, const char* doc, Values TimedTrial::*bytes, double Bandwidth::*value) {
-  return reported(name, "B s-1", doc, [=](const RunView& r) {
-    return median(of_trials(r, [&](const TimedTrial& t) { return bandwidth(t, t.*bytes).*value; }));
-  });
+/// A value that the code which runs a study or reads the device stores.
+Scalar reading(const char* name, const char* units, const char* doc, Better better = Better::Neither) {
+  return {.name = name, .from = own({}, doc, nullptr, units), .better = better, .of_machine = true};
 }
 
-/// Adds what the code that runs a study and reads the device stores, and says which values are the machine's.
-void add_readings(std::vector<Scalar>& scalars) {
-  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
-  // Values that follow from the solver's buffers and kernels on any machine.
-  static const std::set<std::string> kOfSolver = {"read_B_per_frame", "write_B_per_frame", "device_memory_B",
-                                                  "dispatches"};
-  const std::vector<Scalar> readings = {
-      {"untimed_s", own({}, "wall time of loading and of the untimed pass", nullptr, "s")},
-      {"cpu_clock_*", own({}, "maximum clock of a CPU core, before and after", nullptr, "Hz")},
-      {"gpu_clock_*", own({}, "clock of the GPU, before and after", nullptr, "Hz")},
-      {"temperature_*", own({}, "hottest sensor, before and after", nullptr, "degC")},
-      {"sampled_*", own({}, "readings of the device during the trials by another program", nullptr, "1")},
-  };
-  scalars.insert(scalars.end(), readings.begin(), readings.end());
-  static const std::set<std::string> kFacts = {"jobs", "trials", "bandwidth_window_s"};
-  for (Scalar& s : scalars) {
-    if (s.name.starts_with("fps_")) s.better = Better::More;
-    if (kFacts.contains(s.name) || s.name.ends_with('*') || s.name.starts_with("bandwidth_"))
-      s.better = Better::Neither;
-    s.of_machine = !kOfSolver.contains(s.name);
-    if (s.name == "dispatches") s.gate = &kCount;
-    if (s.name.find("rendered") != std::string::npos) s.present = rendered;
-    if (s.name == "frame_cpu_median_s") s.present = on_host;
-  }
+Scalar median_frame(const char* name, const char* doc, Values TimedTrial::*list, bool (*present)(const RunView&)) {
+  Scalar s = reported(Better::Less, name, "s", doc, [list](const RunView& r) { return median(of_frames(r, list)); });
+  s.present = present;
+  return s;
+}
+
+Scalar bandwidth_scalar(const char* name, const char* units, const char* doc, Values TimedTrial::*bytes,
+                        double Bandwidth::*value) {
+  const auto of = [=](const TimedTrial& t) { return bandwidth(t, t.*bytes).*value; };
+  return reported(Better::Neither, name, units, doc, [of](const RunView& r) { return median(of_trials(r, of)); });
 }
 
 }  // namespace
@@ -148,43 +137,50 @@ void add_readings(std::vector<Scalar>& scalars) {
 MetricGroup timing_metrics() {
   using T = TimedTrial;
   using B = Bandwidth;
-  MetricGroup g;
-  g.scalars = {
-      reported("jobs", "1", "maximum number of clothbench processes on the machine while the run was loaded and timed",
-               jobs_beside),
-      reported("trials", "1", "timed trials",
-               [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
-      reported("fps_median", "s-1", "frames per second, median of the trials",
-               [](const RunView& r) { return median(rates(r)); }),
-      reported("fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
-               [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
-      median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s),
-      median_frame("frame_cpu_median_s", "CPU time of a frame of a solver on the host, summed over its threads, median",
-                   &T::frame_cpu_s),
-      reported("frame_pipelined_median_s", "s",
-               "mean wall time of a frame with two frames in flight, median of the trials",
-               [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
-      median_frame("frame_rendered_median_s", "wall time of a frame with both eye views rendered, median",
-                   &T::frame_rendered_s),
-      median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s),
-      reported("read_B_per_frame", "B", "bytes that shaders read per frame, mean",
-               [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
-      reported("write_B_per_frame", "B", "bytes that shaders write per frame, mean",
-               [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
-      bandwidth_scalar("bandwidth_read_peak_B_per_s", "bytes read divided by wall time, maximum over the windows",
-                       &T::stage_read_B, &B::peak),
-      bandwidth_scalar("bandwidth_write_peak_B_per_s", "bytes written divided by wall time, maximum over the windows",
-                       &T::stage_write_B, &B::peak),
-      reported("bandwidth_window_s", "s", "length of those windows",
-               [](const RunView& r) {
-                 return median(of_trials(r, [](const T& t) { return bandwidth(t, t.stage_read_B).window_s; }));
-               }),
-      reported("device_memory_B", "B", "buffers in device-local memory", device_memory),
-      reported("dispatches", "1", "dispatches per frame", dispatches),
-      reported("load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
-  };
-  add_readings(g.scalars);
-  return g;
+  using enum Better;
+  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
+  return {
+      {},
+      {
+          reported(Neither, "jobs", "1",
+                   "maximum number of clothbench processes on the machine while the run was loaded and timed",
+                   jobs_beside),
+          reported(Neither, "trials", "1", "timed trials",
+                   [](const RunView& r) { return static_cast<double>(r.run->trials.size()); }),
+          reported(More, "fps_median", "s-1", "frames per second, median of the trials",
+                   [](const RunView& r) { return median(rates(r)); }),
+          reported(More, "fps_at_72", "s-1", "mean over frames of min(72, 1/t), median of the trials",
+                   [](const RunView& r) { return median(of_trials(r, capped_rate)); }),
+          median_frame("frame_wall_median_s", "wall time of a frame, median of all timed frames", &T::frame_wall_s,
+                       timed),
+          median_frame("frame_cpu_median_s",
+                       "CPU time of a frame of a solver on the host, summed over its threads, median", &T::frame_cpu_s,
+                       on_host),
+          reported(
+              Less, "frame_pipelined_median_s", "s",
+              "mean wall time of a frame with two frames in flight, median of the trials",
+              [](const RunView& r) { return median(of_trials(r, [](const T& t) { return t.pipelined_wall_s; })); }),
+          median_frame("frame_rendered_median_s", "wall time of a frame with both eye views rendered, median",
+                       &T::frame_rendered_s, rendered),
+          median_frame("frame_device_median_s", "time of a frame on the GPU, median", &T::frame_device_s, timed),
+          of_solver("read_B_per_frame", "B", "bytes that shaders read per frame, mean",
+                    [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_read_B); }),
+          of_solver("write_B_per_frame", "B", "bytes that shaders write per frame, mean",
+                    [](const RunView& r) { return bytes_per_frame(*r.run, &T::stage_write_B); }),
+          bandwidth_scalar("bandwidth_read_peak_B_per_s", "B s-1",
+                           "bytes read divided by wall time, maximum over the windows", &T::stage_read_B, &B::peak),
+          bandwidth_scalar("bandwidth_write_peak_B_per_s", "B s-1",
+                           "bytes written divided by wall time, maximum over the windows", &T::stage_write_B, &B::peak),
+          bandwidth_scalar("bandwidth_window_s", "s", "length of those windows", &T::stage_read_B, &B::window_s),
+          of_solver("device_memory_B", "B", "buffers in device-local memory", device_memory),
+          of_solver("dispatches", "1", "dispatches per frame", dispatches, &kCount),
+          reported(Less, "load_s", "s", "wall time of loading", [](const RunView& r) { return r.run->header.load_s; }),
+          reading("untimed_s", "s", "wall time of loading and of the untimed pass", Less),
+          reading("cpu_clock_*", "Hz", "maximum clock of a CPU core, before and after"),
+          reading("gpu_clock_*", "Hz", "clock of the GPU, before and after"),
+          reading("temperature_*", "degC", "hottest sensor, before and after"),
+          reading("sampled_*", "1", "readings of the device during the trials by another program"),
+      }};
 }
 
 }  // namespace clothbench

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "clothbench/vector.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/registry.hpp"
 

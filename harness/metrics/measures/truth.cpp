@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/vector.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 
@@ -14,7 +13,7 @@ bool has_truth(const Scene& s) { return !s.reference_case.empty(); }
 bool truth_keeps_energy(const Scene& s) { return has_truth(s) && keeps_energy(s); }
 
 auto truth_field(double TruthErrors::*field) {
-  return [field](const MetricFrame& f) { return f.truth->*field; };
+  return [field](const MetricFrame& f) { return (*f.truth).*field; };
 }
 
 /// Energy minus that at the start, over M g L.
@@ -86,16 +85,12 @@ double truth_error(const RunView& r) {
 
 /// Bound on another scalar of a whole run.
 Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
-  return {scalar + kBound,
-          own(
-              {}, "bound on " + scalar + ": tolerance of the test case, error of the mesh, rounding",
-              [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; }, "1"),
-          Expect::No,
-          nullptr,
-          with_truth,
-          "",
-          "",
-          Better::Neither};
+  const auto value = [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; };
+  return {
+      .name = scalar + kBound,
+      .from = own({}, "bound on " + scalar + ": tolerance of the test case, error of the mesh, rounding", value, "1"),
+      .present = with_truth,
+      .better = Better::Neither};
 }
 
 /// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.
@@ -105,26 +100,21 @@ Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullpt
 
 bool with_energy(const RunView& r) { return truth_keeps_energy(r.scene); }
 
-std::vector<Metric> truth_series() {
-  using T = TruthErrors;
-  constexpr Needs kTruth{"an exact solution", has_truth},
-      kEnergy{"an exact solution without damping, shear, bending, attachments and colliders", truth_keeps_energy};
-  return {
-      {"truth_error_e2", "1", "RMS distance from the exact solution at the material points, divided by the longer side",
-       kTruth, truth_field(&T::e2)},
-      {"truth_quantity", "1", "quantity of the analytic test case, in SI units", kTruth, truth_field(&T::quantity)},
-      {"truth_quantity_error", "1", "error of the quantity of the analytic test case, divided by its scale", kTruth,
-       truth_field(&T::quantity_error)},
-      {"energy_rise", "1", "energy minus the energy at the start, divided by M g L", kEnergy, energy_rise},
-  };
-}
-
 }  // namespace
 
 MetricGroup truth_metrics() {
   using enum Expect;
+  using T = TruthErrors;
+  constexpr Needs kTruth{"an exact solution", has_truth},
+      kEnergy{"an exact solution without damping, shear, bending, attachments and colliders", truth_keeps_energy};
   return {
-      truth_series(),
+      {{"truth_error_e2", "1",
+        "RMS distance from the exact solution at the material points, divided by the longer side", kTruth,
+        truth_field(&T::e2)},
+       {"truth_quantity", "1", "quantity of the analytic test case, in SI units", kTruth, truth_field(&T::quantity)},
+       {"truth_quantity_error", "1", "error of the quantity of the analytic test case, divided by its scale", kTruth,
+        truth_field(&T::quantity_error)},
+       {"energy_rise", "1", "energy minus the energy at the start, divided by M g L", kEnergy, energy_rise}},
       {{"truth_quantity_error_max", worst("truth_quantity_error"), Yes, &kErrorGate},
        {"truth_quantity_error", over_time("truth_quantity_error"), No, &kErrorGate, with_truth},
        {"truth_e2", over_time("truth_error_e2"), No, nullptr, with_truth},

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <unordered_set>
 
-#include "clothbench/motion.hpp"
 #include "metrics/motion_check/body_state.hpp"
 #include "metrics/motion_check/motion.hpp"
 
@@ -19,7 +18,7 @@ constexpr std::size_t kFramesKept = 16;
 
 }  // namespace
 
-Bodies::State::State(const Motion& motion, std::span<const double> contact_offsets_m) : m(motion) {
+AllBodies::AllBodies(const Motion& motion, std::span<const double> contact_offsets_m) : m(motion) {
   for (std::size_t k = 0; k < m.scene.colliders.size(); ++k) {
     const Collider& c = m.scene.colliders[k];
     const double said = k < contact_offsets_m.size() ? contact_offsets_m[k] : c.margin_m;
@@ -42,17 +41,17 @@ Bodies::State::State(const Motion& motion, std::span<const double> contact_offse
     if (b.moves() || b.triangles.empty()) continue;
     b.still = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{surface.positions, b.triangles});
   }
-  speed = collider_speed_m_per_s(m.scene);
-  for (const Jump& j : m.scene.jumps) speed = std::max(speed, j.distance_m / m.scene.time.dt());
+  highest_speed = collider_speed_m_per_s(m.scene);
+  for (const Jump& j : m.scene.jumps) highest_speed = std::max(highest_speed, j.distance_m / m.scene.time.dt());
   links = contact::edges_of(m.triangles);
   each.resize(m.vertices);
   std::iota(each.begin(), each.end(), 0u);
-  touched.assign(m.frames, {});
+  reached.assign(m.frames, {});
   depth.assign(m.frames, 0);
   faces.assign(m.frames, {});
 }
 
-std::vector<double> Bodies::State::cloth(std::size_t frame) const {
+std::vector<double> AllBodies::cloth(std::size_t frame) const {
   std::vector<double> out;
   out.reserve(3 * m.vertices);
   for (std::size_t v = 0; v < m.vertices; ++v) {
@@ -62,7 +61,7 @@ std::vector<double> Bodies::State::cloth(std::size_t frame) const {
   return out;
 }
 
-Pose& Bodies::State::pose(Body& b, std::size_t frame) {
+Pose& AllBodies::pose(Body& b, std::size_t frame) {
   if (!b.moves()) frame = 0;
   std::unique_ptr<Pose>& slot = b.poses[frame % b.poses.size()];
   if (slot && slot->frame == frame) return *slot;
@@ -79,7 +78,7 @@ Pose& Bodies::State::pose(Body& b, std::size_t frame) {
 }
 
 /// Largest displacement [m] of a collider between the frame before and this one.
-double Bodies::State::displacement(Body& b, std::size_t frame) {
+double AllBodies::displacement(Body& b, std::size_t frame) {
   if (!b.moves() || frame == 0 || frame >= m.frames) return 0;
   std::pair<std::size_t, double>& known = b.displacements[frame % b.displacements.size()];
   if (known.first == frame) return known.second;
@@ -94,7 +93,7 @@ double Bodies::State::displacement(Body& b, std::size_t frame) {
   return most;
 }
 
-void Bodies::State::touch_plane(const Body& b, const std::vector<V3>& x, const std::vector<double>& reach) {
+void AllBodies::touch_plane(const Body& b, const std::vector<V3>& x, const std::vector<double>& reach) {
   const V3 normal = to_v3(b.collider.normal), on = to_v3(b.collider.center_m);
   for (std::size_t v = 0; v < x.size(); ++v) {
     const double d = normal.dot(x[v] - on);
@@ -104,8 +103,8 @@ void Bodies::State::touch_plane(const Body& b, const std::vector<V3>& x, const s
   }
 }
 
-void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector<V3>& x,
-                                   const std::vector<double>& reach, bool any) {
+void AllBodies::touch_capsules(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach,
+                               bool any) {
   const double far = *std::max_element(reach.begin(), reach.end());
   const double near_cell = std::max(m.cell_m * 1.5, far);
   std::vector<bool> noted(x.size(), false);
@@ -144,8 +143,8 @@ void Bodies::State::touch_capsules(Body& b, std::size_t frame, const std::vector
 /// Every triangle of the surface within reach of a triangle of the cloth may push along its own normal, and along the
 /// shortest way between the two: a frame does not say where in it they met. Where the cloth moves by more than half a
 /// cell, the overlap of boxes decides about triangles that are smaller than the reach.
-void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
-                                   bool any) {
+void AllBodies::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
+                               bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
   const Box box = contact::grown(contact::box_of(t), reach);
   p.tree->for_each_overlapping(box, [&](int i) {
@@ -187,8 +186,8 @@ void Bodies::State::touch_triangle(Body& b, Pose& p, const Corners& corners, con
   });
 }
 
-void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<V3>& x,
-                                  const std::vector<double>& reach, bool any) {
+void AllBodies::touch_surface(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach,
+                              bool any) {
   Pose& p = pose(b, frame);
   if (p.positions.empty() || b.triangles.empty()) return;
   Box cloth_box;
@@ -235,7 +234,7 @@ void Bodies::State::touch_surface(Body& b, std::size_t frame, const std::vector<
   }
 }
 
-void Bodies::State::touch(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach) {
+void AllBodies::touch(Body& b, std::size_t frame, const std::vector<V3>& x, const std::vector<double>& reach) {
   const double way = std::max(displacement(b, frame), displacement(b, frame + 1));
   const bool any = way > b.radius_m / 2;
   std::vector<double> its_reach(reach);
@@ -282,53 +281,37 @@ void Face::add(const V3& n, double mu) {
   any = true;
 }
 
-Bodies::Bodies(const Motion& m, std::span<const double> contact_offsets_m)
-    : state_(std::make_unique<State>(m, contact_offsets_m)) {}
-Bodies::~Bodies() = default;
-
-bool Bodies::empty() const { return state_->bodies.empty(); }
-bool Bodies::any_moves() const {
-  return std::any_of(state_->bodies.begin(), state_->bodies.end(), [](const Body& b) { return b.moves(); });
+std::unique_ptr<Bodies> bodies_of(const Motion& m, std::span<const double> contact_offsets_m) {
+  return std::make_unique<AllBodies>(m, contact_offsets_m);
 }
-double Bodies::speed() const { return state_->speed; }
 
-const std::vector<Contact>& Bodies::contacts(std::size_t frame) {
-  State& s = *state_;
-  const auto known = s.contacts.find(frame);
-  if (known != s.contacts.end()) return known->second;
-  while (s.contacts.size() >= kFramesKept) s.contacts.erase(s.contacts.begin());
-  s.found = &s.contacts[frame];
-  s.touched[frame].assign(s.m.vertices, false);
-  s.flags = &s.touched[frame];
+std::span<const Contact> AllBodies::contacts(std::size_t frame) {
+  const auto at = kept.find(frame);
+  if (at != kept.end()) return at->second;
+  while (kept.size() >= kFramesKept) kept.erase(kept.begin());
+  found = &kept[frame];
+  reached[frame].assign(m.vertices, false);
+  flags = &reached[frame];
   std::vector<V3> x;
   std::vector<double> half_way;
-  for (std::size_t v = 0; v < s.m.vertices; ++v) {
-    x.push_back(s.m.at(frame, v));
+  for (std::size_t v = 0; v < m.vertices; ++v) {
+    x.push_back(m.at(frame, v));
     double way = 0;
-    if (frame > 0) way = (x[v] - s.m.at(frame - 1, v)).norm();
-    if (frame + 1 < s.m.frames) way = std::max(way, (s.m.at(frame + 1, v) - x[v]).norm());
+    if (frame > 0) way = (x[v] - m.at(frame - 1, v)).norm();
+    if (frame + 1 < m.frames) way = std::max(way, (m.at(frame + 1, v) - x[v]).norm());
     half_way.push_back(way / 2);
   }
-  for (Body& b : s.bodies) s.touch(b, frame, x, half_way);
+  for (Body& b : bodies) touch(b, frame, x, half_way);
   // Neighbouring triangles touch at their common vertices.
   std::unordered_set<std::uint64_t> known_places;
-  std::erase_if(*s.found, [&](const Contact& c) {
+  std::erase_if(*found, [&](const Contact& c) {
     std::uint64_t place = c.any_force ? 1 : std::bit_cast<std::uint64_t>(c.friction);
     for (int i = 0; i < 3; ++i)
-      for (const double q : {c.point[i] / (10 * s.m.resolution_m), c.normal[i] / 0.01})
+      for (const double q : {c.point[i] / (10 * m.resolution_m), c.normal[i] / 0.01})
         place = place * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(std::llround(q));
     return !known_places.insert(place).second;
   });
-  return *s.found;
+  return *found;
 }
-
-bool Bodies::touched(std::size_t frame, std::size_t vertex) const {
-  const std::vector<bool>& flags = state_->touched[frame];
-  return !flags.empty() && flags[vertex];
-}
-
-const Face& Bodies::face(std::size_t frame) const { return state_->faces[frame]; }
-
-double Bodies::depth_ratio(std::size_t frame) const { return state_->depth[frame]; }
 
 }  // namespace clothbench::motion_check

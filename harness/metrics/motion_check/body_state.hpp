@@ -1,10 +1,10 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "metrics/contact/contact_probe.hpp"
 #include "metrics/contact/triangle_mesh.hpp"
@@ -70,8 +70,7 @@ struct Body {
   bool moves() const { return collider.moves(); }
 };
 
-/// Gives a plate its middle plane, as far from its border as from its faces. A bar, which is no thinner one way than
-/// another, has none.
+/// Gives a plate its middle plane, as far from its border as from its faces. A bar has none.
 void add_middle(Body& b);
 
 inline Box box_of(std::span<const double> positions) {
@@ -80,8 +79,18 @@ inline Box box_of(std::span<const double> positions) {
   return box;
 }
 
-struct Bodies::State {
-  State(const Motion& motion, std::span<const double> contact_offsets_m);
+struct AllBodies final : Bodies {
+  AllBodies(const Motion& motion, std::span<const double> contact_offsets_m);
+
+  bool empty() const override { return bodies.empty(); }
+  bool any_moves() const override { return std::any_of(bodies.begin(), bodies.end(), std::mem_fn(&Body::moves)); }
+  double speed() const override { return highest_speed; }
+  std::span<const Contact> contacts(std::size_t frame) override;
+  bool touched(std::size_t frame, std::size_t v) const override { return !reached[frame].empty() && reached[frame][v]; }
+  Face face(std::size_t frame) const override { return faces[frame]; }
+  double depth_ratio(std::size_t frame) const override { return depth[frame]; }
+  bool near(std::size_t frame, std::span<const V3> points, double displacement_m) override;
+  int passages(std::size_t frame) override;
 
   Pose& pose(Body& b, std::size_t frame);
   double displacement(Body& b, std::size_t frame);
@@ -101,13 +110,13 @@ struct Bodies::State {
 
   const Motion& m;
   std::vector<Body> bodies;
-  double speed = 0;
+  double highest_speed = 0;
   std::vector<contact::Link> links;
   std::vector<std::uint32_t> each;  ///< 0, 1, 2, ...
-  std::map<std::size_t, std::vector<Contact>> contacts;
+  std::map<std::size_t, std::vector<Contact>> kept;
   std::vector<Contact>* found = nullptr;
   std::vector<bool>* flags = nullptr;
-  std::vector<std::vector<bool>> touched;
+  std::vector<std::vector<bool>> reached;
   std::vector<double> depth;
   std::vector<Face> faces;
 };
@@ -129,42 +138,37 @@ inline std::array<V3, 2> nearest_of_segments(const V3& a, const V3& b, const V3&
   return {a + s * u, c + t * v};
 }
 
+/// The nearest of pairs of points.
+struct NearestPair {
+  std::array<V3, 2> best;
+  double least = kInfinite;
+  void keep(const std::array<V3, 2>& pair) {
+    const double d = (pair[0] - pair[1]).squaredNorm();
+    if (d < least) least = d, best = pair;
+  }
+};
+
 /// Nearest points of a triangle and a segment that do not cross: on the triangle, on the segment.
 inline std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& b) {
-  std::array<V3, 2> best = {t[0], a};
-  double least = kInfinite;
-  const auto keep = [&](const V3& on_triangle, const V3& on_segment) {
-    const double d = (on_triangle - on_segment).squaredNorm();
-    if (d < least) least = d, best = {on_triangle, on_segment};
-  };
-  keep(point_of(t, contact::nearest_weights(a, t)), a);
-  keep(point_of(t, contact::nearest_weights(b, t)), b);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto [on_edge, on_segment] = nearest_of_segments(t[i], t[(i + 1) % 3], a, b);
-    keep(on_edge, on_segment);
-  }
-  return best;
+  NearestPair out{{t[0], a}};
+  out.keep({point_of(t, contact::nearest_weights(a, t)), a});
+  out.keep({point_of(t, contact::nearest_weights(b, t)), b});
+  for (std::size_t i = 0; i < 3; ++i) out.keep(nearest_of_segments(t[i], t[(i + 1) % 3], a, b));
+  return out.best;
 }
 
-/// Nearest points of two triangles that do not cross: on the first, on the second. Edges of the second outside `box`
-/// are left out.
+/// Nearest points of two triangles that do not cross: on the first, on the second (without edges outside `box`).
 inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex<3>& s, const Box& box) {
-  double least = kInfinite;
-  std::array<V3, 2> best = {t[0], s[0]};
-  const auto keep = [&](const V3& on_first, const V3& on_second) {
-    const double d = (on_first - on_second).squaredNorm();
-    if (d < least) least = d, best = {on_first, on_second};
-  };
+  NearestPair out{{t[0], s[0]}};
   for (std::size_t k = 0; k < 3; ++k) {
-    keep(t[k], point_of(s, contact::nearest_weights(t[k], s)));
+    out.keep({t[k], point_of(s, contact::nearest_weights(t[k], s))});
     if (!box.intersects(Box(s[k].cwiseMin(s[(k + 1) % 3]), s[k].cwiseMax(s[(k + 1) % 3])))) continue;
-    const auto [on_first, on_second] = nearest_of(t, s[k], s[(k + 1) % 3]);
-    keep(on_first, on_second);
+    out.keep(nearest_of(t, s[k], s[(k + 1) % 3]));
   }
-  return best;
+  return out.best;
 }
 
-/// The same for a triangle on one side of the plane of `s`, with its vertex that is nearest to the plane: if the foot
+/// The same for a triangle on one side of the plane of `s`: with its vertex that is nearest to that plane. If the foot
 /// of this vertex is inside `s`, nothing is nearer.
 inline std::array<V3, 2> nearest_to_plane(const Simplex<3>& t, const Simplex<3>& s, std::size_t lowest,
                                           const Box& box) {

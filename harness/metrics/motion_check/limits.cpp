@@ -37,13 +37,155 @@ class Limits {
   }
 
  private:
-  void frame(std::size_t k);
-  void velocities(std::size_t k);
-  void energy(std::size_t k);
-  void rise(std::size_t k, double energy, double kinetic, double mean_square);
-  bool driven(std::size_t k) const;
-  void strain(std::size_t k);
-  double impact_speed(std::size_t k, const Edge& e) const;
+  void frame(std::size_t k) {
+    double low = 1e300;
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      low = std::min(low, height(k, v));
+      if (k == 0) top_ = std::max(top_, height(k, v));
+    }
+    lowest_ = std::min(lowest_, low);
+    const bool falls = m_.gravity.norm() > 0;
+    const double fall = std::max(top_ - lowest_, m_.has_attachments() ? m_.length_m : 0.0);
+    budget_ = std::max(budget_, (falls ? std::sqrt(2 * m_.weight_unit * fall) : 0) + 2 * driven_);
+    double tensile = 0;
+    for (const Edge& e : m_.edges) tensile += std::pow(std::max(m_.strain(k, e), 0.0), 2);
+    tensile_ = std::max(tensile_, tensile / static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1)));
+    if (k > 0) velocities(k);
+    energy(k);
+    strain(k);
+  }
+
+  void velocities(std::size_t k) {
+    const double recoil = wave_speed() * std::sqrt(tensile_);
+    const double t = m_.dt(k), floor = m_.weight_unit * t + 4 * m_.resolution_m / t;
+    double fastest = 0, change = 0;
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      const V3 now = (m_.at(k, v) - m_.at(k - 1, v)) / t;
+      fastest = std::max(fastest, now.norm());
+      if (k > 1) change += (now - (m_.at(k - 1, v) - m_.at(k - 2, v)) / m_.dt(k - 1)).squaredNorm();
+    }
+    found_.add("speed", fastest / (whip_ * (budget_ + recoil + floor)), k);
+    if (k > 1)
+      found_.add(
+          "speed_change",
+          std::sqrt(change / static_cast<double>(m_.vertices)) / (1.25 * (budget_ + 2 * scripted_ + recoil) + floor),
+          k);
+  }
+
+  /// The kinetic energy of a frame's chord is a lower bound of the mean within the frame (Jensen's inequality).
+  void energy(std::size_t k) {
+    double mean_square = 0;
+    for (const Edge& e : m_.edges) mean_square += std::pow(m_.strain(k, e), 2);
+    mean_square /= static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
+    if (k == 0) {
+      for (std::size_t v = 0; v < m_.vertices; ++v)
+        start_energy_ += m_.masses_kg[v] * m_.start_velocity_of(v).squaredNorm() / 2;
+      elastic_start_ = stiffness_.value_or(kInextensible) * elastic(mean_square);
+      return;
+    }
+    const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg;
+    double kinetic = 0, height_gained = 0;
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      kinetic += m_.masses_kg[v] * ((m_.at(k, v) - m_.at(k - 1, v)) / t).squaredNorm() / 2;
+      height_gained += m_.masses_kg[v] * ((height(k, v) + height(k - 1, v)) / 2 - height(0, v));
+    }
+    const double potential = g * height_gained * (m_.gravity.norm() > 0);
+    rise(k, kinetic + potential, kinetic, mean_square);
+    // Links without a limit of stiffness store any energy at a start that strains them.
+    if (moves_ || (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest())) return;
+    kinetic_most_ = std::max(kinetic_most_, kinetic);
+    const double step = 3 * g * t * std::sqrt(2 * kinetic_most_ * M), noise = 6 * M * std::pow(m_.resolution_m / t, 2);
+    const double allowed = 0.02 * M * g * m_.length_m + 0.05 * start_energy_ + step + noise;
+    found_.add("energy", (kinetic + potential - start_energy_ - elastic_start_) / allowed, k);
+  }
+
+  /// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. Energy that links
+  /// and hinges may store, and energy that a rebound hides for a few frames, count in the earlier frame only.
+  void rise(std::size_t k, double energy, double kinetic, double mean_square) {
+    constexpr std::size_t kHides = 4;
+    double bent = 0;
+    for (const Edge& e : bends_) bent += std::max(-m_.strain(k, e), 0.0);
+    const double stored =
+        stiffness_.value_or(kInextensible) * elastic(mean_square) + 8 * m_.scene.material.bending_rigidity_N_m * bent;
+    const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg, before = std::exchange(stored_before_, stored);
+    const auto step = [&](double of) { return 1.5 * g * t * std::sqrt(2 * M * of); };
+    if (driven(k)) {
+      had_.clear(), kinetic_.clear();
+      least_ = std::numeric_limits<double>::infinity();
+      return;
+    }
+    if (std::isfinite(least_)) {
+      const double noise = 6 * M * std::pow(m_.resolution_m / t, 2);
+      const double allowed =
+          0.02 * M * g * m_.length_m + step(*std::max_element(kinetic_.begin(), kinetic_.end())) + noise;
+      found_.add("rise", (energy - least_) / allowed, k);
+    }
+    had_.push_back(energy + std::max(before, stored) + step(kinetic)), kinetic_.push_back(kinetic);
+    if (had_.size() < kHides) return;
+    if (had_.size() > kHides) had_.erase(had_.begin()), kinetic_.erase(kinetic_.begin());
+    least_ = std::min(least_, *std::max_element(had_.begin(), had_.end()));
+  }
+
+  /// Whether a collider or an attachment may give energy to the cloth in the interval before a frame.
+  bool driven(std::size_t k) const {
+    if (!moves_) return false;
+    for (std::size_t v = 0; v < m_.vertices; ++v)
+      if (bodies_.touched(k - 1, v) || bodies_.touched(k, v)) return true;
+    const FrameMotion *was = m_.scripted(k - 1), *now = m_.scripted(k);
+    for (std::size_t g = 0; was != nullptr && g < now->grip_held.size(); ++g)
+      if ((now->grip_held[g] || was->grip_held[g]) && now->grip_position_m[g] != was->grip_position_m[g]) return true;
+    return false;
+  }
+
+  void strain(std::size_t k) {
+    double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
+    const std::vector<bool> held =
+        m_.scene.grips.vertices.empty() ? std::vector<bool>(m_.vertices, false) : m_.is_held(k);
+    std::vector<std::array<double, 2>> loose;  // changes of strain in the frame, and the speeds of impacts
+    for (const Edge& e : m_.edges) {
+      if (!(e.rest_m > 0)) continue;
+      const double s = m_.strain(k, e);
+      if (k > 0 && !is_held_[e.a] && !is_held_[e.b])
+        loose.push_back({std::abs(s - m_.strain(k - 1, e)), impact_speed(k, e)});
+      charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
+      compressed += std::max(-s, 0.0) / count;
+      if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
+    }
+    constexpr std::ptrdiff_t kOthers = 12;
+    if (loose.size() > 2 * kOthers) {
+      std::nth_element(loose.begin(), loose.begin() + kOthers, loose.end(), std::greater());
+      const double others = 0.15 + 4 * loose[kOthers][0], rebound = 2 * m_.dt(k) / m_.cell_m;
+      double most = 0;
+      for (const auto& [change, impact] : loose)
+        most = std::max(most, change / (others + rebound * (scripted_ + impact)));
+      found_.add("tear", most, k);
+    }
+    if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
+    const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
+    // A recoil compresses by the previous stretch, an impact by its speed over the speed of a wave.
+    const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
+    found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
+    // The stiffness of links that should not stretch at all is the solver's own.
+    if (!stiffness_) return;
+    const double pays = m_.mass_kg * (m_.weight_unit * std::max(top_ - lowest_, m_.length_m) + 2 * driven_ * driven_) +
+                        Y * area_m2_ * imposed_ * imposed_;
+    const double stored = std::min(Y, kStiffest) * elastic(charged - charged_start_);
+    found_.add("strain", stored / pays / (scripted_ > 0 ? 3 : 1), k);
+  }
+
+  /// Speed [m/s] at which an edge in reach of a collider meets it in the interval before a frame: the collider may stop
+  /// or reverse one end, and the other end goes on. It is the speed of the interval before: no jump excuses itself.
+  double impact_speed(std::size_t k, const Edge& e) const {
+    double fastest = 0;
+    bool in_reach = false;
+    for (const std::uint32_t v : {e.a, e.b}) {
+      in_reach = in_reach || bodies_.touched(k - 1, v) || bodies_.touched(k, v);
+      fastest = std::max(
+          fastest, k > 1 ? (m_.at(k - 1, v) - m_.at(k - 2, v)).norm() / m_.dt(k - 1) : m_.start_velocity_of(v).norm());
+    }
+    return in_reach ? fastest : 0;
+  }
+
   double height(std::size_t k, std::size_t v) const { return -m_.at(k, v).dot(m_.gravity) / m_.weight_unit; }
   /// Speed of a membrane wave [m/s].
   double wave_speed() const {
@@ -68,154 +210,6 @@ class Limits {
   std::vector<double> had_, kinetic_;
   double stored_before_ = 0, least_ = std::numeric_limits<double>::infinity();
 };
-
-void Limits::frame(std::size_t k) {
-  double low = 1e300;
-  for (std::size_t v = 0; v < m_.vertices; ++v) {
-    low = std::min(low, height(k, v));
-    if (k == 0) top_ = std::max(top_, height(k, v));
-  }
-  lowest_ = std::min(lowest_, low);
-  const bool falls = m_.gravity.norm() > 0;
-  const double fall = std::max(top_ - lowest_, m_.has_attachments() ? m_.length_m : 0.0);
-  budget_ = std::max(budget_, (falls ? std::sqrt(2 * m_.weight_unit * fall) : 0) + 2 * driven_);
-  double tensile = 0;
-  for (const Edge& e : m_.edges) tensile += std::pow(std::max(m_.strain(k, e), 0.0), 2);
-  tensile_ = std::max(tensile_, tensile / static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1)));
-  if (k > 0) velocities(k);
-  energy(k);
-  strain(k);
-}
-
-void Limits::velocities(std::size_t k) {
-  const double recoil = wave_speed() * std::sqrt(tensile_);
-  const double t = m_.dt(k), floor = m_.weight_unit * t + 4 * m_.resolution_m / t;
-  double fastest = 0, change = 0;
-  for (std::size_t v = 0; v < m_.vertices; ++v) {
-    const V3 now = (m_.at(k, v) - m_.at(k - 1, v)) / t;
-    fastest = std::max(fastest, now.norm());
-    if (k > 1) change += (now - (m_.at(k - 1, v) - m_.at(k - 2, v)) / m_.dt(k - 1)).squaredNorm();
-  }
-  found_.add("speed", fastest / (whip_ * (budget_ + recoil + floor)), k);
-  if (k > 1)
-    found_.add(
-        "speed_change",
-        std::sqrt(change / static_cast<double>(m_.vertices)) / (1.25 * (budget_ + 2 * scripted_ + recoil) + floor), k);
-}
-
-/// The kinetic energy of a frame's chord is a lower bound of the mean within the frame (Jensen's inequality).
-void Limits::energy(std::size_t k) {
-  double mean_square = 0;
-  for (const Edge& e : m_.edges) mean_square += std::pow(m_.strain(k, e), 2);
-  mean_square /= static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
-  if (k == 0) {
-    for (std::size_t v = 0; v < m_.vertices; ++v)
-      start_energy_ += m_.masses_kg[v] * m_.start_velocity_of(v).squaredNorm() / 2;
-    elastic_start_ = stiffness_.value_or(kInextensible) * elastic(mean_square);
-    return;
-  }
-  const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg;
-  double kinetic = 0, height_gained = 0;
-  for (std::size_t v = 0; v < m_.vertices; ++v) {
-    kinetic += m_.masses_kg[v] * ((m_.at(k, v) - m_.at(k - 1, v)) / t).squaredNorm() / 2;
-    height_gained += m_.masses_kg[v] * ((height(k, v) + height(k - 1, v)) / 2 - height(0, v));
-  }
-  const double potential = g * height_gained * (m_.gravity.norm() > 0);
-  rise(k, kinetic + potential, kinetic, mean_square);
-  // Links without a limit of stiffness store any energy at a start that strains them.
-  if (moves_ || (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest())) return;
-  kinetic_most_ = std::max(kinetic_most_, kinetic);
-  const double step = 3 * g * t * std::sqrt(2 * kinetic_most_ * M), noise = 6 * M * std::pow(m_.resolution_m / t, 2);
-  const double allowed = 0.02 * M * g * m_.length_m + 0.05 * start_energy_ + step + noise;
-  found_.add("energy", (kinetic + potential - start_energy_ - elastic_start_) / allowed, k);
-}
-
-/// Whether a collider or an attachment may give energy to the cloth in the interval before a frame.
-bool Limits::driven(std::size_t k) const {
-  if (!moves_) return false;
-  for (std::size_t v = 0; v < m_.vertices; ++v)
-    if (bodies_.touched(k - 1, v) || bodies_.touched(k, v)) return true;
-  const FrameMotion *was = m_.scripted(k - 1), *now = m_.scripted(k);
-  for (std::size_t g = 0; was != nullptr && g < now->grip_held.size(); ++g)
-    if ((now->grip_held[g] || was->grip_held[g]) && now->grip_position_m[g] != was->grip_position_m[g]) return true;
-  return false;
-}
-
-/// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. Energy that links
-/// and hinges may store, and energy that a rebound hides for a few frames, count in the earlier frame only.
-void Limits::rise(std::size_t k, double energy, double kinetic, double mean_square) {
-  constexpr std::size_t kHides = 4;
-  double bent = 0;
-  for (const Edge& e : bends_) bent += std::max(-m_.strain(k, e), 0.0);
-  const double stored =
-      stiffness_.value_or(kInextensible) * elastic(mean_square) + 8 * m_.scene.material.bending_rigidity_N_m * bent;
-  const double t = m_.dt(k), g = m_.weight_unit, M = m_.mass_kg, before = std::exchange(stored_before_, stored);
-  const auto step = [&](double of) { return 1.5 * g * t * std::sqrt(2 * M * of); };
-  if (driven(k)) {
-    had_.clear(), kinetic_.clear();
-    least_ = std::numeric_limits<double>::infinity();
-    return;
-  }
-  if (std::isfinite(least_)) {
-    const double noise = 6 * M * std::pow(m_.resolution_m / t, 2);
-    const double allowed =
-        0.02 * M * g * m_.length_m + step(*std::max_element(kinetic_.begin(), kinetic_.end())) + noise;
-    found_.add("rise", (energy - least_) / allowed, k);
-  }
-  had_.push_back(energy + std::max(before, stored) + step(kinetic)), kinetic_.push_back(kinetic);
-  if (had_.size() < kHides) return;
-  if (had_.size() > kHides) had_.erase(had_.begin()), kinetic_.erase(kinetic_.begin());
-  least_ = std::min(least_, *std::max_element(had_.begin(), had_.end()));
-}
-
-/// Speed [m/s] at which an edge in reach of a collider meets it in the interval before a frame: the collider may stop
-/// or reverse one end, and the other end goes on. It is the speed of the interval before: no jump excuses itself.
-double Limits::impact_speed(std::size_t k, const Edge& e) const {
-  double fastest = 0;
-  bool in_reach = false;
-  for (const std::uint32_t v : {e.a, e.b}) {
-    in_reach = in_reach || bodies_.touched(k - 1, v) || bodies_.touched(k, v);
-    fastest = std::max(
-        fastest, k > 1 ? (m_.at(k - 1, v) - m_.at(k - 2, v)).norm() / m_.dt(k - 1) : m_.start_velocity_of(v).norm());
-  }
-  return in_reach ? fastest : 0;
-}
-
-void Limits::strain(std::size_t k) {
-  double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
-  const std::vector<bool> held =
-      m_.scene.grips.vertices.empty() ? std::vector<bool>(m_.vertices, false) : m_.is_held(k);
-  std::vector<std::array<double, 2>> loose;  // changes of strain in the frame, and the speeds of impacts
-  for (const Edge& e : m_.edges) {
-    if (!(e.rest_m > 0)) continue;
-    const double s = m_.strain(k, e);
-    if (k > 0 && !is_held_[e.a] && !is_held_[e.b])
-      loose.push_back({std::abs(s - m_.strain(k - 1, e)), impact_speed(k, e)});
-    charged += std::pow(std::max(std::abs(s) - 3 * m_.resolution_m / e.rest_m, 0.0), 2) / count;
-    compressed += std::max(-s, 0.0) / count;
-    if (held[e.a] || held[e.b]) imposed_ = std::max(imposed_, std::abs(s));
-  }
-  constexpr std::ptrdiff_t kOthers = 12;
-  if (loose.size() > 2 * kOthers) {
-    std::nth_element(loose.begin(), loose.begin() + kOthers, loose.end(), std::greater());
-    const double others = 0.15 + 4 * loose[kOthers][0], rebound = 2 * m_.dt(k) / m_.cell_m;
-    double most = 0;
-    for (const auto& [change, impact] : loose)
-      most = std::max(most, change / (others + rebound * (scripted_ + impact)));
-    found_.add("tear", most, k);
-  }
-  if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
-  const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
-  // A recoil compresses by the previous stretch, an impact by its speed over the speed of a wave.
-  const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
-  found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
-  // The stiffness of links that should not stretch at all is the solver's own.
-  if (!stiffness_) return;
-  const double pays = m_.mass_kg * (m_.weight_unit * std::max(top_ - lowest_, m_.length_m) + 2 * driven_ * driven_) +
-                      Y * area_m2_ * imposed_ * imposed_;
-  const double stored = std::min(Y, kStiffest) * elastic(charged - charged_start_);
-  found_.add("strain", stored / pays / (scripted_ > 0 ? 3 : 1), k);
-}
 
 }  // namespace
 

@@ -1,18 +1,15 @@
-// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so that no law of the
-// material is needed: what is left over gravity and damping must be a force that attachments and colliders in reach
-// can exert. The least distance to their cone is found by column generation and non-negative least squares (Lawson &
-// Hanson 1974, chapter 23).
+// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so no law of the material
+// is needed: what gravity and damping leave must be a force that attachments and colliders in reach can exert. Its
+// distance to their cone: by column generation and non-negative least squares (Lawson & Hanson 1974, 23).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "metrics/motion_check/motion.hpp"
 
 namespace clothbench::motion_check {
 namespace {
 
-/// An impulse acts at a third of a frame from the stored one on average (the mean of the hat weights of a second
-/// difference); so far may its lever be wrong.
+/// Mean distance [frames] of an impulse from its stored frame, the mean hat weight of a second difference.
 constexpr double kChord = 1.0 / 3;
 /// Tolerance [weights] of a force that lasts, and the share of a tolerance below which distances are not resolved.
 constexpr double kLasting = 0.05, kResolved = 0.1;
@@ -63,8 +60,7 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
   return rest;
 }
 
-/// The unit force of a contact that does most against a direction; zero if none does anything. `coulomb`: within the
-/// cone of friction; otherwise any force that does not pull.
+/// Unit force of a contact that does most against a direction, or zero. `coulomb`: in friction's cone; else any push.
 V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   if (c.any_force) return h.normalized();
   const double along = h.dot(c.normal);
@@ -92,7 +88,51 @@ class Momentum {
  public:
   Momentum(const Motion& m, Bodies& b, Findings& f) : m_(m), bodies_(b), found_(f), arm_m_(m.length_m / 2) {}
 
-  void run();
+  void run() {
+    found_.define("impulse");
+    std::vector<double> off(m_.frames, 0), slip(m_.frames, 0);
+    // Only the force: where in a frame a sliding contact acts is not known well enough for moments.
+    M6 forces_only = M6::Zero();
+    forces_only.topLeftCorner<3, 3>().setIdentity();
+    all_.resize(m_.frames);
+    for (std::size_t k = 0; k + 1 < m_.frames; ++k) {
+      Interval& now = all_[k];
+      now = interval(k);
+      const V3 middle = middle_of(k);
+      const M6 keep = free_of_attachments(m_, k, middle);
+      now.wrench = keep * now.wrench;
+      const std::vector<Contact> contacts = contacts_round(k);
+      now.contact = !contacts.empty();
+      if (now.contact && k > 0 && !m_.has_attachments()) now.slip = slip_of(k);
+      const bool attached = !keep.isIdentity(1e-9);
+      now.judged =
+          !(attached && std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.any_force; }));
+      window(k);
+      if (!now.judged) continue;
+      const double allowed = kLasting + noise(k);
+      off[k] = now.contact ? outside_cone(now.wrench, contacts, keep, middle, now.hidden + kResolved * allowed)
+                           : now.wrench.norm();
+      off[k] = std::max(0.0, off[k] - now.hidden);
+      if (k == 0)
+        found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
+      else
+        found_.add("impulse", off[k] / (0.5 + noise(k)), k);
+      for (const std::size_t span : kSlidingSpans) sliding(k, span);
+      if (now.contact && !attached) {
+        slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle,
+                               kResolved * allowed, true);
+        // One interval of an impact: a quarter of the force.
+        found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
+      }
+      if (k < 3) continue;
+      const auto median = [&](const std::vector<double>& x) {
+        return std::max(std::min(x[k - 2], x[k - 1]), std::min(std::max(x[k - 2], x[k - 1]), x[k]));
+      };
+      found_.add("force", median(off) / allowed, k);
+      if (now.contact && !attached) found_.add("friction", median(slip) / allowed, k);
+    }
+    if (!bodies_.empty() && !m_.has_attachments()) free_motion();
+  }
 
  private:
   /// Coulomb's law while all that is in reach is one face, which the cloth neither meets nor leaves.
@@ -111,16 +151,192 @@ class Momentum {
     Slip slip;
   };
 
-  Interval interval(std::size_t k);
-  std::vector<Contact> contacts_round(std::size_t k);
+  Interval interval(std::size_t k) {
+    Interval out;
+    const double after = m_.dt(k + 1), before = m_.dt(k), c = m_.scene.material.damping_per_s;
+    const Flight flight(before, after, c);
+    const V3 middle = middle_of(k);
+    const double fastest = std::sqrt(2 * m_.weight_unit * m_.length_m) + 2 * std::max(bodies_.speed(), m_.start_speed);
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      const V3 now = m_.at(k, v), ahead = m_.at(k + 1, v) - now;
+      V3 force;  // over the vertex's mass
+      if (k == 0) {
+        force = (ahead - flight.a2 * m_.start_velocity_of(v) - flight.b2 * m_.gravity) / (after * after);
+        const double speed = std::max(m_.start_velocity_of(v).norm(), ahead.norm() / after);
+        out.hidden += m_.masses_kg[v] * std::min(speed, fastest) * force.norm();
+      } else {
+        const V3 behind = now - m_.at(k - 1, v);
+        force = flight.unexplained(behind, ahead, m_.gravity);
+        const double speed = std::min((ahead + behind).norm() / (before + after), fastest);
+        out.hidden += m_.masses_kg[v] * speed * ((ahead / after - behind / before) / after - m_.gravity).norm();
+      }
+      out.wrench += m_.masses_kg[v] * wrench_of(force, (now - middle) / arm_m_);
+    }
+    const double weight = m_.mass_kg * m_.weight_unit;
+    out.wrench /= weight;
+    out.hidden *= kChord * after / (weight * arm_m_);
+    return out;
+  }
+
+  std::vector<Contact> contacts_round(std::size_t k) {
+    std::vector<Contact> out;
+    if (bodies_.empty()) return out;
+    for (std::size_t f = k == 0 ? 0 : k - 1; f <= std::min(k + 1, m_.frames - 1); ++f) {
+      const std::span<const Contact> now = bodies_.contacts(f);
+      out.insert(out.end(), now.begin(), now.end());
+    }
+    return out;
+  }
+
   /// Distance of a wrench from the cone of what contacts can exert; an upper bound if that is `enough` or less.
   double outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
-                      double enough, bool coulomb = false) const;
-  Slip slip_of(std::size_t k) const;
-  void sliding(std::size_t k, std::size_t span);
-  void window(std::size_t k);
-  void free_motion();
-  V3 middle_of(std::size_t k) const;
+                      double enough, bool coulomb = false) const {
+    constexpr int kRounds = 60;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
+    Eigen::VectorXd multiples;
+    V6 rest = w;
+    // Without a projection a unit force has a wrench of at least 1, so that it gains at most its own work.
+    const bool whole = keep.isIdentity();
+    for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
+      V6 best = V6::Zero();
+      double gain = 1e-4 * std::max(1.0, w.norm());
+      const V3 turning = rest.tail<3>();
+      for (const Contact& c : contacts) {
+        const V3 arm = (c.point - middle) / arm_m_, h = rest.head<3>() + turning.cross(arm);
+        if (whole && !(h.squaredNorm() > gain * gain)) continue;
+        const V3 force = best_force(c, h, coulomb);
+        if (whole && !(force.dot(h) > gain)) continue;
+        const V6 column = keep * wrench_of(force, arm);
+        const double size = column.norm();
+        if (size < 1e-6 || !(column.dot(rest) / size > gain)) continue;
+        gain = column.dot(rest) / size;
+        best = column / size;
+      }
+      if (best.isZero()) break;
+      Eigen::Index kept = 0;
+      for (Eigen::Index j = 0; j < columns.cols(); ++j)
+        if (multiples[j] > 0) columns.col(kept++) = V6(columns.col(j));
+      columns.conservativeResize(6, kept + 1);
+      columns.col(kept) = best;
+      const V6 next = residual_of_cone(columns, w, multiples);
+      if (!(next.norm() < rest.norm() - 1e-6)) break;
+      rest = next;
+    }
+    return rest.norm();
+  }
+
+  Slip slip_of(std::size_t k) const {
+    Slip out;
+    const Face face = bodies_.face(k);
+    for (const std::size_t f : {k - 1, k, k + 1}) {
+      const Face other = bodies_.face(f);
+      if (!other.any || !other.flat || other.normal.dot(face.normal) < 1 - 1e-6 || other.friction != face.friction)
+        return out;
+    }
+    const V3 force = all_[k].wrench.head<3>(), up = face.normal;
+    const double normal_force = force.dot(up), rests = -m_.gravity.dot(up) / m_.weight_unit, t = m_.dt(k);
+    out.steady = std::abs(normal_force - rests) < kSteady + noise(k);
+    out.across = force - normal_force * up;
+    out.limit = face.friction * std::max(normal_force, 0.0);
+    const double stops_m = 8 * m_.resolution_m + face.friction * m_.weight_unit * t * t;
+    out.slides = true;
+    std::vector<V3> ways;
+    for (std::size_t v = 0; v < m_.vertices; ++v) {
+      // A sheet that lies on the face as a whole; a heap moves inside itself, and its contacts slide in turns.
+      if (!bodies_.touched(k, v)) return {};
+      for (const V3& way : {V3(m_.at(k, v) - m_.at(k - 1, v)), V3(m_.at(k + 1, v) - m_.at(k, v))}) {
+        const V3 along = way - way.dot(up) * up;
+        out.slides = out.slides && along.norm() > stops_m;
+        ways.push_back(along.normalized());
+        out.way += ways.back();
+      }
+    }
+    out.way /= static_cast<double>(std::max<std::size_t>(ways.size(), 1));
+    for (const V3& way : ways) out.spread = std::max(out.spread, (way - out.way).norm());
+    return out;
+  }
+
+  /// Friction times the normal force drags cloth that slides on a face, no more any other. Means of `span` intervals.
+  void sliding(std::size_t k, std::size_t span) {
+    if (k < span + 1) return;
+    V3 across = V3::Zero(), drag = V3::Zero();
+    double limit = 0, spread = 0;
+    bool slides = true;
+    for (std::size_t i = k + 1 - span; i <= k; ++i) {
+      const Slip& s = all_[i].slip;
+      if (!s.steady) return;
+      slides = slides && s.slides;
+      across += s.across, drag -= s.limit * s.way, limit += s.limit, spread += s.limit * s.spread;
+    }
+    const double n = static_cast<double>(span);
+    const double off = slides ? std::max(0.0, (across - drag).norm() - spread) : std::max(0.0, across.norm() - limit);
+    found_.add("sliding", off / n / (kSliding + kFrictionShare * limit / n + noise(k) / n), k);
+  }
+
+  /// Mean wrench over the last kWindow intervals before k: noise cancels in the sum of second differences.
+  void window(std::size_t k) {
+    if (k < kWindow + 1) return;
+    V6 mean = V6::Zero();
+    double hidden = 0;
+    bool contact = false;
+    for (std::size_t i = k - kWindow; i < k; ++i) {
+      if (!all_[i].judged) return;
+      mean += all_[i].wrench / kWindow;
+      hidden += all_[i].hidden / kWindow;
+      contact = contact || all_[i].contact;
+    }
+    if (!contact) {
+      found_.add("mean_force", std::max(0.0, mean.norm() - hidden) / (kLasting + noise(k) / kWindow), k);
+      return;
+    }
+    double moved = 0;
+    for (std::size_t v = 0; v < m_.vertices; ++v) moved += (m_.at(k, v) - m_.at(k - kWindow - 1, v)).squaredNorm();
+    if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
+    const std::size_t at = k - kWindow / 2;
+    const V3 middle = middle_of(at);
+    // Cloth at rest may have been touched later, or only until earlier.
+    std::vector<Contact> contacts = contacts_round(at);
+    for (const std::size_t f : {k - kWindow, k - 1}) {
+      const std::span<const Contact> more = bodies_.contacts(f);
+      contacts.insert(contacts.end(), more.begin(), more.end());
+    }
+    const double allowed = 0.03 + noise(k) / kWindow;
+    const double off =
+        outside_cone(mean, contacts, free_of_attachments(m_, at, middle), middle, kResolved * allowed, true);
+    found_.add("support", off / allowed, k);
+  }
+
+  /// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
+  /// with one step per frame is off by half of gravity times a frame times the time.
+  void free_motion() {
+    const Scene& s = m_.scene;
+    if (!s.cloth.start.at_rest() || s.cloth.span_m > 0 || s.cloth.drape_radius_m > 0 ||
+        s.cloth.spin_rad_per_s != Vec3{})
+      return;
+    found_.define("free_motion");
+    std::vector<V3> fall(m_.vertices);
+    for (std::size_t k = 1; k < m_.frames; ++k) {
+      const Flight flight(m_.dt(k), m_.time_s(k), s.material.damping_per_s);
+      double sum = 0, way = 0;
+      for (std::size_t v = 0; v < m_.vertices; ++v) {
+        const V3 to = m_.at(0, v) + flight.a2 * m_.start_velocity_of(v) + flight.b2 * m_.gravity;
+        fall[v] = to;
+        way = std::max(way, (m_.start_velocity_of(v) + m_.time_s(k) * m_.gravity).norm() * m_.dt(k));
+        sum += (m_.at(k, v) - to).squaredNorm();
+      }
+      if (bodies_.near(k, fall, 2 * way)) return;
+      const double first_order_m = 0.75 * m_.weight_unit * m_.dt(k) * m_.time_s(k);
+      found_.add("free_motion",
+                 std::sqrt(sum / static_cast<double>(m_.vertices)) / (4 * m_.resolution_m + first_order_m), k);
+    }
+  }
+
+  V3 middle_of(std::size_t k) const {
+    V3 sum = V3::Zero();
+    for (std::size_t v = 0; v < m_.vertices; ++v) sum += m_.masses_kg[v] * m_.at(k, v);
+    return sum / m_.mass_kg;
+  }
+
   double noise(std::size_t k) const { return m_.noise(k, m_.vertices); }
 
   const Motion& m_;
@@ -129,237 +345,6 @@ class Momentum {
   double arm_m_;
   std::vector<Interval> all_;
 };
-
-V3 Momentum::middle_of(std::size_t k) const {
-  V3 sum = V3::Zero();
-  for (std::size_t v = 0; v < m_.vertices; ++v) sum += m_.masses_kg[v] * m_.at(k, v);
-  return sum / m_.mass_kg;
-}
-
-std::vector<Contact> Momentum::contacts_round(std::size_t k) {
-  std::vector<Contact> out;
-  if (bodies_.empty()) return out;
-  for (std::size_t f = k == 0 ? 0 : k - 1; f <= std::min(k + 1, m_.frames - 1); ++f) {
-    const std::vector<Contact>& now = bodies_.contacts(f);
-    out.insert(out.end(), now.begin(), now.end());
-  }
-  return out;
-}
-
-double Momentum::outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
-                              double enough, bool coulomb) const {
-  constexpr int kRounds = 60;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
-  Eigen::VectorXd multiples;
-  V6 rest = w;
-  // Without a projection a unit force has a wrench of at least 1, so that it gains at most its own work.
-  const bool whole = keep.isIdentity();
-  for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
-    V6 best = V6::Zero();
-    double gain = 1e-4 * std::max(1.0, w.norm());
-    const V3 turning = rest.tail<3>();
-    for (const Contact& c : contacts) {
-      const V3 arm = (c.point - middle) / arm_m_, h = rest.head<3>() + turning.cross(arm);
-      if (whole && !(h.squaredNorm() > gain * gain)) continue;
-      const V3 force = best_force(c, h, coulomb);
-      if (whole && !(force.dot(h) > gain)) continue;
-      const V6 column = keep * wrench_of(force, arm);
-      const double size = column.norm();
-      if (size < 1e-6 || !(column.dot(rest) / size > gain)) continue;
-      gain = column.dot(rest) / size;
-      best = column / size;
-    }
-    if (best.isZero()) break;
-    Eigen::Index kept = 0;
-    for (Eigen::Index j = 0; j < columns.cols(); ++j)
-      if (multiples[j] > 0) columns.col(kept++) = V6(columns.col(j));
-    columns.conservativeResize(6, kept + 1);
-    columns.col(kept) = best;
-    const V6 next = residual_of_cone(columns, w, multiples);
-    if (!(next.norm() < rest.norm() - 1e-6)) break;
-    rest = next;
-  }
-  return rest.norm();
-}
-
-Momentum::Interval Momentum::interval(std::size_t k) {
-  Interval out;
-  const double after = m_.dt(k + 1), before = m_.dt(k), c = m_.scene.material.damping_per_s;
-  const Flight flight(before, after, c);
-  const V3 middle = middle_of(k);
-  const double fastest = std::sqrt(2 * m_.weight_unit * m_.length_m) + 2 * std::max(bodies_.speed(), m_.start_speed);
-  for (std::size_t v = 0; v < m_.vertices; ++v) {
-    const V3 now = m_.at(k, v), ahead = m_.at(k + 1, v) - now;
-    V3 force;  // over the vertex's mass
-    if (k == 0) {
-      force = (ahead - flight.a2 * m_.start_velocity_of(v) - flight.b2 * m_.gravity) / (after * after);
-      const double speed = std::max(m_.start_velocity_of(v).norm(), ahead.norm() / after);
-      out.hidden += m_.masses_kg[v] * std::min(speed, fastest) * force.norm();
-    } else {
-      const V3 behind = now - m_.at(k - 1, v);
-      force = flight.unexplained(behind, ahead, m_.gravity);
-      const double speed = std::min((ahead + behind).norm() / (before + after), fastest);
-      out.hidden += m_.masses_kg[v] * speed * ((ahead / after - behind / before) / after - m_.gravity).norm();
-    }
-    out.wrench += m_.masses_kg[v] * wrench_of(force, (now - middle) / arm_m_);
-  }
-  const double weight = m_.mass_kg * m_.weight_unit;
-  out.wrench /= weight;
-  out.hidden *= kChord * after / (weight * arm_m_);
-  return out;
-}
-
-void Momentum::run() {
-  found_.define("impulse");
-  std::vector<double> off(m_.frames, 0), slip(m_.frames, 0);
-  // Only the force: where in a frame a sliding contact acts is not known well enough for moments.
-  M6 forces_only = M6::Zero();
-  forces_only.topLeftCorner<3, 3>().setIdentity();
-  all_.resize(m_.frames);
-  for (std::size_t k = 0; k + 1 < m_.frames; ++k) {
-    Interval& now = all_[k];
-    now = interval(k);
-    const V3 middle = middle_of(k);
-    const M6 keep = free_of_attachments(m_, k, middle);
-    now.wrench = keep * now.wrench;
-    const std::vector<Contact> contacts = contacts_round(k);
-    now.contact = !contacts.empty();
-    if (now.contact && k > 0 && !m_.has_attachments()) now.slip = slip_of(k);
-    const bool attached = !keep.isIdentity(1e-9);
-    now.judged =
-        !(attached && std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.any_force; }));
-    window(k);
-    if (!now.judged) continue;
-    const double allowed = kLasting + noise(k);
-    off[k] = now.contact ? outside_cone(now.wrench, contacts, keep, middle, now.hidden + kResolved * allowed)
-                         : now.wrench.norm();
-    off[k] = std::max(0.0, off[k] - now.hidden);
-    if (k == 0)
-      found_.add("first_step", off[0] / (0.55 + noise(0)), 0);
-    else
-      found_.add("impulse", off[k] / (0.5 + noise(k)), k);
-    for (const std::size_t span : kSlidingSpans) sliding(k, span);
-    if (now.contact && !attached) {
-      slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle,
-                             kResolved * allowed, true);
-      // One interval of an impact: a quarter of the force.
-      found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
-    }
-    if (k < 3) continue;
-    const auto median = [&](const std::vector<double>& x) {
-      return std::max(std::min(x[k - 2], x[k - 1]), std::min(std::max(x[k - 2], x[k - 1]), x[k]));
-    };
-    found_.add("force", median(off) / allowed, k);
-    if (now.contact && !attached) found_.add("friction", median(slip) / allowed, k);
-  }
-  if (!bodies_.empty() && !m_.has_attachments()) free_motion();
-}
-
-Momentum::Slip Momentum::slip_of(std::size_t k) const {
-  Slip out;
-  const Face& face = bodies_.face(k);
-  for (const std::size_t f : {k - 1, k, k + 1}) {
-    const Face& other = bodies_.face(f);
-    if (!other.any || !other.flat || other.normal.dot(face.normal) < 1 - 1e-6 || other.friction != face.friction)
-      return out;
-  }
-  const V3 force = all_[k].wrench.head<3>(), up = face.normal;
-  const double normal_force = force.dot(up), rests = -m_.gravity.dot(up) / m_.weight_unit, t = m_.dt(k);
-  out.steady = std::abs(normal_force - rests) < kSteady + noise(k);
-  out.across = force - normal_force * up;
-  out.limit = face.friction * std::max(normal_force, 0.0);
-  const double stops_m = 8 * m_.resolution_m + face.friction * m_.weight_unit * t * t;
-  out.slides = true;
-  std::vector<V3> ways;
-  for (std::size_t v = 0; v < m_.vertices; ++v) {
-    // A sheet that lies on the face as a whole; a heap moves inside itself, and its contacts slide in turns.
-    if (!bodies_.touched(k, v)) return {};
-    for (const V3& way : {V3(m_.at(k, v) - m_.at(k - 1, v)), V3(m_.at(k + 1, v) - m_.at(k, v))}) {
-      const V3 along = way - way.dot(up) * up;
-      out.slides = out.slides && along.norm() > stops_m;
-      ways.push_back(along.normalized());
-      out.way += ways.back();
-    }
-  }
-  out.way /= static_cast<double>(std::max<std::size_t>(ways.size(), 1));
-  for (const V3& way : ways) out.spread = std::max(out.spread, (way - out.way).norm());
-  return out;
-}
-
-/// Cloth that slides on a face is dragged by its friction times the normal force, and cloth on it by no more. Means
-/// over `span` intervals up to k.
-void Momentum::sliding(std::size_t k, std::size_t span) {
-  if (k < span + 1) return;
-  V3 across = V3::Zero(), drag = V3::Zero();
-  double limit = 0, spread = 0;
-  bool slides = true;
-  for (std::size_t i = k + 1 - span; i <= k; ++i) {
-    const Slip& s = all_[i].slip;
-    if (!s.steady) return;
-    slides = slides && s.slides;
-    across += s.across, drag -= s.limit * s.way, limit += s.limit, spread += s.limit * s.spread;
-  }
-  const double n = static_cast<double>(span);
-  const double off = slides ? std::max(0.0, (across - drag).norm() - spread) : std::max(0.0, across.norm() - limit);
-  found_.add("sliding", off / n / (kSliding + kFrictionShare * limit / n + noise(k) / n), k);
-}
-
-/// Mean wrench over the last kWindow intervals before k: noise cancels in the sum of second differences.
-void Momentum::window(std::size_t k) {
-  if (k < kWindow + 1) return;
-  V6 mean = V6::Zero();
-  double hidden = 0;
-  bool contact = false;
-  for (std::size_t i = k - kWindow; i < k; ++i) {
-    if (!all_[i].judged) return;
-    mean += all_[i].wrench / kWindow;
-    hidden += all_[i].hidden / kWindow;
-    contact = contact || all_[i].contact;
-  }
-  if (!contact) {
-    found_.add("mean_force", std::max(0.0, mean.norm() - hidden) / (kLasting + noise(k) / kWindow), k);
-    return;
-  }
-  double moved = 0;
-  for (std::size_t v = 0; v < m_.vertices; ++v) moved += (m_.at(k, v) - m_.at(k - kWindow - 1, v)).squaredNorm();
-  if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
-  const std::size_t at = k - kWindow / 2;
-  const V3 middle = middle_of(at);
-  // Cloth at rest may have been touched later, or only until earlier.
-  std::vector<Contact> contacts = contacts_round(at);
-  for (const std::size_t f : {k - kWindow, k - 1}) {
-    const std::vector<Contact>& more = bodies_.contacts(f);
-    contacts.insert(contacts.end(), more.begin(), more.end());
-  }
-  const double allowed = 0.03 + noise(k) / kWindow;
-  const double off =
-      outside_cone(mean, contacts, free_of_attachments(m_, at, middle), middle, kResolved * allowed, true);
-  found_.add("support", off / allowed, k);
-}
-
-/// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
-/// with one step per frame is off by half of gravity times a frame times the time.
-void Momentum::free_motion() {
-  const Scene& s = m_.scene;
-  if (!s.cloth.start.at_rest() || s.cloth.span_m > 0 || s.cloth.drape_radius_m > 0 || s.cloth.spin_rad_per_s != Vec3{})
-    return;
-  found_.define("free_motion");
-  std::vector<V3> fall(m_.vertices);
-  for (std::size_t k = 1; k < m_.frames; ++k) {
-    const Flight flight(m_.dt(k), m_.time_s(k), s.material.damping_per_s);
-    double sum = 0, way = 0;
-    for (std::size_t v = 0; v < m_.vertices; ++v) {
-      const V3 to = m_.at(0, v) + flight.a2 * m_.start_velocity_of(v) + flight.b2 * m_.gravity;
-      fall[v] = to;
-      way = std::max(way, (m_.start_velocity_of(v) + m_.time_s(k) * m_.gravity).norm() * m_.dt(k));
-      sum += (m_.at(k, v) - to).squaredNorm();
-    }
-    if (bodies_.near(k, fall, 2 * way)) return;
-    const double first_order_m = 0.75 * m_.weight_unit * m_.dt(k) * m_.time_s(k);
-    found_.add("free_motion", std::sqrt(sum / static_cast<double>(m_.vertices)) / (4 * m_.resolution_m + first_order_m),
-               k);
-  }
-}
 
 }  // namespace
 

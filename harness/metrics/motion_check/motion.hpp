@@ -17,8 +17,7 @@ inline V3 to_v3(const Vec3& v) { return {v[0], v[1], v[2]}; }
 /// Share of the cloth's longer side below which nothing is judged.
 inline constexpr double kResolution = 1e-4;
 
-/// Coefficients of free flight with linear damping c around a stored frame: the displacement before it is
-/// a1 v + b1 g, the displacement after it a2 v + b2 g.
+/// Free flight with linear damping c around a stored frame; displacements before and after: a1 v + b1 g, a2 v + b2 g.
 struct Flight {
   double a1, b1, a2, b2;
   Flight(double before_s, double after_s, double c);
@@ -48,7 +47,6 @@ class Motion {
   std::vector<double> start_velocity;  ///< [m/s] xyz interleaved
   double start_speed = 0;              ///< the highest of them [m/s]
   double grip_speed = 0;               ///< [m/s] the highest of an attachment between two frames, jumps included
-  bool even = true;                    ///< all frames have the same length
 
   V3 at(std::size_t frame, std::size_t vertex) const {
     const float* x = position_.data() + 3 * (frame * vertices + vertex);
@@ -92,8 +90,7 @@ inline V6 wrench_of(const V3& force, const V3& arm) {
   return w;
 }
 
-/// Projection on the wrenches about `middle` that no attachment can exert around a frame. Vertices held in the frame or
-/// its neighbours count.
+/// Projection on the wrenches about `middle` that no vertex held in a frame or its neighbours can exert.
 M6 free_of_attachments(const Motion&, std::size_t frame, const V3& middle);
 
 /// Collects the largest ratio of a statistic.
@@ -145,36 +142,27 @@ struct Face {
   void add(const V3& n, double mu);
 };
 
-/// The colliders of the scene, frame after frame.
+/// The colliders of the scene, frame after frame; these functions answer for a scene without any.
 class Bodies {
  public:
-  Bodies(const Motion&, std::span<const double> contact_offsets_m);
-  ~Bodies();
-  Bodies(const Bodies&) = delete;
-  Bodies& operator=(const Bodies&) = delete;
-
-  bool empty() const;
-  bool any_moves() const;
+  virtual ~Bodies() = default;
+  virtual bool empty() const { return true; }
+  virtual bool any_moves() const { return false; }
   /// Highest speed [m/s] of a collider between two frames, jumps included.
-  double speed() const;
-  /// Where the cloth of a frame is within reach of a collider; the reach grows with the displacements next to the
-  /// frame.
-  const std::vector<Contact>& contacts(std::size_t frame);
+  virtual double speed() const { return 0; }
+  /// Where the cloth of a frame is within reach of a collider, which grows with the displacements next to the frame.
+  virtual std::span<const Contact> contacts(std::size_t /*frame*/) { return {}; }
   /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
-  bool touched(std::size_t frame, std::size_t vertex) const;
+  virtual bool touched(std::size_t /*frame*/, std::size_t /*vertex*/) const { return false; }
   /// Surface in reach in a frame, as found by `contacts`.
-  const Face& face(std::size_t frame) const;
+  virtual Face face(std::size_t /*frame*/) const { return {}; }
   /// Largest depth of a frame over its tolerance: of vertices in solids with a signed distance.
-  double depth_ratio(std::size_t frame) const;
+  virtual double depth_ratio(std::size_t /*frame*/) const { return 0; }
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.
-  bool near(std::size_t frame, std::span<const V3> points, double displacement_m) const;
-  /// Points inside colliders that pass the cloth, and vertices that pass a static surface, between a frame and the one
-  /// before it.
-  int passages(std::size_t frame) const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
+  virtual bool near(std::size_t /*frame*/, std::span<const V3>, double /*displacement_m*/) { return false; }
+  /// Points inside colliders that pass the cloth, and vertices that pass a static surface, since the frame before.
+  virtual int passages(std::size_t /*frame*/) { return 0; }
 };
+std::unique_ptr<Bodies> bodies_of(const Motion&, std::span<const double> contact_offsets_m);
 
 }  // namespace clothbench::motion_check

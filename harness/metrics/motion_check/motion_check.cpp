@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "clothbench/error.hpp"
-#include "clothbench/motion.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/motion_check/motion.hpp"
 
@@ -134,8 +133,8 @@ std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<
   for (std::size_t k = 0; k < motion.frames; ++k)
     found.add("time", std::abs(frames.time_s[k] - time_of(scene.time, k)) / (0.01 * scene.time.dt()), k);
   if (motion.frames == 0) return found.take();
-  Bodies bodies(motion, contact_offsets_m);
-  for (const Part& part : parts()) part.run(motion, bodies, found);
+  const std::unique_ptr<Bodies> bodies = bodies_of(motion, contact_offsets_m);
+  for (const Part& part : parts()) part.run(motion, *bodies, found);
   return found.take();
 }
 
@@ -172,7 +171,6 @@ Motion::Motion(const Scene& s, const Frames& f)
   triangles = clothbench::triangles(s.cloth);
   start_velocity = initial_velocities(s);
   for (std::size_t v = 0; v < vertices; ++v) start_speed = std::max(start_speed, start_velocity_of(v).norm());
-  even = s.time.ends_s.empty();
   for (std::size_t k = 1; k < frames; ++k) {
     const FrameMotion *was = scripted(k - 1), *now = scripted(k);
     if (was == nullptr || now == nullptr) break;

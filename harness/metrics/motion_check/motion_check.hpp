@@ -30,8 +30,7 @@ const char* name_of(Check);
 /// Passing points in a frame: none are allowed.
 inline constexpr double kCrossingTolerance = 0.5;
 
-/// The outcome of one statistic: its largest value over the frames, divided by its tolerance. The check fails unless
-/// ratio <= 1.
+/// The outcome of one statistic: its largest value over its tolerance. The check fails unless ratio <= 1.
 struct Finding {
   const Statistic* statistic = nullptr;
   double ratio = 0;

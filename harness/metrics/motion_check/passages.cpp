@@ -28,7 +28,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
     double all = 0;
     for (std::size_t v = 0; v < m.vertex_count(); ++v) {
       const double w = weight_of(m, v, j);
-      sum += w * V3(V3::Map(m.positions.data() + 3 * v));
+      sum += w * contact::point_at(m.positions, v);
       all += w;
     }
     if (all >= 1) out.push_back({j, sum / all});
@@ -38,8 +38,7 @@ std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first,
   const V3 middle = out.back().at_rest, along = (middle - out[out.size() - 2].at_rest).normalized();
   double ahead = 0;
   for (std::size_t v = 0; v < m.vertex_count(); ++v)
-    if (weight_of(m, v, end) >= 0.5)
-      ahead = std::max(ahead, along.dot(V3(V3::Map(m.positions.data() + 3 * v)) - middle));
+    if (weight_of(m, v, end) >= 0.5) ahead = std::max(ahead, along.dot(contact::point_at(m.positions, v) - middle));
   if (ahead > 0) out.push_back({end, middle + 0.5 * ahead * along});
   return out;
 }
@@ -85,7 +84,7 @@ void add_middle(Body& b) {
 }
 
 /// Points deep inside a solid: none of them may pass through the cloth. Their spacing is half a cell.
-std::vector<V3> Bodies::State::inner_points(Body& b, std::size_t frame) {
+std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   std::vector<V3> out;
   const auto count = [&](double length) {
     return std::clamp(static_cast<int>(std::ceil(2 * length / m.cell_m)), 1, 32);
@@ -126,7 +125,7 @@ std::vector<V3> Bodies::State::inner_points(Body& b, std::size_t frame) {
 }
 
 /// Points that pass the cloth whether they move first, last or evenly with it: stored frames do not say which.
-int Bodies::State::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
+int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
   Box swept, path;
   for (std::size_t v = 0; v < m.vertices; ++v) {
     swept.extend(m.at(frame - 1, v));
@@ -161,13 +160,12 @@ int Bodies::State::through_cloth(std::size_t frame, const std::vector<V3>& from,
 }
 
 /// Vertices that pass a static surface: once, or in and out through faces that look away from each other.
-int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTree& tree,
-                                   std::span<const double> positions, std::span<const Corners> triangles) {
+int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& tree, std::span<const double> positions,
+                               std::span<const Corners> triangles) {
   const std::vector<double> was = cloth(frame - 1), now = cloth(frame);
   Box swept;
   swept.extend(box_of(was)).extend(box_of(now));
   if (!swept.intersects(tree.tree().box())) return 0;
-  const auto of = [](const std::vector<double>& x, std::size_t v) { return V3(V3::Map(x.data() + 3 * v)); };
   const auto crossed = [&](const V3& p, const V3& q, auto note) {
     tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
       const Simplex<3>& s = tree.triangles()[static_cast<std::size_t>(t)];
@@ -178,7 +176,7 @@ int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTre
   bool any = false;
   for (std::size_t v = 0; v < m.vertices; ++v) {
     std::vector<V3> normals;
-    crossed(of(was, v), of(now, v), [&](const V3& n) { normals.push_back(n); });
+    crossed(contact::point_at(was, v), contact::point_at(now, v), [&](const V3& n) { normals.push_back(n); });
     any = any || !normals.empty();
     bool opposed = false;
     for (const V3& a : normals)
@@ -190,40 +188,38 @@ int Bodies::State::through_surface(std::size_t frame, const contact::TriangleTre
   return through;
 }
 
-int Bodies::passages(std::size_t frame) const {
-  State& s = *state_;
+int AllBodies::passages(std::size_t frame) {
   int count = 0;
-  for (Body& b : s.bodies) {
+  for (Body& b : bodies) {
     if (b.kind.half_space) continue;
     if (b.moves()) {
-      count += s.through_cloth(frame, s.inner_points(b, frame - 1), s.inner_points(b, frame));
+      count += through_cloth(frame, inner_points(b, frame - 1), inner_points(b, frame));
     } else {
-      if (b.inner.empty()) b.inner = s.inner_points(b, 0);
-      count += s.through_cloth(frame, b.inner, b.inner);
+      if (b.inner.empty()) b.inner = inner_points(b, 0);
+      count += through_cloth(frame, b.inner, b.inner);
     }
     if (b.still && b.collider.shape != Collider::Shape::Box)
-      count += s.through_surface(frame, *b.still, s.pose(b, 0).positions, b.triangles);
-    if (b.middle) count += s.through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
+      count += through_surface(frame, *b.still, pose(b, 0).positions, b.triangles);
+    if (b.middle) count += through_surface(frame, *b.middle, b.middle_positions, b.middle_triangles);
   }
   return count;
 }
 
-bool Bodies::near(std::size_t frame, std::span<const V3> points, double displacement_m) const {
-  State& s = *state_;
+bool AllBodies::near(std::size_t frame, std::span<const V3> points, double displacement_m) {
   Box cloth;
   for (const V3& p : points) cloth.extend(p);
-  for (Body& b : s.bodies) {
-    const double reach = displacement_m + kOffsetFactor * b.offset_m + 4 * s.m.resolution_m + s.displacement(b, frame);
+  for (Body& b : bodies) {
+    const double reach = displacement_m + kOffsetFactor * b.offset_m + 4 * m.resolution_m + displacement(b, frame);
     if (b.kind.half_space) {
       for (const V3& p : points)
         if (to_v3(b.collider.normal).dot(p - to_v3(b.collider.center_m)) < reach) return true;
       continue;
     }
     Box box;
-    const Pose& pose = s.pose(b, frame);
-    for (const Capsule& c : pose.capsules)
+    const Pose& now = pose(b, frame);
+    for (const Capsule& c : now.capsules)
       for (const Vec3& end : {c.a_m, c.b_m}) box.extend(contact::grown(Box(to_v3(end)), c.radius_m));
-    if (!pose.positions.empty()) box.extend(box_of(pose.positions));
+    if (!now.positions.empty()) box.extend(box_of(now.positions));
     if (contact::grown(box, reach).intersects(cloth)) return true;
   }
   return false;

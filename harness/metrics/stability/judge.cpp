@@ -5,12 +5,20 @@
 #include <limits>
 #include <numeric>
 
-#include "clothbench/vector.hpp"
-#include "metrics/metric.hpp"
-#include "metrics/truth_errors.hpp"
-
-namespace clothbench::stability {
+namespace clothbench {
 namespace {
+
+using Bounds = StabilityJudge::Bounds;
+
+// Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.
+constexpr double kSpeed = 10;        // F0: times v_char
+constexpr double kGain = 0.1;        // F1: energy gained over M g L
+constexpr double kStrain = 0.10;     // F2: maximum strain beyond the truth, for more than ...
+constexpr int kStrainFrames = 3;     // ... so many frames in a row
+constexpr double kStrainP99 = 0.05;  // F2: 99th percentile, in any frame
+constexpr double kTorn = 1;          // F2: strain beyond the truth in any frame
+constexpr double kRelaxed = 0.01;    // mean |strain| below which F1 and F2 start to count, where delayed
+constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  // F2 at the end: error of the quantity at rest
 
 double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
 
@@ -22,43 +30,20 @@ double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
 }
 
-/// Held vertices, frame by frame.
-class Holders {
- public:
-  explicit Holders(const Scene& s) : s_(s), start_(initial_positions(s)) {
-    const auto& pins = s.pins.vertices;
-    for (std::size_t i = 0; i < pins.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
-  }
-
-  /// Greatest strain between two held vertices.
-  double imposed(const FrameMotion* m) const {
-    double most = between_pins_;
-    if (m == nullptr) return most;
-    const auto& grips = s_.grips.vertices;
-    for (std::size_t i = 0; i < grips.size(); ++i) {
-      if (m->grip_held[i] == 0) continue;
-      for (std::uint32_t pin : s_.pins.vertices)
-        most = std::max(most, strain(grips[i], m->grip_position_m[i], pin, at(pin)));
-      for (std::size_t j = 0; j < i; ++j)
-        if (m->grip_held[j] != 0)
-          most = std::max(most, strain(grips[i], m->grip_position_m[i], grips[j], m->grip_position_m[j]));
-    }
-    return most;
-  }
-
- private:
-  Vec3 at(std::uint32_t v) const { return vertex_at(start_, v); }
-  double strain(std::uint32_t a, const Vec3& xa, std::uint32_t b, const Vec3& xb) const {
-    const double rest = rest_distance(s_.cloth, a, b);
-    return rest > 0 ? distance(xa, xb) / rest - 1 : 0;
-  }
-
-  const Scene& s_;
-  const std::vector<double> start_;
-  double between_pins_ = 0;
-};
+/// Greatest strain between two held vertices, one of which at least is an attachment; without `m` between two pins.
+double imposed_strain(const Scene& s, const std::vector<double>& start, const FrameMotion* m) {
+  std::vector<std::pair<std::uint32_t, Vec3>> held;
+  for (const std::uint32_t v : s.pins.vertices) held.emplace_back(v, vertex_at(start, v));
+  const std::size_t first = m == nullptr ? 0 : held.size();
+  for (std::size_t k = 0; m != nullptr && k < s.grips.vertices.size(); ++k)
+    if (m->grip_held[k] != 0) held.emplace_back(s.grips.vertices[k], m->grip_position_m[k]);
+  double most = 0;
+  for (std::size_t i = first; i < held.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double rest = rest_distance(s.cloth, held[i].first, held[j].first); rest > 0)
+        most = std::max(most, distance(held[i].second, held[j].second) / rest - 1);
+  return most;
+}
 
 /// Greatest displacement of a hand or of a capsule's end in one frame.
 double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
@@ -90,14 +75,19 @@ std::pair<double, double> start_of(const Scene& s) {
   return {far, strain};
 }
 
-}  // namespace
-
+/// Greatest membrane stiffness of the scene [N/m]; 0 = inextensible.
 double greatest_stiffness(const Scene& s) {
   double most = s.material.membrane_stiffness_N_per_m.value_or(0);
   for (const StiffnessRegion& r : s.material.regions) most = std::max(most, r.membrane_stiffness_N_per_m.value_or(0));
   return most;
 }
 
+/// The bounds of every frame, 0 = the start.
+///
+/// Free fall: sqrt(2 g H), H = twice the diagonal for held cloth, g t^2/2 plus the diagonal for free cloth. Waves: a
+/// strain e travels at c = sqrt(Y/rho) with particle speed e c. The static strain is M g/(Y w), w the shorter side, and
+/// twice that for sudden loads. Added to it are 3 v/c for hands (the wave and its first reflections), 2 v/c for
+/// colliders, and v/c for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s);
@@ -114,9 +104,9 @@ std::vector<Bounds> envelope(const Scene& s) {
   const auto [far, start_strain] = start_of(s);
   const double v0 = length(c.initial_velocity_m_per_s) + length(c.spin_rad_per_s) * diagonal / 2;
   const double loads = softest > 0 && (held || !s.colliders.empty()) ? 2 * M * g / (softest * shorter) : 0;
-  const Holders holders(s);
+  const std::vector<double> start = initial_positions(s);
   std::vector<Bounds> out;
-  double v_hand = 0, v_collider = 0, path = 0, imposed = 0, jump_speed = 0;
+  double v_hand = 0, v_collider = 0, path = 0, imposed = imposed_strain(s, start, nullptr), jump_speed = 0;
   for (int f = 0; f <= s.time.frames(); ++f) {
     Bounds b;
     const FrameMotion* now = s.motion.empty() ? nullptr : &s.motion[static_cast<std::size_t>(f)];
@@ -140,7 +130,7 @@ std::vector<Bounds> envelope(const Scene& s) {
         v_collider = std::max(v_collider, collider / dt);
       }
     }
-    imposed = std::max(imposed, holders.imposed(now));
+    if (now != nullptr) imposed = std::max(imposed, imposed_strain(s, start, now));
     const double t = s.time.at(f), H = (held ? 2 : 1) * diagonal + far + (held ? 0 : 0.5 * g * t * t),
                  fall = std::sqrt(2 * g * H);
     b.strain = std::max(0.0, imposed) + loads + (s.stability.when_relaxed ? 0 : std::max(0.0, start_strain));
@@ -158,20 +148,6 @@ std::vector<Bounds> envelope(const Scene& s) {
   return out;
 }
 
-}  // namespace clothbench::stability
-
-namespace clothbench {
-namespace {
-
-using namespace stability;
-
-std::vector<Edge> structural(const Cloth& c) {
-  std::vector<Edge> out;
-  for (const Edge& e : edges(c, EdgeKind::Structural))
-    if (e.rest_m > 0) out.push_back(e);  // a strain needs a length
-  return out;
-}
-
 constexpr unsigned bit(int k) { return 1u << k; }
 
 constexpr unsigned kDegrading = bit(2);
@@ -183,8 +159,7 @@ int least(unsigned classes) {
   return k;
 }
 
-/// Converts the strain of the diagonals to energy: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y;
-/// reported over Y/2.
+/// Energy of the diagonals' strain over Y/2: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y.
 double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
@@ -200,7 +175,8 @@ StabilityJudge::StabilityJudge(const Scene& scene)
       bounds_(envelope(scene_)),
       mass_(vertex_masses(scene_)),
       start_(initial_positions(scene_)),
-      edges_(structural(scene_.cloth)) {
+      edges_(edges(scene_.cloth, EdgeKind::Structural)) {
+  std::erase_if(edges_, [](const Edge& e) { return !(e.rest_m > 0); });  // a strain needs a length
   if (auto known = truth::reference_case_of(scene_); known && known->settles) at_rest_ = std::move(known);
   total_mass_ = std::accumulate(mass_.begin(), mass_.end(), 0.0);
   longer_m_ = std::max(scene_.cloth.width_m, scene_.cloth.height_m);
@@ -208,7 +184,7 @@ StabilityJudge::StabilityJudge(const Scene& scene)
   stiffness_ = greatest_stiffness(scene_);
 }
 
-StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const TruthErrors* truth) {
+StabilityFrame StabilityJudge::judge(int frame, const ClothState& state, const std::optional<TruthErrors>& truth) {
   StabilityFrame out;
   if (!finite(state.position) || !finite(state.velocity)) {
     out.classes = bit(0);
@@ -249,17 +225,13 @@ double StabilityJudge::visible_energy(const ClothState& s) const {
 /// F0 and F1, and the frame from which F1 and F2 count.
 void StabilityJudge::judge_motion(int frame, const ClothState& state, const Strain& strain, StabilityFrame& out) {
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
-  const Bounds& base = bounds_[0];
   const auto set_base = [&] {
     const double area = scene_.cloth.width_m * scene_.cloth.height_m;
     energy_base_J_ = visible_energy(state) +
                      0.5 * stiffness_ * area * (strain.rms * strain.rms + shear_square(scene_, state.position));
     work_base_J_ = b.work_J;
   };
-  if (frame == 0) {
-    set_base();
-    work_base_J_ = base.work_J;
-  }
+  if (frame == 0) set_base();
   const StabilityRules& rules = scene_.stability;
   if (!rules.when_relaxed)
     relaxed_ = true;
@@ -290,7 +262,8 @@ bool StabilityJudge::settled(int frame) const {
 
 /// F2. A reference case of a motion gives the strain of every edge; one of a shape at rest only once the cloth rests
 /// there. Without a reference case, loads and hands give an upper bound of the true strain.
-void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthErrors* truth, StabilityFrame& out) {
+void StabilityJudge::judge_strain(int frame, const Strain& strain, const std::optional<TruthErrors>& truth,
+                                  StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;
   if (!relaxed_) {
     stretched_frames_ = 0;
@@ -298,12 +271,12 @@ void StabilityJudge::judge_strain(int frame, const Strain& strain, const TruthEr
     return;
   }
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
-  const bool known = truth != nullptr && std::isfinite(truth->stretch_max) && (!at_rest_ || settled(frame));
+  const bool known = truth && std::isfinite(truth->stretch_max) && (!at_rest_ || settled(frame));
   out.strain_excess = known ? truth->stretch_max : strain.greatest - b.strain;
   const double p99 = known ? truth->stretch_p99 : strain.p99 - b.strain;
   stretched_frames_ = out.strain_excess > kStrain ? stretched_frames_ + 1 : 0;
   if (stretched_frames_ > kStrainFrames || !(p99 <= kStrainP99) || !(out.strain_excess <= kTorn)) out.classes |= bit(2);
-  if (at_rest_ && truth != nullptr && frame == scene_.time.frames()) {
+  if (at_rest_ && truth && frame == scene_.time.frames()) {
     const double right = at_rest_->quantity(at_rest_->columns(frame));
     const double most = std::max(kQuantity * std::abs(right), kQuantityLength * longer_m_);
     if (!(std::abs(truth->quantity - right) <= most)) out.classes |= bit(2);
@@ -314,11 +287,10 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   StabilityVerdict out;
   const auto series = std::find_if(pass.metrics.begin(), pass.metrics.end(),
                                    [](const MetricSeries& m) { return m.name == "stability_classes"; });
-  const std::vector<double>* classes = series == pass.metrics.end() ? nullptr : &series->values;
-  if (classes == nullptr) return out;
+  if (series == pass.metrics.end()) return out;
   for (const bool fatal : {true, false})
-    for (std::size_t f = 0; f < classes->size(); ++f) {
-      const auto set = static_cast<unsigned>((*classes)[f]) & (fatal ? ~kDegrading : kDegrading);
+    for (std::size_t f = 0; f < series->values.size(); ++f) {
+      const auto set = static_cast<unsigned>(series->values[f]) & (fatal ? ~kDegrading : kDegrading);
       if (set == 0) continue;
       out.grade = fatal ? StabilityVerdict::Grade::Failed : StabilityVerdict::Grade::Degraded;
       out.klass = "F" + std::to_string(least(set));
@@ -328,15 +300,9 @@ StabilityVerdict stability_verdict(const AccuracyPass& pass) {
   return out;
 }
 
-const char* name_of(StabilityVerdict::Grade g) {
-  static constexpr const char* kNames[] = {"stable", "degraded", "failed"};
-  return kNames[static_cast<std::size_t>(g)];
-}
-
-std::string class_name(int k) {
-  static constexpr const char* kNames[] = {"not finite or unbounded", "energy gained", "strain beyond the load",
-                                           "budget or device"};
-  return "F" + std::to_string(k) + " " + kNames[k];
+std::string StabilityVerdict::text() const {
+  static constexpr const char* kClasses[] = {"not finite or unbounded", "energy gained", "strain beyond the load"};
+  return std::string(grade == Grade::Failed ? "failed: " : "degraded: ") + klass + " " + kClasses[klass[1] - '0'];
 }
 
 }  // namespace clothbench

@@ -11,7 +11,7 @@
 #include "assets/base64.hpp"
 #include "clothbench/error.hpp"
 #include "report/web/page.hpp"
-#include "results/replay.hpp"
+#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/child_process.hpp"
 #include "base/files.hpp"
-#include "base/json_number.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
 namespace clothbench {

@@ -1,7 +1,6 @@
 // The paper's solver, kernel for kernel: Kim, Ma & Hong, Appl. Sci. 2025, 15(12), 6611, Algorithm 1 and section 3.2.3.
 #include <algorithm>
 
-#include "clothbench/unsupported_scene.hpp"
 #include "common/gpu_solver.hpp"
 
 namespace clothbench::pbd_gpu {

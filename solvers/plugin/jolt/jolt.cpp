@@ -276,8 +276,7 @@ class Solver : public peer::Adapter {
     return made(settings);
   }
 
-  /// Moving colliders reach the frame's poses at its end. A mesh gets a new shape per frame, because the engine's mesh
-  /// shapes cannot deform.
+  /// Moving colliders reach the frame's poses at its end. Meshes get a new shape per frame: the engine's cannot deform.
   void move_colliders(const ClothbenchFrame& frame) {
     JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) {

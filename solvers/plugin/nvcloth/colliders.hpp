@@ -25,8 +25,8 @@ nv::cloth::Range<const T> range(const std::vector<T>& v) {
   return {v.data(), v.data() + v.size()};
 }
 
-/// The scene's colliders. Shapes are inflated by their margins. Planes and boxes are convexes, whose corners stay
-/// sharp; vertices of triangles move along their normals.
+/// The scene's colliders. Shapes are inflated by their margins. Planes and boxes are convexes with sharp corners;
+/// vertices of triangles move along normals.
 class Colliders {
  public:
   /// `margin_m`: replaces the colliders' margins; 0: theirs.

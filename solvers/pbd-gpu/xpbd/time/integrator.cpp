@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "xpbd/constraints.hpp"

@@ -3,7 +3,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "clothbench/motion.hpp"
 #include "clothbench/solver.hpp"
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
