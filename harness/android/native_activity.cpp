@@ -1,5 +1,5 @@
 // The activity as Android calls it: own ANativeActivity callbacks around a Session. Everything that can
-// be tested without Android lies in session and packed_assets.
+// be tested without Android lies in session.
 #include <android/asset_manager.h>
 #include <android/input.h>
 #include <android/log.h>
@@ -14,7 +14,6 @@
 #include <exception>
 #include <thread>
 
-#include "android/packed_assets.hpp"
 #include "android/session.hpp"
 #include "base/plugin_environment.hpp"
 #include "cli/command_line.hpp"

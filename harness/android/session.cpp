@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "base/files.hpp"
 #include "clothbench/error.hpp"
 #include "runner/interrupt.hpp"
 
@@ -106,6 +107,24 @@ void Session::destroy() {
   if (shared_->running) request_interrupt();
   // A session that waits for its turn stops when that comes.
   shared_->changed.wait_for(lock, kTimeout, [&] { return shared_->ended || !shared_->running; });
+}
+
+void unpack_assets(const AssetReader& read, const std::filesystem::path& to) {
+  constexpr const char* kIndex = "index.txt";
+  const auto index = read(kIndex);
+  if (!index || index->empty()) throw Error("assets: index.txt: expected this file in the package");
+  if (content_of(to / kIndex) == *index) return;
+  std::filesystem::remove_all(to);
+  std::istringstream lines(*index);
+  for (std::string hash, path; lines >> hash >> std::ws && std::getline(lines, path);) {
+    const auto content = read(path);
+    if (!content) throw Error("assets: " + path + ": missing");
+    if (sha256(*content) != hash) throw Error("assets: " + path + ": differs from the file that was packed");
+    std::filesystem::create_directories((to / path).parent_path());
+    write_file_atomically(to / path, *content);
+  }
+  // Last, so that an interrupted unpacking is done again.
+  write_file_atomically(to / kIndex, *index);
 }
 
 }  // namespace clothbench::android

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <map>
+#include <set>
 
 // The header again, for the definitions; a file that is compiled together with this one must not get them twice.
 #define TINYGLTF_IMPLEMENTATION
@@ -10,6 +13,7 @@
 #undef TINYGLTF_IMPLEMENTATION
 
 #include "assets/mesh.hpp"
+#include "assets/mesh_file.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
@@ -18,67 +22,9 @@ namespace clothbench::assets::gltf {
 namespace {
 
 /// Types of all values of a glTF 2.0 file that the readers use. tinygltf leaves out a value of another type.
-constexpr char kSchema[] = R"({
-  "definitions": {
-    "text": {"type": "string"},
-    "index": {"type": "integer", "minimum": 0},
-    "indices": {"type": "array", "items": {"$ref": "#/definitions/index"}},
-    "index_by_name": {"type": "object", "additionalProperties": {"$ref": "#/definitions/index"}},
-    "numbers": {"type": "array", "items": {"type": "number"}},
-    "numbers3": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
-    "numbers4": {"type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
-    "numbers16": {"type": "array", "items": {"type": "number"}, "minItems": 16, "maxItems": 16},
-    "primitive": {"type": "object", "required": ["attributes"], "properties": {
-      "attributes": {"$ref": "#/definitions/index_by_name"},
-      "targets": {"type": "array", "items": {"$ref": "#/definitions/index_by_name"}},
-      "indices": {"$ref": "#/definitions/index"},
-      "material": {"$ref": "#/definitions/index"},
-      "mode": {"$ref": "#/definitions/index"}}}
-  },
-  "type": "object", "required": ["asset"], "properties": {
-    "asset": {"type": "object", "required": ["version"], "properties": {
-      "version": {"$ref": "#/definitions/text"},
-      "minVersion": {"$ref": "#/definitions/text"}}},
-    "extensionsUsed": {"type": "array", "items": {"$ref": "#/definitions/text"}},
-    "extensionsRequired": {"type": "array", "items": {"$ref": "#/definitions/text"}},
-    "scene": {"$ref": "#/definitions/index"},
-    "scenes": {"type": "array", "items": {"type": "object", "properties": {"nodes": {"$ref": "#/definitions/indices"}}}},
-    "nodes": {"type": "array", "items": {"type": "object", "properties": {
-      "name": {"$ref": "#/definitions/text"},
-      "children": {"$ref": "#/definitions/indices"},
-      "mesh": {"$ref": "#/definitions/index"},
-      "skin": {"$ref": "#/definitions/index"},
-      "matrix": {"$ref": "#/definitions/numbers16"},
-      "translation": {"$ref": "#/definitions/numbers3"},
-      "rotation": {"$ref": "#/definitions/numbers4"},
-      "scale": {"$ref": "#/definitions/numbers3"},
-      "weights": {"$ref": "#/definitions/numbers"}}}},
-    "meshes": {"type": "array", "items": {"type": "object", "required": ["primitives"], "properties": {
-      "name": {"$ref": "#/definitions/text"},
-      "weights": {"$ref": "#/definitions/numbers"},
-      "primitives": {"type": "array", "items": {"$ref": "#/definitions/primitive"}}}}},
-    "materials": {"type": "array", "items": {"type": "object", "properties": {"name": {"$ref": "#/definitions/text"}}}},
-    "skins": {"type": "array", "items": {"type": "object", "required": ["joints"], "properties": {
-      "inverseBindMatrices": {"$ref": "#/definitions/index"},
-      "joints": {"$ref": "#/definitions/indices"}}}},
-    "accessors": {"type": "array", "items": {"type": "object", "required": ["componentType", "count", "type"], "properties": {
-      "bufferView": {"$ref": "#/definitions/index"},
-      "byteOffset": {"$ref": "#/definitions/index"},
-      "componentType": {"$ref": "#/definitions/index"},
-      "normalized": {"type": "boolean"},
-      "count": {"$ref": "#/definitions/index"},
-      "type": {"$ref": "#/definitions/text"},
-      "sparse": {"type": "object"}}}},
-    "bufferViews": {"type": "array", "items": {"type": "object", "required": ["buffer", "byteLength"], "properties": {
-      "buffer": {"$ref": "#/definitions/index"},
-      "byteOffset": {"$ref": "#/definitions/index"},
-      "byteLength": {"$ref": "#/definitions/index"},
-      "byteStride": {"$ref": "#/definitions/index"}}}},
-    "buffers": {"type": "array", "items": {"type": "object", "required": ["byteLength"], "properties": {
-      "byteLength": {"$ref": "#/definitions/index"},
-      "uri": {"$ref": "#/definitions/text"}}}}
-  }
-})";
+constexpr char kSchema[] =
+#include "gltf.schema.inc"
+    ;
 
 constexpr std::uintmax_t kMostBytes = 256u << 20;
 
@@ -180,20 +126,9 @@ std::vector<double> numbers(const tinygltf::Model& model, int index, int type, s
   for (std::size_t i = 0; i < accessor.count; ++i)
     for (std::size_t k = 0; k < components; ++k) {
       const unsigned char* from = buffer.data.data() + view.byteOffset + accessor.byteOffset + i * stride + k * item;
-      switch (accessor.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-          out.push_back(item_at<float>(from));
-          break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-          out.push_back(*from);
-          break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-          out.push_back(item_at<std::uint16_t>(from));
-          break;
-        default:
-          out.push_back(item_at<std::uint32_t>(from));
-          break;
-      }
+      std::uint32_t whole = 0;  // of 1, 2 or 4 bytes
+      if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) std::memcpy(&whole, from, item);
+      out.push_back(accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ? double{item_at<float>(from)} : whole);
       if (!std::isfinite(out.back())) fail(source, fmt::format("{}: item {} is not finite", where, i));
     }
   return out;
@@ -251,3 +186,147 @@ tinygltf::Model parse_text(const std::string& text, const std::string& source) {
 }
 
 }  // namespace clothbench::assets::gltf
+
+namespace clothbench::assets {
+namespace {
+
+using gltf::fail;
+
+constexpr char kExpected[] = "a mesh: float32 positions, unsigned integers as indices";
+
+/// Adds the nodes of one model to a MeshFile.
+class MeshReader {
+ public:
+  MeshReader(const tinygltf::Model& model, const std::string& source) : model_(model), source_(source) {}
+
+  MeshFile read() {
+    const std::vector<Eigen::Affine3d> world = gltf::world_transforms(model_, source_);
+    for (const std::size_t n : active_nodes()) {
+      const tinygltf::Node& node = model_.nodes[n];
+      if (node.mesh < 0) continue;
+      if (node.skin >= 0) fail(source_, fmt::format("/nodes/{}/skin: expected a mesh without a skin", n));
+      const tinygltf::Mesh& mesh = gltf::pick(model_.meshes, node.mesh, source_, "meshes");
+      for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+        const std::size_t first = out_.triangles.size();
+        primitive(mesh.primitives[p], world[n], node.weights.empty() ? mesh.weights : node.weights,
+                  fmt::format("/meshes/{}/primitives/{}", node.mesh, p));
+        std::vector<std::string> names = {node.name, mesh.name};
+        if (const int m = mesh.primitives[p].material; m >= 0)
+          names.push_back(gltf::pick(model_.materials, m, source_, "materials").name);
+        add_groups(names, first);
+      }
+    }
+    if (out_.triangles.empty()) fail(source_, "/nodes: expected a node with a mesh in the active scene");
+    return std::move(out_);
+  }
+
+ private:
+  /// Nodes of the active scene, or of the only scene if the file names none; all nodes of a file without scenes.
+  std::set<std::size_t> active_nodes() const {
+    const auto count = static_cast<int>(model_.scenes.size());
+    if (model_.defaultScene < 0 && count > 1)
+      fail(source_, fmt::format("/scene: missing; expected the index of the one of its {} scenes to read", count));
+    std::vector<int> todo;
+    if (count > 0)
+      todo = gltf::pick(model_.scenes, std::max(model_.defaultScene, 0), source_, "scenes").nodes;
+    else
+      for (std::size_t n = 0; n < model_.nodes.size(); ++n) todo.push_back(static_cast<int>(n));
+    std::set<std::size_t> out;
+    while (!todo.empty()) {
+      const int n = todo.back();
+      todo.pop_back();
+      const tinygltf::Node& node = gltf::pick(model_.nodes, n, source_, "nodes");
+      if (out.insert(static_cast<std::size_t>(n)).second)
+        todo.insert(todo.end(), node.children.begin(), node.children.end());
+    }
+    return out;
+  }
+
+  using Attributes = std::map<std::string, int>;
+  std::vector<double> attribute(const Attributes& of, const char* name, int type) const {
+    const auto found = of.find(name);
+    if (found == of.end()) return {};
+    return gltf::numbers(model_, found->second, type, {TINYGLTF_COMPONENT_TYPE_FLOAT}, source_, kExpected);
+  }
+
+  std::vector<double> indices(const tinygltf::Primitive& p, std::size_t vertices) const {
+    if (p.indices >= 0)
+      return gltf::numbers(model_, p.indices, TINYGLTF_TYPE_SCALAR,
+                           {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
+                           source_, kExpected);
+    std::vector<double> all(vertices);
+    for (std::size_t k = 0; k < vertices; ++k) all[k] = static_cast<double>(k);
+    return all;
+  }
+
+  /// Positions with the displacements of morph targets added.
+  std::vector<double> positions(const tinygltf::Primitive& p, const std::vector<double>& weights,
+                                const std::string& where) const {
+    std::vector<double> x = attribute(p.attributes, "POSITION", TINYGLTF_TYPE_VEC3);
+    if (x.empty()) fail(source_, where + "/attributes: \"POSITION\" is missing");
+    if (!weights.empty() && weights.size() != p.targets.size())
+      fail(source_, fmt::format("{}/targets: {} morph targets, but {} weights; expected as many", where,
+                                p.targets.size(), weights.size()));
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] == 0) continue;
+      const std::vector<double> d = attribute(p.targets[k], "POSITION", TINYGLTF_TYPE_VEC3);
+      if (!d.empty() && d.size() != x.size())
+        fail(source_, fmt::format("{}/targets/{}: expected as many displacements as positions", where, k));
+      for (std::size_t i = 0; i < d.size(); ++i) x[i] += weights[k] * d[i];
+    }
+    return x;
+  }
+
+  void primitive(const tinygltf::Primitive& p, const Eigen::Affine3d& place, const std::vector<double>& weights,
+                 const std::string& where) {
+    if (p.mode != TINYGLTF_MODE_TRIANGLES) fail(source_, where + "/mode: expected triangles");
+    const std::vector<double> x = positions(p, weights, where);
+    const std::size_t count = x.size() / 3;
+    const std::vector<double> corners = indices(p, count);
+    if (corners.size() % 3 != 0) fail(source_, where + ": expected indices in threes");
+    // Primitives may share one list of vertices, so only those that triangles name are taken.
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> taken(count, kNone);
+    const bool mirrored = place.linear().determinant() < 0;
+    for (std::size_t k = 0; k < corners.size(); k += 3) {
+      std::array<std::uint32_t, 3> triangle{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double named = corners[k + (mirrored ? 2 - c : c)];
+        if (!(named < static_cast<double>(count)))
+          fail(source_, fmt::format("{}: triangle {} names vertex {}, but there are {}", where, k / 3, named, count));
+        const auto v = static_cast<std::size_t>(named);
+        if (taken[v] == kNone) {
+          taken[v] = static_cast<std::uint32_t>(out_.vertices.size());
+          const Eigen::Vector3d at = place * Eigen::Vector3d::Map(x.data() + 3 * v);
+          out_.vertices.push_back({at.x(), at.y(), at.z()});
+        }
+        triangle[c] = taken[v];
+      }
+      out_.triangles.push_back(triangle);
+    }
+  }
+
+  void add_groups(const std::vector<std::string>& names, std::size_t first) {
+    for (const std::string& name : names) {
+      if (name.empty()) continue;
+      std::vector<std::uint32_t>& group = out_.groups[name];
+      for (std::size_t k = first; k < out_.triangles.size(); ++k)
+        if (group.empty() || group.back() < k) group.push_back(static_cast<std::uint32_t>(k));
+    }
+  }
+
+  const tinygltf::Model& model_;
+  const std::string& source_;
+  MeshFile out_;
+};
+
+}  // namespace
+
+MeshFile parse_gltf(const std::string& bytes, const std::string& source) {
+  const bool binary = bytes.starts_with("glTF");
+  const tinygltf::Model model = binary ? gltf::parse_binary(bytes, source) : gltf::parse_text(bytes, source);
+  return MeshReader(model, source).read();
+}
+
+}  // namespace clothbench::assets

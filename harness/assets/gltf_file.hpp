@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>

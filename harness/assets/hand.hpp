@@ -82,7 +82,6 @@ Vector pinch_point(const HandPose&);
 struct Capsule {
   Vector a, b;  ///< ends of the axis [m]
   double radius_m;
-  int joint;  ///< index of the joint at `a`
 };
 inline constexpr std::size_t kCapsuleCount = 19;  ///< as XR_HAND_TRACKING_CAPSULE_COUNT_FB
 /// The hand as capsules between WebXR joints, with the radius of the near joint: 4 along the metacarpals of index,
@@ -97,7 +96,6 @@ struct SkinnedMesh {
   TriangleMesh rest;
   std::vector<std::array<std::uint8_t, 4>> joints;  ///< per vertex, indices into kJointNames
   std::vector<std::array<double, 4>> weights;       ///< per vertex, sum 1
-  JointFrames bind;                                 ///< joint frames at rest
   std::array<Eigen::Affine3d, kJointCount> inverse_bind;
 };
 

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "assets/base64.hpp"
-#include "assets/hand_recording.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
@@ -17,29 +16,9 @@ namespace {
 
 constexpr double kMostSeconds = 86400;
 
-constexpr char kTrackSchema[] = R"({
-  "definitions": {
-    "pose": {"enum": ["relaxed", "pinch", "point"]},
-    "place": {"type": "array", "minItems": 3, "maxItems": 3,
-              "items": {"type": "number", "minimum": -1e4, "maximum": 1e4}}
-  },
-  "type": "object", "required": ["hand", "keys"], "additionalProperties": false, "properties": {
-    "hand": {"enum": ["left", "right"]},
-    "anchor": {"enum": ["palm", "pinch"]},
-    "why": {"type": "string"},
-    "keys": {"type": "array", "minItems": 1, "items": {
-      "type": "object", "required": ["time_s", "position_m"], "additionalProperties": false, "properties": {
-        "time_s": {"type": "number", "minimum": 0, "maximum": 86400},
-        "pose": {"$ref": "#/definitions/pose"},
-        "blend": {"type": "object", "required": ["to", "amount"], "additionalProperties": false, "properties": {
-          "to": {"$ref": "#/definitions/pose"},
-          "amount": {"type": "number", "minimum": 0, "maximum": 1}}},
-        "position_m": {"$ref": "#/definitions/place"},
-        "rotation_deg": {"$ref": "#/definitions/place"},
-        "grip": {"type": "boolean"},
-        "sweep": {"type": "boolean"}}}}
-  }
-})";
+constexpr char kTrackSchema[] =
+#include "hand_track.schema.inc"
+    ;
 
 Vector vector_of(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 
@@ -53,18 +32,9 @@ static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "sto
 constexpr float kMostCoordinate_m = 1e4f;
 constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
 
-constexpr char kRecordingSchema[] = R"({
-  "type": "object", "required": ["hand", "recording"], "additionalProperties": false, "properties": {
-    "hand": {"enum": ["left", "right"]},
-    "why": {"type": "string"},
-    "recording": {
-      "type": "object", "required": ["frame_rate_hz", "frames", "joints"], "additionalProperties": false, "properties": {
-        "frame_rate_hz": {"type": "number", "exclusiveMinimum": 0, "maximum": 1000},
-        "frames": {"type": "integer", "minimum": 1},
-        "joints": {"type": "string"},
-        "capsules": {"type": "string"}}}
-  }
-})";
+constexpr char kRecordingSchema[] =
+#include "hand_recording.schema.inc"
+    ;
 
 template <class Item>
 std::string block(const Item* items, std::size_t count) {
@@ -101,16 +71,7 @@ std::vector<Item> read_block(const nlohmann::json& recording, const char* key, s
   return items;
 }
 
-Eigen::Quaterniond quaternion(const RecordedJoint& j) {
-  const auto& q = j.orientation;
-  return Eigen::Quaterniond(static_cast<double>(q[3]), static_cast<double>(q[0]), static_cast<double>(q[1]),
-                            static_cast<double>(q[2]))
-      .normalized();
-}
-
-Vector vector(const std::array<float, 3>& p) {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
+Vector vector(const std::array<float, 3>& p) { return Eigen::Vector3f::Map(p.data()).cast<double>(); }
 
 }  // namespace
 
@@ -149,10 +110,6 @@ HandTrack parse_hand_track(const std::string& text, const std::string& source) {
     track.keys.push_back(std::move(key));
   }
   return track;
-}
-
-HandTrack read_hand_track(const std::filesystem::path& path) {
-  return parse_hand_track(read_text(path), path.string());
 }
 
 HandTrack retimed(HandTrack track, double speed_m_per_s) {
@@ -238,10 +195,6 @@ HandRecording parse_hand_recording(const std::string& text, const std::string& s
   return r;
 }
 
-HandRecording read_hand_recording(const std::filesystem::path& path) {
-  return parse_hand_recording(read_text(path), path.string());
-}
-
 std::string to_json(const HandRecording& r, const std::string& why) {
   std::vector<RecordedJoint> joints;
   std::vector<RecordedCapsule> capsules;
@@ -257,7 +210,8 @@ std::string to_json(const HandRecording& r, const std::string& why) {
 
 Frame frame_of(const RecordedJoint& j) {
   Frame f = Frame::Identity();
-  f.linear() = quaternion(j).toRotationMatrix();
+  const Eigen::Map<const Eigen::Quaternionf> turn(j.orientation.data());
+  f.linear() = turn.cast<double>().normalized().toRotationMatrix();
   f.translation() = vector(j.position_m);
   return f;
 }
@@ -276,7 +230,7 @@ std::array<Capsule, kCapsuleCount> capsules(const HandRecording& recording, cons
   std::array<Capsule, kCapsuleCount> out;
   for (std::size_t k = 0; k < kCapsuleCount; ++k) {
     const RecordedCapsule& c = hand.capsules[k];
-    out[k] = {vector(c.a_m), vector(c.b_m), static_cast<double>(c.radius_m), -1};
+    out[k] = {vector(c.a_m), vector(c.b_m), static_cast<double>(c.radius_m)};
   }
   return out;
 }

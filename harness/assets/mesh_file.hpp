@@ -13,10 +13,10 @@ namespace clothbench::assets {
 struct MeshFile {
   std::vector<Vec3> vertices;                           ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertices; an index may be out of range
-  std::map<std::string, std::vector<std::uint32_t>>
-      groups;  ///< triangles by name, ascending; a triangle may be in many
+  std::map<std::string, std::vector<std::uint32_t>> groups =
+      {};  ///< triangles by name, ascending; a triangle may be in many
   /// Lines of the file, from 1, for messages; empty if the file has no lines.
-  std::vector<std::uint32_t> vertex_lines, triangle_lines;
+  std::vector<std::uint32_t> vertex_lines = {}, triangle_lines = {};
 };
 
 /// Reads the geometry of a glTF 2.0 file, binary (.glb) or text (.gltf) with all buffers inside. Triangles of the nodes

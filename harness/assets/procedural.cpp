@@ -299,7 +299,6 @@ Hand procedural_hand(Side side) {
   TubeMaker maker(hand.mesh);
   maker.tube(rest, kThumb, kThumb + 3);
   for (std::size_t first : {kIndex, kMiddle, kRing, kPinky}) maker.tube(rest, first, first + 4);
-  hand.mesh.bind = rest.joints;
   for (std::size_t j = 0; j < kJointCount; ++j) hand.mesh.inverse_bind[j] = Eigen::Affine3d(rest.joints[j].inverse());
   return hand;
 }

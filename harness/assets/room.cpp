@@ -16,34 +16,9 @@
 namespace clothbench::assets {
 namespace {
 
-constexpr char kRoomSchema[] = R"({
-  "definitions": {
-    "point": {"type": "object", "properties": {"x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
-    "turn": {"type": "object", "properties": {
-      "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}, "w": {"type": "number"}}},
-    "length": {"type": "number", "exclusiveMinimum": 0}
-  },
-  "type": "object", "required": ["type", "version", "spatialEntities"], "properties": {
-    "type": {"enum": ["scene"]},
-    "version": {"enum": [1]},
-    "spatialEntities": {"type": "array", "items": {"type": "object", "required": ["uuid", "locatable_META"], "properties": {
-      "uuid": {"type": "string"},
-      "semanticLabel_META": {"type": "string"},
-      "locatable_META": {"type": "object", "required": ["orientation"], "properties": {
-        "position": {"$ref": "#/definitions/point"},
-        "orientation": {"$ref": "#/definitions/turn"}}},
-      "bounded3D_META": {"type": "object", "required": ["extent"], "properties": {
-        "offset": {"$ref": "#/definitions/point"},
-        "extent": {"type": "object", "required": ["width", "height", "depth"], "properties": {
-          "width": {"$ref": "#/definitions/length"},
-          "height": {"$ref": "#/definitions/length"},
-          "depth": {"$ref": "#/definitions/length"}}}}},
-      "triangleMesh_META": {"type": "object", "required": ["vertices", "indices"], "properties": {
-        "vertices": {"type": "string"},
-        "indices": {"type": "string"}}}
-    }}}
-  }
-})";
+constexpr char kRoomSchema[] =
+#include "room_capture.schema.inc"
+    ;
 
 using nlohmann::json;
 
@@ -170,13 +145,8 @@ Box box_around(const Table& table, double below_m, double above_m) {
   const auto corners = table.top_corners();
   Box box;
   for (const Vector& corner : corners) box.extend(corner);
-  Vector middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-  const double top = table.top_height();
-  for (const double height : {top - below_m, top + above_m}) {
-    middle.y() = height;
-    box.extend(middle);
-  }
-  return box;
+  const Vector middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+  return box.extend(middle - below_m * Vector::UnitY()).extend(middle + above_m * Vector::UnitY());
 }
 
 bool is_closed_manifold(const TriangleMesh& mesh) {

@@ -62,10 +62,6 @@ using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
     add_compare, add_render, add_xr, add_conformance;
 
-/// The plan of a solver for a scene: scene, solver, needs, status, message, stages, buffers, left_out,
-/// contact_margins; the worker's side of `clothbench plan`.
-nlohmann::json plan_answer(const nlohmann::json& request);
-
 /// The rendering that --with-rendering times, from the size of a picture.
 Rendering rendering_of(const std::string& eye);
 

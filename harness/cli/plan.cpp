@@ -4,6 +4,8 @@
 #include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
+#include "runner/conformance.hpp"
+#include "runner/study_plan.hpp"
 #include "runner/worker.hpp"
 
 namespace clothbench {
@@ -44,16 +46,13 @@ std::vector<std::string> words(const json& list) { return list; }
 
 std::string bytes(const json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
 
-}  // namespace
-
+/// The plan of a solver for a scene: the worker's side of `clothbench plan`.
 json plan_answer(const json& request) {
   const SolverEntry& entry = find_solver(request.at("solver"));
   const Scene scene = load_scene(request.at("scene"), request.at("set").get<std::vector<std::string>>());
   const RunSpec spec{&scene, &entry, request.at("settings"), request.at("setting")};
   return plan_of(scene, entry, SolverRun(spec, device_from_json(request.at("device")), "plan"));
 }
-
-namespace {
 
 std::string plan_text(const json& p) {
   const auto text = [](const json& j) { return j.get<std::string>(); };
@@ -123,6 +122,21 @@ void add_plan(CLI::App& app, Console& console) {
       }
     }
     if (console.json) console.print(all);
+  });
+}
+
+void add_run_child(CLI::App& app, Console& console) {
+  CLI::App* cmd = app.add_subcommand("run-child", "Execute what another process of this program asks for");
+  cmd->group("");  // not for people
+  cmd->callback([&console] {
+    const auto silent = [](json (*work)(const json&)) {
+      return [work](const json& request, const WorkerProgress&) { return work(request); };
+    };
+    const auto plan = [](const json& request, const WorkerProgress& progress) {
+      return execute_plan(request, progress, known_solver, rendering_of);
+    };
+    console.exit_code = static_cast<ExitCode>(run_child_main(
+        {{"plan", plan}, {"plan-of-solver", silent(plan_answer)}, {"conformance", silent(conformance_answer)}}));
   });
 }
 

@@ -7,7 +7,6 @@
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "render/render_shared.h"
-#include "render/surfaces.hpp"
 #include "scenario/collider_kinds.hpp"
 
 namespace clothbench::render {
@@ -43,11 +42,9 @@ Stand stand(std::span<const double> points, const Vec3& axis, const Vec3& back, 
 
 constexpr double kGrip_m = 0.012;  // radius of the sphere that marks an attached vertex, for a cloth of 1 m
 
-Vec3 sum(const Vec3& a, double s, const Vec3& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
-
 Vec3 unit_or_zero(const Vec3& v) {
-  const double length = std::sqrt(dot(v, v));
-  return length > 0 ? Vec3{v[0] / length, v[1] / length, v[2] / length} : Vec3{};
+  const double size = length(v);
+  return size > 0 ? Vec3{v[0] / size, v[1] / size, v[2] / size} : Vec3{};
 }
 
 bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
@@ -69,7 +66,7 @@ std::uint32_t add_vertex(Surfaces& s, const Vec3& p, const Vec3& n, int look) {
 void add_capsule(Surfaces& s, const Capsule& c, int look) {
   constexpr int kSides = 32, kRings = 10;  // rings of each half ball
   if (!finite(c.a_m) || !finite(c.b_m) || !(c.radius_m > 0)) return;
-  Vec3 axis = unit_or_zero(sum(c.b_m, -1, c.a_m));
+  Vec3 axis = unit_or_zero(minus(c.b_m, c.a_m));
   if (dot(axis, axis) == 0) axis = {0, 1, 0};
   const auto [x, y] = across(axis);
   const auto first = static_cast<std::uint32_t>(s.position_m.size());
@@ -79,9 +76,9 @@ void add_capsule(Surfaces& s, const Capsule& c, int look) {
         (static_cast<double>(far_end ? ring - kRings : ring - kRings + 1) / (kRings - 1)) * std::numbers::pi / 2;
     for (int side = 0; side < kSides; ++side) {
       const double turn = 2 * std::numbers::pi * side / kSides;
-      Vec3 n = sum({0, 0, 0}, std::sin(latitude), axis);
-      n = sum(sum(n, std::cos(latitude) * std::cos(turn), x), std::cos(latitude) * std::sin(turn), y);
-      add_vertex(s, sum(far_end ? c.b_m : c.a_m, c.radius_m, n), n, look);
+      const Vec3 n = plus(plus(scaled(std::sin(latitude), axis), scaled(std::cos(latitude) * std::cos(turn), x)),
+                          scaled(std::cos(latitude) * std::sin(turn), y));
+      add_vertex(s, plus(far_end ? c.b_m : c.a_m, scaled(c.radius_m, n)), n, look);
     }
   }
   for (std::uint32_t ring = 0; ring + 1 < 2 * kRings; ++ring)
@@ -102,8 +99,7 @@ bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
 
 /// Hands are smooth, other meshes have edges.
 void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, const Bounds& near) {
-  Extent seen{sum(near.low, 1, near.high), near.diagonal() / 2};
-  for (double& x : seen.middle) x /= 2;
+  const Extent seen{scaled(0.5, plus(near.low, near.high)), near.diagonal() / 2};
   const auto [x, triangles] = kind_of(c).surface(c, pose, seen);
   const auto first = static_cast<std::uint32_t>(s.position_m.size());
   for (std::size_t v = 0; v < x.size(); v += 3)
@@ -112,8 +108,8 @@ void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, con
     const std::array<Vec3, 3> p = {s.position_m[first + t[0]], s.position_m[first + t[1]], s.position_m[first + t[2]]};
     if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) continue;
     if (c.mesh && !c.moves() && !meets(near, p)) continue;
-    const Vec3 normal = cross(sum(p[1], -1, p[0]), sum(p[2], -1, p[0]));
-    for (const std::uint32_t v : t) s.normal[first + v] = sum(s.normal[first + v], 1, normal);
+    const Vec3 normal = cross(minus(p[1], p[0]), minus(p[2], p[0]));
+    for (const std::uint32_t v : t) s.normal[first + v] = plus(s.normal[first + v], normal);
     s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   for (std::size_t v = first; v < s.normal.size(); ++v) s.normal[v] = unit_or_zero(s.normal[v]);
@@ -193,6 +189,12 @@ std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_
 
 Bounds Bounds::none() { return {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}; }
 
+Bounds Bounds::of(std::span<const double> positions_m) {
+  Bounds b = none();
+  for (std::size_t v = 0; v < positions_m.size() / 3; ++v) b.add(vertex_at(positions_m, v));
+  return b;
+}
+
 void Bounds::add(const Vec3& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = std::min(low[k], p[k]);
@@ -211,7 +213,7 @@ bool Bounds::holds(const Vec3& p) const {
   return true;
 }
 
-double Bounds::diagonal() const { return std::sqrt(dot(sum(high, -1, low), sum(high, -1, low))); }
+double Bounds::diagonal() const { return length(minus(high, low)); }
 
 Surfaces surfaces(const Scene& scene, int frame, const Bounds& near) {
   Surfaces s;

@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
+#include <vector>
 
-#include "clothbench/collider.hpp"
+#include "clothbench/scene.hpp"
 
 namespace clothbench::render {
 
@@ -30,5 +32,28 @@ Camera frame(std::span<const double> points, double aspect);
 /// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
 /// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
 std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
+
+struct Bounds {
+  Vec3 low{}, high{};
+  void add(const Vec3&);
+  void grow(double by_m);
+  bool holds(const Vec3&) const;
+  double diagonal() const;
+  static Bounds none();
+  static Bounds of(std::span<const double> positions_m);  ///< xyz interleaved
+  bool empty() const { return !(low[0] <= high[0]); }
+};
+
+/// Triangles of colliders and grips to draw, in world coordinates.
+struct Surfaces {
+  std::vector<Vec3> position_m, normal;  ///< one per vertex; normals unit, or zero if undefined
+  std::vector<std::uint8_t> look;        ///< LOOK_… of render_shared.h
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Static meshes are drawn without
+/// the triangles that do not meet `near` (a room has more walls than its desk); infinite planes are clipped to `near`;
+/// moving colliders are drawn whole. Triangles that are not finite are left out.
+Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 
 }  // namespace clothbench::render

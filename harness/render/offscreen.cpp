@@ -64,8 +64,7 @@ Picture Offscreen::read(std::size_t k) {
   if (!pixels_) pixels_ = std::make_unique<vulkan::Buffer>(device_, "picture", 4 * pixels, vulkan::Buffer::Place::Host);
   submit([&] {
     // Wait for the drawing before the copy. Afterwards the image returns to the layout in which the drawing left it.
-    VkImageMemoryBarrier drawn{};
-    drawn.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+    auto drawn = blank<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
     drawn.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
     drawn.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     drawn.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -80,8 +79,7 @@ Picture Offscreen::read(std::size_t k) {
     copy.imageExtent = {extent_.width, extent_.height, 1};
     vkCmdCopyImageToBuffer(commands_, images_[k]->handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, pixels_->handle(), 1,
                            &copy);
-    VkMemoryBarrier copied{};
-    copied.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    auto copied = blank<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
     copied.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     copied.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
     VkImageMemoryBarrier back = drawn;
@@ -108,11 +106,8 @@ class StereoDrawer : public FrameDrawer {
         solver_(solver),
         renderer_(vulkan::Device::get(options), Offscreen::kFormat),
         images_(vulkan::Device::get(options), eye, 2) {
-    near_ = Bounds::none();
-    const std::vector<double> start = initial_positions(scene);
-    for (std::size_t v = 0; v < scene.cloth.vertex_count(); ++v) near_.add(vertex_at(start, v));
-    Vec3 middle{};
-    for (std::size_t k = 0; k < 3; ++k) middle[k] = (near_.low[k] + near_.high[k]) / 2;
+    near_ = Bounds::of(initial_positions(scene));
+    const Vec3 middle = scaled(0.5, plus(near_.low, near_.high));
     const double size = std::max({scene.cloth.width_m, scene.cloth.height_m, near_.diagonal()});
     near_.grow(size);
     cameras_ = eyes(middle, size, 0.05 * size, 100 * size);

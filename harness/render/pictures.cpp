@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <sstream>
 
 #include "base/child_process.hpp"
 #include "base/files.hpp"
@@ -18,13 +19,6 @@ namespace clothbench::render {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Whether a path is a result file or the part file of an unfinished run.
-bool is_run(const fs::path& p) {
-  return p.extension() == ".h5" || p.extension() == ".cbor" || p.extension() == ".part";
-}
-
-double largest(const Vec3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 
 std::uint32_t middle_vertex(const Cloth& c) {
   return static_cast<std::uint32_t>((c.rows / 2) * c.columns + c.columns / 2);
@@ -85,7 +79,7 @@ std::vector<double> Motion::at(std::size_t frame) const {
 }
 
 Motion stored_motion(const fs::path& path) {
-  if (!is_run(path))
+  if (const fs::path end = path.extension(); end != ".h5" && end != ".cbor" && end != ".part")
     throw Error(path.string() + ": expected a result file (.h5, .cbor, .part); `clothbench run` makes them");
   const RunRecord record = read_run_summary(path);
   StoredMotion stored = read_motion(path);
@@ -115,7 +109,8 @@ Framing framing_of(const Motion& m) {
   const std::uint32_t middle = middle_vertex(cloth);
   if (is_free(m.scene))
     for (const std::size_t k : frames)
-      f.follows = f.follows || largest(minus(vertex_at(m.at(k), middle), vertex_at(start, middle))) > size;
+      for (const double x : minus(vertex_at(m.at(k), middle), vertex_at(start, middle)))
+        f.follows = f.follows || std::abs(x) > size;
   for (const std::size_t k : frames) {
     const std::vector<double> x = m.at(k);
     const Vec3 moved = f.follows ? minus(vertex_at(x, middle), vertex_at(start, middle)) : Vec3{};
@@ -181,12 +176,9 @@ std::vector<std::size_t> frames_from(const std::string& text, std::size_t count)
     return Error("--frames " + text + ": " + why +
                  "; expected FRAME, FIRST:LAST or FIRST:LAST:STEP, such as 0:71 or -1");
   };
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ':')
-      parts.emplace_back();
-    else
-      parts.back() += c;
+  std::vector<std::string> parts;
+  std::istringstream in(text + ":");
+  for (std::string part; std::getline(in, part, ':');) parts.push_back(part);
   if (parts.size() > 3 || text.empty()) throw fail("expected one to three numbers");
   const auto number = [&](const std::string& part, long otherwise) {
     if (part.empty()) return otherwise;

@@ -23,8 +23,7 @@ const std::uint32_t kSurfaceFrag[] = {
 /// Destroyed once the pipeline is made.
 struct Module : Owned<VkShaderModule, vkDestroyShaderModule> {
   Module(VkDevice device, const std::uint32_t* words, std::size_t bytes) {
-    VkShaderModuleCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    auto info = blank<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = bytes;
     info.pCode = words;
     check(vkCreateShaderModule(device, &info, nullptr, create(device)), "vkCreateShaderModule");
@@ -33,8 +32,7 @@ struct Module : Owned<VkShaderModule, vkDestroyShaderModule> {
 
 /// A view of a colour image, or of its depth.
 void create_view(VkDevice device, VkImage image, VkFormat format, Owned<VkImageView, vkDestroyImageView>& view) {
-  VkImageViewCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  auto info = blank<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
   info.image = image;
   info.viewType = VK_IMAGE_VIEW_TYPE_2D;
   info.format = format;
@@ -51,8 +49,20 @@ constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAG
 Pipelines::Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples)
     : device_(std::move(device)) {
   create_pass(colour, samples);
-  create_set();
-  create_layout();
+  std::vector<VkDescriptorSetLayoutBinding> slots(kBindings);
+  for (std::uint32_t k = 0; k < kBindings; ++k)
+    slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
+  vulkan::make_storage_set(*device_, slots, *set_layout_.create(device_->handle()), *pool_.create(device_->handle()),
+                           set_);
+  const VkPushConstantRange range{kBoth, 0, sizeof(Drawn)};
+  auto info = blank<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  const VkDescriptorSetLayout set_layout = set_layout_;
+  info.setLayoutCount = 1;
+  info.pSetLayouts = &set_layout;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, layout_.create(device_->handle())),
+        "vkCreatePipelineLayout");
   create(true, samples, cloth_);
   create(false, samples, collider_);
 }
@@ -105,8 +115,7 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
                VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
                VK_ACCESS_MEMORY_READ_BIT,
                0};
-  VkRenderPassCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+  auto info = blank<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
   info.attachmentCount = static_cast<std::uint32_t>(a.size());
   info.pAttachments = a.data();
   info.subpassCount = 1;
@@ -116,82 +125,6 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
   check(vkCreateRenderPass(device_->handle(), &info, nullptr, pass_.create(device_->handle())), "vkCreateRenderPass");
 }
 
-void Pipelines::create_set() {
-  std::vector<VkDescriptorSetLayoutBinding> slots(kBindings);
-  for (std::uint32_t k = 0; k < kBindings; ++k)
-    slots[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
-  vulkan::make_storage_set(*device_, slots, *set_layout_.create(device_->handle()), *pool_.create(device_->handle()),
-                           set_);
-}
-
-void Pipelines::create_layout() {
-  const VkPushConstantRange range{kBoth, 0, sizeof(Drawn)};
-  VkPipelineLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  const VkDescriptorSetLayout set_layout = set_layout_;
-  info.setLayoutCount = 1;
-  info.pSetLayouts = &set_layout;
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &range;
-  check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, layout_.create(device_->handle())),
-        "vkCreatePipelineLayout");
-}
-
-namespace {
-
-/// Everything of a pipeline except its shaders: triangles, both sides, nearest first, opaque; the picture's size is set
-/// as it is recorded.
-struct States {
-  VkPipelineVertexInputStateCreateInfo input{};
-  VkPipelineInputAssemblyStateCreateInfo assembly{};
-  VkPipelineViewportStateCreateInfo viewport{};
-  VkPipelineRasterizationStateCreateInfo raster{};
-  VkPipelineMultisampleStateCreateInfo multisample{};
-  VkPipelineDepthStencilStateCreateInfo depth{};
-  VkPipelineColorBlendAttachmentState opaque{};
-  VkPipelineColorBlendStateCreateInfo blend{};
-  const std::array<VkDynamicState, 2> dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic{};
-
-  explicit States(VkSampleCountFlagBits samples) {
-    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    viewport.viewportCount = viewport.scissorCount = 1;
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.lineWidth = 1;
-    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    multisample.rasterizationSamples = samples;
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-    depth.depthCompareOp = VK_COMPARE_OP_LESS;
-    opaque.colorWriteMask = 0xf;
-    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
-    blend.pAttachments = &opaque;
-    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-    dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
-    dynamic.pDynamicStates = dynamic_states.data();
-  }
-  States(const States&) = delete;
-  States& operator=(const States&) = delete;
-
-  void fill(VkGraphicsPipelineCreateInfo& info) const {
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blend;
-    info.pDynamicState = &dynamic;
-  }
-};
-
-}  // namespace
-
 void Pipelines::create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) const {
   const Module vertex = cloth ? Module(device_->handle(), kClothVert, sizeof kClothVert)
                               : Module(device_->handle(), kColliderVert, sizeof kColliderVert);
@@ -199,22 +132,52 @@ void Pipelines::create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) 
   const VkBool32 is_cloth = cloth ? VK_TRUE : VK_FALSE;
   const VkSpecializationMapEntry entry{0, 0, sizeof is_cloth};
   const VkSpecializationInfo constants{1, &entry, sizeof is_cloth, &is_cloth};
-  std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
+  auto stage = blank<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+  stage.pName = "main";
+  std::array stages = {stage, stage};
   stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
   stages[0].module = vertex;
   stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
   stages[1].module = fragment;
   stages[1].pSpecializationInfo = &constants;
-  for (auto& s : stages) {
-    s.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    s.pName = "main";
-  }
-  const States states(samples);
-  VkGraphicsPipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  // Triangles, both sides, nearest first, opaque; the picture's size is set as it is recorded.
+  const auto input =
+      blank<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+  auto assembly =
+      blank<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  auto viewport = blank<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+  viewport.viewportCount = viewport.scissorCount = 1;
+  auto raster =
+      blank<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  raster.lineWidth = 1;
+  auto multisample =
+      blank<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+  multisample.rasterizationSamples = samples;
+  auto depth = blank<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+  depth.depthCompareOp = VK_COMPARE_OP_LESS;
+  VkPipelineColorBlendAttachmentState opaque{};
+  opaque.colorWriteMask = 0xf;
+  auto blend = blank<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+  blend.attachmentCount = 1;
+  blend.pAttachments = &opaque;
+  constexpr std::array kDynamic = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  auto dynamic = blank<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  dynamic.dynamicStateCount = static_cast<std::uint32_t>(kDynamic.size());
+  dynamic.pDynamicStates = kDynamic.data();
+  auto info = blank<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   info.stageCount = static_cast<std::uint32_t>(stages.size());
   info.pStages = stages.data();
-  states.fill(info);
+  info.pVertexInputState = &input;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &multisample;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &blend;
+  info.pDynamicState = &dynamic;
   info.layout = layout_;
   info.renderPass = pass_;
   check(vkCreateGraphicsPipelines(device_->handle(), VK_NULL_HANDLE, 1, &info, nullptr, to.create(device_->handle())),
@@ -228,7 +191,7 @@ void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers
     if (buffers[k]->bytes() > device_->limits().maxStorageBufferRange)
       throw Error(buffers[k]->name() + ": its size exceeds what this device binds");
     infos[k] = {buffers[k]->handle(), 0, VK_WHOLE_SIZE};
-    writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[k] = blank<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     writes[k].dstSet = set_;
     writes[k].dstBinding = k;
     writes[k].descriptorCount = 1;
@@ -247,8 +210,7 @@ void Pipelines::use(VkCommandBuffer commands, bool cloth, const void* constants,
 Image::Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D extent, VkSampleCountFlagBits samples,
              VkImageUsageFlags usage)
     : device_(std::move(device)) {
-  VkImageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  auto info = blank<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {extent.width, extent.height, 1};
@@ -259,8 +221,7 @@ Image::Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D
   check(vkCreateImage(device_->handle(), &info, nullptr, image_.create(device_->handle())), "vkCreateImage");
   VkMemoryRequirements needs{};
   vkGetImageMemoryRequirements(device_->handle(), image_, &needs);
-  VkMemoryAllocateInfo memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  auto memory = blank<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   memory.allocationSize = needs.size;
   memory.memoryTypeIndex = vulkan::Device::kNoMemory;
   // A tiled GPU need not back at all what never leaves the chip.
@@ -291,8 +252,7 @@ VkFramebuffer Targets::framebuffer(VkImage image) {
   if (h.framebuffer != VK_NULL_HANDLE) return h.framebuffer;
   if (h.view == VK_NULL_HANDLE) create_view(device_->handle(), image, format_, h.view);
   const std::array<VkImageView, 3> views = {colour_.view(), depth_.view(), h.view};
-  VkFramebufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+  auto info = blank<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
   info.renderPass = pass_;
   info.attachmentCount = static_cast<std::uint32_t>(views.size());
   info.pAttachments = views.data();

@@ -9,6 +9,14 @@
 
 namespace clothbench::render {
 
+/// A structure of this type, all else 0.
+template <class T>
+T blank(VkStructureType type) {
+  T t{};
+  t.sType = type;
+  return t;
+}
+
 /// Owns an object of a device, which it must not outlive.
 template <class Handle, void(VKAPI_PTR* kDestroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
 class Owned {
@@ -47,8 +55,6 @@ class Pipelines {
 
  private:
   void create_pass(VkFormat colour, VkSampleCountFlagBits samples);
-  void create_set();
-  void create_layout();
   using Pipeline = Owned<VkPipeline, vkDestroyPipeline>;
   void create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) const;
 

@@ -39,13 +39,9 @@ Vec3 eye_of(const Mat4& view) {
 
 /// The two axes along which a mesh extends most; the checker lies in their plane where there is no pattern.
 std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
-  Vec3 low = m.vertices.front(), high = low;
-  for (const Vec3& x : m.vertices)
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  const Vec3 sides = minus(high, low);
+  Bounds box = Bounds::none();
+  for (const Vec3& x : m.vertices) box.add(x);
+  const Vec3 sides = minus(box.high, box.low);
   const std::size_t least = std::min_element(sides.rbegin(), sides.rend()).base() - sides.begin() - 1;
   return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
 }
@@ -110,8 +106,6 @@ SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat co
     : device_(drawing(std::move(device))), format_(colour), pipelines_(device_, colour, kSampleBit) {
   set_surfaces({});
 }
-
-SceneRenderer::~SceneRenderer() = default;
 
 std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const void* data, std::size_t bytes) const {
   // Vulkan forbids empty buffers. One that only fills a binding has bytes that no shader reads.
@@ -180,13 +174,6 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
   bound_ = false;
 }
 
-void SceneRenderer::bind_buffers() {
-  if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
-  if (bound_) return;
-  pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_.get()});
-  bound_ = true;
-}
-
 Drawn SceneRenderer::constants(const Drawing& drawing) const {
   Drawn d{};
   const Mat4 to_clip = drawing.projection * drawing.view;
@@ -199,10 +186,11 @@ Drawn SceneRenderer::constants(const Drawing& drawing) const {
 }
 
 void SceneRenderer::record(VkCommandBuffer commands, std::span<const Drawing> drawings) {
-  bind_buffers();
+  if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
+  if (!bound_) pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_.get()});
+  bound_ = true;
   // The positions a solver's kernels or copies wrote, before a vertex shader reads them.
-  VkMemoryBarrier memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  auto memory = blank<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
   memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
   memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
   vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
@@ -217,8 +205,7 @@ void SceneRenderer::record_one(VkCommandBuffer commands, const Drawing& drawing)
   std::array<VkClearValue, 3> clear{};
   clear[0].color = {{1, 1, 1, 1}};
   clear[1].depthStencil = {1, 0};
-  VkRenderPassBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+  auto begin = blank<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
   begin.renderPass = pipelines_.pass();
   begin.framebuffer = targets_->framebuffer(drawing.image);
   begin.renderArea = {{0, 0}, drawing.extent};

@@ -7,7 +7,6 @@
 #include "render/camera.hpp"
 #include "render/pipelines.hpp"
 #include "render/render_shared.h"
-#include "render/surfaces.hpp"
 #include "vulkan/buffer.hpp"
 
 namespace clothbench::render {
@@ -34,7 +33,6 @@ class SceneRenderer {
 
   /// Throws Error with ExitCode::NoDevice if the device's queue does not support graphics.
   SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat colour);
-  ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
@@ -58,7 +56,6 @@ class SceneRenderer {
 
  private:
   std::unique_ptr<vulkan::Buffer> filled(const char* name, const void* data, std::size_t bytes) const;
-  void bind_buffers();
   void record_one(VkCommandBuffer, const Drawing&);
   Drawn constants(const Drawing&) const;
 

@@ -16,9 +16,7 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "scenario/load.hpp"
-#include "scenario/recorded_hand.hpp"
-#include "scenario/vec3.hpp"
+#include "scenario/collider_reader.hpp"
 
 namespace clothbench {
 namespace {
@@ -164,12 +162,6 @@ void add_groups(ClothMesh& m, const assets::MeshFile& file) {
   }
 }
 
-fs::path file_of(const std::string& name, const std::string& source) {
-  if (const auto found = file_of_scene(name, source)) return *found;
-  throw Error(fmt::format("{}: /cloth/mesh/file: {}: no such file beside the scene or in {}", source, in_quotes(name),
-                          scenario_root().string()));
-}
-
 void notice_welded(const ClothMesh& m, const std::string& file) {
   static std::mutex mutex;
   static std::set<std::string> noticed;
@@ -209,24 +201,13 @@ ClothMesh cloth_mesh(assets::MeshFile file, const std::string& source, std::vect
   return m;
 }
 
-ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, const std::string& source) {
-  assets::MeshFile file;
-  file.vertices = std::move(vertices);
-  file.triangles = std::move(triangles);
-  return cloth_mesh(std::move(file), source);
-}
-
-ClothMesh parse_obj(const std::string& text, const std::string& source) {
-  return cloth_mesh(read_obj(text, source), source);
-}
-
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
   if (j.contains("drawn")) {
     if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
     return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
   }
-  const fs::path file = file_of(j["file"].get<std::string>(), source);
+  const fs::path file = needed_file(j["file"].get<std::string>(), source, "/cloth/mesh/file");
   const std::string text = read_text(file, kMostBytes), hash = sha256(text);
   if (j.contains("sha256") && j["sha256"] != hash)
     throw Error(fmt::format("{}: /cloth/mesh/sha256: {} differs from the file that the scene was made with ({})",

@@ -22,8 +22,6 @@ std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::s
 
 /// The triangles in the text of an OBJ file; groups are the names of its lines "g" and "o".
 assets::MeshFile read_obj(const std::string& text, const std::string& source);
-/// The cloth in the text of an OBJ file.
-ClothMesh parse_obj(const std::string& text, const std::string& source);
 
 /// Corners of a triangle in the plane of its pattern [m].
 using PatternTriangle = std::array<std::array<double, 2>, 3>;
@@ -33,9 +31,6 @@ using PatternTriangle = std::array<std::array<double, 2>, 3>;
 /// than two triangles, neighbours that are wound oppositely. `pattern_m`: shape at rest of each triangle; empty: the
 /// vertices give the rest shape.
 ClothMesh cloth_mesh(assets::MeshFile, const std::string& source, std::vector<PatternTriangle> pattern_m = {});
-/// The same of triangles whose vertices are their shape at rest.
-ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
-                     const std::string& source);
 
 /// Vertices of a named group of the cloth's mesh. Throws Error at `pointer` of the scene if the cloth is a grid, or has
 /// no such group; names those that it has.

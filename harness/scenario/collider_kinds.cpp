@@ -11,8 +11,6 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/collider_reader.hpp"
-#include "scenario/recorded_hand.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -141,6 +139,21 @@ ColliderKind box_kind() {
 
 // Dynamic capsules: one on a path, or the capsules of a hand.
 
+/// A capsule about `center` at a time: `length_m` along `axis` (a unit vector), turned by `spin` [rad/s] x time.
+Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
+                      const Vec3& spin, double time_s) {
+  // Rodrigues' formula.
+  const double rate = length(spin);
+  Vec3 turned = axis;
+  if (rate > 0) {
+    const Vec3 w = {spin[0] / rate, spin[1] / rate, spin[2] / rate};
+    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s);
+    turned = plus(plus(scaled(c, axis), scaled(s, cross(w, axis))), scaled(1 - c, scaled(dot(w, axis), w)));
+  }
+  const Vec3 middle = plus(center, path.displacement(time_s)), half = scaled(length_m / 2, turned);
+  return {minus(middle, half), plus(middle, half), radius_m};
+}
+
 void read_capsule(const json& j, ColliderReader& reader, Collider& c) {
   c.shape = Collider::Shape::Capsules;
   const Vec3 center = vec3(j["center_m"]), axis = reader.unit(j, "axis"), spin = vec3(j["spin_rad_per_s"]);
@@ -183,8 +196,7 @@ void read_mesh(const json& j, ColliderReader& reader, Collider& c) {
       if (corners[k].get<std::size_t>() >= m.vertex_count())
         reader.refuse(fmt::format("/triangles/{}/{}", t, k),
                       fmt::format("vertex {} of {} (the first is 0)", corners[k].get<std::size_t>(), m.vertex_count()));
-    m.triangles.push_back(
-        {corners[0].get<std::uint32_t>(), corners[1].get<std::uint32_t>(), corners[2].get<std::uint32_t>()});
+    m.triangles.push_back(corners.get<std::array<std::uint32_t, 3>>());
   }
   c.mesh = collider_mesh(m);
 }

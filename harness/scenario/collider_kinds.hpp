@@ -1,7 +1,6 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "clothbench/scene.hpp"

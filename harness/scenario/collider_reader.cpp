@@ -11,9 +11,6 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "scenario/load.hpp"
-#include "scenario/recorded_hand.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 
@@ -43,8 +40,19 @@ Vec3 ColliderReader::unit(const nlohmann::json& j, const std::string& key) const
 }
 
 Path ColliderReader::path(const nlohmann::json& j) const {
-  Path p = Path::read(j);
-  note_jumps(p, scene_);
+  Path p;
+  p.velocity_m_per_s = vec3(j.at("velocity_m_per_s"));
+  p.ramp_s = j.value("ramp_s", 0.0);
+  p.start_s = j.value("start_s", 0.0);
+  if (j.contains("stop_s")) p.stop_s = j["stop_s"].get<double>();
+  if (j.contains("release_s")) p.release_s = j["release_s"].get<double>();
+  if (j.contains("jumps"))
+    for (const auto& at : j["jumps"]) p.jumps.push_back({at["time_s"].get<double>(), vec3(at["by_m"])});
+  for (const Path::At& jump : p.jumps) {
+    int frame = 1;
+    while (frame <= scene_.time.frames() && !(scene_.time.at(frame) > jump.time_s)) ++frame;
+    if (frame <= scene_.time.frames()) scene_.jumps.push_back({frame, length(jump.by_m)});
+  }
   return p;
 }
 
@@ -68,15 +76,11 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
   if (m.recording) {
     const assets::RecordedHand& now = m.recording->at(time_s);
     return as_mesh ? mesh_pose(*m.hand, assets::pose_of(now).joints, m.offset_m)
-                   : capsules_pose(*m.recording, now, m.offset_m);
+                   : capsules_pose(assets::capsules(*m.recording, now), m.offset_m);
   }
   const assets::HandSample now = assets::sample(m.track, *m.hand, time_s);
-  if (as_mesh) return mesh_pose(*m.hand, now.pose.joints, m.offset_m);
-  ColliderPose pose;
-  for (const assets::Capsule& c : assets::capsules(now.pose))
-    pose.capsules.push_back(
-        {to_vec3(assets::Vector(c.a + m.offset_m)), to_vec3(assets::Vector(c.b + m.offset_m)), c.radius_m});
-  return pose;
+  return as_mesh ? mesh_pose(*m.hand, now.pose.joints, m.offset_m)
+                 : capsules_pose(assets::capsules(now.pose), m.offset_m);
 }
 
 /// Refuses a radius of 0, which a runtime reports if it does not know it. The error points to the capsules or joints.
@@ -95,68 +99,27 @@ void require_radii(const assets::HandRecording& recording, const std::string& fi
 /// A track or a recording in a file of its own.
 MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const auto name = j["track"].get<std::string>();
-  const auto file = file_of_scene(name, reader.source());
-  if (!file)
-    reader.refuse("/track",
-                  fmt::format("{}: no such file beside the scene or in {}", in_quotes(name), scenario_root().string()));
-  const std::string text = read_text(*file);
-  if (!assets::is_hand_recording(parse_json(text, file->string())))
-    return {{}, assets::parse_hand_track(text, file->string()), {}};
+  const std::filesystem::path file = needed_file(name, reader.source(), reader.pointer() + "/track");
+  const std::string text = read_text(file);
+  if (!assets::is_hand_recording(parse_json(text, file.string())))
+    return {{}, assets::parse_hand_track(text, file.string()), {}};
   if (j.contains("speed_m_per_s"))
     reader.refuse("/speed_m_per_s", "expected no speed for a recording, which is replayed at its own speed");
-  MovingHand m{{}, {}, assets::parse_hand_recording(text, file->string())};
-  if (!as_mesh) require_radii(*m.recording, file->string());
+  MovingHand m{{}, {}, assets::parse_hand_recording(text, file.string())};
+  if (!as_mesh) require_radii(*m.recording, file.string());
   if (as_mesh) m.hand = assets::open_hand(reader.assets(), m.recording->side);
   return m;
 }
 
 }  // namespace
 
-Path Path::read(const nlohmann::json& j) {
-  Path p;
-  p.velocity_m_per_s = vec3(j.at("velocity_m_per_s"));
-  p.ramp_s = j.value("ramp_s", 0.0);
-  p.start_s = j.value("start_s", 0.0);
-  if (j.contains("stop_s")) p.stop_s = j["stop_s"].get<double>();
-  if (j.contains("release_s")) p.release_s = j["release_s"].get<double>();
-  if (j.contains("jumps"))
-    for (const auto& at : j["jumps"]) p.jumps.push_back({at["time_s"].get<double>(), vec3(at["by_m"])});
-  return p;
-}
-
 Vec3 Path::displacement(double time_s) const {
   const double until = stop_s ? std::min(time_s, *stop_s) : time_s;
   const double seconds = ramped(std::max(0.0, until - start_s), ramp_s);
-  Vec3 out{};
-  for (std::size_t k = 0; k < 3; ++k) out[k] = seconds * velocity_m_per_s[k];
+  Vec3 out = scaled(seconds, velocity_m_per_s);
   for (const At& jump : jumps)
-    if (time_s > jump.time_s)
-      for (std::size_t k = 0; k < 3; ++k) out[k] += jump.by_m[k];
+    if (time_s > jump.time_s) out = plus(out, jump.by_m);
   return out;
-}
-
-void note_jumps(const Path& path, Scene& scene) {
-  for (const Path::At& jump : path.jumps) {
-    int frame = 1;
-    while (frame <= scene.time.frames() && !(scene.time.at(frame) > jump.time_s)) ++frame;
-    if (frame > scene.time.frames()) continue;
-    scene.jumps.push_back({frame, length(jump.by_m)});
-  }
-}
-
-Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
-                      const Vec3& spin, double time_s) {
-  // Rodrigues' formula.
-  const double rate = length(spin);
-  Vec3 turned = axis;
-  if (rate > 0) {
-    const Vec3 w = {spin[0] / rate, spin[1] / rate, spin[2] / rate};
-    const double c = std::cos(rate * time_s), s = std::sin(rate * time_s), along = dot(w, axis);
-    const Vec3 across = cross(w, axis);
-    for (std::size_t k = 0; k < 3; ++k) turned[k] = axis[k] * c + across[k] * s + w[k] * along * (1 - c);
-  }
-  const Vec3 middle = plus(center, path.displacement(time_s)), half = scaled(length_m / 2, turned);
-  return {minus(middle, half), plus(middle, half), radius_m};
 }
 
 MovingHand moving_hand(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
@@ -196,6 +159,12 @@ std::optional<std::filesystem::path> file_of_scene(const std::string& name, cons
   return std::nullopt;
 }
 
+std::filesystem::path needed_file(const std::string& name, const std::string& source, const std::string& pointer) {
+  if (const auto found = file_of_scene(name, source)) return *found;
+  refuse(source, pointer,
+         fmt::format("{}: no such file beside the scene or in {}", in_quotes(name), scenario_root().string()));
+}
+
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh& from) {
   auto mesh = std::make_shared<ColliderMesh>();
   mesh->positions = from.positions;
@@ -215,31 +184,22 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh& from) {
   return mesh;
 }
 
-namespace {
-
-/// The transform of a joint in the form of ColliderPose.
-Affine affine(const Eigen::Affine3d& m) {
-  Affine a;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column)
-      a[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = m.matrix()(row, column);
-  return a;
-}
-
-}  // namespace
-
-ColliderPose capsules_pose(const assets::HandRecording& recording, const assets::RecordedHand& hand,
+ColliderPose capsules_pose(const std::array<assets::Capsule, assets::kCapsuleCount>& capsules,
                            const assets::Vector& offset_m) {
   ColliderPose pose;
-  for (const assets::Capsule& c : assets::capsules(recording, hand))
+  for (const assets::Capsule& c : capsules)
     pose.capsules.push_back({to_vec3(c.a + offset_m), to_vec3(c.b + offset_m), c.radius_m});
   return pose;
 }
 
 ColliderPose mesh_pose(const assets::Hand& hand, const assets::JointFrames& joints, const assets::Vector& offset_m) {
   ColliderPose pose;
-  for (std::size_t k = 0; k < assets::kJointCount; ++k)
-    pose.joints.push_back(affine(Eigen::Translation3d(offset_m) * (joints[k] * hand.mesh.inverse_bind[k])));
+  for (std::size_t k = 0; k < assets::kJointCount; ++k) {
+    const Eigen::Affine3d m = Eigen::Translation3d(offset_m) * (joints[k] * hand.mesh.inverse_bind[k]);
+    Affine& to = pose.joints.emplace_back();
+    for (int row = 0; row < 3; ++row)
+      Eigen::RowVector4d::Map(to[static_cast<std::size_t>(row)].data()) = m.matrix().row(row);
+  }
   return pose;
 }
 

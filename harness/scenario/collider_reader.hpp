@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -12,9 +14,25 @@
 #include "clothbench/collider.hpp"
 #include "clothbench/scene.hpp"
 #include "scenario/load.hpp"
-#include "scenario/recorded_hand.hpp"
 
 namespace clothbench {
+
+inline Vec3 to_vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Finds a file that a scene names: beside the scene `source`, else in the scenarios folder; empty if in neither.
+std::optional<std::filesystem::path> file_of_scene(const std::string& name, const std::string& source);
+/// The same; Error at `pointer` of the scene if it is in neither.
+std::filesystem::path needed_file(const std::string& name, const std::string& source, const std::string& pointer);
+
+/// A mesh for solvers; `closed` if it is the closed surface of a solid, with outward normals.
+std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
+/// The same for a hand's mesh, which follows its joints.
+std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
+
+/// The 19 capsules of a hand; and the matrices by which the mesh of a hand follows its joints. A replay and
+/// the live session that records it both use these functions, so they agree bit for bit.
+ColliderPose capsules_pose(const std::array<assets::Capsule, assets::kCapsuleCount>&, const assets::Vector& offset_m);
+ColliderPose mesh_pose(const assets::Hand&, const assets::JointFrames&, const assets::Vector& offset_m);
 
 /// Motion of a bar or a capsule. The speed rises as sin^2(pi t / 2 ramp_s), then stays constant until `stop_s`. Jumps
 /// are added to this, each within the frame that contains its time.
@@ -28,19 +46,10 @@ struct Path {
   };
   std::vector<At> jumps;
 
-  /// Reads velocity_m_per_s from completed JSON, and ramp_s, start_s, stop_s, release_s, jumps where present.
-  static Path read(const nlohmann::json&);
   /// Displacement [m] at `time_s`.
   Vec3 displacement(double time_s) const;
   bool held(double time_s) const { return !release_s || time_s < *release_s; }
 };
-
-/// Adds this path's jumps to the scene, each with the frame that contains it.
-void note_jumps(const Path&, Scene&);
-
-/// A capsule about `center_m` at a time: `length_m` along `axis` (a unit vector), turned by `spin_rad_per_s` x time.
-Capsule moved_capsule(const Path&, const Vec3& center_m, const Vec3& axis, double length_m, double radius_m,
-                      const Vec3& spin_rad_per_s, double time_s);
 
 /// Context in which colliders and grips are read, one after another. It also takes a collider's motion and table.
 class ColliderReader {
@@ -57,7 +66,8 @@ class ColliderReader {
   std::string where(const std::string& key) const { return source_ + ": " + at_ + key; }
   /// Reads a vector, which must have length 1.
   Vec3 unit(const nlohmann::json&, const std::string& key) const;
-  /// Reads a path and adds its jumps to the scene.
+  /// Reads velocity_m_per_s from completed JSON, and ramp_s, start_s, stop_s, release_s, jumps where present. Adds the
+  /// jumps to the scene, each with the frame that contains it.
   Path path(const nlohmann::json&) const;
   const assets::AssetSource& assets();
   const std::string& source() const { return source_; }
@@ -93,11 +103,6 @@ MovingHand moving_hand(const nlohmann::json&, ColliderReader&, bool as_mesh);
 /// Reads a hand as a collider: its mesh, or its capsules.
 void read_hand(const nlohmann::json&, ColliderReader&, Collider&, bool as_mesh);
 
-/// Initial pose of a sheet above a table.
-struct TablePose {
-  Vec3 center_m{}, axis_u{}, axis_v{};
-};
-
 /// A level rectangle: its centre, the directions of its sides (unit vectors), and their lengths.
 struct Footprint {
   Vec3 center_m{};
@@ -107,14 +112,5 @@ struct Footprint {
 
 /// Height [m] of the mesh's highest point above or below the rectangle; -infinity if nothing is there.
 double highest_below(const ColliderMesh&, const Footprint&);
-
-/// Level, centred on the table and aligned with its sides, `drop_m` above the highest point of `mesh` below the cloth.
-/// Throws Error if no part of the mesh is below the cloth.
-TablePose flat_over(const assets::Table&, const ColliderMesh& mesh, const Cloth&, double drop_m);
-
-/// Corner first: the lowest corner is `drop_m` above the table and `inset_m` inside the middle of a long edge. One
-/// diagonal rises at `tilt` [rad] along that edge; the other is level and across it, so that half the cloth is beyond
-/// the edge if `inset_m` is 0.
-TablePose corner_first_over(const assets::Table&, const Cloth&, double drop_m, double tilt, double inset_m);
 
 }  // namespace clothbench

@@ -6,13 +6,12 @@
 #include <numbers>
 #include <vector>
 
-#include "assets/hand_track.hpp"
+#include "base/words.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/collider_kinds.hpp"
 #include "scenario/collider_reader.hpp"
-#include "scenario/load.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -26,6 +25,73 @@ const ColliderType& type_of(const std::string& name) {
     for (const ColliderType& type : kind.types)
       if (name == type.name) return type;
   throw Error("collider type " + name + ": it is in the schema but has no implementation");
+}
+
+using assets::Vector;
+
+/// The part of a polygon with f >= 0, f linear.
+template <class F>
+std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
+  std::vector<Vector> out;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double fa = f(a), fb = f(b);
+    if (fa >= 0) out.push_back(a);
+    if ((fa < 0) != (fb < 0)) out.push_back(a + (b - a) * (fa / (fa - fb)));
+  }
+  return out;
+}
+
+struct Edges {
+  Vector middle_of_long, along, across;  ///< a point [m]; two level unit vectors, `across` points off the table
+  Vector center;
+};
+
+Edges edges_of(const assets::Table& table) {
+  const auto c = table.top_corners();
+  std::size_t longest = 0;
+  const auto side = [&](std::size_t k) { return Vector(c[(k + 1) % 4] - c[k]); };
+  if (side(1).norm() > side(0).norm()) longest = 1;
+  Edges e;
+  e.center = (c[0] + c[1] + c[2] + c[3]) / 4;
+  e.middle_of_long = (c[longest] + c[(longest + 1) % 4]) / 2;
+  e.along = side(longest);
+  e.along.y() = 0;
+  e.along.normalize();
+  e.across = e.along.cross(Vector::UnitY());
+  if (e.across.dot(e.middle_of_long - e.center) < 0) e.across = -e.across;
+  return e;
+}
+
+/// Initial pose of a sheet above a table.
+struct TablePose {
+  Vec3 center_m{}, axis_u{}, axis_v{};
+};
+
+/// Level, centred on the table and aligned with its sides, `drop_m` above the highest point of `mesh` below the cloth.
+/// Throws Error if no part of the mesh is below the cloth.
+TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m) {
+  const Edges e = edges_of(table);
+  const double highest =
+      highest_below(mesh, {to_vec3(e.center), {to_vec3(e.along), to_vec3(e.across)}, {cloth.width_m, cloth.height_m}});
+  if (!std::isfinite(highest))
+    throw Error("/cloth/pose/over_table: expected a part of the table's mesh below the cloth");
+  // axis_u x axis_v points down, as for the sheet of the other scenes: u, v = x, z.
+  Vector v = e.along.cross(Vector::UnitY());
+  return {{e.center.x(), highest + drop_m, e.center.z()}, to_vec3(e.along), to_vec3(v)};
+}
+
+/// Corner first: the lowest corner is `drop_m` above the table and `inset_m` inside the middle of a long edge. One
+/// diagonal rises at `tilt` [rad] along that edge; the other is level and across it, so that half the cloth is beyond
+/// the edge if `inset_m` is 0.
+TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt,
+                            double inset_m) {
+  const Edges e = edges_of(table);
+  const Vector rising = std::cos(tilt) * e.along + std::sin(tilt) * Vector::UnitY();
+  // The lowest corner is u0v0. The sheet's diagonal from it rises; u and v are at 45 degrees to that diagonal.
+  const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
+  const Vector lowest = e.middle_of_long - inset_m * e.across + drop_m * Vector::UnitY();
+  return {to_vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), to_vec3(u), to_vec3(v)};
 }
 
 class StageReader {
@@ -96,10 +162,8 @@ class StageReader {
     reader_.complete(j, edge ? "grip_edge" : "grip_hand");
     Grip g = edge ? edge_grip(j) : hand_grip(j);
     for (std::uint32_t v : g.vertices) {
-      for (std::uint32_t w : scene_.grips.vertices)
-        if (v == w) reader_.refuse("", fmt::format("vertex {} is held by two hands", v));
-      for (std::uint32_t w : scene_.pins.vertices)
-        if (v == w) reader_.refuse("", fmt::format("vertex {} is pinned as well", v));
+      if (contains(scene_.grips.vertices, v)) reader_.refuse("", fmt::format("vertex {} is held by two hands", v));
+      if (contains(scene_.pins.vertices, v)) reader_.refuse("", fmt::format("vertex {} is pinned as well", v));
       scene_.grips.vertices.push_back(v);
     }
     grips_.push_back(std::move(g));
@@ -169,8 +233,7 @@ class StageReader {
   static void move_by_bar(const Grip& g, double t, const std::vector<double>& x, FrameMotion& m) {
     const Vec3 moved = g.bar.displacement(t);
     for (std::uint32_t v : g.vertices) {
-      Vec3& to = m.grip_position_m.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) to[k] = x[3 * v + k] + moved[k];
+      m.grip_position_m.push_back(plus(vertex_at(x, v), moved));
       m.grip_held.push_back(g.bar.held(t) ? 1 : 0);
     }
   }
@@ -182,42 +245,6 @@ class StageReader {
   std::vector<std::function<ColliderPose(double)>> poses_;    ///< by collider index
   std::vector<Grip> grips_;
 };
-
-using assets::Vector;
-
-/// The part of a polygon with f >= 0, f linear.
-template <class F>
-std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
-  std::vector<Vector> out;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double fa = f(a), fb = f(b);
-    if (fa >= 0) out.push_back(a);
-    if ((fa < 0) != (fb < 0)) out.push_back(a + (b - a) * (fa / (fa - fb)));
-  }
-  return out;
-}
-
-struct Edges {
-  Vector middle_of_long, along, across;  ///< a point [m]; two level unit vectors, `across` points off the table
-  Vector center;
-};
-
-Edges edges_of(const assets::Table& table) {
-  const auto c = table.top_corners();
-  std::size_t longest = 0;
-  const auto side = [&](std::size_t k) { return Vector(c[(k + 1) % 4] - c[k]); };
-  if (side(1).norm() > side(0).norm()) longest = 1;
-  Edges e;
-  e.center = (c[0] + c[1] + c[2] + c[3]) / 4;
-  e.middle_of_long = (c[longest] + c[(longest + 1) % 4]) / 2;
-  e.along = side(longest);
-  e.along.y() = 0;
-  e.along.normalize();
-  e.across = e.along.cross(Vector::UnitY());
-  if (e.across.dot(e.middle_of_long - e.center) < 0) e.across = -e.across;
-  return e;
-}
 
 }  // namespace
 
@@ -239,27 +266,6 @@ double highest_below(const ColliderMesh& mesh, const Footprint& f) {
     for (const Vector& p : part) highest = std::max(highest, p.y());
   }
   return highest;
-}
-
-TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m) {
-  const Edges e = edges_of(table);
-  const double highest =
-      highest_below(mesh, {to_vec3(e.center), {to_vec3(e.along), to_vec3(e.across)}, {cloth.width_m, cloth.height_m}});
-  if (!std::isfinite(highest))
-    throw Error("/cloth/pose/over_table: expected a part of the table's mesh below the cloth");
-  // axis_u x axis_v points down, as for the sheet of the other scenes: u, v = x, z.
-  Vector v = e.along.cross(Vector::UnitY());
-  return {{e.center.x(), highest + drop_m, e.center.z()}, to_vec3(e.along), to_vec3(v)};
-}
-
-TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt,
-                            double inset_m) {
-  const Edges e = edges_of(table);
-  const Vector rising = std::cos(tilt) * e.along + std::sin(tilt) * Vector::UnitY();
-  // The lowest corner is u0v0. The sheet's diagonal from it rises; u and v are at 45 degrees to that diagonal.
-  const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
-  const Vector lowest = e.middle_of_long - inset_m * e.across + drop_m * Vector::UnitY();
-  return {to_vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), to_vec3(u), to_vec3(v)};
 }
 
 }  // namespace clothbench

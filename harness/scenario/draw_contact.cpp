@@ -12,8 +12,6 @@
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
 #include "scenario/collider_reader.hpp"
-#include "scenario/recorded_hand.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -127,7 +125,7 @@ bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
 
 /// Each range is a dotted key of the scene.
 double draw_keys(json& scene, DrawnValues& draw) {
-  for (const std::string& key : draw.names()) {
+  for (const auto& [key, unused] : draw.ranges().items()) {
     const auto [low, high] = draw.bounds(key);
     const double x = is_wide(low, high) ? draw.log_between(key) : draw.between(key);
     apply_override(scene, key + "=" + json(x).dump(), draw.at());
@@ -274,7 +272,6 @@ ContactKind contact_kind(const json& entry, const std::filesystem::path& base, c
 }
 
 ContactDrawer::ContactDrawer(Assets assets) : source_(assets::locate_assets(assets == Assets::Required)) {}
-ContactDrawer::~ContactDrawer() = default;
 
 json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std::uint64_t seed) {
   DrawnValues draw(Dice(seed, kind.name), kind.ranges, kind.at + "/ranges");
@@ -288,7 +285,7 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
   if (kind.how == "desk") {
     if (!tables_) {
       const json& room = scene["colliders"][0];
-      tables_ = std::make_unique<Tables>(source_, room.value("below_m", 0.1), room.value("above_m", 0.05));
+      tables_ = std::make_shared<Tables>(source_, room.value("below_m", 0.1), room.value("above_m", 0.05));
     }
     speed = tables_->draw(scene, draw);
   } else if (kind.how == "box") {
@@ -357,12 +354,6 @@ int DrawnValues::whole(const std::string& name) {
   const int x = dice_.whole(static_cast<int>(low), static_cast<int>(high));
   note(name, x);
   return x;
-}
-
-std::vector<std::string> DrawnValues::names() const {
-  std::vector<std::string> out;
-  for (const auto& [name, unused] : ranges_.items()) out.push_back(name);
-  return out;
 }
 
 void DrawnValues::check_all_used() const {

@@ -39,7 +39,6 @@ class ContactDrawer {
  public:
   /// Throws Error with Assets::Required if rooms or hands have not been fetched.
   explicit ContactDrawer(Assets assets);
-  ~ContactDrawer();
 
   /// An ordinary scene, not completed, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Randomly chosen are:
   ///   desk     any table of any room; position on it, height, yaw, tilt, initial velocity (any direction not upwards)
@@ -59,7 +58,7 @@ class ContactDrawer {
  private:
   struct Tables;
   assets::AssetSource source_;
-  std::unique_ptr<Tables> tables_;
+  std::shared_ptr<Tables> tables_;
 };
 
 /// Values chosen at random from named ranges and noted under their names.
@@ -76,7 +75,7 @@ class DrawnValues {
 
   /// Lower and upper bound of a range. Throws Error if it is missing or empty.
   std::array<double, 2> bounds(const std::string& name);
-  std::vector<std::string> names() const;
+  const nlohmann::json& ranges() const { return ranges_; }
   const std::string& at() const { return at_; }
 
   void note(const std::string& name, nlohmann::json value) { values_[name] = std::move(value); }

@@ -121,7 +121,7 @@ ClothMesh drawn_mesh(const DrawnSheet& d) {
       for (const auto& [a, b, c] : sheet) triangles.push_back({first + a, first + b, first + c});
     }
   const auto vertices = static_cast<std::uint32_t>(at.size());
-  ClothMesh mesh = cloth_mesh(std::move(at), std::move(triangles), "a drawn sheet");
+  ClothMesh mesh = cloth_mesh({std::move(at), std::move(triangles)}, "a drawn sheet");
   for (std::uint32_t v = 0; v < vertices; ++v) {
     const auto& [x, y] = p[v % p.size()];
     if (d.clamp && x <= cell) mesh.groups["clamp"].push_back(v);

@@ -91,8 +91,8 @@ std::vector<double> speeds_of(const Scene& scene, bool with_recorded) {
       const std::vector<double> was = points(scene.motion[f - 1].colliders[k]),
                                 is = points(scene.motion[f].colliders[k]);
       const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
-      for (std::size_t x = 0; x < is.size(); x += 3)
-        most[f] = std::max(most[f], std::hypot(is[x] - was[x], is[x + 1] - was[x + 1], is[x + 2] - was[x + 2]) / dt);
+      for (std::size_t x = 0; x < is.size() / 3; ++x)
+        most[f] = std::max(most[f], hypot_of(minus(vertex_at(is, x), vertex_at(was, x))) / dt);
     }
   }
   return most;
@@ -104,8 +104,7 @@ std::vector<double> grip_speeds(const Scene& scene) {
     const double dt = scene.time.dt_after(static_cast<int>(f) - 1);
     for (std::size_t g = 0; g < scene.motion[f].grip_position_m.size(); ++g) {
       const Vec3 &a = scene.motion[f - 1].grip_position_m[g], &b = scene.motion[f].grip_position_m[g];
-      if (scene.motion[f].grip_held[g] != 0)
-        most[f] = std::max(most[f], std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / dt);
+      if (scene.motion[f].grip_held[g] != 0) most[f] = std::max(most[f], hypot_of(minus(b, a)) / dt);
     }
   }
   return most;
@@ -156,12 +155,8 @@ Vec3 draped_row(const Cloth& c, int i, double offset_m) {
             last = static_cast<int>(std::floor(middle + (std::numbers::pi / 2 + turn / 2 - slack) / turn));
   const int on = std::clamp(i, first, last);
   const double angle = angle_of(on), hang = std::abs(i - on) * c.du();
-  const Vec3 normal = normal_of(c);
-  Vec3 p{};
-  for (std::size_t k = 0; k < 3; ++k)
-    p[k] = c.center_m[k] - c.drape_radius_m * std::cos(angle) * c.axis_u[k] +
-           (hang - c.drape_radius_m * std::sin(angle)) * normal[k];
-  return p;
+  return plus(minus(c.center_m, scaled(c.drape_radius_m * std::cos(angle), c.axis_u)),
+              scaled(hang - c.drape_radius_m * std::sin(angle), normal_of(c)));
 }
 
 std::vector<std::uint32_t> edge_vertices(const Cloth& c, const std::string& edge) { return grid_line(c, edge, 0); }
@@ -259,8 +254,7 @@ double grip_speed_m_per_s(const Scene& scene) { return greatest(grip_speeds(scen
 double grip_strain(const Scene& scene) {
   if (scene.motion.empty()) return 0;
   const auto apart = [](const FrameMotion& m, std::size_t g) {
-    const Vec3 &a = m.grip_position_m[0], &b = m.grip_position_m[g];
-    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    return hypot_of(minus(m.grip_position_m[g], m.grip_position_m[0]));
   };
   const FrameMotion& start = scene.motion.front();
   double most = 0;

@@ -6,7 +6,6 @@
 #include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -59,13 +58,8 @@ class IrregularReader {
 
   void start(const json& j) {
     Start& s = s_.cloth.start;
-    const auto shape = j["shape"].get<std::string>();
-    s.shape = shape == "sphere"   ? Start::Shape::Sphere
-              : shape == "plane"  ? Start::Shape::Plane
-              : shape == "line"   ? Start::Shape::Line
-              : shape == "point"  ? Start::Shape::Point
-              : shape == "folded" ? Start::Shape::Folded
-                                  : Start::Shape::Rest;
+    constexpr std::array kShapes = {"rest", "sphere", "plane", "line", "point", "folded"};  // as Start::Shape
+    s.shape = static_cast<Start::Shape>(std::find(kShapes.begin(), kShapes.end(), j["shape"]) - kShapes.begin());
     s.radius_m = j["radius_m"].get<double>();
     s.folds = j["folds"].get<int>();
     s.noise_m = j["noise_m"].get<double>();

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "base/data_folder.hpp"
 #include "base/files.hpp"
@@ -15,7 +16,6 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/vec3.hpp"
 
 namespace clothbench {
 namespace {
@@ -46,9 +46,7 @@ void read_shape(json& j, Cloth& c, const std::string& source, const SceneParts& 
              fmt::format("at most {} vertices; found {}", kMostVertices, c.mesh->vertices.size()));
     c.columns = static_cast<int>(c.mesh->vertices.size());
     c.rows = 1;
-    const auto [longest, second] = longest_sides(*c.mesh);
-    c.width_m = longest;
-    c.height_m = second;
+    std::tie(c.width_m, c.height_m) = longest_sides(*c.mesh);
     return;
   }
   for (const char* needed : {"grid", "size_m"})

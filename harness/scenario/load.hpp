@@ -3,7 +3,6 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -37,6 +36,9 @@ Scene scene_from_json(nlohmann::json scenario, const std::string& source,
 /// Sets `dotted.key` to a JSON value (a bare word counts as a string). The key's parent must exist or be an object of
 /// the scene format. A number is an index into a list (colliders.0.friction). The caller validates the result.
 void apply_override(nlohmann::json& scenario, const std::string& assignment, const std::string& source);
+
+/// Converts a JSON array of three numbers, already validated by the schema.
+inline Vec3 vec3(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 
 /// The features that a solver needs to run the scene.
 FeatureSet derive_needs(const Scene&);

@@ -41,12 +41,8 @@ struct AlongU {
 
 AlongU along_u(const Cloth& c) {
   if (!c.mesh) return {-c.width_m / 2, c.width_m};
-  double low = c.mesh->vertices.front()[0], high = low;
-  for (const Vec3& x : c.mesh->vertices) {
-    low = std::min(low, x[0]);
-    high = std::max(high, x[0]);
-  }
-  return {low, high - low};
+  const auto [low, high] = std::ranges::minmax(c.mesh->vertices);  // by u first
+  return {low[0], high[0] - low[0]};
 }
 
 /// Position [m] of a vertex in column i, in the frame (axis_u, axis_v, normal) about the centre.
@@ -55,8 +51,6 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
   const double turn = 2 * std::numbers::pi * random.uniform(), share = random.uniform();
   const double u = c.mesh ? c.mesh->vertices[static_cast<std::size_t>(i)][0] : c.line_u_m(i) - c.width_m / 2;
   switch (s.shape) {
-    case Start::Shape::Rest:
-      return {};
     case Start::Shape::Sphere: {
       const double height = 2 * share - 1, ring = std::sqrt(1 - height * height);  // Archimedes: uniform in height
       return {s.radius_m * ring * std::cos(turn), s.radius_m * ring * std::sin(turn), s.radius_m * height};
@@ -67,10 +61,10 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
     }
     case Start::Shape::Line:
       return {u, 0, 0};
+    case Start::Shape::Rest:
     case Start::Shape::Point:
-      return {0, 0, 0};
-    case Start::Shape::Folded:
-      break;  // depends on j: see put_shape
+    case Start::Shape::Folded:  // depends on j: see put_shape
+      break;
   }
   return {};
 }
@@ -145,9 +139,8 @@ std::vector<double> initial_velocities(const Scene& scene) {
   std::vector<double> v;
   v.reserve(x.size());
   for (std::size_t i = 0; i < c.vertex_count(); ++i) {
-    const Vec3 arm = {x[3 * i] - c.center_m[0], x[3 * i + 1] - c.center_m[1], x[3 * i + 2] - c.center_m[2]};
-    const Vec3 turning = cross(c.spin_rad_per_s, arm);
-    for (std::size_t k = 0; k < 3; ++k) v.push_back(c.initial_velocity_m_per_s[k] + turning[k]);
+    const Vec3 turning = cross(c.spin_rad_per_s, minus(vertex_at(x, i), c.center_m));
+    for (const double value : plus(c.initial_velocity_m_per_s, turning)) v.push_back(value);
   }
   return v;
 }

@@ -5,14 +5,13 @@
 #include <algorithm>
 
 #include "assets/assets.hpp"
-#include "assets/hand_track.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
-#include "render/surfaces.hpp"
+#include "render/camera.hpp"
 #include "results/store.hpp"
+#include "scenario/collider_reader.hpp"
 #include "scenario/load.hpp"
-#include "scenario/recorded_hand.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -22,11 +21,6 @@ using assets::Side;
 using nlohmann::json;
 
 const std::vector<std::string> kScriptedAlone = {"expect", "truth", "stability", "seed"};
-
-Side side_of_track(const fs::path& file) {
-  const json track = parse_json(read_text(file), file.string());
-  return assets::is_hand_recording(track) ? assets::read_hand_recording(file).side : assets::read_hand_track(file).side;
-}
 
 }  // namespace
 
@@ -54,9 +48,9 @@ void LiveScene::find_live(const std::string& source) {
     if (type != "hand_capsules" && type != "hand_mesh") continue;
     LiveHand hand;
     hand.collider = k;
-    const json& track = list[k]["track"];
-    hand.side = track.is_object() ? (track["hand"] == "left" ? Side::Left : Side::Right)
-                                  : side_of_track(file_of_scene(track.get<std::string>(), source).value());
+    json track = list[k]["track"];
+    if (track.is_string()) track = json::parse(read_text(file_of_scene(track.get<std::string>(), source).value()));
+    hand.side = track["hand"] == "left" ? Side::Left : Side::Right;
     hand.as_mesh = type == "hand_mesh";
     hand.file = std::string(assets::name_of(hand.side)) + "-hand.json";
     if (wants(hand.side))
@@ -86,9 +80,7 @@ bool LiveScene::wants(Side side) const {
 }
 
 Vec3 LiveScene::place_m() const {
-  const std::vector<double> x = initial_positions(written_);
-  render::Bounds cloth = render::Bounds::none();
-  for (std::size_t v = 0; v < written_.cloth.vertex_count(); ++v) cloth.add(vertex_at(x, v));
+  const render::Bounds cloth = render::Bounds::of(initial_positions(written_));
   return minus({0, -0.1, -0.6}, scaled(0.5, plus(cloth.low, cloth.high)));
 }
 
@@ -113,7 +105,8 @@ const Scene& LiveScene::begin(const Begin& b) {
 
 ColliderPose LiveScene::pose(const LiveHand& h, const assets::RecordedHand& now) const {
   const assets::Vector none = assets::Vector::Zero();
-  return h.as_mesh ? mesh_pose(*h.mesh, assets::pose_of(now).joints, none) : capsules_pose(h.recording, now, none);
+  return h.as_mesh ? mesh_pose(*h.mesh, assets::pose_of(now).joints, none)
+                   : capsules_pose(assets::capsules(h.recording, now), none);
 }
 
 const FrameMotion* LiveScene::next(int index, const HandsNow& now) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/hand_recording.hpp"
+#include "assets/hand_track.hpp"
 #include "clothbench/scene.hpp"
 #include "xr/loop.hpp"
 

@@ -6,15 +6,13 @@
 #include <cmath>
 #include <thread>
 
-#include "clothbench/vector.hpp"
 #include "common/gpu_solver.hpp"
 #include "results/store.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/solver_run.hpp"
-#include "xr/hands.hpp"
 #include "xr/live_scene.hpp"
-#include "xr/painter.hpp"
+#include "xr/session.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -78,7 +76,8 @@ class Loop {
         frame();
       }
       if (run_ == nullptr && !asked_to_exit_ && seconds(start, Clock::now()) > o_.timeout_s)
-        throw Error(fmt::format("the session did not begin within {:g} s: {}", o_.timeout_s, waiting_for()),
+        throw Error(fmt::format("the session did not begin within {:g} s: {}", o_.timeout_s,
+                                session_.running() ? "no hand was seen" : "the headset does not run it (is it worn?)"),
                     ExitCode::CheckFailed);
     }
     painter_.wait();
@@ -99,11 +98,6 @@ class Loop {
     if (o_.tell) o_.tell(text);
   }
 
-  std::string waiting_for() const {
-    if (!session_.running()) return "the headset does not run it (is it worn?)";
-    return "no hand was seen";
-  }
-
   /// The cloth before anything is live, so that the user sees where it is.
   void show_at_rest() {
     const Scene& s = live_.written();
@@ -118,7 +112,8 @@ class Loop {
     session_.begin_frame();
     const bool live = run_ != nullptr && !done_;
     FrameRow row;
-    row.predicted_display_s = static_cast<double>(state.predictedDisplayTime - first_time(state, live)) * 1e-9;
+    if (live && log_.rows().empty()) first_time_ = state.predictedDisplayTime;
+    row.predicted_display_s = static_cast<double>(state.predictedDisplayTime - first_time_) * 1e-9;
     row.predicted_period_s = static_cast<double>(state.predictedDisplayPeriod) * 1e-9;
     live ? step(state.predictedDisplayTime, row) : prepare(state);
     try {
@@ -140,11 +135,6 @@ class Loop {
       views = session_.views(state.predictedDisplayTime);
     if (!views.empty()) paint(views);
     session_.end_frame(state, views);
-  }
-
-  XrTime first_time(const XrFrameState& state, bool live) {
-    if (live && log_.rows().empty()) first_time_ = state.predictedDisplayTime;
-    return first_time_;
   }
 
   /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
@@ -201,10 +191,8 @@ class Loop {
     shown_.cloth = s.cloth;
     shown_.colliders = s.colliders;
     if (!live_.motion().empty()) shown_.motion.push_back(live_.motion().front());
-    near_ = render::Bounds::none();
-    const std::vector<double> x = initial_positions(s);
-    for (std::size_t v = 0; v < s.cloth.vertex_count(); ++v) near_.add(vertex_at(x, v));
-    near_.grow(std::max({s.cloth.width_m, s.cloth.height_m}));
+    near_ = render::Bounds::of(initial_positions(s));
+    near_.grow(std::max(s.cloth.width_m, s.cloth.height_m));
     stale_ = true;
   }
 
@@ -230,10 +218,9 @@ class Loop {
       outcome_ = outcome_of(status, index);
       done_ = true;
     }
-    const FrameMotion* motion = input.motion;
     shown_.motion.clear();
-    if (motion != nullptr) shown_.motion.push_back(*motion);
-    stale_ = stale_ || motion != nullptr;
+    if (input.motion != nullptr) shown_.motion.push_back(*input.motion);
+    stale_ = stale_ || input.motion != nullptr;
   }
 
   void paint(const std::vector<XrView>& views) {
@@ -341,25 +328,6 @@ LoopResult run_loop(const LoopOptions& options) {
   const std::shared_ptr<vulkan::Device> device = xr.make_device(options.device);
   Session session(xr, device, {options.rate_hz, live.place_m()});
   return Loop(options, xr, live, session, device).run();
-}
-
-nlohmann::json loop_json(const LoopResult& r) {
-  return {{"file", r.file.string()},
-          {"scenario", r.scenario.string()},
-          {"status", r.outcome.status},
-          {"message", r.outcome.message},
-          {"summary", r.summary}};
-}
-
-std::string loop_text(const LoopResult& r) {
-  const auto of = [&](const char* name) { return r.summary.contains(name) ? r.summary.at(name) : kMissing; };
-  return fmt::format("{:.0f} frames: {}\n", of("xr_frames"), r.outcome.status) +
-         fmt::format("frames per second  median {:.1f}   slowest {:.1f}\n", of("xr_fps_median"), of("xr_fps_worst")) +
-         fmt::format("late frames        {:.1f} %\n", 100 * of("xr_late_frames")) +
-         fmt::format("step               median {:.3f} ms\n", 1e3 * of("frame_wall_median_s")) +
-         fmt::format("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s")) +
-         fmt::format("results in {}; the session replays with: clothbench run {}\n", r.file.string(),
-                     r.scenario.string());
 }
 
 }  // namespace clothbench::xr

@@ -45,8 +45,4 @@ struct LoopResult {
 /// there is no headset.
 LoopResult run_loop(const LoopOptions&);
 
-/// File, scenario, outcome and summary; and the same for the terminal.
-nlohmann::json loop_json(const LoopResult&);
-std::string loop_text(const LoopResult&);
-
 }  // namespace clothbench::xr

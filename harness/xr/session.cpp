@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+
+#include "clothbench/record.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -10,6 +14,39 @@ namespace {
 constexpr auto kViews = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 /// Those the renderer's colours are right in: what it writes is linear.
 constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
+
+using assets::Side;
+
+static_assert(assets::kRecordedJointCount == XR_HAND_JOINT_COUNT_EXT);
+static_assert(std::extent_v<decltype(XrHandTrackingCapsulesStateFB::capsules)> == assets::kCapsuleCount);
+
+/// Whether position and orientation are known.
+bool is_known(XrSpaceLocationFlags flags) {
+  constexpr XrSpaceLocationFlags kKnown =
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  return (flags & kKnown) == kKnown;
+}
+
+std::array<float, 3> three(const XrVector3f& v) { return {v.x, v.y, v.z}; }
+
+assets::RecordedJoint joint(const XrPosef& p, float radius) {
+  return {three(p.position), {p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w}, radius};
+}
+
+using vulkan::check;
+
+Vec3 vector_of(const XrVector3f& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// The axes x, y, z of an orientation.
+std::array<Vec3, 3> axes_of(const XrQuaternionf& q) {
+  const Eigen::Matrix3d m = Eigen::Quaternionf(q.w, q.x, q.y, q.z).cast<double>().toRotationMatrix();
+  return {{{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}}};
+}
+
+constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand before the face; the far end of a hall
+constexpr std::uint64_t kTimeout_ns = 10'000'000'000;
 
 }  // namespace
 
@@ -202,6 +239,134 @@ void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& vi
   info.layerCount = views.empty() ? 0 : 1;
   info.layers = &layer;
   xr_.check(xr_.xr().xrEndFrame(session_, &info), "xrEndFrame");
+}
+
+Hands::Hands(const Session& session) : session_(session) {
+  const Instance& xr = session.instance();
+  capsules_ = xr.has(XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME);
+  locate_ = xr.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
+  const auto create = xr.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
+  for (const Side side : {Side::Left, Side::Right}) {
+    auto info = blank<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
+    info.hand = side == Side::Left ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
+    info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
+    xr.check(create(session.handle(), &info, &trackers_[static_cast<std::size_t>(side)]), "xrCreateHandTrackerEXT");
+  }
+}
+
+Hands::~Hands() {
+  const auto destroy = session_.instance().function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
+  for (const XrHandTrackerEXT t : trackers_)
+    if (t != XR_NULL_HANDLE) destroy(t);
+}
+
+std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {
+  auto info = blank<XrHandJointsLocateInfoEXT>(XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
+  info.baseSpace = session_.space();
+  info.time = time;
+  auto shapes = blank<XrHandTrackingCapsulesStateFB>(XR_TYPE_HAND_TRACKING_CAPSULES_STATE_FB);
+  std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> joints{};
+  auto found = blank<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
+  // The headers of 1.0.20 chain this struct to the input; the specification chains it to the output.
+  found.next = capsules_ ? &shapes : nullptr;
+  found.jointCount = static_cast<std::uint32_t>(joints.size());
+  found.jointLocations = joints.data();
+  session_.instance().check(locate_(trackers_[static_cast<std::size_t>(side)], &info, &found), "xrLocateHandJointsEXT");
+  if (found.isActive != XR_TRUE) return std::nullopt;
+  assets::RecordedHand hand;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (!is_known(joints[k].locationFlags)) return std::nullopt;
+    hand.joints[k] = joint(joints[k].pose, joints[k].radius);
+  }
+  if (capsules_)
+    for (std::size_t k = 0; k < hand.capsules.size(); ++k)
+      hand.capsules[k] = {three(shapes.capsules[k].points[0]), three(shapes.capsules[k].points[1]),
+                          shapes.capsules[k].radius};
+  if (!assets::usable(hand)) return std::nullopt;
+  return hand;
+}
+
+render::Mat4 view_of(const XrPosef& pose, const Vec3& origin_m) {
+  const auto [right, up, back] = axes_of(pose.orientation);
+  return render::Camera{vector_of(pose.position), right, up, back}.view(origin_m);
+}
+
+render::Mat4 projection_of(const XrFovf& fov, double near_m, double far_m) {
+  const double left = std::tan(static_cast<double>(fov.angleLeft)),
+               right = std::tan(static_cast<double>(fov.angleRight));
+  const double up = std::tan(static_cast<double>(fov.angleUp)), down = std::tan(static_cast<double>(fov.angleDown));
+  render::Mat4 m{};
+  m[0] = 2 / (right - left);
+  m[8] = (right + left) / (right - left);
+  m[5] = -2 / (up - down);
+  m[9] = -(up + down) / (up - down);
+  m[10] = -far_m / (far_m - near_m);
+  m[14] = -far_m * near_m / (far_m - near_m);
+  m[11] = -1;
+  return m;
+}
+
+Painter::Painter(std::shared_ptr<vulkan::Device> device, Session& session)
+    : device_(std::move(device)), session_(session), renderer_(device_, session.format()), device_s_(kMissing) {
+  *fence_.create(device_->handle()) = vulkan::make_fence(*device_);
+  if (device_->has_timestamps()) *queries_.create(device_->handle()) = vulkan::make_timestamps(*device_, 2);
+  commands_ = vulkan::make_commands(*device_);
+}
+
+Painter::~Painter() {
+  vkDeviceWaitIdle(device_->handle());
+  for (const Eye& eye : session_.eyes())
+    for (const VkImage image : eye.images) renderer_.forget(image);
+  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands_);
+}
+
+void Painter::wait() {
+  if (!in_flight_) return;
+  const VkFence fence = fence_;
+  check(vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, kTimeout_ns), "vkWaitForFences");
+  in_flight_ = false;
+  check(vkResetFences(device_->handle(), 1, &fence), "vkResetFences");
+  if (queries_ == VK_NULL_HANDLE) return;
+  std::array<std::uint64_t, 2> ticks{};
+  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, 2, sizeof ticks, ticks.data(), 8, VK_QUERY_RESULT_64_BIT),
+        "vkGetQueryPoolResults");
+  device_s_ = device_->seconds(ticks[0], ticks[1]);
+}
+
+void Painter::paint(const std::vector<XrView>& views) {
+  wait();
+  const Instance& xr = session_.instance();
+  std::array<std::uint32_t, 2> index{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const XrSwapchain images = session_.eyes()[k].swapchain;
+    auto acquire = blank<XrSwapchainImageAcquireInfo>(XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
+    xr.check(xr.xr().xrAcquireSwapchainImage(images, &acquire, &index[k]), "xrAcquireSwapchainImage");
+    auto wait = blank<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
+    wait.timeout = XR_INFINITE_DURATION;
+    xr.check(xr.xr().xrWaitSwapchainImage(images, &wait), "xrWaitSwapchainImage");
+  }
+  record(index, views);
+  vulkan::submit(*device_, commands_, fence_);
+  in_flight_ = true;
+  for (const Eye& eye : session_.eyes()) {
+    auto release = blank<XrSwapchainImageReleaseInfo>(XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
+    xr.check(xr.xr().xrReleaseSwapchainImage(eye.swapchain, &release), "xrReleaseSwapchainImage");
+  }
+}
+
+void Painter::record(const std::array<std::uint32_t, 2>& index, const std::vector<XrView>& views) {
+  vulkan::begin(commands_);
+  if (queries_ != VK_NULL_HANDLE) {
+    vkCmdResetQueryPool(commands_, queries_, 0, 2);
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries_, 0);
+  }
+  std::vector<render::Drawing> drawings;
+  for (std::size_t k = 0; k < 2; ++k)
+    drawings.push_back({session_.eyes()[k].images.at(index[k]), session_.extent(),
+                        view_of(views[k].pose, renderer_.origin()), projection_of(views[k].fov, kNear_m, kFar_m)});
+  renderer_.record(commands_, drawings);
+  if (queries_ != VK_NULL_HANDLE) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
 }  // namespace clothbench::xr

@@ -1,9 +1,12 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "assets/hand_track.hpp"
 #include "clothbench/collider.hpp"
+#include "render/scene_renderer.hpp"
 #include "xr/instance.hpp"
 
 namespace clothbench::xr {
@@ -67,5 +70,57 @@ class Session {
   std::array<Eye, 2> eyes_;
   XrEnvironmentBlendMode blend_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 };
+
+/// Hands tracked by the runtime (XR_EXT_hand_tracking), with its capsules if it provides them.
+class Hands {
+ public:
+  explicit Hands(const Session&);
+  ~Hands();
+  Hands(const Hands&) = delete;
+  Hands& operator=(const Hands&) = delete;
+
+  /// The hand in the scene's space; empty unless every joint is known.
+  std::optional<assets::RecordedHand> at(assets::Side, XrTime) const;
+  bool has_capsules() const { return capsules_; }
+
+ private:
+  const Session& session_;
+  bool capsules_ = false;
+  PFN_xrLocateHandJointsEXT locate_ = nullptr;
+  std::array<XrHandTrackerEXT, 2> trackers_{};
+};
+
+/// Draws both eyes into the session's images in one submission and does not wait for it; the next frame does.
+class Painter {
+ public:
+  Painter(std::shared_ptr<vulkan::Device>, Session&);
+  ~Painter();
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+
+  /// The renderer. Surfaces and positions may be replaced only after `wait`.
+  render::SceneRenderer& renderer() { return renderer_; }
+  /// Waits until the pictures submitted last are drawn. Throws vulkan::Failure.
+  void wait();
+  void paint(const std::vector<XrView>& views);
+  double device_s() const { return device_s_; }  ///< of the pictures drawn at the last `wait`; NaN without timestamps
+
+ private:
+  void record(const std::array<std::uint32_t, 2>& index, const std::vector<XrView>& views);
+
+  std::shared_ptr<vulkan::Device> device_;
+  Session& session_;
+  render::SceneRenderer renderer_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  render::Owned<VkFence, vkDestroyFence> fence_;
+  render::Owned<VkQueryPool, vkDestroyQueryPool> queries_;
+  bool in_flight_ = false;
+  double device_s_;
+};
+
+/// View matrix of an eye, in metres relative to `origin_m`; and projection matrix of its field of view to Vulkan's clip
+/// space (y down, depth 0 at near_m to 1 at far_m).
+render::Mat4 view_of(const XrPosef&, const Vec3& origin_m);
+render::Mat4 projection_of(const XrFovf&, double near_m, double far_m);
 
 }  // namespace clothbench::xr

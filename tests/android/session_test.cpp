@@ -12,7 +12,6 @@
 #include <random>
 #include <thread>
 
-#include "android/packed_assets.hpp"
 #include "base/files.hpp"
 #include "refusal.hpp"
 #include "runner/interrupt.hpp"

@@ -10,7 +10,7 @@
 #include "assets/assets.hpp"
 #include "assets/base64.hpp"
 #include "refusal.hpp"
-#include "scenario/recorded_hand.hpp"
+#include "scenario/collider_reader.hpp"
 
 namespace clothbench::assets {
 

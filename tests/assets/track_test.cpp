@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "assets/hand_recording.hpp"
 #include "assets/hand_track.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "support.hpp"
@@ -186,7 +186,7 @@ TEST(HandTrack, AllOfTheScenariosLoad) {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(kTracks)) {
     if (entry.path().extension() != ".json") continue;
-    const HandTrack track = read_hand_track(entry.path());
+    const HandTrack track = parse_hand_track(read_text(entry.path()), entry.path().string());
     EXPECT_EQ(entry.path().filename().string().starts_with(std::string(name_of(track.side))), true) << entry.path();
     const Hand hand = open_hand(locate_assets(false), track.side);
     for (double t = 0; t <= track.duration_s(); t += 1.0 / 72)
@@ -205,8 +205,8 @@ TEST(HandTrack, StretchPullsOutwardsAtItsSpeed) {
     for (Side side : {Side::Left, Side::Right}) {
       const double sign = side == Side::Left ? -1 : 1;
       const Hand hand = open_hand(locate_assets(false), side);
-      const HandTrack track =
-          read_hand_track(kTracks / (std::string(name_of(side)) + "-hand-stretch-" + c.name + "mps.json"));
+      const HandTrack track = parse_hand_track(
+          read_text(kTracks / (std::string(name_of(side)) + "-hand-stretch-" + c.name + "mps.json")), c.name);
       const double end = 0.5 + c.way / c.speed;
       const auto point = [&](double t) { return Vector(pinch_point(sample(track, hand, t).pose)); };
       EXPECT_LT((point(0) - Vector(sign * 0.5, 0, 0)).norm(), 1e-9);

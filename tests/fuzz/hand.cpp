@@ -6,7 +6,7 @@
 #include <string>
 
 #include "fuzz.hpp"
-#include "scenario/recorded_hand.hpp"
+#include "scenario/collider_reader.hpp"
 
 namespace {
 

@@ -3,5 +3,6 @@
 #include "scenario/cloth_mesh.hpp"
 
 void clothbench::fuzz_obj(const std::uint8_t* data, std::size_t size) {
-  reads_or_refuses([&] { parse_obj(std::string(reinterpret_cast<const char*>(data), size), "mesh.obj"); });
+  reads_or_refuses(
+      [&] { cloth_mesh(read_obj(std::string(reinterpret_cast<const char*>(data), size), "mesh.obj"), "mesh.obj"); });
 }

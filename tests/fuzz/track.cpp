@@ -1,5 +1,4 @@
 // Hand tracks: text to keys, and those at another speed; recordings, and their first hand.
-#include "assets/hand_recording.hpp"
 #include "assets/hand_track.hpp"
 #include "fuzz.hpp"
 

@@ -29,7 +29,7 @@ inline Scene mesh_sheet(int n) {
         t.push_back({q, s, r});
       }
     }
-  return of_mesh(cloth_mesh(std::move(x), std::move(t), "sheet"), {0, static_cast<std::uint32_t>(n - 1)});
+  return of_mesh(cloth_mesh({std::move(x), std::move(t)}, "sheet"), {0, static_cast<std::uint32_t>(n - 1)});
 }
 
 /// A tube of radius 0.2 m and length 0.5 m, closed round z: no edge of it is on a border but at its two ends.
@@ -47,7 +47,7 @@ inline Scene mesh_tube(int around, int along) {
       t.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       t.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
-  return of_mesh(cloth_mesh(std::move(x), std::move(t), "tube"), {});
+  return of_mesh(cloth_mesh({std::move(x), std::move(t)}, "tube"), {});
 }
 
 /// One column of cells of another width.

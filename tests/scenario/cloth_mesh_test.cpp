@@ -21,8 +21,12 @@ using nlohmann::json;
 
 constexpr char kSquare[] = "# a comment\no square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\n";
 
+ClothMesh mesh_of(const std::string& text, const std::string& source) {
+  return cloth_mesh(read_obj(text, source), source);
+}
+
 TEST(ClothMesh, IsReadFromAnObjFile) {
-  const ClothMesh m = parse_obj(kSquare, "square.obj");
+  const ClothMesh m = mesh_of(kSquare, "square.obj");
   EXPECT_EQ(m.vertices.size(), 4u);
   ASSERT_EQ(m.triangles.size(), 2u) << "a quadrilateral is cut in two";
   EXPECT_EQ(m.edges.size(), 5u);
@@ -37,21 +41,21 @@ TEST(ClothMesh, IsReadFromAnObjFile) {
 
 TEST(ClothMesh, HasNoUseForSkinWeightsWhateverEndsALine) {
   for (const char* weights : {"vw 0 -1 0.5\n", "vt 0 0\rvw 0 -1 0.5\n", "vt 0 0\r\nvw 0 1e17 1\r\n"})
-    EXPECT_EQ(parse_obj(kSquare + std::string(weights), "square.obj").vertices.size(), 4u)
+    EXPECT_EQ(mesh_of(kSquare + std::string(weights), "square.obj").vertices.size(), 4u)
         << "the OBJ library would refuse, or worse";
 }
 
 TEST(ClothMesh, WhatAMarkACommentOrAContinuedLineHoldsIsRead) {
-  const ClothMesh plain = parse_obj(kSquare, "square.obj");
+  const ClothMesh plain = mesh_of(kSquare, "square.obj");
   for (const char* same : {"\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
                            "v 0 0 0 # the first\nv 1 0 0\t# f 1 2 3\nv 1 1 0\nv 0 1 0\nf 1 2 3 4 # all \\\n",
                            "v 0 0 0\nv 1 \\\n0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\r\n3 \\\r\n4\r\n",
                            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1"}) {
-    const ClothMesh m = parse_obj(same, "same.obj");
+    const ClothMesh m = mesh_of(same, "same.obj");
     EXPECT_EQ(m.vertices, plain.vertices) << same;
     EXPECT_EQ(m.triangles, plain.triangles) << same;
   }
-  EXPECT_TRUE(parse_obj("g panel#1 #2\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "m.obj").groups.contains("panel#1"));
+  EXPECT_TRUE(mesh_of("g panel#1 #2\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "m.obj").groups.contains("panel#1"));
 }
 
 TEST(ClothMesh, MakesAScene) {
@@ -120,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"v 1e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh.obj"}));
 
 TEST_P(BadObj, IsRefusedNamingFileAndWhat) {
-  const std::string message = refusal([&] { parse_obj(GetParam().text, "mesh.obj"); });
+  const std::string message = refusal([&] { mesh_of(GetParam().text, "mesh.obj"); });
   EXPECT_PRED2(mentions, message, "mesh.obj");
   EXPECT_PRED2(mentions, message, GetParam().expected);
 }

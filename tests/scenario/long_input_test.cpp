@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "assets/hand_recording.hpp"
 #include "assets/hand_track.hpp"
 #include "assets/mesh_file.hpp"
 #include "assets/room.hpp"

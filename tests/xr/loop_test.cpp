@@ -1,11 +1,11 @@
 #include <cmath>
 
-#include "assets/hand_recording.hpp"
+#include "assets/hand_track.hpp"
 #include "null_runtime/script.hpp"
 #include "refusal.hpp"
 #include "sessions.hpp"
 #include "xr/instance.hpp"
-#include "xr/painter.hpp"
+#include "xr/session.hpp"
 
 namespace clothbench::xr {
 namespace {
@@ -32,6 +32,10 @@ double furthest(const std::vector<double>& a, const std::vector<double>& b) {
   return most;
 }
 
+assets::HandRecording recording_of(const std::filesystem::path& file) {
+  return assets::parse_hand_recording(read_text(file), file.string());
+}
+
 std::string why_of(const LoopResult& r) {
   return parse_json(read_text(r.scenario.parent_path() / "right-hand.json"), "right-hand.json")["why"];
 }
@@ -39,7 +43,7 @@ std::string why_of(const LoopResult& r) {
 TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   const LoopOptions o = options("paper/capsule-sweep", 50);
   const LoopResult r = run(o, "blind=1");
-  const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
+  const assets::HandRecording hand = recording_of(r.scenario.parent_path() / "right-hand.json");
   EXPECT_TRUE(hand.has_capsules);
   EXPECT_NE(why_of(r).find("Capsules come from XR_FB_hand_tracking_capsules"), std::string::npos) << why_of(r);
   ASSERT_EQ(hand.frames.size(), 51u);
@@ -74,7 +78,7 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
 TEST_F(Sessions, WithoutThemCapsulesAreMadeOfJointsAndRadii) {
   const LoopOptions o = options("paper/capsule-sweep", 20);
   const LoopResult r = run(o, "blind=1,capsules=0");
-  const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
+  const assets::HandRecording hand = recording_of(r.scenario.parent_path() / "right-hand.json");
   EXPECT_FALSE(hand.has_capsules);
   EXPECT_NE(why_of(r).find("Capsules come from XR_EXT_hand_tracking's joints"), std::string::npos) << why_of(r);
   const Scene scene = load_scene(r.scenario.string());
@@ -96,7 +100,7 @@ TEST_F(Sessions, AHandMeshFollowsTheJoints) {
 TEST_F(Sessions, AHandOutOfSightStaysWhereItWas) {
   const LoopOptions o = options("paper/capsule-sweep", 40);
   const LoopResult r = run(o, "blind=1,unseen=20:28");
-  const assets::HandRecording hand = assets::read_hand_recording(r.scenario.parent_path() / "right-hand.json");
+  const assets::HandRecording hand = recording_of(r.scenario.parent_path() / "right-hand.json");
   int unseen = 0;
   for (std::size_t k = 0; k < r.log.rows().size(); ++k) {
     const bool stood = hand.frames[k + 1].joints[0].position_m == hand.frames[k].joints[0].position_m;
