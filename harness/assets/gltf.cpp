@@ -155,7 +155,7 @@ class MeshReader {
     const std::size_t count = x.size() / 3;
     const std::vector<double> corners = indices(p, count);
     if (corners.size() % 3 != 0) fail(source_, where + ": expected indices in threes");
-    // Primitives may share one list of vertices, so only those that triangles name are taken.
+    // Primitives may share one list of vertices; keep only vertices that triangles of this primitive use.
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> taken(count, kNone);
     const bool mirrored = place.linear().determinant() < 0;

@@ -39,8 +39,8 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// taken for a difference of the builds. True if a start is not known.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; the verdict of a whole is the worst verdict of its parts. Changed: of two builds, neither
-/// of which is right.
+/// Ordered from good to bad; several parts together have their worst verdict. Changed: two builds differ, and neither
+/// is known to be right.
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
@@ -81,9 +81,9 @@ struct Checked {
 /// The fault of the motion in the record's file; empty if there is none, or if it was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
-/// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
-/// another; and what is wrong with the motion in its file, if it has one (results/store.hpp). If the outcome
-/// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
+/// Differences of `record` from its baseline (outcome, stages, gated scalars), trials that repeat another one, and
+/// faults of the stored motion (results/store.hpp). If the outcome differs, the rest is not compared. Throws Error if
+/// the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine

@@ -275,7 +275,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
-    // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
+    // A pulled strip that no solver was timed on is listed with the scenes with contact.
     if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

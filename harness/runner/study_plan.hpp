@@ -52,7 +52,7 @@ struct ChosenSolver {
 ChosenSolver chosen_solver(const std::string& name, const Overrides&);
 
 /// Solvers of the build, and the plugins that --solver or the environment name. Throws Error for a library that is
-/// none.
+/// no plugin.
 std::vector<const SolverEntry*> all_solvers();
 
 /// Names of all solvers of the build, or of those that `are` accepts.

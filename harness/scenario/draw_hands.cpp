@@ -120,7 +120,7 @@ double draw_stretch(json& scene, DrawnValues& draw) {
     t.go(kHold_s, there);
     t.go(kOpen_s, there)["pose"] = "relaxed";
     t.go(kAway_s, there);
-    // Half a cell reaches a vertex of the edge, wherever the hand is.
+    // With a radius above half a cell, the hand reaches a vertex of the edge anywhere.
     scene["grips"].push_back({{"track", t.object()}, {"radius_m", rounded(0.55 * 2 * kHalfWidth_m / cells)}});
     set_time(scene, t.end_s(), speed);
   }

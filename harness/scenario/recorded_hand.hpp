@@ -14,7 +14,7 @@ std::optional<std::filesystem::path> file_of_scene(const std::string& name, cons
 
 /// A mesh for solvers; `closed` if it is the closed surface of a solid, with outward normals.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
-/// The same for a hand's mesh, which follows its joints.
+/// The collider mesh of a hand, which follows the hand's joints.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 
 /// The 19 capsules of a recorded hand; and the matrices by which the mesh of a hand follows its joints. A replay and

@@ -18,8 +18,8 @@ struct Face {
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. For a box: the face below all four corners at the start and moved by
-/// `displacement`.
+/// The face of a collider under the sheet. Of a box: the face that is below all four corners of the sheet, at the
+/// start and after `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {
@@ -193,7 +193,7 @@ ReferenceCase capstan(const Strip& s) {
   known.by_quantity = known.smooth_law = true;
   known.quantity = displacement_over(s);
   if (end > 0) known.quantity_scale = end;
-  // At rest exactly where the scene puts it.
+  // While nothing slides, these are exactly the scene's positions.
   known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
   known.continuum = [s, smooth](double share, int frame) {
     return draped_columns(s, smooth(frame)).at(static_cast<std::size_t>(std::lround(share * s.links)));

@@ -149,8 +149,8 @@ class Loop {
     return first_time_;
   }
 
-  /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
-  /// their kernels the first time, which takes so long that the hands are elsewhere afterwards.
+  /// Frames before the session's first one, until the rate is settled and hands are tracked. The scene is begun twice:
+  /// the first time, solvers compile their kernels, and the hands move on meanwhile.
   void prepare(const XrFrameState& state) {
     if (done_ || !rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
     LiveScene::Begin b;
@@ -180,8 +180,8 @@ class Loop {
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
   }
 
-  /// A display changes its rate some frames after it was asked to, if it has that rate. Else the highest rate counts,
-  /// because runtimes name multiples of the display's period after slow frames, as a solver's first step is one.
+  /// A display changes to a requested rate after some frames, if it offers that rate. Otherwise the highest rate
+  /// counts, because after slow frames, such as a solver's first, runtimes report multiples of the display's period.
   bool rate_settled(double period_s) {
     constexpr double kTimeout_s = 1, kSame_hz = 0.5, kFastest_hz = 1000;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();

@@ -21,7 +21,7 @@ std::array<Vec3, 3> axes_of(const XrQuaternionf& q) {
   return {{{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}}};
 }
 
-constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand before the face; the far end of a hall
+constexpr double kNear_m = 0.05, kFar_m = 100;  // a hand close to the face; the far end of a hall
 constexpr std::uint64_t kTimeout_ns = 10'000'000'000;
 
 }  // namespace

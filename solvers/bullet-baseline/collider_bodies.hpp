@@ -13,19 +13,19 @@ btVector3 to_bullet(const Vec3&);
 
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
 ///
-/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, like the ground in
-/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. A mesh is a thin body for each
-/// triangle; triangles of a moving mesh keep the shape they have at the start.
+/// Spheres, boxes and capsules are exact. A plane is the top of a large box, like the ground in Bullet's own examples:
+/// for soft bodies, Bullet treats btStaticPlaneShape as such a slab, too. A mesh is one thin body per triangle;
+/// triangles of a moving mesh keep their initial shape.
 class ColliderBodies {
  public:
-  /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
+  /// Adds the bodies to `world`, which must outlive this object. Throws Error on a capsule that changes its length.
   ColliderBodies(const Scene&, btDiscreteDynamicsWorld& world);
   ~ColliderBodies();
   ColliderBodies(const ColliderBodies&) = delete;
   ColliderBodies& operator=(const ColliderBodies&) = delete;
 
-  /// Moves dynamic colliders to `share` of the straight path from one instant to the next. Bullet derives their
-  /// velocities in the step that follows.
+  /// Moves kinematic colliders to the fraction `share` of the straight path from `from` to `to`. Bullet's next step
+  /// computes their velocities.
   void move(const FrameMotion& from, const FrameMotion& to, double share);
 
  private:

@@ -57,8 +57,8 @@ class BulletSoft final : public BulletSolver {
     body_->updateLinkConstants();
     if (!touching_) return;
     body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
-    // The nodes' boxes were made with Bullet's default margin of 0.25 m, and Bullet keeps a box until its node leaves
-    // it.
+    // The nodes' boxes were made with Bullet's default margin of 0.25 m, and Bullet keeps a box as long as its node is
+    // inside.
     body_->m_sst.radmrg = body_->getCollisionShape()->getMargin();
     body_->updateNodeTree(false, true);
     touching_->world.setGravity(to_bullet(scene().gravity_m_per_s2));

@@ -22,7 +22,7 @@ StepStatus status_of(std::int32_t code) {
       return StepStatus::DeviceLost;
     case CLOTHBENCH_TIMED_OUT:
       return StepStatus::TimedOut;
-    default:  // CLOTHBENCH_DIVERGED, and what the interface does not know
+    default:  // CLOTHBENCH_DIVERGED, and any value outside the interface
       return StepStatus::Diverged;
   }
 }

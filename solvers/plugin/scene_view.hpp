@@ -20,7 +20,7 @@ class SceneView {
   /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which counts as solver
   /// time as in all solvers.
   const ClothbenchFrame* frame(const FrameInput&);
-  /// The state at the end of frame `last`; valid as above and while `state` is unchanged.
+  /// The state at the end of frame `last`. Valid until the next call of either, while `state` is unchanged.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:

@@ -185,7 +185,7 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
   return sum;
 }
 
-/// The ray follows the axis that leaves the mesh's box soonest, so the ray's box is the ray itself.
+/// The ray follows the axis along which it leaves the mesh's box soonest; along an axis, the ray's box is the ray.
 bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
   const Box& box = mesh.tree().box();
   if (mesh.triangles().empty() || !box.contains(p)) return false;
@@ -282,8 +282,8 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
-  // A vertex cannot have moved around the border if the sum of its distances to it before and after exceeds twice its
-  // displacement.
+  // A vertex cannot have moved around the border if its distances to the border, before and after, together exceed
+  // twice its displacement.
   const std::vector<Link> border = border_of(mesh);
   const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();

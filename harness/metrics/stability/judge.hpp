@@ -46,9 +46,9 @@ inline constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  ///< F2 at th
 
 }  // namespace stability
 
-/// One frame rated by the outcome classes F0 not finite or unbounded, F1 energy gained, F2 strain beyond the load (F3,
-/// budget and device, is the runner's). The numbers are compared with the thresholds above. NaN: not defined for the
-/// scene, or not yet counted.
+/// Outcome classes of one frame: F0 not finite or unbounded, F1 energy gained, F2 strain beyond the load. (The runner
+/// sets F3, budget and device.) Its numbers are compared with the thresholds above. NaN: not defined for the scene, or
+/// not judged yet.
 struct StabilityFrame {
   unsigned classes = 0;             ///< bit k: Fk, only classes that the scene judges
   double speed = kMissing;          ///< maximum vertex speed over v_char
@@ -61,8 +61,8 @@ struct StabilityFrame {
 /// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
 ///
 /// The energy gain compares visible energy (kinetic and gravitational) with the available energy: the energy at the
-/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. So
-/// the elastic energy of a model, which solvers without a modulus do not have, is never counted twice.
+/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. The
+/// elastic energy that a solver stores does not enter, because solvers without a modulus have none.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const Scene&);
