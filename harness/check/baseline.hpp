@@ -89,7 +89,7 @@ struct Baseline {
 
 /// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
 BaselineRun gated_part(const RunRecord&);
-/// The same with every scalar that does not depend on the machine.
+/// As gated_part(), but with every scalar that does not depend on the machine.
 BaselineRun whole_part(const RunRecord&);
 
 /// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a

@@ -33,7 +33,7 @@ using PatternTriangle = std::array<std::array<double, 2>, 3>;
 /// than two triangles, neighbours that are wound oppositely. `pattern_m`: shape at rest of each triangle; empty: the
 /// vertices give the rest shape.
 ClothMesh cloth_mesh(assets::MeshFile, const std::string& source, std::vector<PatternTriangle> pattern_m = {});
-/// The same of triangles whose vertices are their shape at rest.
+/// As above, from triangles whose vertices are their shape at rest.
 ClothMesh cloth_mesh(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles,
                      const std::string& source);
 

@@ -204,7 +204,7 @@ double draw_crumple(json& scene, DrawnValues& draw) {
   return after_fall(thrown, height);
 }
 
-/// Puts the quick form's ranges in the place of those of the same names.
+/// Replaces ranges by the quick form's ranges of the same name.
 void narrow(json& ranges, const json& quick) {
   for (auto& [name, range] : ranges.items())
     if (quick.contains(name)) range = quick[name];

@@ -45,7 +45,7 @@ struct LoopResult {
 /// there is no headset.
 LoopResult run_loop(const LoopOptions&);
 
-/// File, scenario, outcome and summary; and the same for the terminal.
+/// File, scenario, outcome and summary, as JSON and as text for the terminal.
 nlohmann::json loop_json(const LoopResult&);
 std::string loop_text(const LoopResult&);
 

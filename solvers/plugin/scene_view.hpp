@@ -27,7 +27,7 @@ class SceneView {
   /// Poses of all colliders at one instant, with the memory that they point to.
   struct Posed {
     std::vector<ClothbenchPose> poses;
-    std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one a collider
+    std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one per collider
   };
 
   void add_colliders();

@@ -32,7 +32,7 @@ class Holders {
         between_pins_ = std::max(between_pins_, strain(pins[i], at(pins[i]), pins[j], at(pins[j])));
   }
 
-  /// Greatest strain between two held vertices.
+  /// Maximum strain between two attached vertices.
   double imposed(const FrameMotion* m) const {
     double most = between_pins_;
     if (m == nullptr) return most;
@@ -60,7 +60,7 @@ class Holders {
   double between_pins_ = 0;
 };
 
-/// Greatest displacement of a hand or of a capsule's end in one frame.
+/// Maximum displacement of a hand or of a capsule's end in one frame.
 double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   double most = 0;
   if (hands) {

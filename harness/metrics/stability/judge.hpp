@@ -31,7 +31,7 @@ struct Bounds {
 /// colliders, and v/c for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene&);
 
-/// Greatest membrane stiffness of the scene [N/m]; 0 = inextensible.
+/// Maximum membrane stiffness of the scene [N/m]; 0 = inextensible.
 double greatest_stiffness(const Scene&);
 
 // Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.

@@ -88,7 +88,7 @@ bool is_tethered(const Scene&, const nlohmann::json& settings);
 /// squashed, coincident, pulled out of shape. No physical cloth starts so; the solver only has to recover from it.
 bool starts_crumpled(const Scene&);
 
-/// Moves every free vertex of a crumpled start by less than a thousandth of a cell a coordinate, the same in every run.
+/// Moves every free vertex of a crumpled start by less than a thousandth of a cell per axis, the same in every run.
 /// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold in it. `x`:
 /// [m].
 void break_symmetry(const Scene&, const std::vector<float>& inverse_mass, std::vector<double>& x);

@@ -195,7 +195,7 @@ Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
   return form;
 }
 
-/// The same of the linear motion of a triangle.
+/// The derivative across edge k of a triangle's linear motion.
 Form own_across(const FlatMesh& mesh, std::uint32_t t, int k) {
   const auto normal = [&](int side) {  // times length
     const Vec2 e = minus2(mesh.flat(t)[static_cast<std::size_t>((side + 1) % 3)],
