@@ -71,7 +71,7 @@ export class ShownTable {
     if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
   }
 
-  /// How many columns the box hides on its right, and whether the second key stays in sight: with the first, in at most half of it.
+  /// Tells how many columns the box hides on its right. The second key stays in sight if both keys fit into half of the box.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
     const [first = 0, second = Infinity] = heads.map(h => h.offsetWidth), can_hold = this.table.keys > 1 && !kNarrow.matches;
