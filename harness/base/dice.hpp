@@ -6,8 +6,8 @@
 
 namespace clothbench {
 
-/// Random numbers that are the same on every machine: the engine is the standard's, and the distributions are these,
-/// because the standard leaves its own to each library.
+/// Random numbers that are equal on every machine. The engine is the standard's. The distributions are defined here,
+/// because each library implements the standard's distributions in its own way.
 class Dice {
  public:
   /// One sequence for each pair of a seed and a word.

@@ -61,8 +61,8 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds what differs between the first run of A and every other one. Another order is no difference of the
-/// runs, only no basis for a statement on times.
+/// Adds conditions that differ between the first run of A and every other run. An order that is not mixed is no
+/// difference of the runs, but prevents a statement on times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxProcesses = 12;  ///< of each side; all C(24, 1
 /// processes to the two sides, twice the smaller tail. `low`, `high`: the ratios that this test does not reject at 5 %
 /// (equal tails of 2.5 % at most). Source: Good, Permutation, Parametric and Bootstrap Tests of Hypotheses (3rd
 /// ed.), 3.2. It assumes that processes are exchangeable if the builds are equally fast, so run A and B in
-/// random order; in strict turns the test rejects less than 5 %.
+/// random order. If A and B alternate strictly, the test rejects less than 5 %.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
   std::size_t processes_a = 0, processes_b = 0;

@@ -24,9 +24,9 @@ struct Surfaces {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Only triangles
-/// of static meshes that overlap `near` are drawn, because walls of a room would hide the cloth; infinite planes are
-/// clipped to `near`; moving colliders are drawn whole. Triangles that are not finite are left out.
+/// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Only those triangles
+/// of static meshes are drawn that overlap `near` (a room has more walls than its desk); infinite planes are clipped to
+/// `near`; moving colliders are drawn whole. Triangles that are not finite are left out.
 Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 
 }  // namespace clothbench::render

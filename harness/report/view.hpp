@@ -80,8 +80,8 @@ Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
 
-/// Columns that the runs themselves give: one per value of `key`, ascending by `order`. In a narrow window only the
-/// last `leading` of them keep their place; the others follow all other columns.
+/// Columns made from the runs: one per value of `key`, ascending by `order`. In a narrow window only the last `leading`
+/// of these columns keep their place; the rest of them follow all other columns.
 struct Across {
   Key key;
   std::function<Cell(const Group&, const Keys& keys)> cell;

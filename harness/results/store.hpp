@@ -88,9 +88,9 @@ std::string trajectory_fault(const std::filesystem::path&);
 
 class DeviceSamples;
 
-/// Converts runs finished without HDF5 (.cbor; a file or the folder of a study) to the .h5 files that direct runs give;
-/// `samples`: the device's samples to store with them. Returns the new files. Throws Error if `file_or_folder` is a
-/// part file: it is not finished.
+/// Converts runs that a build without HDF5 finished (.cbor; a file or a study's folder) to .h5 files, as a build with
+/// HDF5 writes them. `samples`: the device's samples to store with them. Returns the new files. Throws Error if
+/// `file_or_folder` is a part file, which is not finished.
 std::vector<std::filesystem::path> import_runs(const std::filesystem::path& file_or_folder,
                                                DeviceSamples* samples = nullptr);
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Calls `with(key, member)` for each rule but the rendering. Rules: TrialRules, const or not.
+/// Calls `with(key, member)` for each rule except rendering. Rules: TrialRules, const or not.
 template <class Rules, class With>
 void each_rule(Rules& r, With with) {
   with("trials", r.trials);

@@ -38,7 +38,7 @@ void set_time(json& scene, double end_s, double speed_m_per_s) {
   scene["time"] = {{"frame_rate_hz", rate}, {"duration_s", rounded(std::ceil(end_s * rate - 1e-6) / rate)}};
 }
 
-/// Either hand, in any pose between two, turned anyhow.
+/// Draws left or right, a blend of two poses, and any orientation.
 void draw_pose(json& first_key, json& track, DrawnValues& draw) {
   const auto pose = [&] { return std::string(assets::kPoseNames[static_cast<std::size_t>(draw.dice().whole(0, 2))]); };
   track["hand"] = draw.dice().whole(0, 1) == 0 ? "left" : "right";

@@ -10,7 +10,7 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
+constexpr double kPlace = 1e-6;  // of L: tolerance for the positions in a scene
 
 /// The face a sheet lies on: its outward normal, and the distance of its margin from the sheet.
 struct Face {

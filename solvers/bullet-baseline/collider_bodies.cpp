@@ -9,8 +9,8 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// Half the side of the box whose top stands for a plane. Large against any cloth; distances inside it are computed in
-/// float32, so not larger than need be.
+/// Half the side of the box whose top represents a plane. Large compared with any cloth, but not larger, because
+/// distances inside it are computed in float32.
 constexpr double kGroundHalf_m = 10;
 /// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;
@@ -33,8 +33,8 @@ Capsule between(const Capsule& from, const Capsule& to, double share) {
   return out;
 }
 
-/// Bullet's capsules lie along y. The turn goes on from the last one by the least rotation: a rotation found afresh
-/// could spin about the capsule's axis, and Bullet would drag the cloth along with that spin.
+/// Bullet's capsules lie along y. The rotation follows from the last one by the smallest turn. A rotation computed
+/// anew could spin about the capsule's axis, and Bullet would drag the cloth along with that spin.
 btTransform place(const Capsule& c, btQuaternion& turn) {
   const btVector3 was = quatRotate(turn, btVector3(0, 1, 0));
   turn = shortestArcQuat(was, direction(c, was)) * turn;

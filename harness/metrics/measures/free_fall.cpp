@@ -25,8 +25,8 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. The rest is
-/// rounding and forces that should not be there.
+/// Maximum distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0. It consists of
+/// rounding error and spurious forces.
 double free_fall_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;
@@ -46,8 +46,8 @@ double free_fall_error(const MetricFrame& f) {
   return std::sqrt(most);
 }
 
-/// Greatest error of a vertex's velocity after a free fall without damping, divided by |g| T; NaN at T = 0. Every
-/// integrator of this field is exact here, so it shows velocities that do not belong to the motion.
+/// Maximum error of a vertex's velocity after a free fall without damping, divided by |g| T; NaN at T = 0. All common
+/// integrators are exact here, so an error shows velocities that do not belong to the motion.
 double free_fall_velocity_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;

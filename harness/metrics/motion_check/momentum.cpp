@@ -63,8 +63,8 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
   return rest;
 }
 
-/// The unit force of a contact that does most against a direction; zero if none does anything. `coulomb`: within the
-/// cone of friction; otherwise any force that does not pull.
+/// The unit contact force with the largest component along `h`; zero if no force has any. `coulomb`: only forces
+/// within the friction cone; otherwise any force that does not pull.
 V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   if (c.any_force) return h.normalized();
   const double along = h.dot(c.normal);
@@ -286,8 +286,8 @@ Momentum::Slip Momentum::slip_of(std::size_t k) const {
   return out;
 }
 
-/// Cloth that slides on a face is dragged by its friction times the normal force, and cloth on it by no more. Means
-/// over `span` intervals up to k.
+/// The force along a face is friction times the normal force if the cloth slides on it, and at most that if it sticks.
+/// Means over `span` intervals up to k.
 void Momentum::sliding(std::size_t k, std::size_t span) {
   if (k < span + 1) return;
   V3 across = V3::Zero(), drag = V3::Zero();
@@ -337,8 +337,8 @@ void Momentum::window(std::size_t k) {
   found_.add("support", off / allowed, k);
 }
 
-/// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
-/// with one step per frame is off by half of gravity times a frame times the time.
+/// Cloth without attachments that starts flat falls freely until a collider is in reach. With one step per frame, an
+/// integrator of first order is off by g T t / 2 (T: duration of a frame, t: time).
 void Momentum::free_motion() {
   const Scene& s = m_.scene;
   if (!s.cloth.start.at_rest() || s.cloth.span_m > 0 || s.cloth.drape_radius_m > 0 || s.cloth.spin_rad_per_s != Vec3{})

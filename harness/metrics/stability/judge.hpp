@@ -62,7 +62,7 @@ struct StabilityFrame {
 ///
 /// The energy gain compares visible energy (kinetic and gravitational) with the available energy: the energy at the
 /// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. The
-/// elastic energy that a solver stores does not enter, because solvers without a modulus have none.
+/// elastic energy of a solver's model does not count as visible, because solvers without a modulus have none.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const Scene&);

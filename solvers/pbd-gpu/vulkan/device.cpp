@@ -71,8 +71,8 @@ void check(VkResult result, const char* call) {
 
 namespace {
 
-/// Devices of this process. They are kept to its end and not destroyed then: drivers fail to load again after some
-/// hundred times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+/// Devices of this process. They are never destroyed: drivers that are loaded some hundred times fail to load again
+/// (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and at exit a driver's own clean-up may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;
