@@ -22,7 +22,7 @@ void unpack_assets(const AssetReader& read, const std::filesystem::path& to) {
     std::filesystem::create_directories((to / path).parent_path());
     write_file_atomically(to / path, *content);
   }
-  // Last, so that an interrupted unpacking is done again.
+  // Written last, so that an interrupted unpacking is repeated.
   write_file_atomically(to / kIndex, *index);
 }
 

@@ -10,7 +10,7 @@
 namespace clothbench {
 
 /// Distance of one frame from the scene's truth. Positions are compared on the fixed 33 x 33 material lattice, relative
-/// to the longer side. NaN if the state is not finite or the reference case has no answer.
+/// to the longer side. NaN if the state is not finite or the reference case has no solution.
 struct TruthErrors {
   double e2 = kMissing;                                   ///< positions: RMS
   double quantity = kMissing;                             ///< the reference case's quantity of this state

@@ -60,8 +60,8 @@ nlohmann::json to_json(const std::vector<StoredGroup>&);
 /// Creates the file with its header, whole or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);
 
-/// Appends an item and, if `sync`, calls fsync, without which only a killed machine loses it. Throws Error naming the
-/// file; the file then is as it was before.
+/// Appends an item and, if `sync`, calls fsync (without it, the item is lost only if the machine fails). Throws Error
+/// naming the file, and then leaves the file unchanged.
 void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
 /// Reads all complete items and ignores what follows them: a killed process leaves an incomplete item at the end.

@@ -157,7 +157,7 @@ class BoxPoint {
   double root_ = 1, power_ = 1;
 };
 
-/// The value at `u` of a range, or of a list of words. Whole numbers if both bounds are whole and `may_be_whole`.
+/// The value at the fraction `u` of a range or of a list of words; whole if both bounds are and `may_be_whole`.
 json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
   const auto words = static_cast<std::size_t>(
       std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));
@@ -212,7 +212,7 @@ void narrow(json& ranges, const json& quick) {
 
 }  // namespace
 
-/// All tables of all rooms, with the meshes that a scene cuts out round them. Read once: a room takes a while.
+/// All tables of all rooms, with the meshes that a scene cuts out around them. Read once, because reading is slow.
 struct ContactDrawer::Tables {
   struct Place {
     std::string room;

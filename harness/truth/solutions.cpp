@@ -106,7 +106,7 @@ Nodes nodes_of(const SwingingChain& c, const State& state) {
   return out;
 }
 
-/// Angles of the links at a share of the load, from a guess; nothing if Newton's method fails. Energy over B/L: n sum
+/// Angles of the links at a fraction of the load, from a guess; empty if Newton's method fails. Energy over B/L: n sum
 /// of (1 - cos(turn)) - sum of pull_i sin(angle_i)/n.
 std::optional<State> bent(double own_weight, State angle, double share) {
   const std::size_t n = angle.size();

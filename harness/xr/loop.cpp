@@ -86,7 +86,7 @@ class Loop {
     painter_.wait();
   }
 
-  /// The session ends here, by this error; an outcome that came before it stays. A frame that had begun is the one that
+  /// The session ends here with this error; an earlier outcome is kept. If a frame had begun, it is the one that
   /// failed.
   void end_by(const std::exception& e) {
     done_ = true;

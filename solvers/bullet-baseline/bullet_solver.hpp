@@ -54,8 +54,8 @@ class BulletSolver : public ClothSolver {
   /// World of the colliders' rigid bodies; null where the scene has none.
   virtual btDiscreteDynamicsWorld* world() = 0;
 
-  /// Makes a body with its nodes at the scene's positions. Pinned and held nodes have mass 0, Bullet's mark of a static
-  /// node. All that Bullet adds by default is off, collisions too.
+  /// Makes a body with its nodes at the scene's positions. Pinned and attached nodes have mass 0, which marks a
+  /// static node in Bullet. Everything that Bullet adds by default is off, collisions included.
   std::unique_ptr<btSoftBody> new_body(btSoftBodyWorldInfo&);
   /// Adds links of one kind with the scene's rest lengths; by default Bullet takes the distances at the start.
   static void add_links(btSoftBody&, const Cloth&, EdgeKind);

@@ -17,10 +17,10 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
-/// along each direction, half of each on the borders, one on the diagonals and one for bending.
+/// btDeformableMassSpringForce with one stiffness per link; Bullet's has two in total. An isotropic grid needs one for
+/// each direction, half of it on the borders, one on the diagonals and one for bending.
 ///
-/// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite where a link is
+/// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite if a link is
 /// compressed. These springs do not damp: Bullet's spring damping is relative to neighbours, the scenes' damping is
 /// not.
 class GridSprings final : public btDeformableMassSpringForce {

@@ -15,7 +15,7 @@ static_assert(sizeof(Capsule) == 7 * sizeof(double) && sizeof(Vec3) == 3 * sizeo
 static_assert(static_cast<int>(Collider::Shape::Plane) == CLOTHBENCH_SHAPE_PLANE &&
               static_cast<int>(Collider::Shape::Mesh) == CLOTHBENCH_SHAPE_MESH);
 
-/// The piece of cloth that a skip edge stands for, on a grid of even cells.
+/// The part of the cloth that a skip edge represents, on an even grid.
 EdgeCell skip_cell(const Cloth& c, const Edge& e) {
   const bool along_u = e.b - e.a == 2;
   return {e.rest_m / 2, along_u ? c.dv() : c.du()};
@@ -158,7 +158,7 @@ void SceneView::pose(const FrameMotion* motion, Posed& out) const {
   }
 }
 
-/// Poses at the end of the frame before; must be called before `now_` is overwritten. In a run those are at hand.
+/// Poses at the end of the previous frame: in a run those in `now_`, so call this before `now_` is overwritten.
 const SceneView::Posed& SceneView::pose_before(const FrameInput& in) {
   if (in.index <= 0) return start_;
   std::swap(before_, now_);

@@ -18,7 +18,7 @@ class SceneView {
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
   /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which counts as solver
-  /// time as in all solvers.
+  /// time, as in other solvers.
   const ClothbenchFrame* frame(const FrameInput&);
   /// The state at the end of frame `last`. Valid until the next call of either, while `state` is unchanged.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);

@@ -25,8 +25,8 @@ nv::cloth::Range<const T> range(const std::vector<T>& v) {
   return {v.data(), v.data() + v.size()};
 }
 
-/// The scene's colliders. Shapes are inflated by their margins. Planes and boxes are convexes, whose corners stay
-/// sharp; vertices of triangles move along their normals.
+/// The scene's colliders. Shapes are inflated by their margins. Planes and boxes become convex shapes with
+/// sharp corners; vertices of triangles move along their normals.
 class Colliders {
  public:
   /// `margin_m`: replaces the colliders' margins; 0: theirs.
@@ -66,7 +66,7 @@ class Colliders {
   bool has_spheres() const { return !now_.spheres.empty(); }
   void put(const ClothbenchPose* poses) { now_ = at(poses); }
 
-  /// Gives a new cloth the colliders as they are at the start of the next frame.
+  /// Adds the colliders to a new cloth, in their poses at the start of the next frame.
   void place(nv::cloth::Cloth& cloth) const {
     cloth.setSpheres(range(now_.spheres), 0, 0);
     cloth.setCapsules(range(ends_), 0, 0);

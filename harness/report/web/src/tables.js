@@ -63,7 +63,7 @@ export class ShownTable {
     });
   }
 
-  /// Sets the columns in their order. In a narrow window the first cell also has the other short keys, and details stand last.
+  /// Orders the columns. In a narrow window the first cell also shows the other short keys, and columns with details come last.
   arrange() {
     const {solvers, keys = 1, late = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
     this.columns = this.head.map((_, k) => k).filter(k => shown(solvers[k]));

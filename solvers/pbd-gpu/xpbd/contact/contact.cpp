@@ -107,7 +107,7 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   auto all = triangles(scene_.cloth);
   for (auto& t : all)
     for (auto& v : t) v = particle.empty() ? v : particle[v];
-  // A short list that tests ask for is one of active pairs too.
+  // If a test requests a short list of candidates, the list of active pairs is as short.
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   ContactPassSpecialization& c = pass_constants_;
   c.SELF = 1;
