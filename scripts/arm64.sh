@@ -6,12 +6,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# Files are compiled together: a third of the time.
+# A unity build takes a third of the time.
 build() {
   cmake --preset arm64-linux -DCMAKE_UNITY_BUILD=ON
   cmake --build --preset arm64-linux -j "$JOBS" --target clothbench clothbench_quest fake_host clothbench_assets_packed null_xr_runtime
 }
-# The machine's own command, to compare with and to import what the device build wrote.
+# The program for this machine, to compare with, and to import results of the device build.
 host() {
   [ -f build/release/CMakeCache.txt ] || configure release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
   cmake --build build/release -j "$JOBS" --target clothbench

@@ -2,10 +2,10 @@
 # Runs the published studies one after another into OUT, and makes what is published of them.
 #   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N]
 #   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz]
-# First form: exit status 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; the same call continues: complete
-# studies are skipped, finished runs stay. 2: bad input. Else the status of the study that failed.
-# Second form: one report per study, one page of all and SHA256SUMS into FOLDER (default results/reference/h200), from folders of one state of the sources.
-# --archive: the raw result files too, with the commands and RESULTS.SHA256, as one archive to release; its name says how it is compressed.
+# First form, exit status: 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; call it again: complete studies
+# are skipped, finished runs stay. 2: bad input. Otherwise the status of the study that failed.
+# Second form: writes one report per study, one page of all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must come
+# from one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH names the program (default:
 # build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS take part.
 set -euo pipefail
@@ -132,7 +132,7 @@ while read -r in name line; do
   done
   resume=() status=124 start=$SECONDS
   [ ! -d "$out/$name" ] || resume=(--resume)
-  # Interrupted at the limit, after which clothbench keeps what is finished. Exit status 1: rows crashed, diverged or timed out, which are results.
+  # clothbench is interrupted at the limit and keeps finished runs. Exit status 1: runs crashed, diverged or timed out, which are results, too.
   left=$((deadline - SECONDS))
   [ $left -le 0 ] || { status=0; timeout --foreground -s INT -k 30 "$left" "$bench" "${command[@]}" --out "$out/$name" "${resume[@]}" </dev/null >>"$out/$name.log" 2>&1 || status=$?; }
   seconds=$((SECONDS - start + $(cat "$out/$name.seconds" 2>/dev/null || echo 0)))

@@ -5,7 +5,7 @@ usage: make_apk.py --library libclothbench_quest.so --assets FOLDER --out clothb
 
 Tools: the newest $ANDROID_HOME/build-tools/*, else PATH (Debian: aapt zipalign apksigner default-jre-headless
 android-framework-res). The key is $CLOTHBENCH_KEYSTORE (password in $CLOTHBENCH_KEYSTORE_PASSWORD, alias
-androiddebugkey), else a debug key made beside the APK. Exit code 3 and one line naming what is missing if a tool is."""
+androiddebugkey), else a debug key made beside the APK. If a tool is missing: exit code 3 and one line that names it."""
 import argparse
 import os
 import pathlib

@@ -12,7 +12,7 @@ import hashlib
 import pathlib
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
-# What harness/assets reads of the packages, and their licences.
+# Files of the packages that harness/assets reads, and their licences.
 PACKED = {
     "scenarios": ["**/*.json"],
     "assets": ["@iwer/sem/captures/*.json", "iwer/lib/device/configs/hand/*.js",

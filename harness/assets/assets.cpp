@@ -58,7 +58,7 @@ fs::path user_data() {
   return {};
 }
 
-/// As a user of this build can call it.
+/// Path of fetch-assets.sh as a user of this build can call it.
 std::string fetching_script() {
   const char* const script = "scripts/fetch-assets.sh";
   const DataRoots roots = data_roots();
@@ -68,7 +68,7 @@ std::string fetching_script() {
   return script;
 }
 
-/// The user's folder last: an installed tree's or a source tree's own come first.
+/// Folders that are searched, in order: an installed tree's or the source tree's own, then the user's.
 std::vector<fs::path> asset_places() {
   std::vector<fs::path> places = usual_places(kAssetFolder);
   if (const fs::path own = user_data(); !own.empty()) places.push_back(own / kAssetFolder.installed);

@@ -19,7 +19,7 @@ namespace clothbench::assets::gltf {
 /// Throws Error "<source>: <message>".
 [[noreturn]] void fail(const std::string& source, const std::string& message);
 
-/// `at` of a list that a file's index points into.
+/// Element of a list by an index from a file; throws if the index is out of range.
 template <class List>
 const auto& pick(const List& list, int index, const std::string& source, const char* what) {
   if (index < 0 || static_cast<std::size_t>(index) >= list.size())

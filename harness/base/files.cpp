@@ -13,7 +13,7 @@
 namespace clothbench {
 namespace {
 
-/// A path at which no file can be is a wrong argument; a full or broken disk is not.
+/// Throws. A path at which no file can exist is a wrong argument (its own exit code); a full or broken disk is not.
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
   const int why = errno;
   const bool wrong_path = why == ENOENT || why == ENOTDIR || why == EISDIR || why == ENAMETOOLONG || why == EACCES ||

@@ -20,8 +20,8 @@ class StatusLine {
   std::size_t width_ = 0;
 };
 
-/// Keeps standard output for a machine-readable summary: while an object of this class lives, all else that this
-/// process writes there, code of plugins included, goes to standard error. One at a time.
+/// Keeps standard output for a machine-readable summary. While an object of this class exists (at most one), all other
+/// output of this process, also by plugins, goes to standard error.
 class SummaryOutput {
  public:
   SummaryOutput();

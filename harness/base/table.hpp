@@ -18,7 +18,7 @@ struct Table {
   /// A `table` environment for LaTeX with the package booktabs: the title as its caption, the note below the rows. Only
   /// characters that LaTeX knows without further packages.
   std::string latex() const;
-  /// Columns beyond console_columns() follow below, with the first two columns repeated. The note is wrapped.
+  /// Columns that do not fit console_columns() follow below, after a copy of the first two. The note is wrapped.
   std::string console() const;
 };
 

@@ -46,7 +46,7 @@ double number_at(const json& value, const std::string& name, const std::string& 
   return value.get<double>();
 }
 
-/// The kind of a condition of results ("GPU" is of "device").
+/// The kind to which a condition belongs ("GPU": "device").
 std::string kind_of_condition(const std::string& what) {
   return what == "GPU"                                ? "device"
          : what == "precision"                        ? "precision"

@@ -124,7 +124,7 @@ inline constexpr std::size_t kMaxProcesses = 12;  ///< of each side; all C(24, 1
 /// processes to the two sides, twice the smaller tail. `low`, `high`: the ratios that this test does not reject at 5 %
 /// (equal tails of 2.5 % at most). Source: Good, Permutation, Parametric and Bootstrap Tests of Hypotheses (3rd
 /// ed.), 3.2. It assumes that processes are exchangeable if the builds are equally fast, so run A and B in
-/// random order; in strict turns the test rejects less than 5 %.
+/// random order. If A and B alternate strictly, the test rejects less than 5 %.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
   std::size_t processes_a = 0, processes_b = 0;
@@ -185,9 +185,9 @@ struct Checked {
 /// The fault of the motion in the record's file; empty if there is none, or if it was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
-/// Differences of `record` from its baseline: outcome, stages, gated scalars; whether one of its trials repeats
-/// another; and what is wrong with the motion in its file, if it has one (results/store.hpp). If the outcome
-/// differs, the rest is not compared. Throws Error if the record's scene has no cloth size.
+/// Differences of `record` from its baseline (outcome, stages, gated scalars), trials that repeat another one, and
+/// faults of the stored motion (results/store.hpp). If the outcome differs, the rest is not compared. Throws Error if
+/// the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine

@@ -15,7 +15,7 @@
 namespace clothbench {
 namespace {
 
-/// A blow-up grows exponentially out of rounding, so the frame that it is noticed at moves a little between devices.
+/// A blow-up grows exponentially from rounding errors, so devices differ a little in the frame in which it is found.
 constexpr int kFailedFrameSlack = 2;
 constexpr double kFailedFrameRelativeSlack = 0.1;
 

@@ -90,8 +90,8 @@ struct RunFlags {
   DeviceFlags device = {};
 };
 
-/// Executes a plan, in worker processes, and makes its folder; `before_runs` is called once the folder is known to be
-/// usable. Prints faults, tables and summary, and sets the exit code.
+/// Makes the folder of a plan and executes the plan in worker processes; calls `before_runs` in between, if the folder
+/// is usable. Prints faults, tables and summary, and sets the exit code.
 void execute_study(const RunPlan&, StudyManifest, const RunFlags&, Console&,
                    const std::function<void()>& before_runs = {});
 

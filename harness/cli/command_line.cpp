@@ -47,7 +47,7 @@ struct Help : CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override {
     std::istringstream lines(app->get_footer());
     std::string out;
-    for (std::string line; std::getline(lines, line);)  // a command stays in one piece, to be copied
+    for (std::string line; std::getline(lines, line);)  // a command is not wrapped, so it can be copied
       out += line.find(" clothbench ") < line.size() ? line + "\n" : fitted(line, 0) + "\n";
     return out;
   }
@@ -59,7 +59,7 @@ struct Help : CLI::Formatter {
   }
 };
 
-/// The first word if it is no command, or an option that its command does not have, with the nearest known; or nothing.
+/// Message on the first word that is no command, or no option of its command, with the nearest known word; else empty.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   std::vector<std::string> commands, options;
@@ -99,7 +99,7 @@ int run_command_line(const std::vector<std::string>& words) {
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
-  // Before the words are read: plugins are loaded on the way.
+  // Must come before the words are parsed, because parsing loads plugins.
   if (contains(words, "--in-process")) run_solvers_in_process();
   std::optional<SummaryOutput> summary_alone;
   if (contains(words, "--json")) summary_alone.emplace();

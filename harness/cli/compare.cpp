@@ -14,7 +14,7 @@ struct CompareArguments {
 
 namespace fs = std::filesystem;
 
-/// A folder of results as it is. For a folder that contains only such folders: these, in order of their names.
+/// `given` itself if it is a folder of results; the folders in it, by name, if it contains only such folders.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
   if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};

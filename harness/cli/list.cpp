@@ -120,7 +120,7 @@ nlohmann::json list_terms() {
   return rows;
 }
 
-/// The report's table, of all solvers of this build.
+/// The report's table of features, with all solvers of this build.
 Table features() {
   std::vector<RunRecord> runs;
   for (const SolverEntry* e : all_solvers()) {

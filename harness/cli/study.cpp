@@ -36,7 +36,7 @@ void print_jobs(const std::vector<std::string>& names, const Console& console) {
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
-/// The generated scenes, one line per scene. A study with many scenes prints none: the result files contain them.
+/// Prints one line per generated scene. If a study has many, it prints none, because the result files contain them.
 void print_drawn(const Study& study) {
   constexpr std::size_t kFew = 24;
   std::set<std::string> names;
@@ -98,7 +98,7 @@ void run_study(StudyArguments& a, Console& console) {
   if (!a.chosen.empty()) {
     if (a.run.out.empty()) throw Error("--job needs --out DIR, the folder that collects all runs of this study");
     const std::vector<std::size_t> chosen = parse_runs(a.chosen, names.size());
-    require_same_runs(a.run.out, plan, true);  // also what other processes have made of it
+    require_same_runs(a.run.out, plan, true);  // also the runs that other processes have stored
     plan = only_runs(std::move(plan), chosen);
     manifest.runs = names;
     a.run.resume = a.run.part = true;

@@ -140,7 +140,7 @@ inline Reduction own(std::vector<std::string> series, std::string what, std::fun
   return {std::move(series), std::move(what), std::move(value), std::move(units)};
 }
 
-/// Greatest value from an index on; NaN if any is NaN, or if there are none.
+/// Maximum from index `from` on; NaN if any value is NaN, or if there are none.
 double greatest_of(const std::vector<double>* values, std::size_t from = 0);
 
 class ColliderContact;

@@ -42,11 +42,11 @@ bool keeps_energy(const Scene&);
 std::map<std::string, double> truth_dependence(const Scene&);
 
 /// Bounds on two scalars of a whole run of a scene with an exact solution: the distance of the positions (`truth_e2`)
-/// and the error of the reference case's quantity (`truth_quantity_error`), both as the norm of a difference, so that
-/// a value too small fails as one too large. Each is
-///   tolerance * moved + mesh + rounding,
-/// where `moved` is the same scalar of a cloth that keeps its start (where that is 0: the tolerance at rest), `mesh`
-/// the part of it that a triangle mesh is off, and `rounding` what positions in float32 change.
+/// and the error of the reference case's quantity (`truth_quantity_error`). Both are norms of a difference, so too
+/// small a value fails like too large a one. Each bound is
+///   tolerance * moved + mesh + rounding
+/// moved: the scalar of a cloth that keeps its start (if 0, the tolerance at rest replaces this term); mesh: the error
+/// of a triangle mesh itself; rounding: the change of the scalar by positions in float32.
 struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };

@@ -224,7 +224,7 @@ Image::Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D
   auto memory = blank<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   memory.allocationSize = needs.size;
   memory.memoryTypeIndex = vulkan::Device::kNoMemory;
-  // A tiled GPU need not back at all what never leaves the chip.
+  // A tiled GPU needs no memory for an attachment that never leaves the chip.
   if ((usage & VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) != 0)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT);
   if (memory.memoryTypeIndex == vulkan::Device::kNoMemory)

@@ -49,7 +49,7 @@ class Pipelines {
   Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);
 
   VkRenderPass pass() const { return pass_; }
-  /// Binds buffers[k] to binding k. No command recorded earlier may be in flight.
+  /// Binds buffers[k] to binding k. Commands recorded earlier must have finished.
   void bind(const std::array<const vulkan::Buffer*, kBindings>& buffers);
   void use(VkCommandBuffer, bool cloth, const void* constants, std::uint32_t bytes) const;
 

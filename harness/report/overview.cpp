@@ -86,7 +86,7 @@ std::string about_rates(const Group& runs) {
   return joined(out, " ");
 }
 
-/// Of the scene of the paper's Table 3, or of each other one.
+/// Speed and error in the scene of the paper's Table 3, or in every other scene.
 View speed_and_error(bool paper) {
   View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
          [paper](const Row& r) {

@@ -36,7 +36,7 @@ Part part_of(const RunRecord& c, const json& scenario) {
   return touches(scenario) ? Part::Contact : Part::Rates;
 }
 
-/// Fills what comes from the scenario; returns the text that scenes of one family share.
+/// Fills columns that come from the scenario; returns the text that scenes of one family share.
 std::string read_scenario(Row& row) {
   const RunRecord& c = *row.run;
   row.scene = row.name = c.header.scene;
@@ -72,7 +72,7 @@ void add_facts(TruthFacts& t, const Row& r) {
     t.best_error = r.error();
 }
 
-/// At most two scenes, no two of one kind.
+/// Marks the leading scenes: at most two, of different kinds.
 void choose_leading(std::vector<Row>& rows) {
   constexpr std::size_t kMost = 2;
   std::map<std::size_t, std::string> leading;
@@ -275,7 +275,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
-    // Where no solver was timed on a pulled strip, its errors stand among the scenes with contact.
+    // A pulled strip that no solver was timed on is listed with the scenes with contact.
     if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

@@ -73,15 +73,15 @@ inline const Row* first_of(const Group& g) { return g.front(); }
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
                   Pick pick = first_of);
 
-/// A value over another one, with the least and the greatest ratio of values within both intervals.
+/// The ratio of two values, with the minimum and maximum ratio of values within both intervals.
 Cell ratio_cell(double value, const Interval&, double by, const Interval& of_by);
 /// The number of timed trials; the rank by wall time; how many times as fast as time_baseline() the median frame is.
 Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
 
-/// Columns that the runs themselves give: one per value of `key`, ascending by `order`. In a narrow window only the
-/// last `leading` of them keep their place; the others follow all other columns.
+/// Columns made from the runs: one per value of `key`, ascending by `order`. In a narrow window only the last `leading`
+/// of these columns keep their place; the rest of them follow all other columns.
 struct Across {
   Key key;
   std::function<Cell(const Group&, const Keys& keys)> cell;
@@ -130,7 +130,7 @@ std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
 
-/// What the scene of a run demands by a criterion, and what was found, with units.
+/// The limit of a criterion in the scene of a run, and the value that was found, with units.
 std::string expected_of(const Row&, const std::string& criterion);
 Cell found_of(const Row&, const std::string& criterion);
 /// Contact offset [mm] of these runs, "3.5 to 20" where it differs; empty without colliders.

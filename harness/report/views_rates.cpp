@@ -65,7 +65,7 @@ ViewColumn quantiles(const char* head, FrameTimes RunTimes::*times, const Pick& 
   return column(head, text, false, pick);
 }
 
-/// What solvers of one table may differ in.
+/// Adds the conditions in which solvers of one table can differ.
 void add_conditions(View& v, const Pick& pick) {
   const auto add = [&](const char* head, std::function<Cell(const Row&)> cell) {
     v.columns.push_back(column(head, std::move(cell), true, pick));

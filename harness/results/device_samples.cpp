@@ -66,7 +66,7 @@ struct Taken {
   std::vector<double> time_unix_s, trial;
 };
 
-/// What the device logged of its state during a trial: for how long, and the reasons not to trust the trial's times.
+/// The device's log of its state during a trial: the time it covers, and reasons not to trust the trial's times.
 struct StateLog {
   double logged_s = 0;
   std::set<std::string> reasons;

@@ -34,7 +34,7 @@ inline void check(herr_t result, const std::string& what) {
   if (result < 0) throw Error("HDF5: " + what + " failed");
 }
 
-/// The library would print its error stack: our errors are one line.
+/// Stops the library from printing its error stack, because our errors are one line.
 inline void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 using Dims = std::vector<hsize_t>;

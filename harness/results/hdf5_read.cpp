@@ -198,7 +198,7 @@ void read_accuracy(hid_t file, RunRecord& r, std::size_t stride) {
   if (!frames.empty()) a.position = positions_of(file, frames, r.header.vertices);
 }
 
-/// Every attribute and every dataset of a group but the scales of its dimensions.
+/// All attributes and datasets of a group, except dimension scales.
 StoredGroup read_group(hid_t file, const std::string& path) {
   const Id group = open_group(file, path.c_str());
   StoredGroup g{path, attributes(group), {}};

@@ -256,7 +256,7 @@ std::map<std::string, const StoredGroup*> by_path(const std::vector<StoredGroup>
   return out;
 }
 
-/// Calls `with(group, k)` for the groups `path`/0, `path`/1, ... that the group `path` counts.
+/// Calls `with(group, k)` for the groups `path`/0, `path`/1, ...; the attribute `count` of `path` is their number.
 template <class With>
 void each_numbered(const std::map<std::string, const StoredGroup*>& groups, const std::string& path, With with) {
   const auto count = static_cast<std::size_t>(groups.at(path)->attributes.at("count").get<double>());

@@ -71,7 +71,7 @@ nlohmann::json conformance_answer(const nlohmann::json& request);
 /// A row for the terminal.
 std::string conformance_text(const std::string& solver, const nlohmann::json& row);
 
-/// Scenes that are tested unless others are chosen. Throws Error for a chosen one that is none of them.
+/// The chosen scenes, or if `chosen` is empty all scenes that are tested. Throws Error if a chosen scene is not tested.
 std::vector<std::string> conformance_scenes(const std::vector<std::string>& chosen);
 
 }  // namespace clothbench

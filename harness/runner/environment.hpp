@@ -42,7 +42,7 @@ std::string clock_policy(const nlohmann::json& sensors);
 /// is no /proc. $CLOTHBENCH_JOBS overrides the number, for a scheduler with information that /proc does not have.
 int jobs_now();
 
-/// The same for a /proc at another path.
+/// jobs_now() from a /proc at another path, without $CLOTHBENCH_JOBS.
 int jobs_in(const std::filesystem::path& proc, int self);
 
 }  // namespace clothbench

@@ -9,9 +9,9 @@
 
 namespace clothbench {
 
-/// Input of frame `index` of the scene (0 = the first). It carries a hitch or a jitter of the scene's clock to the
-/// solver wherever the scene is run. After the scene's end, where timed trials may continue, frames are even and all is
-/// static.
+/// Input of frame `index` of the scene (0 = the first). It contains hitch and jitter of the scene's clock,
+/// so every user of the scene gets them. After the scene's end, where timed trials may continue, frames are even and
+/// everything is static.
 FrameInput frame_input(const Scene& scene, int index);
 
 /// A solver with the scene loaded; the scene must outlive it.

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Calls `with(key, member)` for each rule but the rendering. Rules: TrialRules, const or not.
+/// Calls `with(key, member)` for each rule except rendering. Rules: TrialRules, const or not.
 template <class Rules, class With>
 void each_rule(Rules& r, With with) {
   with("trials", r.trials);
@@ -123,8 +123,8 @@ void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const
 }
 
 /// Gives the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored as
-/// such and a new process continues with the rest. A crash in a process that had executed other plans counts only if it
-/// recurs in a fresh one.
+/// such and a new process continues with the rest. If the process had executed other plans
+/// before, a crash counts only if it recurs in a new process.
 RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, const std::string& eye, double limit_s,
               const char* interrupted) {
   json request = {{"plan", to_json(plan)},

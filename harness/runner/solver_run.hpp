@@ -68,9 +68,9 @@ RunHeader header_of(const Scene&, const std::string& solver, const std::string& 
 /// A loaded solver and its measurements.
 class SolverRun {
  public:
-  /// Loads the solver. A feature that the backend lacks, or an entry without `make`, makes the outcome `unsupported`; a
-  /// failed load of a scene that it claims to support is an Error. Nothing is loaded for a spec that is over its
-  /// budget.
+  /// Loads the solver, unless the spec is over its budget. If the backend lacks a feature, or the entry has no `make`,
+  /// the outcome is `unsupported`. If loading fails although the backend claims to support the scene, the outcome is
+  /// `error`, or Error is thrown.
   SolverRun(RunSpec spec, const DeviceOptions& device, const std::string& protocol);
 
   const RunSpec& spec() const { return spec_; }
@@ -123,9 +123,9 @@ void add_frame(TimedTrial&, const FrameCost&, double wall_s, std::size_t stages)
 /// Every scalar of the tables, from the record of one run. NaN where not applicable.
 std::map<std::string, double> summarise(const RunSpec&, const Plan&, const RunRecord&);
 
-/// Checks that a plan leaves out stages a scene does not need: the features that its stages serve must be exactly those
-/// the scene needs, less those the backend declares to ignore. Returns the extra or missing ones, or "" if there are
-/// none.
+/// Checks that a plan has no stage that the scene does not need. Its stages must serve exactly the features that the
+/// scene needs, without those that the backend declares to ignore. Returns the extra and missing features, or "" if
+/// there are none.
 std::string check_stages(const Scene& scene, const SolverInfo& info, const Plan& plan);
 
 }  // namespace clothbench

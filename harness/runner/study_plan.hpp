@@ -20,7 +20,7 @@ const SolverEntry* known_solver(const std::string& name);
 std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vector<std::string>& solvers);
 
 /// A study's runs. The study must outlive the plan. Solvers named by the study but missing from this build become
-/// `unsupported` runs. Throws Error for a solver that neither names, and for an unknown setting.
+/// `unsupported` runs. Throws Error for any other unknown solver, and for an unknown setting.
 RunPlan plan_study(const Study&, const std::function<const SolverEntry*(const std::string&)>& lookup = known_solver);
 
 /// Names of all runs of the plan, in the order that numbers them from 0.
@@ -52,7 +52,7 @@ struct ChosenSolver {
 ChosenSolver chosen_solver(const std::string& name, const Overrides&);
 
 /// Solvers of the build, and the plugins that --solver or the environment name. Throws Error for a library that is
-/// none.
+/// no plugin.
 std::vector<const SolverEntry*> all_solvers();
 
 /// Names of all solvers of the build, or of those that `are` accepts.

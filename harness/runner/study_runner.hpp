@@ -62,12 +62,11 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 /// that is already stored is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
-/// As execute_runs, but in worker processes. Timed trials of all runs take turns in one process, where everything is
-/// timed as usual; with `jobs` above 1 their untimed passes come first, spread over `jobs` workers. Runs with a process
-/// each (`apart`) are spread over the workers, the longest first. If a process
-/// crashes, or a run makes no frame for too long (solver_limit_s(), or (1.2 x its limit) + 5 s for a run that is
-/// apart), the current run is stored as `crashed` or `timed_out` and a new process continues with the rest. `eye`: size
-/// of the pictures that the plan renders, or empty.
+/// As execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above 1,
+/// their untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over
+/// the workers, the longest first. If a process crashes, or a run makes no frame for too long (solver_limit_s(), or
+/// (1.2 x its limit) + 5 s for a run that is apart), the current run is stored as `crashed` or `timed_out` and a new
+/// process continues with the rest. `eye`: size of the pictures that the plan renders, or empty.
 RunResult execute_in_worker(const RunPlan&, const RunOptions&, const std::string& eye = {});
 
 /// One run of a plan by this worker, stored in the folder and read back without positions. An exception of a solver

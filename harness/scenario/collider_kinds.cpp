@@ -176,7 +176,7 @@ ColliderKind capsules_kind() {
   return k;
 }
 
-// Static triangles (given in the scene, of a prism or of a room) and the skin of a hand.
+// Meshes: static triangles (from the scene, a prism or a room) and the skin of a hand.
 
 void read_cylinder(const json& j, ColliderReader& reader, Collider& c) {
   c.shape = Collider::Shape::Mesh;

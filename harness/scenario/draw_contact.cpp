@@ -155,7 +155,7 @@ class BoxPoint {
   double root_ = 1, power_ = 1;
 };
 
-/// The value at `u` of a range, or of a list of words. Whole numbers if both bounds are whole and `may_be_whole`.
+/// The value at the fraction `u` of a range or of a list of words; whole if both bounds are and `may_be_whole`.
 json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
   const auto words = static_cast<std::size_t>(
       std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));
@@ -202,7 +202,7 @@ double draw_crumple(json& scene, DrawnValues& draw) {
   return after_fall(thrown, height);
 }
 
-/// Puts the quick form's ranges in the place of those of the same names.
+/// Replaces ranges by the quick form's ranges of the same name.
 void narrow(json& ranges, const json& quick) {
   for (auto& [name, range] : ranges.items())
     if (quick.contains(name)) range = quick[name];
@@ -210,7 +210,7 @@ void narrow(json& ranges, const json& quick) {
 
 }  // namespace
 
-/// All tables of all rooms, with the meshes that a scene cuts out round them. Read once: a room takes a while.
+/// All tables of all rooms, with the meshes that a scene cuts out around them. Read once, because reading is slow.
 struct ContactDrawer::Tables {
   struct Place {
     std::string room;

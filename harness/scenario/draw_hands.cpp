@@ -38,7 +38,7 @@ void set_time(json& scene, double end_s, double speed_m_per_s) {
   scene["time"] = {{"frame_rate_hz", rate}, {"duration_s", rounded(std::ceil(end_s * rate - 1e-6) / rate)}};
 }
 
-/// Either hand, in any pose between two, turned anyhow.
+/// Draws left or right, a blend of two poses, and any orientation.
 void draw_pose(json& first_key, json& track, DrawnValues& draw) {
   const auto pose = [&] { return std::string(assets::kPoseNames[static_cast<std::size_t>(draw.dice().whole(0, 2))]); };
   track["hand"] = draw.dice().whole(0, 1) == 0 ? "left" : "right";
@@ -120,7 +120,7 @@ double draw_stretch(json& scene, DrawnValues& draw) {
     t.go(kHold_s, there);
     t.go(kOpen_s, there)["pose"] = "relaxed";
     t.go(kAway_s, there);
-    // Half a cell reaches a vertex of the edge, wherever the hand is.
+    // With a radius above half a cell, the hand reaches a vertex of the edge anywhere.
     scene["grips"].push_back({{"track", t.object()}, {"radius_m", rounded(0.55 * 2 * kHalfWidth_m / cells)}});
     set_time(scene, t.end_s(), speed);
   }

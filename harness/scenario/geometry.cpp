@@ -25,8 +25,8 @@ double chord_angle(int n, double span) {
   return high;
 }
 
-/// Position [m] of grid line `i` of an arc: along the chord of the ends, from its middle, and below that chord. The n
-/// cells are equal chords of a circle.
+/// Position [m] of grid line `i` of an arc whose n cells are equal chords of a circle: along the chord between the
+/// ends, measured from its middle, and below that chord.
 std::pair<double, double> on_arc(const Cloth& c, int i) {
   const int n = c.columns - 1;
   const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
@@ -173,7 +173,7 @@ std::vector<double> vertex_masses(const Scene& scene) {
   const double cell = c.areal_density_kg_per_m2 * c.du() * c.dv();
   std::vector<double> mass;
   mass.reserve(c.vertex_count());
-  // Uneven cells give half of each neighbour. Even cells keep the first formula, so that their masses stay the same.
+  // Half the width of each neighbouring cell. Even cells use share(), so that rounding does not change them.
   const auto width = [&](int i) {
     if (c.column_factors.empty()) return share(i, c.columns);
     return (c.line_u_m(std::min(i + 1, c.columns - 1)) - c.line_u_m(std::max(i - 1, 0))) / 2 / c.du();

@@ -27,7 +27,7 @@ using Words = std::vector<std::string>;
   throw Error(fmt::format("{}: line {}: {}", source, line, what));
 }
 
-/// The statements of a file that define geometry and names, one a line, and the lines on which they began.
+/// The statements of a file that define geometry and names, one per line, and the lines on which they began.
 struct Statements {
   std::string text;
   std::vector<std::uint32_t> vertices, faces;

@@ -193,8 +193,8 @@ class Builder {
     return tags.is_object() ? tags : json();
   }
 
-  /// A requested solver stays even if the quick form leaves it out. If the form has some of its settings, only these
-  /// stay.
+  /// A requested solver stays even if the quick form leaves it out. If the form names some of its settings, only
+  /// these stay.
   bool stays(const StudySolver& s) const {
     const json quick = quick_by_solver();
     const bool in_quick = quick.is_null() || quick.contains(s.name());

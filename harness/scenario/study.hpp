@@ -77,7 +77,7 @@ bool is_drawn(const Study&);
 
 /// True if the file is a study rather than a scene (has "protocol").
 bool is_study(const std::string& name_or_path);
-/// The same for a study of this protocol.
+/// True if the file is a study of this protocol.
 bool is_study_of(const std::string& name_or_path, const std::string& protocol);
 
 /// Most runs of a study: each is a file, and all are planned before the first begins.

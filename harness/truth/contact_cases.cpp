@@ -9,7 +9,7 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPlace = 1e-6;  // of L: how exactly a scene must be placed
+constexpr double kPlace = 1e-6;  // of L: tolerance for the positions in a scene
 
 /// The face a sheet lies on: its outward normal, and the distance of its margin from the sheet.
 struct Face {
@@ -170,7 +170,7 @@ ReferenceCase capstan(const Strip& s) {
   known.by_quantity = known.smooth_law = true;
   known.quantity = displacement_over(s);
   if (end > 0) known.quantity_scale = end;
-  // At rest exactly where the scene puts it.
+  // While nothing slides, these are exactly the scene's positions.
   known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
   known.continuum = [s, smooth](double share, int frame) {
     return draped_columns(s, smooth(frame)).at(static_cast<std::size_t>(std::lround(share * s.links)));

@@ -50,8 +50,8 @@ std::vector<double> rest_uv(const Cloth& c) {
   return out;
 }
 
-/// The case of a flat rectangle of triangles: the continuum at its vertices. Its columns are means over the rows of the
-/// material lattice, as for a run, so that interpolation in triangles is no error.
+/// The case for a flat rectangle of triangles: the continuum at its vertices. Its columns are means over rows of the
+/// material lattice, as for a run, so that interpolation in triangles does not count as an error.
 ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   known.vertices = [s, continuum = known.continuum](int frame) {
     const Cloth& c = s.scene.cloth;
@@ -91,10 +91,10 @@ void need_flat_mesh(const Strip& s) {
          "a mesh that is a flat rectangle round the middle of its frame, its longer side along x");
 }
 
-// Twice the 1 % at which work-precision diagrams read off a time: a run that is farther off is of no stated accuracy.
+// Twice the error of 1 % at which work-precision diagrams read off a time: runs with larger errors are not accurate.
 constexpr double kOfMotion = 0.02;
-// A strip turns on a cylinder row by row. At 9 rows on it, the fewest that are drawn, a row that comes onto it or
-// leaves it can lose (pi / 18)^2 = 3 % of its kinetic energy to the contact.
+// A strip bends around a cylinder row by row. With 9 rows on the cylinder, the minimum of random scenes, a row that
+// enters or leaves contact can lose (pi / 18)^2 = 3 % of its kinetic energy.
 constexpr double kOnCylinder = 0.03;
 
 }  // namespace

@@ -62,12 +62,12 @@ std::array<double, 2> stretch_error(std::span<const double> strains, std::span<c
 /// The exact solution of one scene with a `truth` block; all parameters are the scene's. Reference cases are strips
 /// along u (or sheets) whose rows move alike. So a solution is one position for each column of the grid, on the middle
 /// line of the sheet; a vertex lies at its column's position plus its offset along axis_v. A triangle mesh has no exact
-/// solution of its own: it has the continuum's at its vertices, and its columns are the columns of the material
-/// lattice.
+/// solution of its own; it is compared with the continuum's at its vertices, and the material lattice provides its
+/// columns.
 ///
-/// `columns` is the solution for the same mesh if there is one (a chain of as many links, springs, hinges), so that
-/// a run's distance from it has no spatial discretisation error; `continuum` is the solution without a mesh, or of a
-/// mesh so fine that its own error does not matter.
+/// `columns` is the solution for the same mesh, if there is one (a chain of as many links, springs, hinges); a run's
+/// distance from it has no spatial discretisation error. `continuum` is the solution without a mesh, or on a mesh so
+/// fine that the mesh's error does not matter.
 struct ReferenceCase {
   std::string name;
   bool settles = false;       ///< the solution is the shape at rest: only a run's end is compared
@@ -88,8 +88,8 @@ std::optional<ReferenceCase> reference_case_of(const Scene&);
 /// right (errors of mesh and float32 come on top, metrics/truth_errors.hpp), and the error by which runs are ranked.
 struct Tolerance {
   std::string reference_case;
-  /// Share of the exact motion: a cloth that keeps its start has the error 1. It holds for every parameter, and a
-  /// motion that is too small fails by the same amount as one that is too large.
+  /// Tolerance as a fraction of the exact motion (cloth that keeps its start has the error 1), at any parameters. Too
+  /// small a motion fails by the same amount as too large a one.
   double of_motion = 0;
   double at_rest = 0;  ///< share of the longer side, for cloth that the exact solution does not move; 0: always moves
   std::string why, ranking;

@@ -83,7 +83,7 @@ class Loop {
     painter_.wait();
   }
 
-  /// The session ends here, by this error; an outcome that came before it stays. A frame that had begun is the one that
+  /// The session ends here with this error; an earlier outcome is kept. If a frame had begun, it is the one that
   /// failed.
   void end_by(const std::exception& e) {
     done_ = true;
@@ -168,8 +168,8 @@ class Loop {
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
   }
 
-  /// A display changes its rate some frames after it was asked to, if it has that rate. Else the highest rate counts,
-  /// because runtimes name multiples of the display's period after slow frames, as a solver's first step is one.
+  /// A display changes to a requested rate after some frames, if it offers that rate. Otherwise the highest rate
+  /// counts, because after slow frames, such as a solver's first, runtimes report multiples of the display's period.
   bool rate_settled(double period_s) {
     constexpr double kTimeout_s = 1, kSame_hz = 0.5, kFastest_hz = 1000;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();

@@ -10,7 +10,7 @@
 /// Numbers and layouts are the specification's; names are ours, to avoid clashes with newer headers.
 namespace clothbench::xr {
 
-/// A structure of this type, all else 0.
+/// A structure with its type set and all other members 0.
 template <class T>
 T blank(XrStructureType type) {
   T t{};

@@ -1,4 +1,4 @@
-"""How far from the truth, for what time a frame? Nothing to tell where scenes have no exact answer."""
+"""How large is the error, and at which time per frame? Only for scenes with an exact solution."""
 from _runs import runs
 
 for name, f in runs():

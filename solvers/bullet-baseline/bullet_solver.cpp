@@ -113,7 +113,7 @@ std::unique_ptr<btSoftBody> BulletSolver::new_body(btSoftBodyWorldInfo& info) {
   c.kVCF = 1;
   c.kDP = c.kDG = c.kLF = c.kPR = c.kVC = c.kMT = 0;
   c.viterations = c.diterations = c.citerations = c.collisions = 0;
-  // Hard contact, as in PyBullet: of Bullet's default, 0.1, a swept hand is left 6 mm inside the cloth.
+  // Hard contact, as in PyBullet: with Bullet's default, 0.1, a sweeping hand enters the cloth by 6 mm.
   c.kKHR = c.kCHR = 1;
   // Bullet multiplies the cloth's friction with the collider's, which has the pair's coefficient.
   c.kDF = 1;
@@ -211,7 +211,7 @@ Plan BulletSolver::plan() const {
   constexpr FeatureSet kContact =
       kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin};
   Plan p;
-  // Bullet's step is one piece of work: links of all kinds, damping, pins and grips are served together.
+  // Bullet's step cannot be divided: one stage serves links of all kinds, damping, pins and grips.
   p.stages = {{"Step", scene_->needs - kContact, 0, kMissing, kMissing}};
   if (!scene_->needs.has(Feature::Shear)) p.left_out.push_back({"diagonals", "the scene has no shear stiffness"});
   if (!scene_->needs.has(Feature::Bend)) p.left_out.push_back({"skip-one links", "the scene has no bending"});

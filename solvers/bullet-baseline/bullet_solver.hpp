@@ -66,7 +66,7 @@ double kept_share(const Scene&, double h);
 
 /// The setting as an integer; throws Error outside [least, most].
 int integer_setting(const SolverInfo&, const nlohmann::json& settings, const char* name, int least, int most);
-/// The same for a number in (least, most].
+/// A numeric setting. Throws Error unless it is in (least, most].
 double number_setting(const SolverInfo&, const nlohmann::json& settings, const char* name, double least, double most);
 
 /// Base of both solvers: the grid cloth as a btSoftBody, the colliders as rigid bodies, and the held vertices. The
@@ -92,14 +92,14 @@ class BulletSolver : public ClothSolver {
   /// Removes the body from the world, then destroys the world.
   virtual void tear_down() = 0;
   virtual void substep(btScalar h) = 0;
-  /// Called after a vertex changed between held and free.
+  /// Called after a vertex was attached or released.
   virtual void masses_changed() = 0;
 
   /// World of the colliders' rigid bodies; null where the scene has none.
   virtual btDiscreteDynamicsWorld* world() = 0;
 
-  /// Makes a body with its nodes at the scene's positions. Pinned and held nodes have mass 0, Bullet's mark of a static
-  /// node. All that Bullet adds by default is off, collisions too.
+  /// Makes a body with its nodes at the scene's positions. Pinned and attached nodes have mass 0, which marks a
+  /// static node in Bullet. Everything that Bullet adds by default is off, collisions included.
   std::unique_ptr<btSoftBody> new_body(btSoftBodyWorldInfo&);
   /// Adds links of one kind with the scene's rest lengths; by default Bullet takes the distances at the start.
   static void add_links(btSoftBody&, const Cloth&, EdgeKind);

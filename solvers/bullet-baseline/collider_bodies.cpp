@@ -29,8 +29,8 @@ Capsule between(const Capsule& from, const Capsule& to, double share) {
   return out;
 }
 
-/// Bullet's capsules lie along y. The turn goes on from the last one by the least rotation: a rotation found afresh
-/// could spin about the capsule's axis, and Bullet would drag the cloth along with that spin.
+/// Bullet's capsules lie along y. The rotation follows from the last one by the smallest turn. A rotation computed
+/// anew could spin about the capsule's axis, and Bullet would drag the cloth along with that spin.
 btTransform place(const Capsule& c, btQuaternion& turn) {
   const btVector3 was = quatRotate(turn, btVector3(0, 1, 0));
   turn = shortestArcQuat(was, direction(c, was)) * turn;

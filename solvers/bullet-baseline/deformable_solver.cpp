@@ -140,7 +140,7 @@ double stiffest_of_mesh_rad_per_s(const Scene& scene) {
 
 /// An upper bound of the flat sheet's highest angular frequency [1/s].
 ///
-/// Of a mass-spring system sum k (n.(x_i - x_j))^2 <= 2 sum_i x_i.S_i x_i with S_i = sum k n n^T over the links of
+/// In a mass-spring system sum k (n.(x_i - x_j))^2 <= 2 sum_i x_i.S_i x_i with S_i = sum k n n^T over the links of
 /// vertex i, hence omega^2 <= 2 max_i lambda_max(S_i)/m_i.
 double stiffest_rad_per_s(const Scene& scene) {
   if (scene.cloth.mesh) return stiffest_of_mesh_rad_per_s(scene);

@@ -127,7 +127,7 @@ void probe(const std::string& path) {
     const ClothbenchPlugin* c = enter != nullptr ? enter() : nullptr;
     try {
       checked(path, c);
-    } catch (const Error&) {  // said by the parent, which goes the same way
+    } catch (const Error&) {  // the parent process also loads it and reports the error
     }
     _exit(0);
   }
@@ -162,7 +162,7 @@ SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
   return info;
 }
 
-/// The exact way of a body that falls in air that holds it back: dv/dt = g - c v.
+/// Exact displacement of a body that falls with damping: dv/dt = g - c v.
 double exact_fall_m(double time_s, double gravity, double velocity, double damping) {
   if (damping == 0) return velocity * time_s + gravity * time_s * time_s / 2;
   const double end = gravity / damping;

@@ -19,14 +19,14 @@ class SceneView {
   const ClothbenchScene* scene() const { return &view_; }
   /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which is solver time.
   const ClothbenchFrame* frame(const FrameInput&);
-  /// The state at the end of frame `last`; valid as above and while `state` is unchanged.
+  /// The state at the end of frame `last`. Valid until the next call of either, while `state` is unchanged.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:
   /// Poses of all colliders at one instant, with the memory that they point to.
   struct Posed {
     std::vector<ClothbenchPose> poses;
-    std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one a collider
+    std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one per collider
   };
 
   void add_colliders();

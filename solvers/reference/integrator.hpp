@@ -105,7 +105,7 @@ class Integrator {
  public:
   Integrator(Model& model, Tolerance tolerance) : model_(model), tolerance_(tolerance) {}
   virtual ~Integrator() = default;
-  /// Held vertices are at `held_x` (3 * vertices; only their entries count) at the end of the step.
+  /// At the end of the step, held vertices are at `held_x` (3 * vertices; entries of other vertices are ignored).
   virtual StepStatus step(State& state, const Vector& held_x, double h) = 0;
   /// Forgets earlier steps; call it too after a change of the held vertices.
   virtual void restart() { system_.forget(); }

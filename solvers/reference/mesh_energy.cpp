@@ -76,7 +76,7 @@ class Unknowns {
       at(row, edges_.at(key(c, k))) += (c[k] < c[(k + 1) % 3] ? 1 : -1) * factor;
       return;
     }
-    // The gradient of the linear motion of the clamped triangle: a corner's share is minus the opposite edge's normal.
+    // The gradient of the clamped triangle's linear motion: each corner contributes minus the opposite edge's normal.
     const Flat f = flatten(mesh, clamp->second);
     const Corners& held = mesh.triangles[clamp->second];
     int edge = 0;

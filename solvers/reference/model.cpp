@@ -95,7 +95,7 @@ void Model::hold(const std::vector<std::uint8_t>& held) {
 Vector Model::constraints(const Vector& x) const {
   Vector C(static_cast<Eigen::Index>(springs_.size()));
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    // Nothing can change it; in a triangle it counts, for the other edges feel it.
+    // The tension of a spring between held vertices has no effect, except in a triangle, where it is coupled to others.
     const bool rigid = triangles_.empty() && held(springs_[s].a) && held(springs_[s].b);
     C[static_cast<Eigen::Index>(s)] =
         rigid ? 0 : (at(x, springs_[s].b) - at(x, springs_[s].a)).norm() - springs_[s].rest_m;

@@ -132,7 +132,7 @@ class Reference final : public ClothSolver {
   std::vector<std::uint8_t> grip_held_;
 };
 
-/// The same recurrences for one particle that only falls (RATTLE and the midpoint rule agree on it without damping).
+/// Fall of one particle by the solver's own time step (RATTLE and the midpoint rule agree on it without damping).
 double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
   const int substeps = settings["substeps"].get<int>();
   const double h = s.time.dt() / substeps, g = s.gravity_m_per_s2[1], c = s.material.damping_per_s;

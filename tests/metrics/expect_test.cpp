@@ -77,7 +77,7 @@ TEST(Expect, MistakesAreRefusedWithTheNearestName) {
   EXPECT_EQ(message(R"({"stretch_max":{"at_most":1}})"), "");
 }
 
-// The schema's names are the names of the summary: an expectation that can never have a value is no use.
+// Each name that the schema allows in `expect` must exist in the summary: otherwise it could never have a value.
 TEST(Expect, EveryNameTheSchemaKnowsIsInTheSummary) {
   const Scene scene = scene_expecting("{}");
   const SolverEntry& entry = find_solver("ballistic");

@@ -159,8 +159,8 @@ TEST(Popping, OfACornerIsWhatItsWaveDoesNotExplain) {
   EXPECT_GT(pop_of(scene, cracked(1, true)), 10 * bound_m());
 }
 
-/// What surrounds a vertex moves by the length of its path, also where it turns round within a window. What happens far
-/// away does not matter, and no vertex explains itself by a jump there and back.
+/// A neighbour's motion is the length of its path, also if it turns round within a window. Distant motion does not
+/// matter, and a vertex that jumps and returns does not explain its own jump.
 TEST(Popping, OfAVertexAmongOthersThatTurnRound) {
   const Scene scene = scene_of(72);
   const auto among = [](std::size_t from, std::size_t to) -> Motion {

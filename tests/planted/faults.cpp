@@ -102,7 +102,7 @@ std::vector<Fault> faults() {
              "dot(n, around) + smallest - 1e-3);"),
       kernel("planes forgotten", "struck", "xpbd/contact/displacement_filter/contact_project.glsl",
              "if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);", ""),
-      // The same of the cloth's contact with itself.
+      // Faults in self-contact.
       kernel("boxes of a tenth of the size", "heaped", "xpbd/contact/broad_phase/self_aabb.glsl",
              "return b.low_0.xyz +", "return 0.9 * b.high_0.xyz + 0.1 * b.low_0.xyz +"),
       kernel("triangles whose numbers differ by few not paired", "heaped",

@@ -62,7 +62,7 @@ const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a 
   "time":{"frame_rate_hz":72,"duration_s":0.3},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":1e-5}}})";
 
-// The same of the cloth with itself: it is thrown into a heap in so few substeps that planes have to hold.
+// Self-contact: the cloth is thrown into a heap with so few substeps that only planes keep its layers apart.
 const char* const kHeaped = R"({"name":"heaped","why":"A folded sheet is thrown onto the floor and onto itself.",
   "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.6,-5,0.4],
            "pose":{"center_m":[0,0.1,0],"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{"radius_m":0.04}},"start":{"shape":"rest","noise_m":0.001,"seed":8},

@@ -39,7 +39,7 @@ struct SolverInfo {
 
 /// The features of `needs` that the solver cannot run, `only_with` included; empty if it can run the scene.
 FeatureSet unsupported(const SolverInfo&, FeatureSet needs);
-/// The same in words: "xpbd has no grips, friction"; empty if the solver can run the scene.
+/// unsupported() as a sentence: "xpbd has no grips, friction"; empty if the solver can run the scene.
 std::string missing_features(const SolverInfo&, FeatureSet needs);
 
 /// The device that a solver runs on; the CPU for CPU solvers.

@@ -203,7 +203,7 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
   return sum;
 }
 
-/// The ray follows the axis that leaves the mesh's box soonest, so the ray's box is the ray itself.
+/// The ray follows the axis along which it leaves the mesh's box soonest; along an axis, the ray's box is the ray.
 bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
   const Box& box = mesh.tree().box();
   if (mesh.triangles().empty() || !box.contains(p)) return false;

@@ -78,7 +78,7 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
   // absolute bound covers errors of underflow; an overflow fails the comparison, as NaN does.
   constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
   if (std::abs(value) > kRelative * bound && bound > kLeast && std::isfinite(bound)) return value > 0 ? 1 : -1;
-  // Every term has a factor that is exactly 0: points that share a coordinate, the common tie.
+  // Whether every term has a factor that is exactly 0. This is the common tie: points that share a coordinate.
   for (auto& row : magnitude)
     for (double& x : row) x = x == 0 ? 0 : 1;
   if (determinant<double, N, true>(magnitude) == 0) return 0;

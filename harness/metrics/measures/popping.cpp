@@ -83,7 +83,7 @@ std::vector<double> driven_m(const RunView& r) {
   return way;
 }
 
-/// What may move a vertex along.
+/// Neighbours that can move a vertex.
 struct Surroundings {
   std::vector<std::uint32_t> near;  ///< the vertices up to two edges away, without itself: a fold is at least this wide
   double gain;                      ///< largest ratio of its speed to theirs
@@ -105,9 +105,9 @@ std::vector<Surroundings> surroundings(const Cloth& cloth) {
   return out;
 }
 
-/// The greatest displacement in the second of three windows beyond the explained one: twice the path of what drives the
-/// cloth in any of them, twice the vertex's own displacement in the first or third, as far as it has the same
-/// direction, and the neighbours' paths in these times the vertex's gain. `x` has the windows' ends.
+/// Maximum displacement in the second of three windows beyond the explained one. This is the largest of twice the path
+/// of any driver in any window, twice the vertex's own displacement in the first or third window in this direction, and
+/// the neighbours' paths in these two windows times the vertex's gain. `x` has the windows' ends.
 double unexplained_m(const std::array<Instant, 4>& x, double driven_m, const std::vector<Surroundings>& round) {
   const auto displacement = [&](std::size_t window, std::size_t v) {
     return minus(x[window + 1].position_m[v], x[window].position_m[v]);

@@ -64,7 +64,7 @@ class Motion {
   }
   /// Pinned vertices, and those that an attachment holds at the end of a frame.
   std::vector<std::uint32_t> held(std::size_t frame) const;
-  /// The same for each vertex.
+  /// Per vertex, whether held() contains it.
   std::vector<bool> is_held(std::size_t frame) const;
   bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
   /// Colliders of a frame, or of the scene's last frame after its end; null if nothing moves but cloth.

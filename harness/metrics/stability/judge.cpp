@@ -45,7 +45,7 @@ double imposed_strain(const Scene& s, const std::vector<double>& start, const Fr
   return most;
 }
 
-/// Greatest displacement of a hand or of a capsule's end in one frame.
+/// Maximum displacement of a hand or of a capsule's end in one frame.
 double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   double most = 0;
   if (hands) {

@@ -11,8 +11,8 @@ namespace clothbench {
 /// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
 ///
 /// The energy gain compares visible energy (kinetic and gravitational) with the available energy: the energy at the
-/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. So
-/// the elastic energy of a model, which solvers without a modulus do not have, is never counted twice.
+/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. The
+/// elastic energy of a solver's model does not count as visible, because solvers without a modulus have none.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const Scene&);

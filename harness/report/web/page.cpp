@@ -39,7 +39,7 @@ void add_times(const Row& r, json& out) {
         out[name].push_back(rounded(s));
 }
 
-/// What a scene's cloth touches: "2 grips", "hand_capsules". Scenes of one kind may differ in the speed of it.
+/// Kind of what touches a scene's cloth: "2 grips", "hand_capsules". Scenes of one kind may differ in its speed.
 std::string kind_of_contact(const json& scenario) {
   std::set<std::string> out;
   for (const json& c : scenario.value("colliders", json::array())) out.insert(c.value("type", ""));

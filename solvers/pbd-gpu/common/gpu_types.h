@@ -139,7 +139,7 @@ struct LineConstants {
   float tether_stretch;             // 1 + slack
   float rest_u, rest_v, rest_d;     // rest lengths of links [m]
   float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
-  float bend_u, bend_v;             // the same for bending
+  float bend_u, bend_v;             // bending compliance over h^2 keep
   float inverse_mass;               // of an inner vertex [1/kg]
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch

@@ -63,19 +63,19 @@ struct Tethers {
   double stretch = 1;
   std::string reason;  ///< reason if `to` is empty
 };
-/// Tethers are valid where everything that holds the cloth is static and the exact solution stretches less
-/// (xpbd/README.md); their slack is 5 rho g L / Y for the cloth's weight and 2 v0 / c for its speed. `wanted`: by the
-/// settings.
+/// Tethers are used if everything that holds the cloth is static and the exact solution stretches less
+/// (xpbd/README.md). Their slack is 5 rho g L / Y for the cloth's weight plus 2 v0 / c for its speed. `wanted`: whether
+/// the settings allow tethers.
 Tethers tethers_of(const Scene&, bool wanted = true);
 
-/// The same vertex by vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
+/// Tethers listed per vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
 struct TetherTable {
   std::uint32_t a_vertex = 0;  ///< entries per vertex, 0 to Tethers::kMax
   std::vector<TetherEnd> ends;
   std::string reason;  ///< reason if there are no tethers
 };
-/// In a grid or a flat mesh with a convex border, reach is the distance at rest. Else it is the path length along
-/// edges, which is longer than that through triangles, so these tethers are a little looser.
+/// In a grid or a flat mesh with a convex border, reach is the distance at rest. Otherwise it is the path length
+/// along edges. This is longer than a path through triangles, so these tethers are a little looser.
 TetherTable tether_table(const Scene&, bool wanted = true);
 
 /// 5 M g / Y [m]: five times the elongation scale of a sheet that hangs from a few vertices; 0 if inextensible.
@@ -88,7 +88,7 @@ bool is_tethered(const Scene&, const nlohmann::json& settings);
 /// squashed, coincident, pulled out of shape. No physical cloth starts so; the solver only has to recover from it.
 bool starts_crumpled(const Scene&);
 
-/// Moves every free vertex of a crumpled start by less than a thousandth of a cell a coordinate, the same in every run.
+/// Moves every free vertex of a crumpled start by less than a thousandth of a cell per axis, the same in every run.
 /// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold in it. `x`:
 /// [m].
 void break_symmetry(const Scene&, const std::vector<float>& inverse_mass, std::vector<double>& x);

@@ -66,7 +66,7 @@ class Colliders {
   bool has_spheres() const { return !now_.spheres.empty(); }
   void put(const ClothbenchPose* poses) { now_ = at(poses); }
 
-  /// Gives a new cloth the colliders as they are at the start of the next frame.
+  /// Adds the colliders to a new cloth, in their poses at the start of the next frame.
   void place(nv::cloth::Cloth& cloth) const {
     cloth.setSpheres(range(now_.spheres), 0, 0);
     cloth.setCapsules(range(ends_), 0, 0);

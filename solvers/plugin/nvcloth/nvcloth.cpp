@@ -254,7 +254,7 @@ class Solver : public peer::Adapter {
   }
 
   /// Motion constraints of radius 0, which the engine interpolates over the frame's iterations. `position_m`, `held`:
-  /// of the grips; null: where the scene starts, all of them.
+  /// of the grips. If null, all grips hold their vertices at the initial positions.
   void attach(const double* position_m, const std::uint8_t* held) {
     if (scene.grip_count == 0) return;
     const nv::cloth::Range<PxVec4> spheres = cloth_->getMotionConstraints();

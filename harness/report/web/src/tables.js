@@ -63,7 +63,7 @@ export class ShownTable {
     });
   }
 
-  /// Sets the columns in their order. In a narrow window the first cell also has the other short keys, and details stand last.
+  /// Orders the columns. In a narrow window the first cell also shows the other short keys, and columns with details come last.
   arrange() {
     const {solvers, keys = 1, late = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
     this.columns = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
@@ -71,7 +71,7 @@ export class ShownTable {
     if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
   }
 
-  /// How many columns the box hides on its right, and whether the second key stays in sight: with the first, in at most half of it.
+  /// Tells how many columns the box hides on its right. The second key stays in sight if both keys fit into half of the box.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
     const [first = 0, second = Infinity] = heads.map(h => h.offsetWidth), can_hold = this.table.keys > 1 && !kNarrow.matches;

@@ -10,12 +10,12 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Pairs that the list has place for: the lists of heaps and desks are a third of it, and where it does not suffice the
-/// vertices' motion bounds is cut.
+/// Default capacity of the list of pairs. Heaps and desks use a third of it; if it overflows, the motion bounds of the
+/// vertices are reduced.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
 constexpr std::uint64_t kAllPairs = 1u << 18;
-/// The same of the cloth with itself, its active pairs and those with contacts. Heaps list some 200 pairs per triangle,
-/// of which 10 are active.
+/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Heaps list about 200 pairs per
+/// triangle, of which 10 are active.
 constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
                         kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
@@ -104,7 +104,7 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   auto all = triangles(scene_.cloth);
   for (auto& t : all)
     for (auto& v : t) v = particle.empty() ? v : particle[v];
-  // A short list that tests ask for is one of active pairs too.
+  // If a test requests a short list of candidates, the list of active pairs is as short.
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   ContactPassSpecialization& c = pass_constants_;
   c.SELF = 1;

@@ -91,9 +91,9 @@ uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
 uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
 #define SELF_ACTIVE_COUNT min(frame_state.self_active, ACTIVE_CAPACITY)
-// Only kinematic shapes are responded to before the constraint solve (round 0). Friction of static shapes would act on
-// a displacement without the pull of the constraints: a strip over a cylinder (capstan-hold) slips at 5 % less overhang
-// than Coulomb's law holds, and at 0.7 % less without round 0.
+// Only kinematic shapes get a response before the constraint solve (round 0). Friction of static shapes would act on a
+// displacement without the pull of the constraints. With round 0, a strip over a cylinder (capstan-hold) slips at 5 %
+// less overhang than by Coulomb's law, without it at 0.7 % less.
 #define FIRST_ROUND (HAS_KINEMATIC != 0u ? 0u : 1u)
 uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
@@ -106,8 +106,8 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-/// How far the list of self-contact pairs moves in the frame [m]: half as far as the cloth on average. Its bounds are
-/// larger by as much, so that they hold a vertex that goes on and one that an impact stops.
+/// Displacement of the motion bounds of self-contact in the frame [m]: half of the cloth's mean displacement. The bounds
+/// are larger by as much, so they contain both a vertex that moves on and one that an impact stops.
 #define drift_velocity() vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])
 #define drift_m() (SELF != 0u ? p.frame_s * length(drift_velocity()) : 0.0)
 

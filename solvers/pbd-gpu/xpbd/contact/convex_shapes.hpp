@@ -25,7 +25,7 @@ struct ConvexShapes {
   std::vector<ShapeAabb> boxes;      ///< of the convex shapes, then of groups of SHAPES_PER_GROUP of them
   std::uint32_t max_points = 1;      ///< of a convex shape
   double max_margin_m = 0;
-  std::vector<double> margins_m;  ///< one a collider, those used
+  std::vector<double> margins_m;  ///< one per collider, as used
 };
 /// Positions are relative to `origin_m`.
 ConvexShapes convex_shapes(const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders);

@@ -36,8 +36,8 @@ LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevic
 /// are fastest up to some 384, and reading 2 or 4 neighbouring columns at once above 192. Throws Error past 8192.
 LineShape pass_shape(int length, const LineRequest&, const LineDevice&);
 
-/// Rounds of cyclic reduction after which the rest of the bending matrix is below 1e-7. Few are needed where alpha is
-/// well above the inverse masses: hinges are then weakly coupled. At most log2(lanes).
+/// Rounds of cyclic reduction after which the off-diagonal rest of the bending matrix is below 1e-7; at most
+/// log2(lanes). Few are needed if alpha is far above the inverse masses, because hinges are then weakly coupled.
 std::uint32_t bend_rounds(double alpha, double max_inverse_mass, const LineShape&);
 
 }  // namespace clothbench::pbd_gpu

@@ -194,7 +194,7 @@ Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
   return form;
 }
 
-/// The same of the linear motion of a triangle.
+/// The derivative across edge k of a triangle's linear motion.
 Form own_across(const FlatMesh& mesh, std::uint32_t t, int k) {
   const auto normal = [&](int side) {  // times length
     const Vec2 e = mesh.side(t, side);

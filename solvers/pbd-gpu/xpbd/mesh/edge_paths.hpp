@@ -16,7 +16,7 @@ double substeps_for_short_links(const Scene&);
 
 /// Particles and links of a chain cloth, slivers welded (xpbd/mesh/README.md).
 struct ChainCloth {
-  std::vector<std::uint32_t> particle;  ///< one a vertex: itself, or the vertex that it is welded to
+  std::vector<std::uint32_t> particle;  ///< one per vertex: itself, or the vertex to which it is welded
   struct Link {
     std::uint32_t a, b;  ///< particles, a < b, ascending
     float rest_m, compliance_m_per_N;

@@ -74,7 +74,7 @@ inline constexpr double kMaxLayerApproach = 2.0 / 3;
 // [m/s] A live session does not know its hand's speed, and a replay must take as many substeps
 inline constexpr double kUsersHand_m_per_s = 2;
 inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] What a frame may cost
-inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] The same of free cloth on static colliders
+inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] For free cloth on static colliders
 
 // Substeps by the last frame (SubstepController): cloth at rest on a desk gives by 1 mm when their number changes.
 inline constexpr double kMinOfLast = 0.75;  // [of the last frame's] The strain of an impact relaxes in the next frames
@@ -88,7 +88,7 @@ inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave m
 // [substeps] A list of self-contact pairs for a longer time has no capacity for fast cloth, and reduced motion bounds
 // slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
 inline constexpr int kSubstepsPerList = 8;
-// [cells] The same of pairs with static colliders: farther in a list's time, and cloth is held back beside a desk
+// [cells] Maximum motion per list of pairs with static colliders: farther, and a desk holds back cloth beside it
 // (contact-11204631-desk)
 inline constexpr double kCellsPerList = 2;
 inline constexpr int kMinSubstepsPerList = 4;  // [substeps] A list costs as much as one or two

@@ -33,7 +33,7 @@ double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
   return travel;
 }
 
-/// Speed of colliders; a user's hand counts as fast as hands usually are.
+/// Maximum speed of colliders; for a user's hand, an assumed speed.
 double speed_m_per_s(const Scene& scene) {
   const bool by_user =
       std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.recorded; });
@@ -58,7 +58,7 @@ double substeps_for_layers(const Scene& scene) {
   return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
-/// By the page of this folder, "Substeps". `touches`: for what touches the cloth in the frame; `fast`: for its speed.
+/// Substeps by the rules of README.md, "Substeps". `touches`: with contact in this frame; `fast`: with fast motion.
 int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const double links = links_of_longer_side(scene.cloth);

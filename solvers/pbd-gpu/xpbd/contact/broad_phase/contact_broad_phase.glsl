@@ -1,5 +1,5 @@
-// Candidate pairs of a primitive and a convex shape: their boxes overlap, the primitive's inflated by the motion bounds
-// of its vertices. The list is made for one fraction of the bounds after another (kFractions) until its pairs fit.
+// Candidate pairs of a primitive and a convex shape: their boxes overlap after the primitive's box is inflated by the
+// motion bounds of its vertices. The list is made for smaller and smaller fractions (kFractions) until its pairs fit.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
@@ -30,8 +30,8 @@ bool aabb_overlaps(ShapeAabb b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
-// Lanes of a cluster, where there is one, look at boxes for the same primitive. Each looks at a few at a time: their
-// loads do not wait for one another. Control flow is subgroup-uniform.
+// All lanes of a cluster, if there is one, test boxes against one primitive. Each lane tests a few boxes at a time, so
+// that their loads overlap. Control flow is subgroup-uniform.
 #ifdef FUSED_FRAME
 #define LANES_PER_PRIMITIVE LANES_PER_VERTEX
 #define PRIMITIVE_LANE cluster_lane()
@@ -117,7 +117,7 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
   )
 }
 
-/// Takes the largest fraction of the motion bounds at which all pairs fit into the list. By one thread.
+/// Selects the largest fraction of the motion bounds at which all pairs fit into the list. Called by one thread.
 void finish_broad_phase() {
   uint level = fitting_level(frame_state.counted, CAPACITY);
   frame_state.pairs = min(frame_state.counted[level], CAPACITY);

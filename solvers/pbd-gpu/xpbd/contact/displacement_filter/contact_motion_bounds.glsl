@@ -48,7 +48,7 @@ vec3 mean_velocity() {
 float motion_bound(float speed, float rest, float max_shape_displacement, float by_hands) {
   return BOUND_FACTOR * (rest + 1.5 * speed * p.frame_s) + max_shape_displacement + by_hands;
 }
-/// The same in a frame in which it touches no collider.
+/// The motion bound of a vertex in a contact-free frame.
 float contact_free_bound(float speed, float rest, float by_hands) {
   return BOUND_FACTOR * (min(rest, 0.5 * p.bound_m) + 1.25 * speed * p.frame_s) + by_hands;
 }
