@@ -9,7 +9,6 @@
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/solver.hpp"
 
 namespace clothbench::assets {
 namespace {

@@ -17,7 +17,6 @@
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
-#include "clothbench/solver.hpp"
 
 namespace clothbench {
 namespace {

@@ -1,7 +1,6 @@
 #include "base/files.hpp"
 #include "check/compare.hpp"
 #include "cli/command.hpp"
-#include "report/report.hpp"
 
 namespace clothbench {
 namespace {

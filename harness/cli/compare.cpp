@@ -1,7 +1,6 @@
 #include "check/compare.hpp"
 
 #include "cli/command.hpp"
-#include "report/report.hpp"
 
 namespace clothbench {
 

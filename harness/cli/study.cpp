@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <set>
 
-#include "assets/assets.hpp"
 #include "cli/command.hpp"
 #include "runner/study_plan.hpp"
 #ifdef CLOTHBENCH_WITH_DRAW

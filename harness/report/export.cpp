@@ -125,7 +125,7 @@ std::string trials_csv(const RunTable& table) {
       std::sort(sorted.begin(), sorted.end());
       out.emplace_back(name + "_mean_s", times.empty() ? json() : json(sum / static_cast<double>(times.size())));
       for (const auto& [which, q] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}, {"max", 1.0}})
-        out.emplace_back(fmt::format("{}_{}_s", name, which), quantile(sorted, q));
+        out.emplace_back(fmt::format("{}_{}_s", name, which), nearest_rank(sorted, q));
     }
     return out;
   });

@@ -19,7 +19,7 @@ using Series = std::vector<double>;
 
 Interval percentiles(Series estimates) {
   std::sort(estimates.begin(), estimates.end());
-  return {quantile(estimates, 0.025), quantile(estimates, 0.975)};
+  return {nearest_rank(estimates, 0.025), nearest_rank(estimates, 0.975)};
 }
 
 /// The frames of a trial in blocks of consecutive ones; the rest joins the last block.
@@ -94,7 +94,7 @@ const char* const kIntervalMethod =
     "(400 resamples); with one trial it covers only the variation between frames. ~: the interval is wider than 20 % "
     "of the median, so the run is not ranked.";
 
-double FrameTimes::at(double q) const { return quantile(sorted, q); }
+double FrameTimes::at(double q) const { return nearest_rank(sorted, q); }
 
 double FrameTimes::missed(double rate_hz) const {
   if (sorted.empty()) return kMissing;

@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/files.hpp"
-#include "clothbench/error.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"

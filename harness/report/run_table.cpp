@@ -6,7 +6,6 @@
 #include <set>
 #include <tuple>
 
-#include "report/report.hpp"
 #include "truth/reference_case.hpp"
 
 namespace clothbench {
@@ -146,7 +145,7 @@ double median(std::vector<double> values) {
   return n == 0 ? kMissing : (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
-double quantile(const std::vector<double>& sorted, double q) {
+double nearest_rank(const std::vector<double>& sorted, double q) {
   if (sorted.empty()) return kMissing;
   const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
   return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];

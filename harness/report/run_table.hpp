@@ -43,8 +43,8 @@ std::size_t place_of_scene(const std::string& scene);
 /// NaN without values.
 double median(std::vector<double>);
 
-/// Nearest-rank quantile of a sorted list; NaN if it is empty.
-double quantile(const std::vector<double>& sorted, double q);
+/// Quantile of a sorted list by the nearest rank; NaN if it is empty.
+double nearest_rank(const std::vector<double>& sorted, double q);
 
 /// "diverged at 12" (the failed frame), or only the status if no frame failed.
 std::string ending(const Outcome&);

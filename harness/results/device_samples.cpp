@@ -16,35 +16,9 @@ constexpr double kLogged = 0.8;  // fraction of a trial whose state must be logg
 constexpr int kMinSamples = 5;   // fewer samples do not give a mean bandwidth
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 30;
 
-constexpr char kSchema[] = R"({
-  "type": "object", "required": ["format", "format_version", "device", "groups"],
-  "properties": {
-    "format": {"enum": ["clothbench-device-samples"]},
-    "format_version": {"enum": [2]},
-    "device": {"type": "object"},
-    "groups": {"type": "array", "items": {
-      "type": "object", "required": ["name", "source", "period_s", "time_unix_s", "series"],
-      "properties": {
-        "name": {"type": "string", "pattern": "^[A-Za-z0-9_]+$"},
-        "source": {"type": "string"},
-        "period_s": {"type": "number", "exclusiveMinimum": 0},
-        "time_unix_s": {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}},
-        "reasons": {"type": "array", "items": {"type": "string"}},
-        "series": {"type": "array", "items": {
-          "type": "object", "required": ["name", "units", "long_name", "values"],
-          "properties": {
-            "name": {"type": "string", "pattern": "^[^/.]+$"},
-            "units": {"type": "string"},
-            "long_name": {"type": "string"},
-            "role": {"enum": ["fps", "cpu_clock", "gpu_clock", "temperature", "read", "write"]},
-            "scale": {"type": "number"},
-            "values": {"type": "array", "items": {"type": ["number", "null"]}}
-          }
-        }}
-      }
-    }}
-  }
-})";
+constexpr char kSchema[] =
+#include "device_samples.schema.inc"
+    ;
 
 /// Conditions on a group that the schema cannot state.
 void check_group(const std::string& file, const std::string& at, const json& g) {

@@ -6,13 +6,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "results/store.hpp"
 #include "runner/environment.hpp"
-#include "runner/expect.hpp"
 #include "runner/interrupt.hpp"
 #include "runner/reference.hpp"
 
@@ -175,7 +173,7 @@ class GroupRun {
     summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
     summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
     summary[kUntimed] = r.untimed_s;
-    Verdict verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
+    Judgement verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);
     summary.merge(verdict.scalars);
     result_.files.push_back(r.writer->finish(outcome, summary));
@@ -298,9 +296,9 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
   return result;
 }
 
-Verdict judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pass,
-              const std::map<std::string, double>& summary) {
-  Verdict v;
+Judgement judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& pass,
+                const std::map<std::string, double>& summary) {
+  Judgement v;
   const std::string expected = expected_outcome(scene);
   const std::vector<Expectation> bounds = expectations(scene, summary);
   const bool checked = summary.contains(kMotionCheck + "finite");

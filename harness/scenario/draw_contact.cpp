@@ -10,7 +10,6 @@
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/solver.hpp"
 #include "scenario/collider_reader.hpp"
 
 namespace clothbench {

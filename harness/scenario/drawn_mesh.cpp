@@ -9,7 +9,6 @@
 
 #include "base/json_text.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/load.hpp"
 
 namespace clothbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/quantile.hpp"
+#include "base/interval.hpp"
 #include "runner/environment.hpp"
 #include "runner/solver_run.hpp"
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "assets/assets.hpp"
+#include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "render/camera.hpp"
-#include "results/store.hpp"
 #include "scenario/collider_reader.hpp"
 #include "scenario/load.hpp"
 

@@ -1,5 +1,4 @@
 // Particles that only fall: the smallest complete backend. See README.md beside this file.
-#include <cmath>
 
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"

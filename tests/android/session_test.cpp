@@ -15,7 +15,6 @@
 #include "base/files.hpp"
 #include "refusal.hpp"
 #include "runner/interrupt.hpp"
-#include "scenario/load.hpp"
 #include "scenario/study.hpp"
 #include "with_folder.hpp"
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "assets/assets.hpp"
-#include "base/quantile.hpp"
+#include "base/interval.hpp"
 #include "support.hpp"
 #include "with_folder.hpp"
 

@@ -11,7 +11,6 @@
 #include "base/files.hpp"
 #include "base/interval.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/solver.hpp"
 
 namespace clothbench {
 namespace {

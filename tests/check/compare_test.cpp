@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 
-#include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "results.hpp"
 

@@ -12,7 +12,6 @@
 
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
-#include "scenario/load.hpp"
 #include "scenario/study.hpp"
 #include "solvers.hpp"
 

@@ -1,8 +1,6 @@
 // Relations of two runs: a solver that keeps them passes, and each planted fault breaks its relation.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"

@@ -11,7 +11,6 @@
 #include "../results/sample_run.hpp"
 #include "fuzz.hpp"
 #include "results/part_file.hpp"
-#include "results/store.hpp"
 
 namespace {
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "metrics/contact/triangle_mesh.hpp"
 #include "scenario/load.hpp"
 

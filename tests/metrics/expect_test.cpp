@@ -1,13 +1,11 @@
-#include "runner/expect.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 #include "refusal.hpp"
 #include "runner/solver_run.hpp"
+#include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 
 namespace clothbench {
@@ -23,8 +21,8 @@ AccuracyPass whole_pass(const Scene& scene) {
   return pass;
 }
 
-Verdict verdict(const std::string& expect, const std::map<std::string, double>& summary,
-                const std::string& status = "ok") {
+Judgement verdict(const std::string& expect, const std::map<std::string, double>& summary,
+                  const std::string& status = "ok") {
   const Scene scene = scene_expecting(expect);
   Outcome outcome;
   outcome.status = status;
@@ -42,7 +40,7 @@ TEST(Expect, NoValueBreaks) {
   const char* bounds = R"({"stretch_max":{"at_most":0.2}})";
   for (const auto& summary :
        {std::map<std::string, double>{}, {{"stretch_max", kMissing}}, {{"stretch_max", -INFINITY}}}) {
-    const Verdict v = verdict(bounds, summary);
+    const Judgement v = verdict(bounds, summary);
     EXPECT_EQ(v.text, "fail: stretch_max has no value");
     EXPECT_EQ(v.scalars.at("expect.stretch_max"), 0);
   }

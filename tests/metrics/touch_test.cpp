@@ -1,8 +1,6 @@
 // Touch and slip of whole scenes, and what the summary makes of their series.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "scenario/load.hpp"
 #include "unmet_bounds.hpp"
 

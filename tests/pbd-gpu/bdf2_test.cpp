@@ -6,8 +6,6 @@
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"
-#include "scenario/load.hpp"
-#include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {

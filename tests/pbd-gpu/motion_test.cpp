@@ -1,6 +1,4 @@
 // Dynamic input: upload, skinning and gripped vertices.
-#include <cmath>
-#include <cstring>
 
 #include "contact_scenes.hpp"
 

@@ -1,5 +1,4 @@
 // Splitting-error correction: where it is off, why, and that it costs nothing there.
-#include <cmath>
 
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"

@@ -1,7 +1,6 @@
 // One frame of `paper` against the same method in double on the CPU, written from the paper, not from the shaders;
 // `xpbd` in every layout of its lines against the layout that it chooses.
 #include <algorithm>
-#include <cmath>
 
 #include "clothbench/vector.hpp"
 #include "gpu_fixture.hpp"

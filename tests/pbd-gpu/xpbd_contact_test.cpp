@@ -1,12 +1,10 @@
 // Contact of `xpbd` by planes: nothing crosses at any step, by the harness's measures; friction; lists that are short.
-#include <set>
 
 #include "contact_check.hpp"
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
 #include "runner/solver_run.hpp"
 #include "xpbd/contact/contact.hpp"
-#include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {

@@ -4,7 +4,6 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

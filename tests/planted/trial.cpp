@@ -4,7 +4,7 @@
 
 #include "metrics/registry.hpp"
 #include "results/store.hpp"
-#include "runner/expect.hpp"
+#include "runner/study_runner.hpp"
 #include "solvers.hpp"
 
 namespace clothbench {
@@ -94,7 +94,7 @@ RunRecord execute_run(const Stage& stage, const Fault* fault) {
   if (fault != nullptr && fault->metrics) fault->metrics(record.accuracy);
   record.outcome = run.outcome();
   record.summary = summarise(spec, run.plan(), record);
-  const Verdict verdict = judge(stage.scene, record.outcome, record.accuracy, record.summary);
+  const Judgement verdict = judge(stage.scene, record.outcome, record.accuracy, record.summary);
   record.outcome.expect = verdict.text;
   for (const auto& [name, value] : verdict.scalars) record.summary[name] = value;
   if (fault != nullptr && fault->record) fault->record(record);

@@ -9,7 +9,6 @@
 #include "render/camera.hpp"
 #include "render/offscreen.hpp"
 #include "scenario/cloth_mesh.hpp"
-#include "scenario/load.hpp"
 #include "sheets.hpp"
 
 namespace clothbench::render {

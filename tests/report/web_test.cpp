@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "fake_runs.hpp"

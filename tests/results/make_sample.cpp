@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "clothbench/error.hpp"
 #include "results/store.hpp"
 #include "sample_run.hpp"
 

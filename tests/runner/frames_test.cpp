@@ -1,11 +1,8 @@
 // Uneven frames, a hitch or a jitter of the scene's clock, reach the solver wherever a scene is run.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
-#include "clothbench/error.hpp"
 #include "refusal.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/reference.hpp"

@@ -1,7 +1,6 @@
 // A cached reference value is found again only by what it depends on, all of it.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 
 #include "base/json_text.hpp"

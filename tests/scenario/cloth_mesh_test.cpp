@@ -10,7 +10,6 @@
 #include <random>
 #include <set>
 
-#include "clothbench/error.hpp"
 #include "scenario/load.hpp"
 #include "scratch_folder.hpp"
 

@@ -16,7 +16,6 @@
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
-#include "scratch_folder.hpp"
 
 namespace clothbench {
 namespace {

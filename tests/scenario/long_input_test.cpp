@@ -12,7 +12,6 @@
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
-#include "scratch_folder.hpp"
 
 namespace clothbench {
 namespace {

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "assets/base64.hpp"
-#include "clothbench/error.hpp"
 #include "scenario/cloth_mesh.hpp"
 #include "scenario/load.hpp"
 #include "scratch_folder.hpp"

@@ -7,7 +7,7 @@
 #include "metrics/registry.hpp"
 #include "metrics/truth_errors.hpp"
 #include "refusal.hpp"
-#include "runner/expect.hpp"
+#include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 #include "scenario/study.hpp"
 

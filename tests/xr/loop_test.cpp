@@ -4,7 +4,6 @@
 #include "null_runtime/script.hpp"
 #include "refusal.hpp"
 #include "sessions.hpp"
-#include "xr/instance.hpp"
 #include "xr/session.hpp"
 
 namespace clothbench::xr {

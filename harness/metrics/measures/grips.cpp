@@ -1,6 +1,5 @@
 // Hands that hold and pull the cloth: how well it follows them, how far it is stretched, and the strain after release.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "metrics/registry.hpp"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/quantile.hpp"
+#include "base/interval.hpp"
 #include "metrics/registry.hpp"
 
 namespace clothbench {

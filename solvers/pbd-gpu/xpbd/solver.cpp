@@ -10,7 +10,6 @@
 #include "xpbd/contact/contact.hpp"
 #include "xpbd/fused/fused_frame.hpp"
 #include "xpbd/lines/grid_lines.hpp"
-#include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/chains.hpp"
 #include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "clothbench/error.hpp"
-
 namespace clothbench::pbd_gpu {
 
 /// Default capacity of the list of pairs. Heaps and desks use a third of it; if it overflows, the motion bounds of the

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
 #include "xpbd/mesh/matrices.hpp"

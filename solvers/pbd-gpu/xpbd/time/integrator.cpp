@@ -9,7 +9,6 @@
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
 #include "xpbd/constraints.hpp"
-#include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
 #include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/rules.hpp"

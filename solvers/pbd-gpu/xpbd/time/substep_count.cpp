@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "clothbench/solver.hpp"
-#include "xpbd/lines/line_layout.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
 #include "xpbd/time/integrator.hpp"
 #include "xpbd/time/rules.hpp"
