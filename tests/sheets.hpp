@@ -2,7 +2,6 @@
 // Sheets made without a scene file, for tests of solvers, and what they are held to.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "clothbench/solver.hpp"

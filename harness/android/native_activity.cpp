@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "android/session.hpp"
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "cli/command_line.hpp"
 #include "clothbench/error.hpp"
 #ifdef CLOTHBENCH_WITH_XR

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "base/data_folder.hpp"
+#include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"

@@ -1,9 +1,8 @@
-#include "base/data_folder.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdlib>
 
+#include "base/files.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 

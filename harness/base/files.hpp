@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace clothbench {
 
@@ -21,5 +22,35 @@ void write_file_atomically(const std::filesystem::path&, const std::string& cont
 
 /// SHA-256 of `data` in lower-case hexadecimal (FIPS 180-4).
 std::string sha256(const std::string& data);
+
+/// A kind of data that the program reads at run time, and the places of its folder.
+struct DataFolder {
+  const char* what;       ///< name in messages
+  const char* variable;   ///< the environment variable that names the folder
+  const char* installed;  ///< path below share/clothbench
+  const char* in_source;  ///< path below the source tree
+};
+
+inline constexpr DataFolder kScenarioFolder{"scenes and studies", "CLOTHBENCH_SCENARIOS", "scenarios", "scenarios"};
+inline constexpr DataFolder kAssetFolder{"rooms and hands", "CLOTHBENCH_ASSETS", "assets/node_modules",
+                                         "build/assets/node_modules"};
+
+/// Roots that the folders lie below.
+struct DataRoots {
+  std::filesystem::path installed;  ///< share/clothbench of this program's tree; empty if unknown
+  std::filesystem::path source;     ///< the source tree this was built from
+};
+
+/// The roots of this program, also after it was moved.
+DataRoots data_roots();
+
+/// Value of the environment variable; empty if it is not set.
+std::string named_data(const DataFolder&);
+
+/// Places to search if the variable is not set: the installed tree, then the source tree.
+std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoots& = data_roots());
+
+/// The folder that the variable names; if not set, the first usual place that exists. Throws Error with all places.
+std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
 
 }  // namespace clothbench

@@ -4,11 +4,11 @@
 #include <memory>
 #include <sstream>
 
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
-#include "runner/build_info.hpp"
+#include "runner/environment.hpp"
 
 namespace clothbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
 #include "report/report.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "vulkan/buffer.hpp"
+#include "vulkan/kernel.hpp"
 
 namespace clothbench::render {
 

@@ -7,7 +7,7 @@
 #include "render/camera.hpp"
 #include "render/pipelines.hpp"
 #include "render/render_shared.h"
-#include "vulkan/buffer.hpp"
+#include "vulkan/kernel.hpp"
 
 namespace clothbench::render {
 

@@ -32,7 +32,7 @@ if(changes)
   set(dirty true)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "runner/build_info.hpp"
+#include "runner/environment.hpp"
 
 namespace clothbench::build_info {
 const char* const kCompiler = "@COMPILER@";

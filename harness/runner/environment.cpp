@@ -16,7 +16,6 @@
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/record.hpp"
-#include "runner/build_info.hpp"
 
 namespace clothbench {
 namespace {

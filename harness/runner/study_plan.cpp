@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "results/store.hpp"

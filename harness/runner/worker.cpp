@@ -14,7 +14,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "clothbench/error.hpp"
 #include "runner/interrupt.hpp"
 

@@ -9,7 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "base/data_folder.hpp"
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "base/words.hpp"

@@ -13,7 +13,7 @@
 #include <list>
 #include <sstream>
 
-#include "base/plugin_environment.hpp"
+#include "base/child_process.hpp"
 #include "clothbench/error.hpp"
 #include "plugin/scene_view.hpp"
 

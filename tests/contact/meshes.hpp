@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
 #include <vector>
 
 #include "metrics/contact/contact_probe.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 #include <fmt/format.h>
 
-#include <sstream>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "assets/assets.hpp"
-#include "base/data_folder.hpp"
+#include "base/files.hpp"
 #include "refusal.hpp"
 #include "results/store.hpp"
 #include "scenario/load.hpp"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/data_folder.hpp"
+#include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "refusal.hpp"
 #include "scenario/study.hpp"

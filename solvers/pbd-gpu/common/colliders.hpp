@@ -34,7 +34,7 @@ struct ShapeBuffer {
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
-  /// subtracted in double. `as_convex_shapes`: the method takes them as convex shapes (convex_shapes.hpp), which it
+  /// subtracted in double. `as_convex_shapes`: the method takes them as convex shapes (ConvexShapes), which it
   /// adds itself. Then static shapes have no buffer except for planes, and positions of moving meshes at the frame's
   /// start are kept as well (capsules always have both).
   ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_convex_shapes);

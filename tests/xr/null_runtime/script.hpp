@@ -2,7 +2,6 @@
 // Actions of the null runtime's user, as functions of time; tests compare what reached the solver with these.
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace null_xr {
 

@@ -1,7 +1,7 @@
-#include "xpbd/contact/convex_shapes.hpp"
-
 #include <algorithm>
 #include <numeric>
+
+#include "xpbd/contact/contact.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {

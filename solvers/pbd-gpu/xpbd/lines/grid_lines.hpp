@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <vector>
 
 #include "common/frame_builder.hpp"
 #include "xpbd/lines/line_layout.hpp"
