@@ -90,7 +90,7 @@ std::string about_rates(const Group& runs) {
 View speed_and_error(bool paper) {
   View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
          [paper](const Row& r) {
-           const bool other_setting = paper && r.setting != "default" && r.setting != "best";
+           const bool other_setting = paper && r.setting != "default" && r.setting != "best" && !r.is_best;
            return r.part == Part::Rates && (r.paper_table == 3) == paper && !other_setting && !is_floor(r.solver);
          }};
   if (!paper) v.each = [](const Row& r) { return "Frame rates: " + r.family; };
