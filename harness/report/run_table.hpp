@@ -162,6 +162,8 @@ struct Row {
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
   const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene
+  /// One of many settings of a sweep, whose errors and times are under "Error against run time".
+  bool in_sweep() const { return part == Part::Truth && setting.find('=') != std::string::npos; }
   bool is_best = false;  ///< settings of the cheapest point of `reproduction` where most claims hold
   int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 

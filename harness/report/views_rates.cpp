@@ -86,9 +86,9 @@ View frame_times() {
                   "frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, the two "
                   "intervals combined. Rank 1: no ranked run of the scene is certainly faster (has its whole interval "
                   "below the run's); runs that failed, and cloths with an edge of more than twice its length, are not "
-                  "ranked. CPU threads: CPU time over wall time. ") +
+                  "ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
           kIntervalMethod,
-      [](const Row& r) { return r.published < 0; }};
+      [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
     const auto clock =
@@ -120,10 +120,9 @@ View memory() {
   View v{"time", "Bytes and device memory per frame",
          "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
          "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or "
-         "of the whole trial where it is shorter. Memory: device-local buffers. CPU solvers, whose bytes are not "
-         "known, are left out.",
+         "of the whole trial where it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
-           return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability &&
+           return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
                   std::isfinite(r.value("device_memory_B"));
          }};
   v.keys = {scene_key(), solver_key(), sides_key()};

@@ -272,10 +272,8 @@ RunRecord run_apart(Worker& worker, const RunPlan& plan, const RunSpec& spec, co
 RunResult execute_in_worker(const RunPlan& plan, const RunOptions& options, const std::string& eye) {
   if (plan.apart) return execute_apart(plan, options);
   RunOptions timed = options;
-  if (options.jobs > 1) {
-    execute_untimed(plan, options);
-    timed.resume = true;
-  }
+  timed.resume = options.resume || options.jobs > 1;
+  if (options.jobs > 1) execute_untimed(plan, options);
   Worker worker(options.program);
   return ask(worker, plan, timed, eye, solver_limit_s(), kTrialsKept);
 }

@@ -66,8 +66,9 @@ json figure_row(const Row& r) {
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
   if (environment_text(*r.run, "gpu") == "CPU") out["cpu"] = true;
   if (r.repeat > 1) out["repeated"] = true;
-  for (const std::string& name : violated_bounds(*r.run))
-    out["violated"].push_back({name, found_of(r, name).text, expected_of(r, name)});
+  if (!r.in_sweep())
+    for (const std::string& name : violated_bounds(*r.run))
+      out["violated"].push_back({name, found_of(r, name).text, expected_of(r, name)});
   add_times(r, out);
   if (r.part == Part::Contact)
     out.update({{"kind", kind_of_contact(r.scenario)}, {"speed", finite_or_null(r.value("imposed_speed_m_per_s"))}});
