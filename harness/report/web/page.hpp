@@ -64,6 +64,9 @@ struct Motions {
 /// size.
 Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
 
+/// Base64 of zlib of the text.
+std::string packed(const nlohmann::json&);
+
 /// Six digits; null if it is not finite.
 nlohmann::json rounded(double);
 
