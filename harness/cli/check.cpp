@@ -43,7 +43,7 @@ void add_check(CLI::App& app, Console& console) {
       cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and print the changes");
   cmd->add_option(
          "--allow", a.allowed,
-         "Check although these differ from the baseline's (scene, device, precision, length), and mark the output")
+         "Check although these conditions, separated by commas, differ from the baseline's, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
