@@ -1,6 +1,6 @@
 #version 450
-// The passes of contact (xpbd/contact/README.md) as kernels of their own, in the order of a frame.
-// CMakeLists.txt compiles this file once for each. fused_frame.comp calls the same functions.
+// The contact passes (xpbd/contact/README.md), one kernel each, in the order of a frame. CMakeLists.txt compiles this
+// file once per pass, with the pass's macro defined. fused_frame.comp calls the same functions.
 #define SUBGROUPS
 #include "xpbd/contact/contact_buffers.glsl"
 
@@ -20,7 +20,7 @@ void run() {
   frame_state.active_pair_count[0] = frame_state.active_pair_count[1] = 0u;
 }
 
-#elif defined(BROAD_PHASE)  // once per frame and fraction of the motion bounds, one thread per primitive: its pairs
+#elif defined(BROAD_PHASE)  // once per frame and fraction of the motion bounds, one thread per primitive
 #include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
 void run() {
   if (p.level > 0u && frame_state.counted[p.level - 1u] <= CAPACITY) return;
@@ -58,7 +58,7 @@ void run() {
   if (SHAPES > 0u && (!SECOND_SOLVE || response_round < 2u)) clear_active_bits(i, stride());
 }
 
-#elif defined(ACTIVE_PAIRS)  // once per substep and twice with kinematic shapes, one thread per candidate pair
+#elif defined(ACTIVE_PAIRS)  // once per substep, twice with kinematic shapes; one thread per candidate pair
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
 void run() {
@@ -67,7 +67,7 @@ void run() {
     if (may_be_active(k) && is_active(k)) append_active(k, atomicAdd(ACTIVE_COUNT, 1u));
 }
 
-#elif defined(NEAREST_POINTS)  // as often, one thread per active pair
+#elif defined(NEAREST_POINTS)  // after each ACTIVE_PAIRS, one thread per active pair
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/contact_correction.glsl"
 #include "xpbd/contact/narrow_phase/contact_nearest_points.glsl"
@@ -104,7 +104,7 @@ void run() {
   if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = frame_state.self_contact_pairs = 0u;
 }
 
-// Contact of the cloth with itself.
+// Self-contact.
 #elif defined(SELF_AABBS)  // once per frame, one thread per triangle
 #include "xpbd/contact/broad_phase/self_aabbs.glsl"
 void run() { make_self_aabbs(); }
@@ -117,7 +117,7 @@ void run() {
 }
 
 #elif defined(SELF_MAX_DISPLACEMENT)  // once per substep, one thread per triangle
-// The maximum displacement of its vertices in the last substep, and how far any of them may go in this one.
+// Per triangle: maximum displacement of its vertices in the last substep, and their largest limit in this one.
 void run() {
   for (uint t = item(); t < TRIANGLES; t += stride()) {
     uvec4 e = primitives[t];
@@ -131,7 +131,7 @@ void run() {
 #include "xpbd/contact/narrow_phase/self_active_pairs.glsl"
 void run() { FOR_EACH_TRIANGLE(t, TRIANGLES, collect_active_pairs(t);) }
 
-#elif defined(SELF_NEAREST_POINTS)  // then one thread per active pair: nearest points, and what contacts there propose
+#elif defined(SELF_NEAREST_POINTS)  // after SELF_ACTIVE_PAIRS, one thread per active pair: contacts and corrections
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/self_correction.glsl"
 #include "xpbd/contact/narrow_phase/self_nearest_points.glsl"

@@ -8,18 +8,18 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Default capacity of the list of pairs. Heaps and desks use a third of it; if it overflows, the motion bounds of the
-/// vertices are reduced.
+/// Default capacity of the list of candidate pairs: per primitive, minimum and maximum. Crumpled cloths and desks use a
+/// third of it. If the list overflows, the motion bounds of the vertices are reduced.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
 constexpr std::uint64_t kAllPairs = 1u << 18;
-/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Heaps list about 200 pairs per
-/// triangle, of which 10 are active.
+/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Crumpled cloths have about 200
+/// candidate pairs per triangle, of which 10 are active.
 constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
                         kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
-/// Lanes that share a vertex: the parts of the sum in contact_accumulate.glsl.
+/// Maximum lanes per vertex: kPartialSums of contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
-/// Responses after the constraints.
+/// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
 XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
@@ -96,13 +96,13 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
   diagnostics_ = &frame_.add_host_buffer("contact diagnostics", sizeof(ContactDiagnostics), BIND_DIAGNOSTICS);
 }
 
-/// Buffers of the cloth's pairs with itself.
+/// Adds the buffers of self-contact.
 void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   const auto& self = scene_.cloth.self_collision;
   auto all = triangles(scene_.cloth);
   for (auto& t : all)
     for (auto& v : t) v = particle.empty() ? v : particle[v];
-  // If a test requests a short list of candidates, the list of active pairs is as short.
+  // If tuning.contact_pairs is set, it is the capacity of the candidate pairs and of the active pairs.
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   ContactPassSpecialization& c = pass_constants_;
   c.SELF = 1;

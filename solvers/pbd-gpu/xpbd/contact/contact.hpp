@@ -7,67 +7,67 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Triangles of a mesh in clusters of neighbours: at most `kClusterSize` each, every triangle in exactly one. The mesh
-/// is halved recursively along the longest side of the centroids' box.
+/// The triangles of a mesh in clusters of neighbours: at most `kClusterSize` each, every triangle in exactly one. The
+/// mesh is halved recursively along the longest side of the centroids' box.
 struct Clusters {
   static constexpr std::size_t kClusterSize = 16;
-  std::vector<std::uint32_t> triangles;  ///< indices, cluster after cluster
-  std::vector<std::uint32_t> sizes;      ///< one a cluster
+  std::vector<std::uint32_t> triangles;  ///< indices, cluster by cluster
+  std::vector<std::uint32_t> sizes;      ///< one per cluster
 };
 Clusters cluster(const std::vector<double>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-/// The convex shapes of a scene's colliders except for planes: of a capsule, a segment and its radius; of a
-/// sphere, a point and its radius; of a box or a static mesh, each triangle; of one that is kinematic, hulls of
-/// clusters of at most Clusters::kClusterSize neighbouring triangles.
+/// Convex shapes of a scene's colliders except planes. A capsule is a segment with a radius, a sphere a point with a
+/// radius. Each triangle of a box or static mesh is one shape. A kinematic mesh becomes the hulls of clusters of at
+/// most Clusters::kClusterSize neighbouring triangles.
 struct ConvexShapes {
   std::vector<ConvexShape> shapes;
-  std::vector<ShapePoint> points;    ///< convex shape after convex shape, where they are at the scene's start [m]
+  std::vector<ShapePoint> points;    ///< shape by shape, at the scene's start [m]
   std::vector<PointSource> sources;  ///< of the points of kinematic convex shapes
   std::vector<ShapeAabb> boxes;      ///< of the convex shapes, then of groups of SHAPES_PER_GROUP of them
   std::uint32_t max_points = 1;      ///< of a convex shape
   double max_margin_m = 0;
-  std::vector<double> margins_m;  ///< one per collider, as used
+  std::vector<double> margins_m;  ///< one per collider, raised to the minimum
 };
 /// Positions are relative to `origin_m`.
 ConvexShapes convex_shapes(const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders);
 
 /// Contact of `xpbd` by separating planes: xpbd/contact/README.md. Works only on positions and velocities; the
 /// constraint solve comes between `record_before` and `record_after` and reads inverse masses in .w of the positions.
-/// Where FusedFrame has the frame in one kernel, only `record_shapes` is called.
+/// If a FusedFrame simulates the frame, only `record_shapes` is called.
 class XpbdContact {
  public:
-  /// Adds buffers, and what kinematic convex shapes need. `particle`: of each vertex, the vertex that it is welded to
-  /// (or itself). `colliders`: null if the scene has none. `second_solve`: constraints are solved between responses
-  /// too.
+  /// Adds buffers, and the kernel that updates kinematic shapes. `particle[v]`: the vertex that vertex v is welded to,
+  /// or v; empty: no welds. `colliders`: null if the scene has none. `second_solve`: constraints are also solved
+  /// between the response rounds.
   XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
               const std::vector<std::uint32_t>& particle, bool second_solve);
   /// Adds one kernel per pass, for record_list, record_before and record_after.
   void add_kernels();
 
-  /// Where kinematic convex shapes are in this frame. Call at the start of a frame, after the colliders' record().
+  /// Records the update of kinematic shapes' points and boxes. Call at a frame's start, after the colliders' record().
   void record_shapes(double dt_s, int substeps);
-  /// The list of pairs. Call after record_shapes.
+  /// Records the broad phase. Call after record_shapes.
   void record_list(double dt_s, int substeps);
-  /// Call in substep s after attached vertices have moved and before the constraints are solved.
+  /// Records the passes before the solve of substep s. Call after attached vertices have moved.
   void record_before(int s, int substeps, double dt_s);
-  /// Call at the end of substep s. Calls `constraints` between the responses.
+  /// Records the passes after the solve of substep s. Calls `constraints` between the response rounds.
   void record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints);
 
   FeatureSet serves() const;
   bool with_itself() const { return with_itself_; }
-  /// Data of the scene for the kernel of a frame in one dispatch.
+  /// Specialization constants of the scene, for the fused kernel.
   const ContactSpecialization& specialization() const { return constants_; }
   ContactConstants constants(int s, int substeps, double dt_s) const;
 
   /// Diagnostics since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
   void clear_diagnostics();
-  /// Maximum displacement of a vertex in the last frame [m]; infinite if it had no contact. Call it before a frame.
+  /// Reads and resets the largest displacement of a vertex per list of pairs [m]; infinite: a fused frame stored none.
   double read_max_displacement_m(bool is_single_dispatch);
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 
  private:
-  /// A kernel, and its dispatch. A phase of a frame is some of them, one after another.
+  /// A kernel and its number of workgroups. A Phase is a sequence of passes.
   struct Pass {
     const FrameKernel* kernel;
     vulkan::Groups groups;
@@ -82,7 +82,7 @@ class XpbdContact {
   const Scene& scene_;
   const bool with_itself_;
   ContactSpecialization constants_;
-  ContactPassSpecialization pass_constants_;  ///< of most passes
+  ContactPassSpecialization pass_constants_;  ///< of one kernel per pass
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
   const vulkan::Buffer* diagnostics_ = nullptr;

@@ -1,5 +1,5 @@
-// Shared by the kernels of contact: data of primitives, of convex shapes, and of the substep. Primitives are
-// the cloth's triangles, then its vertices; each has a range of pairs, in the order of convex shapes.
+// Buffers and functions that all contact kernels share. Primitives are the cloth's triangles, then its vertices. Each
+// primitive has a range of candidate pairs, in the order of convex shapes.
 #ifndef FUSED_FRAME
 #include "common/common.glsl"
 layout(push_constant) uniform Push { ContactConstants p; };
@@ -16,7 +16,7 @@ layout(std430, binding = BIND_PLANES) readonly buffer Planes { PlaneShape half_s
 #define SELF_FRICTION uintBitsToFloat(SELF_FRICTION_BITS)
 layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 primitives[]; };  // vertices, w: how many
 
-// A kernel has those that it accesses; others are removed as it is compiled.
+// The compiler removes buffers that a kernel does not access.
 #ifdef FUSED_FRAME
 #define STATE coherent
 #else
@@ -29,10 +29,10 @@ layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 mo
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
 layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: motion bound
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
-// First entry a vertex; 4 triangle + corner.
+// Vertex-triangle adjacency: per vertex the index of its first entry, then entries 4 * triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
-layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // w of the first ones: the active pairs
+layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // pairs[n].w: n-th active pair
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) STATE buffer Diagnostics { ContactDiagnostics diagnostics; };
@@ -49,17 +49,17 @@ layout(std430, binding = BIND_SELF_CORRECTIONS) STATE buffer SelfCorrections { S
 layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
-// Fractions of the motion bounds that are tried until a list of pairs has capacity: powers of two, exact when multiplied.
-// A vertex that goes on at its speed is within the second.
+// Fractions of the motion bounds, tried in turn until all pairs fit into the list. Powers of two multiply exactly. A
+// vertex that keeps its speed stays within the second.
 const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
-const float kRecovered = 0.1;   // of the margin: maximum depenetration per substep
-const float kStaticMarginFactor = 0.75;  // of the margin: what edges and faces keep from static shapes
-const float kImpactMassFactor = 0.25;  // margins of a push before the solve that double a vertex' mass in it
-const float kRounding_m = 2e-7;  // of positions
-const float kTiny = 1e-6;       // a weight below is none
+const float kRecovered = 0.1;   // maximum depenetration per substep, as a fraction of the margin
+const float kStaticMarginFactor = 0.75;  // fraction of the margin that edges and faces keep from static shapes
+const float kImpactMassFactor = 0.25;  // a correction of so many margins in round 0 halves the solve's inverse mass
+const float kRounding_m = 2e-7;  // rounding error of positions
+const float kTiny = 1e-6;       // smaller weights count as 0
 
-/// The first fraction whose pairs fit, else the last; pairs without a place are counted in the diagnostics.
+/// Index of the first fraction whose pairs fit, else of the last; pairs beyond the capacity count as `overflow`.
 uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
   uint level = 0u;
   while (level + 1u < PAIR_LEVELS && counted[level] > capacity) ++level;
@@ -67,10 +67,10 @@ uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
   return level;
 }
 
-// One bit per pair: whether it is active in this substep, and whether its contact proposes a correction in this round.
+// Two bits per pair: it is active in this substep; its contact proposes a correction in this round.
 #define ACTIVE_BITS 0u
 #define CORRECTION_BITS (CAPACITY / 32u + 1u)
-/// The pairs `k` of a range that have a bit, in the list's order.
+/// Runs BODY for each pair `k` of RANGE whose bit is set, in the list's order.
 #define FOR_EACH_PAIR_OF(BITS, RANGE, BODY) \
   uvec2 of = (RANGE).xy; \
   for (uint word = of.x / 32u, last = of.x + of.y; 32u * word < last; ++word) { \
@@ -83,22 +83,22 @@ uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
     } \
   }
 
-// In `touched`, after the list of vertices that pairs may move: marks of a vertex.
-#define PAIR_COUNT(i) (VERTICES + (i))             // number of its pairs and its triangles' in this frame
+// `touched` starts with the list of vertices that contact may move. Then three values per vertex:
+#define PAIR_COUNT(i) (VERTICES + (i))             // candidate pairs of the vertex and its triangles in this frame
 #define CORRECTED(i) (2u * VERTICES + (i))          // a contact proposes a correction in this round
-#define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // or so near that rounding cannot tell: it may be behind a plane
+#define NEEDS_PROJECTION(i) (3u * VERTICES + (i))  // the vertex is behind a plane, or so near that it may be
 
 uint response_round = 0u;  // 0: before the solve, at the predicted positions; from 1 on: after it
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
 #define SELF_ACTIVE_COUNT min(frame_state.self_active, ACTIVE_CAPACITY)
 // Only kinematic shapes get a response before the constraint solve (round 0). Friction of static shapes would act on a
 // displacement without the pull of the constraints. With round 0, a strip over a cylinder (capstan-hold) slips at 5 %
-// less overhang than by Coulomb's law, without it at 0.7 % less.
+// less overhang than in Coulomb's law, without it at 0.7 % less.
 #define FIRST_ROUND (HAS_KINEMATIC != 0u ? 0u : 1u)
 uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame
 
-/// Exact at the frame's end: there the next frame begins.
+/// Time of a substep's start as a fraction of the frame; exactly 1 at the frame's end, where the next frame begins.
 float time_of(uint substep) { return substep >= p.substeps ? 1.0 : float(substep) * p.substep_part; }
 void begin_substep(uint substep) {
   substep_now = substep;
@@ -106,8 +106,8 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-/// Displacement of the motion bounds of self-contact in the frame [m]: half of the cloth's mean displacement. The bounds
-/// are larger by as much, so they contain both a vertex that moves on and one that an impact stops.
+/// The centres of self-contact's motion bounds move with half of the cloth's mean velocity: drift_m() [m] per frame.
+/// The radii grow by as much, so a bound contains both a vertex that keeps the velocity and one that an impact stops.
 #define drift_velocity() vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])
 #define drift_m() (SELF != 0u ? p.frame_s * length(drift_velocity()) : 0.0)
 

@@ -6,7 +6,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Least margin as a fraction of the cells' size: 0.16 mm for a cloth of 0.5 m and 32 vertices.
+/// Minimum margin as a fraction of the smaller cell size: 0.16 mm for a cloth of 0.5 m with 32 vertices per side.
 constexpr double kMinMargin = 0.01;
 
 void split(const std::vector<Vec3>& centroids, std::vector<std::uint32_t>::iterator first,
@@ -71,7 +71,7 @@ class Maker {
     }
   }
 
-  /// Its faces as triangles: their planes separate most of what lies on them, which the hull of the corners does not.
+  /// Adds the faces as triangles: a face's plane separates most cloth triangles on it at once (separated_by_face).
   void add_box(const Collider& c, std::size_t k) {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const unsigned a = 1u << axis, b = 1u << (axis + 1) % 3, side = 1u << (axis + 2) % 3;

@@ -1,8 +1,8 @@
-// The threads that share a triangle's list take a pair, a convex shape or a group each in turn: a subgroup, or one
-// where lanes cannot exchange values.
+// The lanes of a subgroup (at most 32) process a triangle together: each tests every lanes_per_triangle()-th candidate
+// pair, triangle or group of triangles.
 uint lanes_per_triangle() { return min(gl_SubgroupSize, 32u); }
 uint triangle_lane() { return gl_SubgroupInvocationID; }
-/// One bit per sharer.
+/// Bit mask of the lanes with `mine`.
 uint ballot_bits(bool mine) {
   uint bits = mine ? 1u << triangle_lane() : 0u;
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
@@ -14,7 +14,7 @@ uint sum_over_lanes(uint value) {
   return value;
 }
 
-/// The body once for each triangle `t`, with all threads that share it.
+/// Runs BODY once per triangle `t`, in all lanes of the triangle's subgroup.
 #define FOR_EACH_TRIANGLE(t, COUNT, BODY) \
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; \
   uint subgroups = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups; \

@@ -1,5 +1,5 @@
-// Neighbouring lanes of a subgroup that share a vertex: LANES_PER_VERTEX of them, a power of two, or one thread
-// where lanes cannot exchange values. Control flow is subgroup-uniform: loops go on while any cluster needs them.
+// A cluster is LANES_PER_VERTEX (a power of two) neighbouring lanes of a subgroup that process a vertex together.
+// Control flow is subgroup-uniform: loops continue while any cluster of the subgroup needs them.
 uint cluster_lane() { return gl_SubgroupInvocationID & (LANES_PER_VERTEX - 1u); }
 float cluster_min(float value) {
   for (uint n = LANES_PER_VERTEX >> 1u; n > 0u; n >>= 1u) value = min(value, subgroupShuffleXor(value, n));

@@ -1,11 +1,11 @@
 // Contact-free fast path (xpbd/fused/README.md). The bound on how far the cloth moves is an estimate, not a guarantee:
 // check_motion_bound() tests it after every substep.
-const uint kMaxNearbyGroups = 32u;  // of convex shapes; where more are active, some meet the cloth
+const uint kMaxNearbyGroups = 32u;  // of convex shapes; with more, the frame has contact without further tests
 shared uint nearby_groups[kMaxNearbyGroups], nearby_group_count, max_displacement;
 vec3 box_low, box_high;
 float rest, by_hands;
 
-/// How far a vertex may go, in .w of where it is.
+/// Position of vertex i at the frame's start; w: its motion bound in a contact-free frame [m].
 vec4 contact_free_position(uint i) {
   vec4 at = x[i];
   return vec4(at.xyz, contact_free_bound(length(v[i].xyz), rest, by_hands));
@@ -22,7 +22,7 @@ bool overlaps_shapes(uint group, vec3 low, vec3 high) {
   return false;
 }
 
-/// Whether the convex shape of cloth between four neighbouring vertices may meet a convex shape of a near group.
+/// Whether the box of a cell, its four vertices inflated by their motion bounds, overlaps a shape of a nearby group.
 bool cell_may_touch(uint cell) {
   uint i = cell / (COLUMNS - 1u) * COLUMNS + cell % (COLUMNS - 1u);
   vec3 low = vec3(1e30), high = vec3(-1e30);
@@ -36,14 +36,14 @@ bool cell_may_touch(uint cell) {
   return false;
 }
 
-/// For all threads alike. Whether the frame is to be done with contact is in the frame state. Where the last one had
-/// contact, this one has it if a group of convex shapes is within the motion bound: to look closer would cost a tenth
-/// of a frame on a desk.
+/// Whether the frame can be simulated without contact; the same in all threads. If the last frame had contact or the
+/// cloth is fast, a group of convex shapes within the motion bound is enough for contact: testing cells would add a
+/// tenth to a frame on a desk.
 bool cannot_reach_any_collider() {
   bool tests_cells = frame_state.contact_possible == 0u && is_slow();
   if (thread == 0u) any_nearby = nearby_group_count = max_displacement = 0u;
   empty_box();
-  barrier();  // an empty box before it is widened
+  barrier();  // wait for the empty box before threads grow it
   float max_shape_displacement = max_displacement_of_shapes();
   rest = bound_at_rest();
   by_hands = pulled();
@@ -53,7 +53,7 @@ bool cannot_reach_any_collider() {
     widen(from, to, vec4(at.xyz, motion_bound(length(v[i].xyz), rest, max_shape_displacement, by_hands)));
   }
   widen_box(from, to);
-  barrier();  // the box before convex shapes are looked for in it
+  barrier();  // wait for the cloth's box before threads test groups of shapes against it
   for (uint g = thread; g < GROUPS; g += THREADS) {
     if (!overlaps_cloth(boxes[SHAPES + g])) continue;
     uint n = atomicAdd(nearby_group_count, 1u);
@@ -62,16 +62,16 @@ bool cannot_reach_any_collider() {
   }
   box_low = vec3(of_ordered(cloth_low[0]), of_ordered(cloth_low[1]), of_ordered(cloth_low[2]));
   box_high = vec3(of_ordered(cloth_high[0]), of_ordered(cloth_high[1]), of_ordered(cloth_high[2]));
-  barrier();  // the near groups before cells are held against them
+  barrier();  // wait for the nearby groups before threads test cells against them
   const uint cells = (COLUMNS - 1u) * (ROWS - 1u);
   for (uint cell = thread; nearby_group_count > 0u && cell < cells && any_nearby == 0u; cell += THREADS)
     if (cell_may_touch(cell)) any_nearby = 1u;
-  barrier();  // every thread's look before the answer
+  barrier();  // wait for all tests before threads read any_nearby
   if (thread == 0u) frame_state.contact_free = 0u;
   return any_nearby == 0u;
 }
 
-/// After a substep: what has gone farther than it may can meet a convex shape.
+/// After a substep: sets any_nearby if a vertex has left its motion bound, because it could then touch a shape.
 void check_motion_bound() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
@@ -85,7 +85,7 @@ void check_motion_bound() {
   }
 }
 
-/// Largest displacement, which the next frame uses.
+/// Stores the frame's largest displacement of a vertex, which the next frame and the host use.
 void record_max_displacement() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;

@@ -10,11 +10,11 @@
 #include "xpbd/contact/contact_buffers.glsl"
 #include "xpbd/lines/line_colour.glsl"
 #include "common/grip.glsl"
-// Chains and cloth that touches itself have one kernel per pass.
+// Chains and self-contact use one kernel per pass instead.
 const bool SECOND_SOLVE = false;
 const uint SELF = 0u;
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
-// The next substep's prediction, at this one's end. Attached vertices are moved between the two.
+// Whether a substep's end predicts the next substep. Not with attached vertices, which move in between.
 const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #include "xpbd/contact/displacement_filter/contact_motion_bounds.glsl"
 #include "xpbd/contact/subgroup_cluster.glsl"
@@ -34,7 +34,7 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
 #define CLOTH_LOW frame_state.cloth_low
 #define CLOTH_HIGH frame_state.cloth_high
-// Within a workgroup, also for what its threads write to buffers.
+// Barrier within a workgroup that also makes buffer writes visible.
 #define WORKGROUP_BARRIER { groupMemoryBarrier(); barrier(); }
 #include "xpbd/contact/broad_phase/cloth_aabb.glsl"
 #ifndef CONTACT_FREE
@@ -48,43 +48,43 @@ uint global_thread, grid_stride;  // this thread among the threads of all workgr
 #include "xpbd/fused/fused_broad_phase.glsl"
 #ifndef CONTACT_FREE
 
-// All active pairs, a thread or a subgroup each.
+// Loop over all active pairs, one thread or one subgroup per pair.
 #define FOR_EACH_ACTIVE_PAIR(n, count) \
   by_subgroup = kPairsOfSubgroups; \
   for (uint n = by_subgroup ? global_thread / THREADS * gl_NumSubgroups + gl_SubgroupID : global_thread, end = count; \
        n < end; \
        n += by_subgroup ? grid_stride / THREADS * gl_NumSubgroups : grid_stride)
 
-// A workgroup looks through its fraction of the pairs a few rounds at a time. Its threads share out those that remain
-// after each question, so that no thread waits for its neighbour's answer.
+// Each workgroup tests its part of the candidate pairs, kRounds per thread at a time. After each test the remaining
+// pairs are distributed over its threads again, so that no thread idles while its neighbour tests.
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
 shared uint tested[kRounds * THREADS], active_found[kRounds * THREADS], tested_count, found_count, slot;
 void find_active_pairs() {
-  uint count = frame_state.pairs;  // read once, for a coherent read goes to the second-level cache
+  uint count = frame_state.pairs;  // read once, because a coherent read goes to the second-level cache
   for (uint base = global_thread - thread; base < count; base += kRounds * grid_stride) {
     if (thread == 0u) tested_count = found_count = 0u;
-    barrier();  // before they are counted
+    barrier();  // wait for counts of 0 before threads add to them
     for (uint r = 0u; r < kRounds; ++r) {
       uint k = base + r * grid_stride + thread;
       if (k < count && may_be_active(k)) tested[atomicAdd(tested_count, 1u)] = k;
     }
-    WORKGROUP_BARRIER;  // all that may be near are known, and their bounds
+    WORKGROUP_BARRIER;  // wait for tested pairs and their bounds before threads read them
     for (uint n = thread; n < tested_count; n += THREADS)
       if (is_active(tested[n])) active_found[atomicAdd(found_count, 1u)] = tested[n];
-    WORKGROUP_BARRIER;  // all that are active are known, and their normals
+    WORKGROUP_BARRIER;  // wait for active pairs and their normals before threads read them
     if (thread == 0u && found_count > 0u) slot = atomicAdd(ACTIVE_COUNT, found_count);
-    barrier();  // where they are listed
+    barrier();  // wait for the slot before threads fill it
     for (uint n = thread; n < found_count; n += THREADS) {
       append_active(active_found[n], slot + n);
       if (!kPairsOfSubgroups) process_pair(active_found[n]);
     }
-    barrier();  // before the next rounds
+    barrier();  // wait for all reads before thread 0 resets the counts
   }
 }
 
 #endif
 #ifdef CONTACT_FREE
-/// All that is left of contact in a substep: how far a vertex may go in the frame.
+/// A contact-free substep only clamps vertices to their motion bounds of the frame.
 void end_lines(uint i, vec4 at) {
   vec4 free = starts[i];
   vec3 to = any_nearby != kOutOfReach ? clamp_to(i, at.xyz, at.w, free.xyz, free.w) : clamp_to_bounds(i, at.xyz, at.w);
@@ -103,24 +103,24 @@ bool solve_lines(uint substep) {
   for (uint n = 0u; n < colours; ++n) {
     colour = colours - 1u - n;
     pass(substep, n == 0u);
-    if (n + 1u < colours) GRID_BARRIER_OR_FAIL;  // this colour's writes before the next one's reads
+    if (n + 1u < colours) GRID_BARRIER_OR_FAIL;  // wait for this colour's writes before the next one reads them
   }
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     if (on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
-  GRID_BARRIER_OR_FAIL;  // proposals before pairs read them, or vertices before the next substep
+  GRID_BARRIER_OR_FAIL;  // wait for vertices before pairs or the next substep read them
   return true;
 }
 
 bool move_grips(uint s) {
   if (GRIPS == 0u) return true;
   FOR_EACH_STRIDED(g, GRIPS) move_grip(g, float(s + 1u) / float(p.substeps), p.frames_per_s);
-  GRID_BARRIER_OR_FAIL;  // attached vertices before all read them
+  GRID_BARRIER_OR_FAIL;  // wait for attached vertices before threads read them
   return true;
 }
 
-/// By one thread: what the host goes by.
+/// Called by one thread: stores the displacement from which the host chooses the next frame's substeps.
 void end_frame() { diagnostics.max_displacement = frame_state.max_displacement; }
 
 #ifdef CONTACT_FREE
@@ -129,7 +129,7 @@ bool substep_with(uint s) {
   return move_grips(s) && solve_lines(s);
 }
 
-/// The list, and the frame in one dispatch if the cloth touches no collider.
+/// Builds the list of pairs, and simulates the frame if it is contact-free: a slow cloth without pairs.
 bool frame() {
   bool may_be_contact_free = is_slow();
   if (!broad_phase()) return false;
@@ -141,27 +141,27 @@ bool frame() {
   return true;
 }
 #else
-/// Pairs that are active, and what their contacts propose.
+/// Finds the active pairs and the corrections that their contacts propose.
 bool narrow_phase() {
   by_subgroup = false;
   find_active_pairs();
   if (!kPairsOfSubgroups) return true;
-  GRID_BARRIER_OR_FAIL;  // active pairs before they are shared out: neighbours in the list are active together
+  GRID_BARRIER_OR_FAIL;  // wait for all active pairs before they are spread evenly: neighbours are active together
   FOR_EACH_ACTIVE_PAIR(n, ACTIVE_COUNT) process_pair(pairs[n].w);
   return true;
 }
 
-/// Responses before (round 0) and after the lines.
+/// One response round, before (round 0) or after the constraint solve.
 bool respond_to_contact(out uint active_count) {
   active_count = 0u;
   if (response_round == 0u && (substep_now == 0u || !kPredictsNextSubstep)) {
     FOR_EACH_STRIDED(i, VERTICES) predict(i);
     clear_active_bits(global_thread, grid_stride);
-    GRID_BARRIER_OR_FAIL;  // proposals before pairs read them
+    GRID_BARRIER_OR_FAIL;  // wait for predicted positions before pairs read them
   }
   if (response_round < 2u) {
     if (SHAPES > 0u && !narrow_phase()) return false;
-    GRID_BARRIER_OR_FAIL;  // the corrections that contacts propose before vertices take it
+    GRID_BARRIER_OR_FAIL;  // wait for the contacts' corrections before vertices read them
   }
   active_count = ACTIVE_COUNT;
   if (global_thread == 0u && active_count > 0u) frame_state.contact_possible = 1u;
@@ -172,7 +172,7 @@ bool respond_to_contact(out uint active_count) {
   if (global_thread == 0u && response_round > 0u) frame_state.active_pair_count[0] = 0u;
   if (active_count == 0u && PLANES == 0u) return true;
   accumulate_all(global_thread, grid_stride);
-  GRID_BARRIER_OR_FAIL;  // vertices before what reads them
+  GRID_BARRIER_OR_FAIL;  // wait for vertices before the next pass reads them
   return true;
 }
 
@@ -187,16 +187,16 @@ bool substep_with(uint s) {
     if (!respond_to_contact(active_count)) return false;
   if (active_count > 0u) {
     FOR_EACH_ACTIVE_PAIR(n, active_count) select_plane(pairs[n].w);
-    GRID_BARRIER_OR_FAIL;  // planes before vertices are put before them
+    GRID_BARRIER_OR_FAIL;  // wait for planes before vertices are projected onto them
   }
   project_all(global_thread, grid_stride);
   clear_correction_bits(global_thread, grid_stride);
   if (global_thread == 0u) frame_state.active_pair_count[1] = 0u;
-  GRID_BARRIER_OR_FAIL;  // the substep's end before the next one
+  GRID_BARRIER_OR_FAIL;  // wait for the end of this substep before the next one begins
   return true;
 }
 
-/// The frame, unless it is done without contact. In two dispatches the first has made the list.
+/// Simulates the frame with contact. If there are two dispatches, the contact-free one has built the list.
 bool frame() {
   if (p.first_pass != BROAD_PHASE_DONE && !broad_phase()) return false;
   for (uint s = 0u; s < p.substeps; ++s)
@@ -211,12 +211,12 @@ void main() {
   set_place(group);
   global_thread = group * THREADS + thread;
   grid_stride = THREADS * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  if (p.passes == 0u) {  // only a probe whether all can run
+  if (p.passes == 0u) {  // runs_at_once(): only tests the barrier
     if (grid_barrier()) leave_grid_barrier();
     return;
   }
 #ifndef CONTACT_FREE
-  if (frame_state.contact_free != 0u) return;  // the frame is done
+  if (frame_state.contact_free != 0u) return;  // the contact-free dispatch has simulated the frame
 #endif
   if (!frame()) return;
   if (global_thread < 3u) {

@@ -4,12 +4,12 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Workgroups are of so many threads or a multiple, so that lanes that share a vertex are all there.
+/// The number of threads per workgroup is a multiple of this, so that every cluster of lanes is complete.
 constexpr std::uint32_t kThreadsTogether = 32;
-/// Workgroups: those beyond the lines' have pairs and vertices only. One takes a sixth longer where capsules sweep,
-/// and three times as long on a desk; 64 lose 6 % on a desk and 9 % in a whole room, and 256 lose 5 % in sweeps (H100).
+/// Minimum workgroups; those without lines process only pairs and vertices. With 1, capsule sweeps take a sixth longer
+/// and a desk three times as long; 64 costs 6 % on a desk and 9 % in a whole room, 256 costs 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
-/// Groups of shapes that a bit of shared memory each suffices for, in 4 KiB.
+/// Maximum number of groups of shapes: nearby_groups has one bit each, in 4 KiB of shared memory.
 constexpr std::uint32_t kMaxGroups = 1u << 15;
 
 std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
@@ -17,7 +17,7 @@ std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, 
   if (wanted == "never" || contact.with_itself() || !frame.scene().cloth.mass_factors.empty() ||
       contact.specialization().GROUPS > kMaxGroups)
     return nullptr;
-  // A CPU takes seconds to compile it, and runs a workgroup on one of its cores.
+  // A software device takes seconds to compile the kernel, and runs each workgroup on one CPU core.
   if (wanted == "auto" && frame.device()->is_software()) return nullptr;
   std::unique_ptr<FusedFrame> made(new FusedFrame(frame, lines, contact));
   if (made->add_kernels()) return made;

@@ -6,27 +6,27 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Lines and contact by separating planes of a frame in one dispatch in one kernel (fused_frame.comp), phase
-/// for phase as the kernels of the phases have it. It also moves attached vertices.
+/// Simulates a frame, lines and contact, in one dispatch (fused_frame.comp), pass by pass like the path with one kernel
+/// per pass. Also moves attached vertices.
 class FusedFrame {
  public:
-  /// Null where the cloth touches itself, or where device or settings do not allow it: it takes a device that runs all
-  /// its workgroups at once.
+  /// Null with self-collision, scaled masses or too many shapes, if the settings forbid it, or if the device does not
+  /// run all workgroups at once.
   static std::unique_ptr<FusedFrame> make(FrameBuilder& frame, Lines& lines, XpbdContact& contact);
 
   struct Steps {
     int substeps;
     TimeStep step;
   };
-  /// Call after XpbdContact::record_shapes. `far`: of a frame in which no collider can be near.
+  /// Call after XpbdContact::record_shapes. `contact_free`: steps if the device finds the frame contact-free.
   void record(double dt_s, const Steps& contact, const Steps& contact_free);
 
  private:
   FusedFrame(FrameBuilder& frame, Lines& lines, XpbdContact& contact)
       : frame_(frame), lines_(lines), contact_(contact) {}
   bool add_kernels();
-  /// The kernel of frames in which no collider can be near: of one workgroup where that holds the cloth
-  /// (contact_free_frame.glsl), else the kernel of many without contact, which also lists the pairs.
+  /// Adds the kernel of contact-free frames: line_frame with one workgroup if that holds the cloth
+  /// (contact_free_frame.glsl), otherwise fused_frame with many workgroups, which also builds the list of pairs.
   void add_contact_free(const std::vector<std::uint32_t>& constants, std::uint32_t threads);
 
   LineConstants constants(double dt_s, const Steps&, bool listed) const;
@@ -35,7 +35,7 @@ class FusedFrame {
   Lines& lines_;
   XpbdContact& contact_;
   vulkan::Groups groups_{1, 1}, contact_free_groups_{1, 1};
-  bool contact_free_lists_ = false;  ///< the kernel of frames without contact makes the list
+  bool contact_free_lists_ = false;  ///< the contact-free kernel builds the list of pairs
   const FrameKernel *kernel_ = nullptr, *contact_free_ = nullptr;
 };
 

@@ -1,5 +1,5 @@
-// Boxes in shared memory that many threads widen at once: by whole numbers in the order of floats, so that the order of
-// threads does not matter. A NaN is beyond all numbers.
+// Boxes in shared memory that many threads grow at once by integer atomics. ordered() maps floats to integers of the
+// same order, so the result does not depend on the order of threads. NaN lies beyond all numbers.
 uint ordered(float f) {
   uint bits = floatBitsToUint(f);
   return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;

@@ -1,5 +1,5 @@
-// The box of everywhere that the cloth may go in a frame: first of a thread's vertices, then of a subgroup, a
-// workgroup, all of them, so that few threads wait for one another's sums.
+// The box of all positions that the cloth can reach in a frame, reduced per thread, subgroup, workgroup and then over
+// all, so that few threads wait for one another.
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 shared uint cloth_low[3], cloth_high[3];
 
@@ -9,7 +9,7 @@ void empty_box() {
   cloth_high[thread] = kHighNone;
 }
 
-/// By a place and how far from it, in .w.
+/// Grows the box [from, to] to contain the ball around bound.xyz of radius bound.w.
 void widen(inout uvec3 from, inout uvec3 to, vec4 bound) {
   for (uint c = 0u; c < 3u; ++c) {
     from[c] = min(from[c], ordered(bound[c] - bound.w));
@@ -17,9 +17,9 @@ void widen(inout uvec3 from, inout uvec3 to, vec4 bound) {
   }
 }
 
-/// By the box of a thread's vertices.
+/// Grows the workgroup's box to contain [from, to], the box of a thread's vertices.
 void widen_box(uvec3 from, uvec3 to) {
-  barrier();  // all lanes have theirs
+  barrier();  // wait for the boxes of all lanes before they are exchanged
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) {
     from = min(from, subgroupShuffleXor(from, n));
     to = max(to, subgroupShuffleXor(to, n));

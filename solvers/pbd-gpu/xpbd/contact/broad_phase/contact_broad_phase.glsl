@@ -1,5 +1,5 @@
 // Candidate pairs of a primitive and a convex shape: their boxes overlap after the primitive's box is inflated by the
-// motion bounds of its vertices. The list is made for smaller and smaller fractions (kFractions) until its pairs fit.
+// motion bounds of its vertices. The list is made for ever smaller fractions of the bounds (kFractions) until it fits.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
@@ -12,7 +12,7 @@ void box_for(uvec4 e, float fraction) {
   }
 }
 #ifdef FUSED_FRAME
-vec3 contact_free_low, contact_free_high;  // in a frame in which the cloth touches no collider
+vec3 contact_free_low, contact_free_high;  // box of the primitive inflated by contact_free_bound()
 void contact_free_aabb_for(uvec4 e) {
   contact_free_low = vec3(1e30);
   contact_free_high = vec3(-1e30);
@@ -30,8 +30,8 @@ bool aabb_overlaps(ShapeAabb b) {
   return all(lessThanEqual(low, b.high.xyz)) && all(lessThanEqual(b.low.xyz, high));
 }
 
-// All lanes of a cluster, if there is one, test boxes against one primitive. Each lane tests a few boxes at a time, so
-// that their loads overlap. Control flow is subgroup-uniform.
+// A cluster of lanes (one thread outside the fused frame) tests boxes against one primitive. Each lane tests a few
+// boxes at a time, so that their loads overlap. Control flow is subgroup-uniform.
 #ifdef FUSED_FRAME
 #define LANES_PER_PRIMITIVE LANES_PER_VERTEX
 #define PRIMITIVE_LANE cluster_lane()
@@ -47,8 +47,8 @@ uint cluster_or(uint bits) { return bits; }
 #define ANY_IN_SUBGROUP(bits) ((bits) != 0u)
 #endif
 const uint kAabbUnroll = 4u, kAabbsPerStep = kAabbUnroll * LANES_PER_PRIMITIVE;
-/// A bit for each of the convex shapes from `first` on, and before `end`, whose box overlaps the primitive's; `own`: of
-/// those that this lane looked at.
+/// Tests the next kAabbsPerStep convex shapes from `first` on, before `end`. Returns a bit for each whose box overlaps
+/// the primitive's; `own`: only the bits that this lane tested.
 uint overlapping_shapes(uint first, uint end, out uint own) {
   own = 0u;
   [[unroll]] for (uint n = 0u; n < kAabbUnroll; ++n) {
@@ -66,7 +66,7 @@ shared uint nearby_groups[GROUP_WORDS + 1u];
 #else
 #define NEARBY_GROUPS(word) ~0u
 #endif
-/// The next few of the groups with a bit that meet the primitive; the bits looked at are cleared.
+/// Tests the next few groups of `bits` and clears their bits. Returns the bits of groups that overlap the primitive.
 uint overlapping_groups(inout uint bits, uint word) {
   uint overlapping = 0u, last = bits;
   for (uint n = 0u; n < kAabbsPerStep && last != 0u; ++n) last &= last - 1u;
@@ -80,8 +80,8 @@ uint overlapping_groups(inout uint bits, uint word) {
   }
   return cluster_or(overlapping);
 }
-// Convex shapes of all groups that meet the primitive: `q`, and `met`, a bit for each of the few convex shapes from
-// there on; `own`: this lane's shapes.
+// BODY gets the shapes whose boxes overlap the primitive's, a few at a time from `q` on: a bit for each in
+// `overlapping`, those of this lane in `own`.
 #define FOR_EACH_OVERLAPPING_SHAPES(BODY) \
   for (uint word = 0u; word < GROUP_WORDS; ++word) \
     for (uint bits = NEARBY_GROUPS(word); bits != 0u;) \
@@ -100,10 +100,10 @@ void write_pair(uint at, uint primitive, uint of_shape) {
   states[at].correction = vec4(0.0);
 }
 
-/// Index of a convex shape among the shapes of a turn.
+/// Index of the shape of bit `bit` among the overlapping shapes of a step.
 uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((1u << bit) - 1u))); }
 
-/// Writes the `count` first pairs of primitive k, from place `at` on.
+/// Writes the first `count` pairs of primitive k to the list, from index `at` on.
 void fill_pairs(uint k, float fraction, uint at, uint count) {
   box_for(primitives[k], fraction);
   uint end = at + count;
@@ -124,7 +124,7 @@ void finish_broad_phase() {
   frame_state.bound_fraction = kFractions[level];
 }
 
-/// Lists the vertices that pairs of their own or of their triangles may move, in no fixed order, and marks them.
+/// Counts the candidate pairs of vertex i and its triangles; if any, adds i to the touched vertices, in no fixed order.
 void list_touched_vertices(uint i) {
   uint pairs_of = ranges[TRIANGLES + i].y;
   for (uint f = vertex_triangles[i], end = vertex_triangles[i + 1u]; f < end; ++f)
@@ -134,7 +134,7 @@ void list_touched_vertices(uint i) {
   touched[atomicAdd(frame_state.touched_vertices, 1u)] = i;
 }
 
-/// Pairs of primitive k where its vertices go no farther than a fraction of their motion bounds.
+/// Number of pairs of primitive k if its vertices move at most `fraction` of their motion bounds.
 uint pairs_at(uint k, float fraction) {
   box_for(primitives[k], fraction);
   uint n = 0u;

@@ -1,7 +1,7 @@
 #version 450
-// Start of a frame, one workgroup per group of neighbouring convex shapes: where the points of those that move are at
-// its start and end, their boxes around their displacements, radii and margins, and the group's box. low.w: maximum
-// displacement of any of their points.
+// Once per frame, one workgroup per group of neighbouring convex shapes. Stores the points of kinematic shapes at the
+// frame's start and end, the box that contains each shape throughout the frame, inflated by radius and margin, and the
+// group's box. low.w: maximum displacement of a point.
 #include "common/common.glsl"
 layout(std430, binding = BIND_POINT_SOURCES) readonly buffer Sources { PointSource sources[]; };
 layout(std430, binding = BIND_CAPSULES) readonly buffer Capsules { CapsuleShape capsules[]; };

@@ -1,6 +1,6 @@
-// Start of a frame, one thread per triangle: boxes of the triangles at rest (share 0) and grown by their vertices'
-// motion bounds (share 1), each by half of the thickness and the drift, and the group's at share 1. Groups are 16
-// triangles in self_order, which keeps neighbours together.
+// Once per frame, one thread per triangle: the triangle's boxes at the frame's start (fraction 0) and inflated by its
+// vertices' motion bounds (fraction 1), both also by half of the thickness and the drift; the group's at fraction 1. A
+// group is SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together.
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;
@@ -26,7 +26,7 @@ void make_self_aabbs() {
     group_low[n] = kLowNone;
     group_high[n] = kHighNone;
   }
-  barrier();  // empty boxes before they are widened
+  barrier();  // wait for the empty boxes before threads grow them
   if (q < TRIANGLES) {
     SelfAabb box = box_of(primitives[self_order[q]]);
     self_aabbs[q] = box;
@@ -36,7 +36,7 @@ void make_self_aabbs() {
       atomicMax(group_high[3u * group + c], ordered(high[c]));
     }
   }
-  barrier();  // the groups' boxes before they are written
+  barrier();  // wait for the groups' boxes before threads store them
   if (q >= TRIANGLES || q % SHAPES_PER_GROUP != 0u) return;
   SelfAabb of_group;
   for (uint c = 0u; c < 3u; ++c) {
@@ -45,7 +45,7 @@ void make_self_aabbs() {
   }
   of_group.low_0.w = 1e30;
   of_group.high_0.w = -1e30;
-  of_group.low_1 = of_group.low_0;  // so that rounding does not part it from a triangle of its own
+  of_group.low_1 = of_group.low_0;  // equal, so low_at() is exact and the group's box contains its triangles' boxes
   of_group.high_1 = of_group.high_0;
   self_aabbs[TRIANGLES + q / SHAPES_PER_GROUP] = of_group;
 }

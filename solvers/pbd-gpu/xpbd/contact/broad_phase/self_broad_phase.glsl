@@ -1,7 +1,7 @@
-// Candidate pairs of triangles of the cloth without a common vertex whose boxes overlap, once per frame; each is stored
-// with both triangles. A box at a fraction of the motion bounds lies between those at rest and at the whole motion
-// bounds. One subgroup per triangle.
-const float kRoundingFactor = 0.9999;  // so that rounding makes no bound too great
+// Candidate pairs of self-contact: cloth triangles without a common vertex whose boxes, inflated by a fraction of the
+// motion bounds, overlap. Each pair is stored with both triangles. Once per list and fraction, one subgroup per
+// triangle.
+const float kRoundingFactor = 0.9999;  // keeps a rounded distance below the exact one
 bool share_a_vertex(uvec4 a, uvec4 b) {
   for (uint c = 0u; c < 3u; ++c)
     if (a[c] == b.x || a[c] == b.y || a[c] == b.z) return true;
@@ -15,8 +15,8 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
 }
 
 #include "xpbd/contact/lanes_per_triangle.glsl"
-// Triangles in groups that meet the box, a few at a time: `q` is this thread's, and `mine` says whether its box
-// overlaps the other at the share. Control flow is uniform among the lanes of a triangle.
+// Runs BODY for the triangles of all groups that overlap BOX, one per lane at a time: `q` is this lane's index in
+// self_order, `mine` whether that box overlaps BOX at fraction SHARE. Control flow is subgroup-uniform.
 #define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY) \
   for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) { \
     uint g = begin + triangle_lane(); \
@@ -34,7 +34,7 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
     } \
   }
 
-/// Lower bound on the distance of two triangles, from their boxes at the frame's start.
+/// Lower bound on the distance of two triangles at the frame's start: that of their boxes without the inflation.
 float min_distance(SelfAabb a, SelfAabb b) {
   vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + (THICKNESS_M + 2.0 * drift_m());
   return kRoundingFactor * length(max(apart, 0.0));

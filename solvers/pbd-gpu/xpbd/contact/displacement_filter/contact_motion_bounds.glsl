@@ -1,7 +1,7 @@
 // Conservative bound of a vertex's motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
-// A vertex may go several times as far in a frame as at its speed: a corner that whips, or cloth that hands released. A
-// vertex that would go farther is held back, and the momentum of the cloth changes with nothing near.
+// A vertex may move several times as far in a frame as its speed predicts: a whipping corner, or released cloth. A
+// smaller bound would clamp such vertices, which changes the cloth's momentum without contact.
 #define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
@@ -12,12 +12,12 @@ float max_displacement_of_shapes() {
   return max_shape_displacement;
 }
 
-/// Whether the cloth goes no farther in a frame than about a cell. Faster cloth takes the substeps of contact in each
-/// frame near a collider, because an impact strains it more with fewer.
+/// Whether no vertex moved farther than about a cell in the last frame. Faster cloth near a collider always uses the
+/// substeps for contact, because an impact strains the cloth more if there are fewer.
 bool is_slow() { return uintBitsToFloat(frame_state.max_displacement) <= 2.0 * p.bound_m; }
 
-/// Motion bound of a vertex at rest: what may pull it along moves itself. Where nothing went far in the last frame,
-/// lists are short. Without a frame before, it is the maximum.
+/// Speed-independent part of a vertex's motion bound [m]: from the cloth's largest displacement in the last frame,
+/// because a vertex at rest is only pulled along by others that move. Without a previous frame: the maximum, bound_m.
 float bound_at_rest() {
   const float kFraction = 0.2, kWays = 2.0;
   float fall = length(p.gravity_h.xyz) * float(p.substeps) * p.frame_s;
@@ -25,7 +25,7 @@ float bound_at_rest() {
   return last > 0.0 ? min(p.bound_m, kFraction * p.bound_m + (1.0 - kFraction) * fall + kWays * last) : p.bound_m;
 }
 
-/// Largest displacement of an attached vertex: it may take any vertex along.
+/// Largest displacement of an attached vertex in the frame [m]; any vertex may be pulled along by as much.
 float pulled() {
   float largest = 0.0;
   for (uint k = 0u; k < GRIPS; ++k) {
@@ -35,8 +35,8 @@ float pulled() {
   return largest;
 }
 
-/// Mean velocity of a few vertices of cloth that touches itself, spread over it without a pattern: what all of it does
-/// brings no two triangles together. Every velocity is right, for vertices keep to a motion bound around it.
+/// Mean velocity of a few scattered vertices of cloth with self-contact: motion that is common to all triangles brings
+/// no two of them together. Any velocity is valid: vertices are clamped to bounds around it.
 vec3 mean_velocity() {
   const uint kSamples = 8u, kSpread = 2654435769u;  // 2^32 / golden ratio (Knuth, TAOCP 3, 6.4)
   vec3 all = vec3(0.0);
@@ -44,17 +44,17 @@ vec3 mean_velocity() {
   return all;
 }
 
-/// The motion bound of a vertex by its speed.
+/// Motion bound of a vertex in a frame with contact [m]; `speed` is relative to mean_velocity().
 float motion_bound(float speed, float rest, float max_shape_displacement, float by_hands) {
   return BOUND_FACTOR * (rest + 1.5 * speed * p.frame_s) + max_shape_displacement + by_hands;
 }
-/// The motion bound of a vertex in a contact-free frame.
+/// Motion bound of a vertex in a contact-free frame [m].
 float contact_free_bound(float speed, float rest, float by_hands) {
   return BOUND_FACTOR * (min(rest, 0.5 * p.bound_m) + 1.25 * speed * p.frame_s) + by_hands;
 }
 
 #if !defined(CONTACT_FREE) || defined(FUSED_FRAME)
-/// The same in .w of its place, and kept for the frame.
+/// Stores vertex i's start and motion bound of the frame. Returns its position; w: bound including the mean motion [m].
 vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
   vec4 at = x[i];
   vec3 along = mean_velocity();

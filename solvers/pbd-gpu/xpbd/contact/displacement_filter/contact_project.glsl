@@ -1,18 +1,18 @@
-// Last pass of a substep. Projects each vertex onto its separating planes by Hildreth's (1957) dual coordinate descent.
-// Where that finds no feasible point, the vertex moves from a known one (its start, or its start carried along by a
-// kinematic shape) towards the prediction until it reaches the first plane. If even the start violates a plane, the
-// point with the smallest violation is used and counted in diagnostics.infeasible_vertices.
+// Last pass of a substep. Projects each vertex onto the half-spaces of its separating planes by Hildreth's (1957) dual
+// coordinate descent. If that finds no feasible point, the vertex moves from a known one (its start, or its start
+// carried along by a kinematic shape) towards the result until it reaches the first plane. If even the start violates
+// a plane, the point with the smallest violation is used and counted in diagnostics.infeasible_vertices.
 const uint kSweeps = 30u;
-const float kFeasibilityTolerance_m = 2e-6;  // that a vertex may lack before its planes, by rounding
+const float kFeasibilityTolerance_m = 2e-6;  // a smaller violation is rounding and not counted
 uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;
 vec3 start;
 
-/// Offset of a half-space of the scene in this substep; what starts behind it goes no deeper.
+/// Offset of a `plane` collider for this vertex: above the plane, or lower if the vertex starts lower (no deeper).
 float half_space(PlaneShape s) {
   return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, kMinSeparation_m);
 }
 
-// Every plane of the vertex: `n`, `s` and `k`, its pair.
+// Runs BODY for each plane of the vertex with a convex shape: normal `n`, offset `s`, pair `k`.
 #define FOR_EACH_PLANE(BODY) \
   for (uint f = first_vertex_triangle; f < end_vertex_triangle; f += vertex_triangle_step) { \
     uint vertex_triangle = vertex_triangles[f], corner = vertex_triangle % 4u; \
@@ -25,7 +25,7 @@ float half_space(PlaneShape s) {
     ) \
   }
 
-// Planes of self-contact; `k`: the active pair. The loads of a few planes are issued together, to hide their latency.
+// Like FOR_EACH_PLANE, for self-contact; `k`: the active pair. Loads of a few planes are issued together.
 const uint kSelfPlaneUnroll = 4u;
 #define FOR_EACH_SELF_PLANE(BODY) \
   for (uint f = first_vertex_triangle; SELF != 0u && f < end_vertex_triangle; f += vertex_triangle_step) { \
@@ -51,7 +51,7 @@ const uint kSelfPlaneUnroll = 4u;
 
 #define FOR_EACH_PLANE_OF_ANY(BODY) FOR_EACH_PLANE(BODY) FOR_EACH_SELF_PLANE(BODY)
 
-/// The least distance before any plane.
+/// Minimum signed distance of `at` to the vertex's planes [m]; below 0: `at` is behind a plane.
 float min_plane_distance(vec3 at) {
   float smallest = 1e30;
   for (uint h = 0u; h < PLANES; ++h)
@@ -95,7 +95,7 @@ vec3 project_on_planes(vec3 at) {
   return at;
 }
 
-/// Displacement of a convex shape in this substep, its points' mean: what it carries along stays free of it.
+/// Mean displacement of a convex shape's points in this substep: a vertex that the shape carries along stays outside.
 vec3 shape_mean_displacement(uint k) {
   ConvexShape q = shapes[k];
   vec3 displacement = vec3(0.0);
@@ -106,7 +106,7 @@ vec3 shape_mean_displacement(uint k) {
   return displacement * p.substep_part / float(q.count);
 }
 
-/// From a feasible position as far towards `to` as planes and `room` let it.
+/// Moves from a feasible position (start, or start carried along) towards `to`, up to a plane or `room` [m] from start.
 vec3 back_from(vec3 to, float room) {
   vec3 free = start;
   float best = min_plane_distance(start);
@@ -145,7 +145,7 @@ vec3 back_from(vec3 to, float room) {
   return free + (l > left ? left / l : 1.0) * displacement;
 }
 
-/// As near to `at` as planes let a vertex come.
+/// The feasible position nearest to `at` and at most `room` [m] from the start; from back_from() if none is found.
 vec3 project_to_feasible(vec3 at, float room) {
   at = project_on_planes(at);
   if (min_plane_distance(at) >= -kRounding_m && distance(at, start) <= room) return at;
@@ -173,14 +173,14 @@ void end_substep(uint i, vec4 proposed, vec3 at) {
 #endif
 }
 
-/// Projection of a vertex without planes.
+/// Ends the substep of a vertex without planes.
 void project_free(uint i) {
   vec4 proposed = y[i], from = starts[i];
   start = from.xyz;
   end_substep(i, proposed, proposed.w > 0.0 ? within(proposed.xyz, from.w) : proposed.xyz);
 }
 
-/// Every lane of a cluster comes along; one of them goes on where planes are in the displacement.
+/// All lanes of a cluster test the vertex's planes together. If it is behind a plane, the first lane projects it.
 void project(uint i, bool valid) {
   vec4 proposed = vec4(0.0), from = vec4(0.0);
   float smallest = 1e30;
@@ -210,7 +210,7 @@ void project(uint i, bool valid) {
   end_substep(i, proposed, at);
 }
 
-/// Thread `first` of `at_once`, and the cluster that it is in, take their fraction of the vertices.
+/// Thread `first` of `at_once` threads and its cluster process their part of the vertices.
 void project_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   for (uint i = first; !all_of_them && i < VERTICES; i += at_once)

@@ -1,14 +1,14 @@
-// Selects the plane of a pair: across the start's normal if the proposed end is on its side, otherwise across any
-// direction that separates both ends. Vertices move on straight lines, so a plane that separates a pair at both ends
-// separates it in between.
-const float kUnsure_m = 1e-6;  // distances that rounding decides
+// Selects a pair's plane: normal as at the start if that separates the proposed positions, otherwise a normal that
+// separates both start and end, if one is found. Vertices move on straight lines, so a plane that separates a pair at
+// start and end separates it in between.
+const float kUnsure_m = 1e-6;  // a vertex not farther before a plane may be behind it, by rounding
 vec3 starting[3], proposed[3];
 
 float highest_of_shape(vec3 n) { return highest_point(n, t_end) + shape.radius; }
 float gap_at_start(vec3 n) { return gap_along(n, starting[0], starting[1], starting[2], t_begin) - shape.radius; }
 float gap_at_end(vec3 n) { return gap_along(n, proposed[0], proposed[1], proposed[2], t_end) - shape.radius; }
 
-/// The normal at the end, or half-displacement to it.
+/// Finds a normal with gaps of at least `smallest` at start and end: the end's normal, or a blend of it with `old`.
 bool find_alternative_normal(vec3 old, float smallest, out vec3 n) {
   [[unroll]] for (uint c = 0u; c < 3u; ++c) cloth[c] = proposed[c];
   corners = 3u;
@@ -37,7 +37,7 @@ void select_plane(uint k) {
     proposed[c] = y[e[c]].xyz - around;
   }
   vec3 n = normal.xyz, other;
-  float smallest = min(normal.w, kMinSeparation_m);  // below 0: inside a radius, and no deeper
+  float smallest = min(normal.w, kMinSeparation_m);  // below 0: the pair starts inside the radius, and goes no deeper
   if (gap_at_end(n) < smallest && find_alternative_normal(n, smallest, other)) {
     n = other;
     if (writes_pair()) states[k].normal.xyz = n;

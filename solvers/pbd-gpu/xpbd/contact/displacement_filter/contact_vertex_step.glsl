@@ -1,11 +1,11 @@
-// Vertices at a substep's start (prediction), and after its constraints (clamp to the motion bound).
+// Passes per vertex: prediction at a substep's start, and the clamp to the motion bound after the constraint solve.
 
-/// How far a vertex may go from its start: its proposed displacement, and what a collider may push it.
+/// Limit of a vertex's displacement in the substep [m]: that to `to`, and room for corrections by contact.
 float max_displacement(uint i, vec3 to) {
   return distance(to, starts[i].xyz) + p.substep_part * frame_state.max_shape_displacement + MARGIN_M;
 }
 
-/// Before pairs are processed whether they are active. Thread `first` of `at_once` takes its share.
+/// Clears all bits of pairs, before active pairs are found. Thread `first` of `at_once` threads clears its part.
 void clear_active_bits(uint first, uint at_once) {
   for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
     active_bits[ACTIVE_BITS + k] = active_bits[CORRECTION_BITS + k] = 0u;
@@ -17,13 +17,13 @@ void clear_correction_bits(uint first, uint at_once) {
     active_bits[CORRECTION_BITS + k] = 0u;
 }
 
-/// Inverse mass of a vertex that has `in_lines` there. Hands hold and released between the two.
+/// Unscaled inverse mass of vertex i, from y; if it is attached or was just released, `in_lines`, from x.
 float mass_of(uint i, float in_lines) {
   float w = y[i].w;
   return in_lines == 0.0 || w == 0.0 ? in_lines : w;
 }
 
-/// Where a vertex would be without links and contact. Tethers come with the lines.
+/// Predicts vertex i without constraints and contact. Tethers are part of the constraint solve.
 void predict(uint i) {
   vec4 at = x[i];
   vec3 vel = v[i].xyz;
@@ -33,7 +33,7 @@ void predict(uint i) {
   starts[i].w = max_displacement(i, at.xyz);
 }
 
-/// `to`, but no farther than `largest` from `from`; the velocity loses what is cut off.
+/// `to`, moved back to at most `largest` [m] from `from`; the velocity changes by the cut part divided by h'.
 vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
   vec3 displacement = to - from;
   float l = length(displacement);
@@ -42,7 +42,7 @@ vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
   v[i] = vec4(v[i].xyz + p.per_h * (kept - to), 0.0);
   return kept;
 }
-/// `to` within the frame's motion bound.
+/// `to`, clamped to vertex i's motion bounds of the frame.
 vec3 clamp_to_bounds(uint i, vec3 to, float w) {
   vec4 bound = motion_bounds[i];
   if (SELF != 0u) {

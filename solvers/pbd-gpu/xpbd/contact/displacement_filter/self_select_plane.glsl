@@ -1,5 +1,5 @@
-// Plane between two triangles of the cloth: across the start's normal, in the middle of their proposed ends, but within
-// the gap at the start, so that staying satisfies all planes of the cloth with itself.
+// Plane between two triangles of the cloth: normal as at the start, midway between their proposed positions but within
+// the gap at the start, so a vertex that does not move satisfies all these planes.
 void select_self_plane(uint k) {
   if ((self_active[k].marks & SELF_PLANE) == 0u) return;
   uint own = self_active[k].own, other = self_active[k].other;
@@ -18,7 +18,7 @@ void select_self_plane(uint k) {
   }
   float half_m = 0.5 * min(kMinSeparation_m, start_a - start_b);
   float middle = clamp(0.5 * (end_a + end_b), start_b + half_m, start_a - half_m);
-  // Attached vertices go where they are put: the others make displacement.
+  // Attached vertices keep their prescribed positions, so the plane moves until they are on their side of it.
   middle = max(min(middle, held_a - half_m), held_b + half_m);
   float offset = middle + dot(n, origin);
   self_active[k].plane = own < other ? vec4(n, offset + half_m) : vec4(-n, half_m - offset);

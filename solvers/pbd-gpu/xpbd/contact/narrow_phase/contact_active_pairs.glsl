@@ -12,11 +12,11 @@ float max_of(uvec4 e, bool of_ways) {
   return largest;
 }
 
-/// Most by which a pair may approach in this substep.
+/// Maximum approach of a pair in this substep [m].
 float approach_of(uvec4 e, uint k) { return max_of(e, false) + shape_displacement(k); }
 
-/// Whether the bound of a pair's distance lets it be active in this substep, or whether it has been. First the bound
-/// loses the displacements of the last one.
+/// Whether the lower bound of a pair's distance allows contact in this substep, or round 0 has processed the pair. In
+/// the substep's first round, the bound is reduced by the last substep's displacements.
 bool may_be_active(uint k) {
   uvec4 pair = pairs[k];
   uvec4 e = primitives[pair.x];
@@ -29,7 +29,7 @@ bool may_be_active(uint k) {
   return bound <= approach_of(e, pair.y) || pair.z != 0u;
 }
 
-/// Whether the gap along the last normal, and from middle to middle, is small enough; cheaper than nearest points.
+/// Whether the gap along the last normal (without one: along the centres' line) allows contact; cheaper than GJK.
 bool is_active(uint k) {
   uvec4 pair = pairs[k];
   if (pair.z != 0u) return true;

@@ -1,16 +1,16 @@
-// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex shape. Every distance that is
-// used is certified: the gap between the two along a direction, which is at most their distance whatever rounding did
-// to the direction, and equal to it for the best one. Coordinates are relative to a point near the primitive.
+// Nearest points of a primitive of the cloth (a triangle or a vertex) and a convex shape. Every distance used is the
+// gap along a direction, computed from all points: a lower bound of the distance, however the direction was rounded,
+// and equal to it for the best direction. Coordinates are relative to a point near the primitive.
 vec3 cloth[3];     // the primitive's vertices
-uint corners;      // how many: 1 or 3
-vec3 shape_points[3];  // a convex shape of at most three points
+uint corners;      // their number: 1 or 3
+vec3 shape_points[3];  // the shape's points, if at most three
 ConvexShape shape;
-vec3 around;       // origin of all these
+vec3 around;       // origin of these coordinates
 
 struct Nearest {
   vec3 n;    // from the convex shape to the cloth
   float gap; // between the primitive and the convex shape without its radius; at most 0: they touch
-  vec3 on_cloth, on_shape;  // weights; for the convex shape only if it has at most three points
+  vec3 on_cloth, on_shape;  // weights of the nearest points; of the shape's only if it has at most three points
   vec3 displacement;  // of the convex shape's nearest point in the substep
 };
 
@@ -20,11 +20,11 @@ vec3 point_at(uint j, float t) {
   return (t == 1.0 ? q.end.xyz : q.start.xyz + t * (q.end.xyz - q.start.xyz)) - around;
 }
 
-// Where convex shapes have many points and threads are many, a subgroup has an active pair for itself: its lanes share
-// out the points, and all of them compute the same. One of them writes.
+// If convex shapes have many points, a fused frame processes each active pair with a subgroup: its lanes divide the
+// points among themselves, and all lanes get the same result. One lane writes it.
 #ifdef FUSED_FRAME
 const bool kPairsOfSubgroups = MAX_POINTS > 3u;
-bool by_subgroup = false;  // what the threads do now
+bool by_subgroup = false;  // whether a subgroup processes the current pair
 bool writes_pair() { return !by_subgroup || gl_SubgroupInvocationID == 0u; }
 float highest_of_subgroup(vec3 n, float t) {
   float high = -1e30;
@@ -42,7 +42,7 @@ float highest_of_subgroup(vec3 n, float t) { return 0.0; }
 // Points are read a few at a time: the loads are issued together.
 const uint kPointUnroll = MAX_POINTS < 4u ? MAX_POINTS : 4u;
 
-/// max n·(points of the convex shape) at time t.
+/// max n·(points of the convex shape) at time t, a fraction of the frame.
 float highest_point(vec3 n, float t) {
   if (by_subgroup) return highest_of_subgroup(n, t);
   float high = -1e30;
@@ -58,7 +58,7 @@ float gap_along(vec3 n, vec3 a, vec3 b, vec3 c, float t) {
 }
 float gap_now(vec3 n, float t) { return gap_along(n, cloth[0], cloth[1], cloth[2], t); }
 
-/// Keeps the direction with the greater gap.
+/// Replaces the best direction by n if the gap along n is larger.
 void try_normal(inout Nearest best, vec3 n, float t) {
   float l = length(n);
   if (!(l > 0.0)) return;
@@ -69,11 +69,11 @@ void try_normal(inout Nearest best, vec3 n, float t) {
   best.n = n;
 }
 
-// ---- at most three points: features pair by pair, in closed form (Ericson 2005, 5.1.5 and 5.1.9)
+// ---- shapes of at most three points: all pairs of features, in closed form (Ericson 2005, 5.1.5 and 5.1.9)
 
 struct Feature {
   float square;
-  vec3 on_cloth, on_shape, apart, normal;  // normal: of the face, or across both edges
+  vec3 on_cloth, on_shape, apart, normal;  // normal: of the face, or perpendicular to both edges; not normalised
 };
 
 void take(inout Feature best, vec3 on_cloth, vec3 on_shape, vec3 normal) {
@@ -102,7 +102,7 @@ void edges(inout Feature best, uint i, uint j) {
   take(best, on_cloth, on_shape, cross(e, f));
 }
 
-/// Weights of the foot of p on the plane of a triangle; false outside it, where the edges are nearer.
+/// Weights of the projection of p onto the plane of a triangle; false if outside the triangle, where an edge is nearer.
 bool foot(vec3 p, vec3 a, vec3 b, vec3 c, out vec3 weights, out vec3 n) {
   vec3 ab = b - a, ac = c - a, ap = p - a;
   n = cross(ab, ac);
@@ -115,7 +115,7 @@ bool foot(vec3 p, vec3 a, vec3 b, vec3 c, out vec3 weights, out vec3 n) {
 Feature nearest_feature() {
   Feature best = Feature(1e30, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   uint sides = shape.count == 3u ? 3u : 1u;
-  // Unrolled, so that numbers of corners are known and nothing is indexed in memory.
+  // Unrolled, so that indices are constants and the arrays stay in registers.
   [[unroll]] for (uint i = 0u; i < 3u; ++i)
     [[unroll]] for (uint j = 0u; j < 3u; ++j)
       if (i < corners && j < sides) edges(best, i, j);
@@ -141,16 +141,16 @@ void load_shape(float t) {
   [[unroll]] for (uint j = 0u; j < 3u; ++j) shape_points[j] = j < shape.count ? point_at(j, t) : vec3(0.0);
 }
 
-/// The primitive at `cloth` and the convex shape at time `begin`; its displacements are those until `end`.
+/// Nearest points of `cloth` and the convex shape at time `begin`; the result's `displacement` is from there to `end`.
 Nearest nearest_of_few(float begin, float end) {
   load_shape(begin);
   Feature f = nearest_feature();
   Nearest r = Nearest(vec3(0.0), -1e30, f.on_cloth, f.on_shape, vec3(0.0));
   try_normal(r, f.apart, begin);
-  // The difference of the nearest points loses digits where they nearly touch or the convex shape is large: what rounds
-  // it by a rounding moves the convex shape's far corners. Across the features it does not.
+  // The difference of the nearest points loses digits if they nearly touch or the shape is large, and a small error of
+  // direction changes the gap at the shape's far corners. The normal of the two features is exact enough.
   try_normal(r, dot(f.normal, f.apart) < 0.0 ? -f.normal : f.normal, begin);
-  // Above a face its edges are often as near, up to rounding.
+  // Above a face an edge may be found, as near up to rounding. So the face's normal is tried too.
   if (shape.count == 3u) {
     vec3 face = cross(shape_points[1] - shape_points[0], shape_points[2] - shape_points[0]);
     try_normal(r, dot(face, f.apart) < 0.0 ? -face : face, begin);

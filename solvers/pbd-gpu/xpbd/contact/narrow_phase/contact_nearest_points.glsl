@@ -1,6 +1,6 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// Whether a static triangle's own plane separates the pair; then only pairs of the cloth's vertices have contacts.
+/// Whether a static triangle's plane keeps a cloth triangle off it; then only vertices have contacts with the triangle.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;
   load_shape(t_begin);
@@ -40,15 +40,15 @@ uint find_contact(uvec4 e, inout PairState s) {
   }
   float gap = r.gap - shape.radius;
   s.normal = vec4(r.n, gap);
-  // From the cloth's point and the gap, not from the convex shape's point: on a large face that has lost digits, and
-  // the fraction of a substep's fall that they are would be missing from the normal force.
+  // From the cloth's point and the gap, not from the convex shape's point: on a large face that point has lost digits,
+  // and its error is large enough, compared with a substep's fall, to falsify the normal force.
   vec3 on_cloth = r.on_cloth.x * cloth[0] + r.on_cloth.y * cloth[1] + r.on_cloth.z * cloth[2];
   s.weights = vec4(r.on_cloth, dot(r.n, on_cloth + r.displacement + around) - gap);
   s.displacement_or_plane = vec4(r.displacement, min(kept_margin(e, s.weights.xyz), gap));
   return PAIR_TESTED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
 }
 
-/// Nearest points of an active pair, unless they are known, and its contact's correction.
+/// Computes the nearest points of an active pair, unless round 0 has, and its contact's correction.
 void process_pair(uint k) {
   uvec4 pair = pairs[k];
   uvec4 e = primitives[pair.x];

@@ -1,5 +1,5 @@
-// Nearest points of a primitive and the hull of more than three points (Gilbert, Johnson & Keerthi 1988). A simplex of
-// differences is brought ever nearer to the origin. Its corners are indexed by constants, to stay in registers.
+// Nearest points of a primitive and the hull of more than three points (Gilbert, Johnson & Keerthi 1988). A simplex in
+// the Minkowski difference approaches the origin. Its corners are indexed by constants, so they stay in registers.
 struct Corner {
   vec3 at;     // cloth[a] - point b of the convex shape
   uint a, b;
@@ -37,7 +37,7 @@ vec3 on_face(vec3 a, vec3 b, vec3 c) {
   return vec3(1.0 - (vb + vc) / all, vb / all, vc / all);
 }
 
-/// The nearest of a tetrahedron's faces that the origin lies beyond. False if it lies inside.
+/// Weights of the point nearest to the origin on the faces that have the origin outside. False if the origin is inside.
 bool on_tetrahedron(out vec4 weights) {
   const uvec4 kFaces[4] =
       uvec4[4](uvec4(0u, 1u, 2u, 3u), uvec4(0u, 2u, 3u, 1u), uvec4(0u, 3u, 1u, 2u), uvec4(1u, 3u, 2u, 0u));
@@ -48,7 +48,7 @@ bool on_tetrahedron(out vec4 weights) {
     const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
-    // On the inner side. Every face of a flat tetrahedron is processed: rounding decides where its last corner lies.
+    // Skips a face with the origin inside, unless the tetrahedron is flat: its fourth corner's side is then rounding.
     bool flat_one = abs(inner) <= kFlat * length(n) * length(simplex[f.w].at - a);
     if (!flat_one && origin * inner > 0.0) continue;
     vec3 l = on_face(a, b, c), q = l.x * a + l.y * b + l.z * c;
@@ -68,7 +68,7 @@ void put(uint slot, Corner c) {
     if (m == slot) simplex[m] = c;
 }
 
-/// Nearest point of the simplex, which keeps only the corners that carry it. False if the origin is inside.
+/// Finds the simplex point nearest to the origin and drops corners of weight 0. False: the origin is inside.
 bool reduce() {
   vec4 weights = vec4(1.0, 0.0, 0.0, 0.0);
   if (simplex_size == 2u) weights = on_segment(simplex[0].at, simplex[1].at);
@@ -87,7 +87,7 @@ bool reduce() {
 }
 
 #ifdef FUSED_FRAME
-/// The convex shape's support point along v; the first if there are several.
+/// Index of the shape's support point along v, the lowest of equals. The subgroup's lanes divide the points.
 uint support_of_subgroup(vec3 v, float t) {
   float high = -1e30;
   uint best = 0u;
@@ -112,7 +112,7 @@ uint support_of_subgroup(vec3 v, float t) {
 uint support_of_subgroup(vec3 v, float t) { return 0u; }
 #endif
 
-/// The support point of the difference against v.
+/// Support point of the Minkowski difference (cloth minus shape) in direction -v.
 Corner support(vec3 v, float t) {
   Corner c = Corner(vec3(0.0), 0u, 0u);
   float low = 1e30, high = -1e30;
@@ -146,8 +146,8 @@ Corner support(vec3 v, float t) {
   return c;
 }
 
-/// The direction across the features that three corners span: the difference of nearest points has lost digits,
-/// and a tilt of a thousandth is friction.
+/// Tries the normal of the plane of three simplex corners: the difference of nearest points has lost digits, and a
+/// tilt of 0.001 acts as friction.
 void across_features(inout Nearest r, vec3 v, float t) {
   const float kSame_m = 1e-6;  // gaps that rounding cannot tell apart
   if (simplex_size != 3u) return;
@@ -163,7 +163,7 @@ void across_features(inout Nearest r, vec3 v, float t) {
 
 Nearest nearest_of_hull(float begin, float end, vec3 guess) {
   const uint kMax = 32u;
-  const float kClose = 3e-7;  // of the squared distance
+  const float kClose = 3e-7;  // tolerance relative to the squared distance
   vec3 v = dot(guess, guess) > 0.0 ? guess : cloth[0] - point_at(0u, begin);
   if (dot(v, v) == 0.0) v = vec3(0.0, 1.0, 0.0);
   simplex_size = 0u;
@@ -184,14 +184,14 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     vec3 to = vec3(0.0);
     [[unroll]] for (uint m = 0u; m < 4u; ++m)
       if (m < simplex_size) to += weight_of[m] * simplex[m].at;
-    // No nearer: rounding goes round in a circle.
+    // No progress: by rounding, the iteration would cycle.
     if (!(dot(to, to) > 1e-14 && (k == 0u || dot(to, to) < square))) break;
     v = to;
     if (simplex_size == 4u) break;
   }
   try_normal(r, v, begin);
   across_features(r, v, begin);
-  if (!(r.gap > 0.0) && corners == 3u) {  // flat on a face, or a hit that is none
+  if (!(r.gap > 0.0) && corners == 3u) {  // nothing separates them yet: perhaps the cloth triangle's normal does
     vec3 n = cross(cloth[1] - cloth[0], cloth[2] - cloth[0]);
     try_normal(r, n, begin);
     try_normal(r, -n, begin);

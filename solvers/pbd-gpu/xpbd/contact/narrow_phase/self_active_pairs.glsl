@@ -1,8 +1,8 @@
-// Active pairs of the cloth with itself, after the constraint solve. One subgroup per triangle. Where a triangle's
-// active pairs begin is in no fixed order, and nothing depends on it; the pairs of a triangle are in the list's order.
+// Active pairs of self-contact, after the constraint solve, one subgroup per triangle. The order of triangles among the
+// active pairs is not fixed, and nothing depends on it; a triangle's pairs are in the list's order.
 #include "xpbd/contact/lanes_per_triangle.glsl"
 
-/// Where a triangle's active pairs begin, and how many there is place for.
+/// Reserves entries for a triangle's `count` active pairs. Returns the first index, and how many pairs fit.
 uvec2 reserve(uint count) {
   uint first = count > 0u ? atomicAdd(frame_state.self_active, count) : 0u;
   uint room = first < ACTIVE_CAPACITY ? ACTIVE_CAPACITY - first : 0u;
@@ -10,12 +10,12 @@ uvec2 reserve(uint count) {
   return uvec2(first, min(count, room));
 }
 
-// Each thread looks at a few pairs at a time: the loads are issued together.
+// Each thread tests a few pairs at a time, so that the loads are issued together.
 const uint kPairUnroll = 4u;
 SelfPair pair[kPairUnroll];
 bool is_active_pair[kPairUnroll];
 
-/// The pairs from `first` on that are this thread's, and whether they are active.
+/// Tests this lane's pairs from `first` on. `lessens`: reduces their bounds by the last substep's displacements first.
 void test_pairs(uint first, uint end, vec4 own, bool lessens) {
   vec4 displacement[kPairUnroll];
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n)
@@ -24,7 +24,7 @@ void test_pairs(uint first, uint end, vec4 own, bool lessens) {
   [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) {
     uint k = first + n * lanes_per_triangle() + triangle_lane();
     is_active_pair[n] = triangle_lane() < lanes_per_triangle() && k < end;
-    if (lessens) pair[n].bound = pair[n].bound - own.x - displacement[n].x;  // the displacements of the last substep
+    if (lessens) pair[n].bound = pair[n].bound - own.x - displacement[n].x;
     if (is_active_pair[n] && lessens) self_pairs[k].bound = pair[n].bound;
     is_active_pair[n] = is_active_pair[n] && pair[n].bound <= own.y + displacement[n].y;
   }

@@ -1,10 +1,10 @@
-// Nearest points of two triangles of the cloth at a substep's start. Both copies of a pair compute the same, the
-// triangle of the lower number first, so that their normals are opposite bit for bit.
+// Nearest points of two triangles of the cloth at a substep's start. A pair is stored once per triangle; both copies
+// compute with the triangle of the lower number first, so their contacts are bit-identical.
 vec3 first_at[3], second_at[3];
 
 bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
 
-/// A vertex and a triangle are the contact of the first of the vertex' triangles that has no vertex of the other.
+/// Of v's triangles without a vertex of `other`, only the first has the contact of v with `other`: whether it is `own`.
 bool owns(uint v, uint own, uvec4 other) {
   uint end = vertex_triangles[v + 1u];
   for (uint f = vertex_triangles[v]; f < end; ++f) {
@@ -15,7 +15,7 @@ bool owns(uint v, uint own, uvec4 other) {
   return false;
 }
 
-/// Gap along n, from the second to the first, of what nearest_feature() has looked at.
+/// Gap along n from `shape_points` to `cloth`, the inputs of nearest_feature().
 float feature_gap(vec3 n) {
   float low = 1e30, high = -1e30;
   for (uint c = 0u; c < corners; ++c) low = min(low, dot(n, cloth[c]));
@@ -23,12 +23,12 @@ float feature_gap(vec3 n) {
   return low - high;
 }
 
-/// The nearest points of what is in `cloth` and `shape_points`; w: their gap.
+/// Unit normal from `shape_points` to `cloth` with the largest gap; w: that gap.
 vec4 best_normal(Feature f) {
   vec4 best = vec4(0.0, 0.0, 0.0, -1e30);
   float l = length(f.apart);
   if (l > 0.0) best = vec4(f.apart / l, feature_gap(f.apart / l));
-  // When triangles nearly touch, the difference of their nearest points has lost its digits; the direction across the features has not.
+  // If triangles nearly touch, the difference of their nearest points has lost digits; the features' normal has not.
   float across = length(f.normal);
   if (f.square < 1e-6 && across > 0.0) {
     vec3 n = (dot(f.normal, f.apart) < 0.0 ? -1.0 : 1.0) / across * f.normal;
@@ -38,7 +38,7 @@ vec4 best_normal(Feature f) {
   return best;
 }
 
-// The contacts of a pair that are found, before it is known where there is place for them.
+// Contacts found for a pair, until store_contacts() reserves their place in the buffer.
 SelfContact found[SELF_CONTACTS];
 uint contacts;
 
@@ -67,7 +67,7 @@ void vertex_contacts(uint own, uvec4 e, uvec4 other, float bound, bool is_first)
   }
 }
 
-/// Maximum distance by which two triangles may approach, each going to its proposed end.
+/// Upper bound of the approach of two triangles on the way to their proposed positions [m].
 float approach(uvec4 a, uvec4 b, vec3 origin) {
   vec3 way_a[3], way_b[3], middle_a = vec3(0.0), middle_b = vec3(0.0);
   for (uint c = 0u; c < 3u; ++c) {
@@ -84,7 +84,7 @@ float approach(uvec4 a, uvec4 b, vec3 origin) {
   return distance(middle_a, middle_b) + around_a + around_b;
 }
 
-/// Keeps what was found. Where it lies is in no fixed order, and nothing depends on it.
+/// Stores the contacts found. Their order in the buffer is not fixed, and nothing depends on it.
 void store_contacts(uint k) {
   uint at = atomicAdd(frame_state.self_contact_pairs, 1u);
   if (at >= CONTACT_CAPACITY) {

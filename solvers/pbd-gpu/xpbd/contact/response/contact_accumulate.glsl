@@ -1,9 +1,9 @@
-// Accumulates corrections (Jacobi averaging): each vertex takes the mean of what its contacts propose, weighted by
-// length. In round 0 `velocity_part` changes only v, because the prediction that follows moves x by h v; and the inverse
-// mass of a vertex that kinematic shapes moved is reduced. The sum has a fixed order, whatever the number of lanes that
-// share it: kPartialSums partial sums, of the vertex's own pairs and of every kPartialSums-th triangle.
+// Accumulates corrections (Jacobi averaging): each vertex moves by the mean of its contacts' proposals, weighted by
+// length. In round 0 `velocity_part` changes only v, because the prediction that follows moves x by h v; and the
+// inverse mass of a corrected vertex is reduced. The order of summation does not depend on the lanes that share it:
+// kPartialSums sums of every kPartialSums-th triangle, the last with the vertex's own pairs.
 const uint kPartialSums = 8u;
-bool any_pairs = true;  // that push the vertex
+bool any_pairs = true;  // whether contacts with convex shapes correct the vertex in this round
 vec3 sum, sum_velocity_part;
 float lengths;
 
@@ -34,9 +34,9 @@ void from_pairs(uint primitive, uint corner, float w) {
   })
 }
 
-// Pairs of a triangle are looked at a few at a time: the loads are issued together.
+// Pairs of a triangle are read a few at a time, so that the loads are issued together.
 const uint kSelfPairUnroll = 4u, kNoCorrection = ~0u;
-/// From the pairs of the vertex' triangles with others of the cloth.
+/// Adds the corrections of self-contact pairs of triangle `primitive`, whose vertex `corner` this is.
 void from_self(uint primitive, uint corner) {
   uvec4 range = self_ranges[primitive];
   for (uint first = range.z, end = range.z + range.w; first < end; first += kSelfPairUnroll) {
@@ -74,7 +74,7 @@ void accumulate_part(uint i, vec4 at, uint part) {
   }
 }
 
-/// The sums of all parts in their order, in every lane of the cluster.
+/// Adds all partial sums in a fixed order; every lane of the cluster gets the total.
 void accumulate_parts(uint i, vec4 at, bool live) {
   vec3 of_all = vec3(0.0), velocity_part_of_all = vec3(0.0);
   float lengths_of_all = 0.0;
@@ -111,7 +111,7 @@ void accumulate(uint i, bool valid) {
   x[i] = vec4(x[i].xyz + by - velocity_part, at.w / (1.0 + held));
 }
 
-/// Thread `first` of `at_once`, and its cluster, take their fraction of the vertices that contact may move.
+/// Thread `first` of `at_once` threads and its cluster process their part of the vertices that contact may move.
 void accumulate_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   uint count = all_of_them ? VERTICES : frame_state.touched_vertices;

@@ -28,7 +28,7 @@ vec4 contact_correction(uvec4 e, PairState s) {
   return vec4(c.velocity_part, c.depenetration) / mass;
 }
 
-/// Marks a pair whose contact proposes something, and its vertices, so that others need not be read.
+/// Marks a pair that proposes a correction, and its vertices: later passes read only these. `proposed`: it has a mark.
 void mark_correction(uint k, uvec4 e, bool proposes, bool proposed) {
   if (proposes) {
     [[unroll]] for (uint c = 0u; c < 3u; ++c) touched[CORRECTED(e[min(c, e.w - 1u)])] = 1u;

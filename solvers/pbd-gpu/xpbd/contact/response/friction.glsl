@@ -1,12 +1,12 @@
-// The response of every contact: with a half-space, a convex shape, or another layer (Macklin et al. 2016, XPBD's
-// position-level contact with zero compliance; Coulomb friction). `velocity_part` moves x and changes v by Δ/h';
+// Response of a contact with a half-space, a convex shape or another layer of cloth: XPBD contact at position level
+// with zero compliance (Macklin et al. 2016) and Coulomb friction. `velocity_part` moves x and changes v by Δ/h';
 // `depenetration`, along the normal, only moves x.
 struct Correction {
   vec3 velocity_part;
   float depenetration;
 };
 
-/// Depenetration [m] of a contact that lacks `lacking` [m] to its margin. Round 2 enforces only the target gap.
+/// Depenetration [m] of a contact whose gap is `lacking` [m] below its margin. Round 2 enforces only the target gap.
 float recovery(float lacking, float margin) {
   return response_round < 2u ? clamp(lacking, 0.0, kRecovered * margin) : 0.0;
 }
