@@ -1,6 +1,6 @@
-// XPBD on whole grid lines at once (xpbd/lines/README.md). A chain is a line of one of four colours: 0 rows, 1 columns,
-// 2 and 3 the diagonals, wrapped around the cloth's sides so that all have as many vertices, and cut where they wrap.
-// LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// XPBD with a direct solve of whole grid lines (xpbd/lines/README.md). A chain is a line of one of four colours: 0
+// rows, 1 columns, 2 and 3 diagonals. Diagonals wrap around the cloth's sides, so that all have ROWS vertices; no link
+// is where they wrap. LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // by chain
@@ -39,22 +39,22 @@ bool goes_on(uint i) {
 /// Lines on the border carry half the width, so they are twice as compliant.
 float border() { return colour < 2u && (chain == 0u || chain + 1u == chain_count()) ? 2.0 : 1.0; }
 
-// Values of neighbours n threads away on the same chain; beyond a chain's ends they are arbitrary but finite. By
-// shuffles within a subgroup, else through shared memory.
+// exchange() gives the values of the threads n before and n after on the same chain; beyond its ends they are arbitrary
+// but finite. It uses shuffles within a subgroup, otherwise shared memory.
 void set_thread() { thread = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
-const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain lies on
-const uint PART = LANES / PARTS;                                               // its threads in one of them
+const uint PARTS = LANES * BESIDE > SUBGROUP ? LANES * BESIDE / SUBGROUP : 1u;  // subgroups that a chain spans
+const uint PART = LANES / PARTS;                                               // threads of a chain per subgroup
 const uint EXCHANGE_SIZE = PARTS > 1u ? 2u * THREADS : 1u;
-bool apart = false;  // the rows of a thread concern only its own subgroup
+bool apart = false;  // whether rows are coupled only to rows in the same subgroup
 
-// Two pages in turn: while some threads still read one, others write the other.
+// Double buffer: while some threads still read one half, others write the other.
 shared vec4 exchanged[EXCHANGE_SIZE];
 uint exchange_half = 0u;
 uint publish(vec4 mine) {
   uint here = exchange_half;
   exchange_half = THREADS - exchange_half;
   exchanged[here + thread] = mine;
-  barrier();  // the writes before the neighbours' reads
+  barrier();  // wait for all writes before threads read their neighbours' values
   return here;
 }
 
@@ -70,21 +70,21 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = exchanged[here + (lane + n < LANES ? thread + n * BESIDE : thread)];
 }
 
-/// After log2(PARTS) rounds of cyclic reduction every PARTS-th row makes a system of its own: the thread's row goes to
-/// the subgroup that solves its system, and another comes.
+/// After log2(PARTS) rounds of cyclic reduction, rows PARTS apart form a separate system: the thread swaps its row for
+/// one of the system that its subgroup solves.
 vec4 to_part(vec4 mine) {
   uint here = publish(mine);
   return exchanged[here + thread + (lane % PART * PARTS + lane / PART - lane) * BESIDE];
 }
 
-/// The thread's own row again, and the one before it (anything finite at a chain's start).
+/// Undoes to_part(): returns the thread's own row; `below`: the row before it (any finite value at a chain's start).
 vec4 from_part(vec4 mine, out vec4 below) {
   uint start = publish(mine) + thread - lane * BESIDE, last = lane > 0u ? lane - 1u : 0u;
   below = exchanged[start + (last % PARTS * PART + last / PARTS) * BESIDE];
   return exchanged[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
 }
 
-// The same of a row of a system, by the type of its entries (tridiagonal.glsl).
+// The three functions above for a row of a system, one overload per type of its entries (for tridiagonal.glsl).
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
 float inverse_of(float x) { return 1.0 / x; }
 void exchange_row(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
@@ -113,7 +113,7 @@ void from_part(inout float d, out float d_below) {
 #define RIGHT link_right
 #include "xpbd/lines/tridiagonal.glsl"
 
-// Two hinges make a block, and what couples a hinge with the next two becomes tridiagonal in blocks.
+// A hinge is coupled to two hinges on either side, so with two hinges per block the system is tridiagonal in blocks.
 const uint BLOCKS = K > 1u ? K / 2u : 1u;
 mat2 hinge_lower[BLOCKS], hinge_diagonal[BLOCKS], hinge_upper[BLOCKS];
 mat3x2 hinge_right[BLOCKS];  // one column per coordinate
@@ -163,15 +163,15 @@ void move(uint k, vec3 step) {
 
 #include "xpbd/lines/splitting_correction.glsl"
 
-vec3 direction[K], direction_below;  // of links; 0 where there is none
+vec3 direction[K], direction_below;  // unit vectors along the links; 0: no link
 float w_above;                       // inverse mass of the vertex after the thread's
-float link_length[K], pull[K];  // tension over length that links carry already
+float link_length[K], pull[K];  // pull: tension over length with which the solve starts
 
-/// Compliance of the chain's links, over h^2.
+/// Compliance of the chain's links, divided by h'^2 k [1/kg] (TimeStep).
 float compliance() { return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border(); }
 
-/// Distance constraints of all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18, for all at once):
-/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest`: the minimum of alpha, as a fraction of the inverse mass.
+/// Sets up one system for all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18):
+/// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest`: minimum ratio of alpha to inverse mass.
 void link_equations(float smallest) {
   vec4 below, above, none;
   exchange(vec4(pos[0], w[0]), 1u, none, above);
@@ -214,7 +214,7 @@ void link_equations(float smallest) {
 
 #include "xpbd/lines/tension.glsl"
 
-/// Sum over the thread's links and the one before them, with implicit tension.
+/// Records the links' total multipliers. With implicit tension the solve has started at -pull * length.
 void record_link_multipliers(float lambda_below) {
   float lambda[K];
   [[unroll]] for (uint k = 0u; k < K; ++k) {
@@ -230,7 +230,7 @@ void record_link_multipliers(float lambda_below) {
 }
 
 void stretch() {
-  float smallest = 0.0;  // ratio of alpha to inverse mass
+  float smallest = 0.0;  // minimum ratio of alpha to inverse mass
   if ((FEATURES & LINES_REGULARISED) != 0u && chain < chain_count())
     smallest = regularisation[colour * max(COLUMNS, ROWS) + chain];
   if (kCorrectsSplitting) load_creep();
@@ -263,7 +263,7 @@ void hinge_equations() {
       if (k > 0u) last = vec4(pos[k - 1u], w[k - 1u]);
       if (k + 1u < K) next = vec4(pos[k + 1u], w[k + 1u]);
       bool is = i >= 1u && on_chain(i + 1u) && last.w + w[k] + next.w > 0.0;
-      // Two attached vertices in a row are a clamp: its hinge bends half a cell, 2 B/a.
+      // Two successive attached vertices are a clamp. The hinge there covers half a cell, so it is twice as stiff.
       float a = w[k] == 0.0 && (last.w == 0.0) != (next.w == 0.0) ? 0.5 * alpha : alpha;
       diagonal[h] = is ? last.w + 4.0 * w[k] + next.w + a : 1.0;
       near_below[h] = is && i >= 2u ? -2.0 * (last.w + w[k]) : 0.0;
@@ -280,7 +280,7 @@ void hinge_equations() {
   }
 }
 
-/// Solves the hinges of a row or column, and moves the vertices by it.
+/// Solves the hinges of a row or column, and moves the vertices by the result.
 void bend() {
   hinge_equations();
   mat3x2 block_below;

@@ -1,16 +1,16 @@
-// Start of a substep for the thread's vertices: they fall, then tethers (Kim, Chentanez & Mueller 2012): no vertex is
-// farther from a pinned one than the cloth between them is long. `anchor(v, k)` gives where vertex v, which is pinned,
-// is, for the thread's vertex k.
-vec3 rest_pos[K], rest_vel[K];  // what the last sums could not hold
-vec3 last_pos[K], last_vel[K];  // before the last substep, if kUsesBdf2
+// Start of a substep for the thread's vertices: prediction, then tethers (Kim, Chentanez & Mueller 2012), which limit a
+// vertex's distance from pinned vertices to the length of the cloth between them. The including file defines
+// `anchor(v, k)`: position of pinned vertex v, for the tether of the thread's vertex k.
+vec3 rest_pos[K], rest_vel[K];  // rounding errors of the last sums
+vec3 last_pos[K], last_vel[K];  // state before the last substep, if kUsesBdf2
 
-/// The nearest vertex of a rectangle of pinned ones.
+/// The vertex of a rectangle of pinned vertices that is nearest to vertex `at`.
 uvec2 nearest(uvec2 at, uint first, uint last) {
   return clamp(at, uvec2(first & 0xffffu, first >> 16u), uvec2(last & 0xffffu, last >> 16u));
 }
 
-/// Without shear stiffness the cloth reaches only along warp and weft. `first`, `last`: the pinned rectangle, whose
-/// longer side, but at least one cell, is the width of its support.
+/// Maximum distance of vertex `at` from pinned vertex `to` [m]; without shear stiffness measured along warp and weft.
+/// `first`, `last`: corners of the pinned rectangle; its longer side (at least one cell) is the width of the support.
 float reach_of(uvec2 at, uvec2 to, uint first, uint last) {
   vec2 rest = vec2(p.rest_u, p.rest_v), across = abs(vec2(ivec2(at) - ivec2(to))) * rest;
   float r = kShears ? length(across) : across.x + across.y, reach = p.tether_stretch * r;
@@ -24,7 +24,7 @@ void integrate() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uvec2 at = vertex(lane * K + k), to[4];
     vec3 end[4];
-    // Where pins are is fetched first: nothing below waits for it.
+    // Loads the pins' positions first, so that the latency overlaps with the prediction below.
     if (TETHERS > 0u) end[0] = anchor(to[0] = nearest(at, TETHER_0, TETHER_0_LAST), k);
     if (TETHERS > 1u) end[1] = anchor(to[1] = nearest(at, TETHER_1, TETHER_1_LAST), k);
     if (TETHERS > 2u) end[2] = anchor(to[2] = nearest(at, TETHER_2, TETHER_2_LAST), k);

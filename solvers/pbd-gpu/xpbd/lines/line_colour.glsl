@@ -1,16 +1,16 @@
-// One colour of lines, its state in memory: the buffers below, x, v, lx and lv. A frame with contact (FUSED_FRAME)
-// predicts nothing. Compensation terms are of the first colour's chains, so threads that stay with them keep them from
-// substep to substep.
+// Solves one colour of lines with the state in memory: x, v, lx, lv and the buffers below. A fused frame uses no BDF2,
+// hence neither lx nor lv. Compensation terms belong to the chains of the first colour, so a thread that keeps its
+// chain keeps them in registers from substep to substep.
 layout(std430, binding = BIND_POSITION_COMPENSATION) coherent buffer PositionCompensation { vec4 rx[]; };
 layout(std430, binding = BIND_VELOCITY_COMPENSATION) coherent buffer VelocityCompensation { vec4 rv[]; };
 
-/// Pinned vertices are never written, so reading them here races with nothing.
+/// Pinned vertices are never written, so this read cannot race with a write.
 vec3 anchor(uvec2 at, uint k) {
   return x[index_of(at)].xyz;
 }
 #include "xpbd/lines/integrate_lines.glsl"
 
-/// This thread's place in its workgroup, on its chain and among all chains.
+/// Sets this thread's index in its workgroup and on its chain, and the chain's index.
 void set_place(uint group) {
   set_thread();
   lane = thread / BESIDE % LANES;

@@ -1,5 +1,5 @@
 #version 450
-// A cloth of at most 32 x 32 vertices: one workgroup takes it through `substeps` substeps, its state in shared memory.
+// Simulates `substeps` substeps of a cloth of at most 32 x 32 vertices in one workgroup, the state in shared memory.
 #define SUBGROUPS
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -18,12 +18,12 @@ const uint SELF = 0u;
 #endif
 #include "xpbd/lines/grid_lines.glsl"
 
-// 34 words per row: threads of 4 vertices on rows, columns and both diagonals meet in a bank at most two at a time.
+// 34 words per row: with 4 vertices per thread, at most two threads access a bank at once, in every colour.
 const uint kStride = 34u;
 shared float px[kStride * ROWS], py[kStride * ROWS], pz[kStride * ROWS];
 shared float vx[kStride * ROWS], vy[kStride * ROWS], vz[kStride * ROWS];
 shared uint held[32];  // one bit per vertex, one word per row
-// Shifts over h^2. The filters' first stages are of one colour only.
+// Shifts along rows (u) and columns (v), and the first stages of their filters, divided by h'^2.
 const uint kShifts = kCorrectsSplitting ? kStride * ROWS : 1u;
 shared float su[kShifts], sv[kShifts], filter_u[kShifts], filter_v[kShifts];
 
@@ -66,7 +66,7 @@ void put(uvec2 at, vec3 position, vec3 velocity) {
   vz[o] = velocity.z;
 }
 
-/// The thread's vertices on its chain of `colour`.
+/// Reads the thread's vertices on its chain of `colour` from shared memory.
 void take() {
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
@@ -89,7 +89,7 @@ void give() {
 
 void load() {
   if (thread < 32u) held[thread] = 0u;
-  barrier();  // the clearing before the bits are set
+  barrier();  // wait for cleared bits before threads set them
   [[unroll]] for (uint k = 0u; k < K; ++k) {
     uint i = lane * K + k;
     if (!on_chain(i)) continue;
@@ -105,7 +105,7 @@ void load() {
     }
     if (here.w == 0.0) atomicOr(held[vertex(i).y], 1u << vertex(i).x);
   }
-  barrier();  // the state and the bits of pinned vertices before hands change them and all read them
+  barrier();  // wait for the bits of held vertices before attachments change them
   for (uint g = thread; g < GRIPS; g += THREADS) {
     GripVertex grip = grips[g];
     uint bit = 1u << grip.vertex % COLUMNS;
@@ -121,7 +121,7 @@ void store() {
     uint o = index_of(vertex(i));
     x[o] = vec4(pos[k], w[k]);
     v[o] = vec4(vel[k], 0.0);
-    uint at = vertex(i).y * kStride + vertex(i).x;  // as it is there, so that no bit depends on where dispatches end
+    uint at = vertex(i).y * kStride + vertex(i).x;  // copied unscaled, so results do not depend on where dispatches end
     if (kCorrectsSplitting) shifts[o] = vec4(su[at], sv[at], filter_u[at], filter_v[at]);
     rx[o] = vec4(rest_pos[k], 0.0);
     rv[o] = vec4(rest_vel[k], 0.0);
@@ -131,10 +131,10 @@ void store() {
   }
 }
 
-/// Attached vertices go where hands take them, on a straight line through the frame.
+/// Moves attached vertices along a straight line through the frame.
 void move_held(uint substep) {
-  barrier();  // reads of the last substep before attached vertices move
-  // As the host has it for move_grips: the quotient, not a multiple of a rounded part.
+  barrier();  // wait for the last substep's reads before attached vertices move
+  // The quotient that the host passes to move_grips; a multiple of substep_part would round differently.
   float fraction = float(p.first_substep + substep + 1u) / floor(1.0 / p.substep_part + 0.5);
   for (uint g = thread; g < GRIPS; g += THREADS) {
     GripVertex grip = grips[g];
@@ -143,7 +143,7 @@ void move_held(uint substep) {
         grip.from.xyz * (1.0 - fraction) + grip.to.xyz * fraction,
         (grip.to.xyz - grip.from.xyz) * p.frames_per_s);
   }
-  barrier();  // their new places before all read them
+  barrier();  // wait for their new positions before threads read them
 }
 
 void main() {
@@ -157,7 +157,7 @@ void main() {
   if (!cannot_reach_any_collider()) return;
 #endif
   load();
-  barrier();  // what load() wrote before all read it
+  barrier();  // wait for load() before threads read the state
   for (uint s = 0u; s < p.substeps; ++s) {
     if (GRIPS > 0u) move_held(s);
     for (uint turn = 0u; turn < colours; ++turn) {
@@ -170,7 +170,7 @@ void main() {
 #ifdef CONTACT_FREE
       if (turn + 1u == colours) check_motion_bound();
 #endif
-      barrier();  // this colour's writes before the next one's reads
+      barrier();  // wait for this colour's writes before the next colour reads them
     }
   }
 #ifdef CONTACT_FREE
@@ -180,7 +180,7 @@ void main() {
     frame_state.contact_possible = 0u;
   }
 #endif
-  colour = colours - 1u;  // whose chains a thread's compensation are of
+  colour = colours - 1u;  // the colour to whose chains the compensation terms belong
   take();
 #ifdef CONTACT_FREE
   record_max_displacement();

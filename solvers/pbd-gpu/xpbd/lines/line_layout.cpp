@@ -57,7 +57,7 @@ LineShape frame_shape(int columns, int rows, const LineRequest& request, const L
     s.threads = (s.lanes * longest + whole - 1) / whole * whole;
     const std::uint32_t state_B =
         (request.corrects_splitting ? 10 : 6) * 4 * 34 * static_cast<std::uint32_t>(rows) + 128;
-    // Twice the threads are faster where lines exchange within a subgroup.
+    // With two vertices per thread, large workgroups are faster if a line fits in a subgroup.
     const std::uint32_t largest =
         k < 4 && (fits_subgroup || vertices != 0) ? device.max_threads : std::min(256u, device.max_threads);
     if (s.threads <= largest && state_B + (fits_subgroup ? 16 : 32 * s.threads) <= device.shared_B) return s;
@@ -73,7 +73,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
   const bool select_plane = device.wide;
   const std::uint32_t vertices = request.vertices != 0 ? request.vertices : select_plane && n <= 384 ? 2 : 4;
   const std::uint32_t beside = request.beside != 0 ? request.beside : !select_plane || n <= 192 ? 1 : n <= 384 ? 2 : 4;
-  // A requested number of threads is used in full; else the fewest that hold whole subgroups and lines.
+  // A requested number of threads is used in full; otherwise the smallest that holds whole subgroups and lines.
   const std::uint32_t largest = std::min(request.threads != 0 ? request.threads
                                          : select_plane       ? 1024u
                                                               : 256u,

@@ -6,8 +6,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// One flag for each chain of the four colours (rows, columns, both diagonals; max(columns, rows) each): 1 if two held
-/// vertices may pull it over-constrained, so that its links are one more than its degrees of freedom.
+/// One flag for each chain of the four colours (rows, columns, both diagonals; max(columns, rows) each): 1 if it may be
+/// straight between two held vertices, where it has one more link than degrees of freedom.
 std::vector<std::uint8_t> over_constrained_lines(const Scene&);
 
 /// Properties of a device that decide how lines are spread over threads.
@@ -19,25 +19,25 @@ struct LineDevice {
   bool wide = false;
 };
 
-/// How chains are spread over threads: `lanes` threads per chain, `vertices` a thread, `threads` a workgroup.
+/// Distribution of chains over threads: `lanes` threads per chain, `vertices` per thread, `threads` per workgroup.
 struct LineShape {
   std::uint32_t lanes = 0, vertices = 0, threads = 0;
-  std::uint32_t beside = 1;  ///< neighbouring chains whose threads take turns
+  std::uint32_t beside = 1;  ///< neighbouring chains whose threads alternate, so that loads are contiguous
   std::uint32_t chains_a_group() const { return threads / lanes; }
 };
-/// The user's request for a shape; 0: chosen here.
+/// Requested members of a LineShape; 0: chosen by the functions below.
 struct LineRequest {
   std::uint32_t vertices = 0, threads = 0, beside = 0;
-  bool corrects_splitting = false;  ///< a vertex has a shift too (xpbd/time/README.md)
+  bool corrects_splitting = false;  ///< vertices also store a shift (xpbd/time/README.md)
 };
-/// Shape of the kernel that computes a frame of a whole cloth; threads = 0 if the cloth or the device does not fit it.
+/// Shape of line_frame, which simulates a frame in one workgroup; threads = 0 if the cloth or the device does not fit.
 LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevice&);
-/// Shape of the kernel of one colour of lines of `length` vertices. On wide devices (an H200) two vertices per thread
-/// are fastest up to some 384, and reading 2 or 4 neighbouring columns at once above 192. Throws Error past 8192.
+/// Shape of line_pass for lines of `length` vertices. On wide devices (an H200) two vertices per thread are fastest up
+/// to a length of 384, and 2 or 4 neighbouring chains side by side above 192. Throws Error past 8192.
 LineShape pass_shape(int length, const LineRequest&, const LineDevice&);
 
-/// Rounds of cyclic reduction after which the off-diagonal rest of the bending matrix is below 1e-7; at most
-/// log2(lanes). Few are needed if alpha is far above the inverse masses, because hinges are then weakly coupled.
+/// Rounds of cyclic reduction after which the remaining off-diagonal entries of the bending system are below 1e-7; at
+/// most log2(lanes). Few are needed if alpha is far above the inverse masses: hinges are then weakly coupled.
 std::uint32_t bend_rounds(double alpha, double max_inverse_mass, const LineShape&);
 
 }  // namespace clothbench::pbd_gpu

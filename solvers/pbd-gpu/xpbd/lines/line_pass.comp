@@ -1,7 +1,7 @@
 #version 450
-// Colours of lines of a cloth of any size, its state in memory. The first colour of a substep integrates what it loads,
-// the last limits what it stores; every colour has every vertex exactly once, so in place is in order. A dispatch is
-// one colour, or with PERSISTENT any number of them: then its workgroups run at once and wait for one another.
+// Solves colours of lines of a cloth of any size, the state in memory. The first colour of a substep also predicts its
+// vertices. Each colour contains every vertex exactly once, so it can update the state in place. A dispatch solves one
+// colour or, with PERSISTENT, any number: then all workgroups run at once and synchronise by barriers.
 #define SUBGROUPS
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };
@@ -15,7 +15,7 @@ layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]
 void main() {
   set_place(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
   const uint colours = kShears ? 4u : 2u;
-  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // only a probe whether all can run
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // runs_at_once(): only tests the barrier
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % colours;

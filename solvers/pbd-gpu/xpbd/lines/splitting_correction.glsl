@@ -1,19 +1,19 @@
-// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows and foresee their
-// displacement: a low-pass filter of second order over the displacements of the last substeps shifts the lengths that
-// diagonals are solved for. Links creep, because the shift would feed oscillations otherwise.
-layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // over h^2
+// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, for the length that
+// they will have after these: a second-order low-pass filter of the last substeps' displacements by columns and rows
+// predicts it. A part of each link's compliance acts delayed (creep), because the shift would excite oscillations.
+layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // `shift` divided by h'^2
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
-const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // of the filters, a substep
-const float kMaxShift = 0.25;                      // of a cell
-const float kShiftFraction = 0.995;  // of shifts; with all of them some flat sheets drift in a minute
+const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // filter rate: maximum per substep, and sum over a frame
+const float kMaxShift = 0.25;                      // as a fraction of a cell
+const float kShiftFraction = 0.995;  // applied fraction of a shift; at 1 some flat sheets drift within a minute
 vec4 shift[K];    // displacement along rows (x) and columns (y) [m], and the filter's first stage (z, w)
-float creep[K];  // of links: longer by it at the same tension [m]
+float creep[K];  // elongation of links by delayed compliance [m]
 
 float filter_rate() { return min(kMaxRate, kRatePerFrame * p.substep_part); }
 
-/// Fraction of a link's compliance that acts at once. The rest follows by creep, so that rest does not depend on it.
+/// Fraction of a link's compliance that acts at once. The rest acts by creep, so the state at rest is the same.
 float at_once() {
-  float waves = 4.0 / 3.0 * p.inverse_mass / p.alpha_u;  // h'^2 Y / m: links that a wave crosses, squared
+  float waves = 4.0 / 3.0 * p.inverse_mass / p.alpha_u;  // h'^2 Y / m: square of the links that a wave crosses in h'
   float links = float(min(COLUMNS, ROWS) - 1u);
   return 1.0 / (1.0 + waves / (3.0 * waves + links * links / 7.0));
 }
@@ -33,7 +33,7 @@ void load_creep() {
   }
 }
 
-/// After a solve: `lambda` has the multipliers of the thread's links, and `below` the one before them.
+/// Updates creep and shifts after a solve. `lambda`: multipliers of the thread's links; `below`: of the link before.
 void record_multipliers(float alpha, float lambda[K], float below) {
   float rate = filter_rate();
   [[unroll]] for (uint k = 0u; k < K; ++k) {

@@ -1,5 +1,5 @@
-// Implicit tension (xpbd/time/README.md): before its links are solved, each vertex of a chain is moved by zero-length
-// springs of their tension, which is a system with vertices as unknowns. It is diagonally dominant at any load.
+// Implicit tension (xpbd/time/README.md): before a chain's links are solved, zero-length springs of the links' tension
+// move its vertices. That is a system in the vertices' displacements, diagonally dominant at any tension.
 float turn_lower[K], turn_diagonal[K], turn_upper[K];
 vec3 turn_right[K];
 void exchange_row(uint n, float a, float c, vec3 d, out float a_below, out float c_below, out vec3 d_below,
@@ -32,7 +32,7 @@ void from_part(inout vec3 d, out vec3 d_below) {
 #define RIGHT turn_right
 #include "xpbd/lines/tridiagonal.glsl"
 
-/// Solves the links as they are only for their tension, then moves the vertices by it. Links then carry `pull`.
+/// Solves the links only for their tension over length, `pull`, then moves the vertices by springs of that tension.
 void turn_by_tension(float smallest) {
   [[unroll]] for (uint k = 0u; k < K; ++k) pull[k] = 0.0;
   link_equations(smallest);

@@ -1,16 +1,16 @@
-// A tridiagonal system along a chain, MATRIX a row: LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT. Every thread
-// holds M consecutive rows of it. Included once for each kind of entry, with the macros SOLVE, MATRIX, VECTOR, M and
-// the four arrays. Threads of a chain beyond its end hold rows of the unit matrix.
+// Solves a tridiagonal system along a chain, LOWER u[i-1] + DIAGONAL u[i] + UPPER u[i+1] = RIGHT, with entries of type
+// MATRIX. Each thread holds M consecutive rows; threads beyond the chain's end hold rows of the unit matrix. Included
+// once per type of entry, with the macros SOLVE, MATRIX, VECTOR, M and the four arrays.
 //
-// Each thread eliminates its own rows until one is left (Wang 1981); those are solved by parallel cyclic reduction
-// (Hockney & Jesshope 1981) in `rounds` rounds, log2(LANES) of them exactly; over several subgroups until each has a
-// system of its own, then by shuffles. RIGHT becomes the solution; `before` the row before the thread's first.
+// Each thread eliminates rows until it has one left (Wang 1981). Parallel cyclic reduction (Hockney & Jesshope 1981)
+// solves these in `rounds` rounds (log2(LANES): exactly): through shared memory until each subgroup has a separate
+// system, then by shuffles. RIGHT becomes the solution, `before` the solution of the row before the thread's first.
 
-/// The reduction of one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the row before.
+/// Reduces one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below that of the row before.
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
   MATRIX f, a_below, c_below, a_above, c_above;
   VECTOR d_above;
-  // Past a chain's ends a and c are 0, so what a missing neighbour would say is not heard.
+  // Beyond a chain's ends a and c are 0, so the values of missing neighbours have no effect.
 #define REDUCE(n) \
     exchange_row(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
     f = inverse_of(MATRIX(1.0) - a * c_below - c * a_above); \
@@ -60,7 +60,7 @@ void SOLVE(uint rounds, out VECTOR before) {
     UPPER[k] = -(UPPER[k] * UPPER[k + 1u]);
   }
   const uint last = M - 1u;
-  // The next thread's first row in terms of this thread's last and its own last; a thread of one row is its own last.
+  // The next thread's first row contains only its own last row and this thread's last. With M = 1 it is its last row.
   MATRIX zero = MATRIX(0.0);
   MATRIX a, c, a_below, c_below;
   VECTOR d, d_below;
