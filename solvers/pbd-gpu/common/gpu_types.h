@@ -33,9 +33,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Specialization constants: C(number, type, name, default); number 0 is local_size_x.
 
 // Line kernels of `xpbd`. LANES: threads per chain, a power of two. K: vertices per thread, an even number if the scene
-// has bending. THREADS: of a workgroup. FEATURES: LINES_... TETHERS: number of rectangles of pinned vertices; TETHER_n
-// and TETHER_n_LAST: column and row << 16 of the first and last vertex. SUBGROUP: threads that exchange by shuffles.
-// BESIDE: neighbouring chains whose threads alternate, so that columns too are read by whole sectors. EXACT: all
+// has bending. THREADS: per workgroup. FEATURES: bit mask of LINES_... TETHERS: number of rectangles of pinned
+// vertices; TETHER_n, TETHER_n_LAST: column | row << 16 of their first and last vertex. SUBGROUP: threads that exchange
+// by shuffles. BESIDE: neighbouring chains whose threads alternate, so that loads of columns are contiguous. EXACT: all
 // vertices of all threads are on chains. PERSISTENT: all workgroups run at once and synchronise by barriers.
 // clang-format off
 #define LINE_CONSTANTS(C) \
@@ -47,24 +47,24 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // Chain kernel of `xpbd`. TETHERS: entries per vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
-// Contact of `xpbd`, its passes and the fused frame. PLANES: half-spaces. MAX_POINTS: of a convex shape. HAS_KINEMATIC:
-// 1 if any convex shape moves. CAPACITY: pairs that the list has place for. GROUPS: groups of SHAPES_PER_GROUP
-// neighbouring convex shapes, which have a box each. MARGIN_BITS: the maximum margin, as the bits of a float.
-// LANES_PER_VERTEX: lanes that share a vertex.
+// Contact of `xpbd`: its passes and the fused frame. PLANES: number of half-spaces. MAX_POINTS: of a convex shape.
+// HAS_KINEMATIC: 1 if any convex shape is kinematic. CAPACITY: of the list of candidate pairs. GROUPS: groups of
+// SHAPES_PER_GROUP neighbouring convex shapes, each with a box. MARGIN_BITS: the maximum margin [m], as the bits of a
+// float. LANES_PER_VERTEX: lanes that process a vertex together.
 #define CONTACT_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
-// Only in the passes. SELF: 1 if the cloth touches itself, and then SELF_CAPACITY, ACTIVE_CAPACITY,
-// CONTACT_CAPACITY: pairs, active pairs and those with contacts that its lists have place for; THICKNESS_BITS,
-// SELF_FRICTION_BITS: floats. GRIPS: vertices that hands may hold, under the number that lines have it.
+// Only for one kernel per pass. SELF: 1 with self-contact; then SELF_CAPACITY, ACTIVE_CAPACITY, CONTACT_CAPACITY:
+// capacities of its lists of candidate pairs, active pairs and pairs with contacts; THICKNESS_BITS, SELF_FRICTION_BITS:
+// bits of floats. GRIPS: number of attachable vertices, with the constant's number in LINE_CONSTANTS.
 #define CONTACT_PASS_CONSTANTS(C) \
   C(1, uint, SELF, 0u) C(2, uint, SELF_CAPACITY, 0u) C(3, uint, ACTIVE_CAPACITY, 0u) C(4, uint, CONTACT_CAPACITY, 0u) \
   C(5, uint, THICKNESS_BITS, 0u) C(6, uint, SELF_FRICTION_BITS, 0u) C(7, bool, SECOND_SOLVE, false) \
   C(19, uint, GRIPS, 0u)
 // clang-format on
 // Collision kernels of `paper`.
-// FRICTION: 0 none, 1 takes tangential displacement off the position, 2 off the velocity.
+// FRICTION: 0: none; 1: reduces the tangential displacement; 2: reduces the tangential velocity.
 #define PAPER_CONSTANTS(C) C(1, uint, FRICTION, 0u) C(2, uint, PROJECT_PREVIOUS, 0u) C(3, uint, OPPOSITE_NORMALS, 0u)
 #ifdef __cplusplus
 #define CLOTHBENCH_MEMBER(number, type, name, standard) uint name = standard;
@@ -117,29 +117,29 @@ struct PaperConstants {
 /// Push constants of the collision kernels of `paper`.
 struct PaperContactConstants {
   uint particles;
-  uint first, count;              // of the shapes or triangles that every particle is tested against
+  uint first, count;              // range of shapes or triangles that every particle is tested against
   float margin, depth, friction;  // of a mesh
-  uint layer;                     // particles of one layer
+  uint layer;                     // number of particles of one layer
 };
 
 // Features that a scene needs of the line kernels of `xpbd`: bits of their constant FEATURES.
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u       // links have a compliance
-#define LINES_REGULARISED 32u  // chains pulled over-constrained between two attached vertices
-#define LINES_BDF2 64u         // BDF2; else backward Euler
+#define LINES_REGULARISED 32u  // some chains are over-constrained between two held vertices
+#define LINES_BDF2 64u         // BDF2; otherwise backward Euler
 #define LINES_TENSION 128u     // implicit tension
 #define LINES_SPLITTING 256u   // the splitting error is corrected
 
 /// Push constants of the line kernels of `xpbd`.
 struct LineConstants {
-  vec4 gravity_h;                   // g h keep [m/s]; w: tether_spread_m
+  vec4 gravity_h;                   // g h force_scale [m/s] (TimeStep); w: tether_spread_m
   float h;                          // implicit step, h' of TimeStep [s]
-  float damping_fraction;           // of velocity by damping
+  float damping_fraction;           // fraction of velocity that damping removes
   float tether_stretch;             // 1 + slack
   float rest_u, rest_v, rest_d;     // rest lengths of links [m]
-  float alpha_u, alpha_v, alpha_d;  // compliance over h^2 keep [1/kg] of inner links
-  float bend_u, bend_v;             // bending compliance over h^2 keep
+  float alpha_u, alpha_v, alpha_d;  // compliance / (h^2 force_scale) of inner links [1/kg]
+  float bend_u, bend_v;             // bending compliance / (h^2 force_scale) [1/kg]
   float inverse_mass;               // of an inner vertex [1/kg]
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
@@ -149,8 +149,8 @@ struct LineConstants {
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
   float history_weight;     // fraction of the last substep's change that is predicted
-  float frame_s;            // with contact by separating planes, as is bound_m
-  float bound_m;            // of a vertex at rest
+  float frame_s;            // frame_s and bound_m of ContactConstants, only in fused_frame and its contact-free kernel
+  float bound_m;
 };
 
 /// A vertex of a chain and its link to the next entry; no link if `rest` is below 0.
@@ -158,7 +158,7 @@ struct ChainEntry {
   uint vertex;           // CHAIN_NO_VERTEX: padding
   float rest;            // [m]
   float compliance;      // [m/N]
-  float regularisation;  // least ratio of compliance over h^2 to inverse mass
+  float regularisation;  // minimum ratio of compliance / h^2 to inverse mass
 };
 #define CHAIN_NO_VERTEX 0xffffffffu
 
@@ -173,9 +173,9 @@ struct ChainRange {
   uint first_entry, blocks, rounds;
 };
 
-/// Rows of a slice of the bending matrix of a mesh: one subgroup's rows, or a part of them.
+/// Rows per slice of the bending matrix of a mesh.
 #define BENDING_ROWS 32u
-/// Entry of that matrix, beside the diagonal.
+/// Entry of that matrix outside the diagonal.
 struct BendingEntry {
   uint column;
   float stiffness;  // [N/m]
@@ -185,42 +185,42 @@ struct BendingSlice {
   uint first, width;
 };
 
-/// A triangle at one of its corners, from which edge 0 goes to `a`, 1 on to `b` and 2 back. Its energy is
-/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries lie as in bending; `a` of padding is
-/// CHAIN_NO_VERTEX.
+/// A triangle seen from one of its corners: edge 0 leads to `a`, edge 1 from `a` to `b`, edge 2 back. Its energy is
+/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries are stored in slices like bending; `a` of padding
+/// is CHAIN_NO_VERTEX.
 struct MembraneCorner {
   uint a, b;
   float rest_0, rest_1, rest_2;        // lengths [m]
   float along_0, along_1, along_2;     // K_00, K_11, K_22 [N/m]
   float cross_01, cross_12, cross_20;  // K_01, K_12, K_20 [N/m]
-  float max_trace;                     // of the trace of the triangle's matrix [N/m]
+  float max_trace;                     // maximum of the trace of the deformed triangle's matrix [N/m]
 };
 
 /// Push constants of the chain kernel of `xpbd`.
 struct ChainConstants {
-  vec4 gravity_h;          // g h keep [m/s]; w: tether_spread_m
+  vec4 gravity_h;          // g h force_scale [m/s] (TimeStep); w: tether_spread_m
   float h;                 // implicit step, h' of TimeStep [s]
-  float damping_fraction;  // of velocity by damping
+  float damping_fraction;  // fraction of velocity that damping removes
   float per_h;             // 1/h
   uint first_entry;        // of the colour, if a dispatch solves only one
-  uint rounds;             // of cyclic reduction: 2^rounds is at least the links of its longest chain
+  uint rounds;             // of cyclic reduction: 2^rounds is at least the number of links of the longest chain
   uint timeout_polls;      // polls of a barrier over the whole dispatch before it times out
   uint colours;
   uint first_pass, passes;  // of this dispatch; each substep has one pass per colour
   float history_weight;     // fraction of the last substep's change that is predicted
-  float per_force_scale;    // 1 / keep
-  uint bending_iterations;  // passes per substep, after the pass that integrates and before the colours; 0: no bending
+  float per_force_scale;    // 1 / force_scale
+  uint bending_iterations;  // passes per substep between the prediction and the colours; 0: no bending
   uint vertices;
-  float bending_step;    // h^2 keep [s^2]
-  float bending_gain;    // of the first iteration, 2 / (2 + m), m the maximum eigenvalue of h^2 keep M^-1 K
+  float bending_step;    // h^2 force_scale [s^2]
+  float bending_gain;    // 2 / (2 + m), m: upper bound of the eigenvalues of h^2 force_scale M^-1 K
   float bending_spread;  // (m / (2 + m))^2 / 4
-  uint again;            // 1: colours once more, from where they are
+  uint again;            // 1: only solve the colours, from the current positions
 };
 
-// Colliders. Lengths in metres, positions relative to the method's origin.
+// Colliders. Lengths in metres, positions relative to the solver's origin.
 
 struct PlaneShape {
-  vec4 normal;  // into free space; w: its dot product with any point of the plane
+  vec4 normal;  // unit normal into free space; w: its dot product with any point of the plane
   float margin, friction;
 };
 
@@ -248,7 +248,7 @@ struct SkinVertex {
   uvec4 joints;
 };
 
-/// Affine map, rows of 3 x 4.
+/// Rows of the 3 x 4 matrix of an affine map.
 struct JointMatrix {
   vec4 row0, row1, row2;
 };

@@ -21,7 +21,7 @@ double norm2(const Vec2& a) { return std::hypot(a[0], a[1]); }
 /// A linear form of the positions.
 using Form = std::vector<std::pair<std::uint32_t, double>>;
 
-/// Triangles of a mesh at rest, each unfolded into a plane of its own, and which of them meet at an edge.
+/// The triangles of a mesh at rest, each unfolded into its own plane, and the one or two triangles at each edge.
 class FlatMesh {
  public:
   explicit FlatMesh(const ClothMesh& mesh) : mesh_(mesh), at_edge_(mesh.edges.size(), {kNone, kNone}) {
@@ -43,7 +43,7 @@ class FlatMesh {
   std::uint32_t edge_of(std::uint32_t t, int k) const {
     return edges_[3 * std::size_t{t} + static_cast<std::size_t>(k)];
   }
-  /// From corner k to the next.
+  /// Vector from corner k to the next corner [m].
   Vec2 side(std::uint32_t t, int k) const {
     return minus2(flat_[t][static_cast<std::size_t>((k + 1) % 3)], flat_[t][static_cast<std::size_t>(k % 3)]);
   }
@@ -68,7 +68,7 @@ class FlatMesh {
   std::vector<std::array<std::uint32_t, 2>> at_edge_;
 };
 
-/// The triangles near an edge, unfolded into one plane with the edge from 0 to (1, 0): lengths are in edges.
+/// The triangles near an edge, unfolded into one plane with the edge from (0, 0) to (1, 0): it is the unit of length.
 class Patch {
  public:
   /// The edge starts at corner k of triangle t; t lies to its left.
@@ -83,7 +83,7 @@ class Patch {
     from_ = 0;
   }
 
-  /// Adds the triangles beside those added last. False if there are none.
+  /// Adds the neighbours of the triangles added last. False if there are none.
   bool grow() {
     const std::size_t to = added_.size();
     for (; from_ < to; ++from_) {
@@ -99,8 +99,8 @@ class Patch {
     return added_.size() > to;
   }
 
-  /// The derivative across the edge at its middle, to the left and per edge length, of the quadratic that fits best.
-  /// Vertices of the edge's own triangles weigh most. If several quadratics fit alike, it takes the smallest.
+  /// Derivative across the edge at its middle, to the left and per edge length, of the least-squares quadratic through
+  /// the vertices. Vertices of the edge's own triangles weigh most. If several quadratics fit alike: of the smallest.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;
@@ -176,9 +176,9 @@ class Patch {
   std::size_t middle_ = 0, from_ = 0;
 };
 
-/// Derivative [1/m] across edge k of triangle t, out of it.
+/// Derivative [1/m] across edge k of triangle t, out of the triangle.
 Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
-  // A fit is good enough if the sum of its shares is not above this; it is 2 to 4 where triangles are regular.
+  // A fit is good enough if its coefficients' absolute values sum to at most this (regular triangles: 2 to 4).
   constexpr double kMaxShares = 5;
   constexpr int kMaxRings = 4;
   Patch patch(mesh, t, k);
@@ -194,7 +194,7 @@ Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
   return form;
 }
 
-/// The derivative across edge k of a triangle's linear motion.
+/// Derivative [1/m] across edge k, out of triangle t, of the linear interpolation of the triangle's corners.
 Form own_across(const FlatMesh& mesh, std::uint32_t t, int k) {
   const auto normal = [&](int side) {  // times length
     const Vec2 e = mesh.side(t, side);
@@ -232,7 +232,7 @@ class Curvatures {
   Curvature of(std::uint32_t t) const {
     std::map<std::uint32_t, Vec3> sum;
     const double area = mesh_.area(t);
-    // The mean of a gradient's derivative is an integral over the border: `of` is the derivative's direction.
+    // The mean second derivative is an integral of first derivatives over the border; `of`: their direction.
     const auto add = [&](std::uint32_t v, const Vec2& normal, const Vec2& of, double share) {
       Vec3& to = sum.try_emplace(v, Vec3{}).first->second;
       to[0] += share * normal[0] * of[0] / area;

@@ -1,10 +1,10 @@
 #version 450
-// One colour of chains (xpbd/mesh/README.md): a thread holds a vertex and the link to the next entry, a workgroup a
-// block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved by parallel cyclic
-// reduction. The first colour of a substep has every vertex and integrates what it loads. A mesh that bends has passes
-// before the first colour: one that integrates, then the iterations of its bending, one thread per vertex. With
-// MEMBRANE triangles take part in these, and there are no colours. PERSISTENT: a dispatch is any number of passes, not
-// one.
+// Solves one colour of chains (xpbd/mesh/README.md). A thread holds a vertex and the link to the next entry, a
+// workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved by
+// parallel cyclic reduction. The first colour of a substep contains every vertex and also predicts it. A mesh with
+// bending has passes before the first colour: the prediction, then the iterations of bending, one thread per vertex.
+// With MEMBRANE these iterations include triangles, and there are no colours. PERSISTENT: a dispatch executes any
+// number of passes instead of one.
 #include "common/common.glsl"
 CHAIN_CONSTANTS(SPECIALIZE)
 layout(std430, binding = BIND_POSITIONS) coherent buffer Positions { vec4 x[]; };  // w: inverse mass
@@ -18,7 +18,7 @@ layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEn
 layout(std430, binding = BIND_CHAIN_COLOURS) readonly buffer Ranges { ChainRange ranges[]; };
 layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
 layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
-// Right sides, odd steps, even steps; positions with MEMBRANE.
+// Each one per vertex: right sides, steps of odd iterations, steps of even ones; with MEMBRANE also positions.
 layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "xpbd/time/substep.glsl"
@@ -35,7 +35,7 @@ void move(vec3 step) {
   vel += step * p.per_h;
 }
 
-/// Pinned vertices are never written, so reading them here races with nothing.
+/// Predicts vertex i and applies its tethers. Pinned vertices are never written, so reading them cannot race.
 void integrate(uint i) {
   fall(pos, vel, rest_pos, rest_vel, last_pos, last_vel);
   for (uint t = 0u; t < TETHERS; ++t) {
@@ -47,10 +47,10 @@ void integrate(uint i) {
 }
 
 #ifdef MEMBRANE
-void stretch(ChainEntry entry, uint rounds) {}  // triangles take the place of links
+void stretch(ChainEntry entry, uint rounds) {}  // triangles replace links
 #else
-// Values of the neighbours n entries away; beyond the block: zeros. Two pages in turn: while some threads still read
-// one, others write the other.
+// exchange() gives the values of the entries n before and n after; beyond the block: 0. Double buffer: while some
+// threads still read one half, others write the other.
 shared vec4 exchanged[2u * THREADS];
 uint exchange_half = 0u;
 void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
@@ -62,11 +62,11 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
   above = thread + n < THREADS ? exchanged[here + thread + n] : vec4(0.0);
 }
 
-vec3 direction, direction_below;  // of the thread's link and of the one before; 0 where there is none
+vec3 direction, direction_below;  // unit vectors along the thread's link and the one before; 0: no link
 float link_length;
 
-/// Solves the links of the chain where its vertices are now, which carry `pull` (tension over length) already. Returns
-/// the multipliers of the link before and of the thread's.
+/// Solves the links of the chain at the current positions, starting from tension over length `pull`. Returns the
+/// multipliers of the link before (x) and of the thread's link (y).
 vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   vec4 none, next, below, above;
   exchange(vec4(pos, w), 1u, none, next);
@@ -82,7 +82,7 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   float per_diagonal = is ? 1.0 / (sum + soft) : 1.0;
   float right = entry.rest - l;
   if (kTension) right += soft * pull * l;
-  // x: of the link before, y: of the link after, z: right side; the diagonal is 1.
+  // The link's equation. x, y: coefficients of the links before and after; z: right side; the diagonal is 1.
   vec3 row = is ? vec3(-w * dot(below.xyz, g), -next.w * dot(g, above.xyz), right) * per_diagonal : vec3(0.0);
   direction = g;
   direction_below = below.xyz;
@@ -96,14 +96,14 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   return vec2(below.z, row.z);
 }
 
-/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has a vertex more
-/// than links, so its system needs a round more.
+/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has one more vertex
+/// than links, so this system needs one more round.
 void turn(float pull, uint rounds) {
   vec4 below, above, right_below, right_above;
   exchange(vec4(pos, pull), 1u, below, above);
   float before = w * below.w, after = w * pull, per = 1.0 / (1.0 + before + after);
   vec3 right = (before * (below.xyz - pos) + after * (above.xyz - pos)) * per;
-  vec2 row = vec2(-before, -after) * per;  // of the vertices before and after; the diagonal is 1
+  vec2 row = vec2(-before, -after) * per;  // coefficients of the vertices before and after; the diagonal is 1
   for (uint r = 0u; r <= rounds; ++r) {
     exchange(vec4(row, 0.0, 0.0), 1u << r, below, above);
     exchange(vec4(right, 0.0), 1u << r, right_below, right_above);
@@ -168,7 +168,7 @@ const bool kSolves = kBends;
 float weight = 2.0;     // of iteration `weight_of` of bending
 uint weight_of = 1u;
 
-/// The weight of Chebyshev's iteration k, from 2 on; the same in a dispatch of all passes as in one of one.
+/// Weight of Chebyshev's iteration k (at least 2); the same bits with one dispatch for all passes as with one per pass.
 float weight_at(uint k) {
   if (k < weight_of) {
     weight = 2.0;
@@ -178,7 +178,7 @@ float weight_at(uint k) {
   return weight;
 }
 
-/// K times steps, or with k == 1 times positions: rows of K sum to 0, and differences of neighbours lose no digits.
+/// K times the steps (k = 1: the positions), as a sum of differences, which lose no digits: rows of K sum to 0.
 vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
   vec3 force = vec3(0.0);
   BendingSlice slice = slices[i / BENDING_ROWS];
@@ -192,8 +192,8 @@ vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
 }
 
 #ifdef MEMBRANE
-/// The same of triangles, linear in the steps; with k == 1 as their elongations are. Positions are those that the first
-/// iteration found, since the last writes its own.
+/// The triangles' part: linear in the steps; in iteration k = 1 by their elongations. Later iterations use the
+/// positions that the first one stored, because the last one overwrites x.
 vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
   vec3 pull = vec3(0.0);
   BendingSlice slice = membrane_slices[i / BENDING_ROWS];
@@ -211,8 +211,8 @@ vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
 }
 #endif
 
-/// An iteration for the way d of x + d, where bending is in balance: (1 + c M^-1 K) d = -c M^-1 K x, c = h^2 keep,
-/// whose eigenvalues lie in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
+/// An iteration for the d at which x + d balances bending: (1 + c M^-1 K) d = -c M^-1 K x, c = h'^2 k (TimeStep), with
+/// eigenvalues in [1, 1 + m] (Chebyshev's semi-iteration; Golub & Varga 1961).
 void bend(uint i, uint k) {
   uint odd = p.vertices, even = 2u * p.vertices, now = k % 2u != 0u ? odd : even, before = odd + even - now;
   vec4 here = x[i];
@@ -249,7 +249,7 @@ void bend(uint i, uint k) {
 }
 
 void main() {
-  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // only a probe whether all can run
+  if (PERSISTENT && p.passes == 0u && !grid_barrier()) return;  // runs_at_once(): only tests the barrier
   uint block = item() / THREADS;
   for (uint n = p.first_pass; n < p.first_pass + p.passes; ++n) {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;

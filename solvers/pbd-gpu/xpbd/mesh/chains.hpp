@@ -7,19 +7,19 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The constraints of `xpbd` where links are not all alike (triangle meshes, uneven grids, regions); even grids have
-/// Lines. It takes one dispatch a colour and substep, or one in all where the device runs all workgroups at once. One
-/// iteration a substep. Bending of meshes is solved before the links of a substep, all at once; so are triangles of an
-/// elastic mesh, instead of its links.
+/// The constraints of `xpbd` if links are not uniform (triangle meshes, uneven grids, regions); even grids use Lines.
+/// There is one dispatch per colour and substep, or one in all if the device runs all workgroups at once. A substep
+/// solves each colour once. Before them, an iteration over all vertices solves the bending of a mesh and, instead of
+/// links, the triangles of an elastic mesh.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
   Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension, bool membrane);
 
-  /// Records `count` substeps, each a TimeStep. `again`: only the colours, once more from where the vertices are.
+  /// Records `count` substeps, each a TimeStep. `again`: only solves the colours, from the current positions.
   void record(int count, const TimeStep&, bool again = false);
 
-  /// Puts welded vertices where those are that they are welded to; `record` ends with it.
+  /// Records that each welded vertex follows the vertex that it is welded to; `record` ends with this.
   void record_welds();
   bool is_single_dispatch() const { return persistent_ && scene_.grips.vertices.empty(); }
 
@@ -28,7 +28,7 @@ class Chains {
   void add_bending();
   void add_membrane();
   ChainSpecialization specialization() const;
-  /// Whether bending or triangles are solved, all at once.
+  /// Whether bending or triangles are solved, by iterations over all vertices.
   bool solves_together() const { return bends_ || membrane_; }
   vulkan::Groups all_groups() const;
 
@@ -43,7 +43,7 @@ class Chains {
   const FrameKernel *kernel_ = nullptr, *weld_ = nullptr;
   std::uint32_t welds_ = 0;
   bool bends_ = false;
-  double max_per_s2_ = 0;  ///< at least the maximum eigenvalue of bending and triangles
+  double max_per_s2_ = 0;  ///< upper bound of the eigenvalues of M^-1 K, K of bending and triangles
 };
 
 }  // namespace clothbench::pbd_gpu

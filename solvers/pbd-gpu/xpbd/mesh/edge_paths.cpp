@@ -48,9 +48,9 @@ std::vector<EdgePath> grid_edge_paths(const Scene& s) {
   return out;
 }
 
-/// Cuts a ring of elastic links (its first vertex is its last one too) into two edge paths that overlap, and adds them.
-/// A chain's end stretches, for what is solved after it pulls at the end with all its tension; where one edge path's
-/// share falls link by link as the other's rises, tension changes by a small part from link to link.
+/// Cuts a ring of elastic links (whose last vertex repeats its first) into two overlapping edge paths, and adds them. A
+/// chain overstretches at its end, because chains that are solved later pull there with their whole tension. In the
+/// overlap one path's stiffness falls link by link as the other's rises, so tension changes little from link to link.
 void add_ring(EdgePath ring, std::vector<EdgePath>& out) {
   constexpr std::size_t kOverlap = 8;  // links on either side of the cut
   const std::size_t n = ring.vertices.size() - 1;
@@ -72,7 +72,7 @@ void add_ring(EdgePath ring, std::vector<EdgePath>& out) {
   out.push_back(std::move(over));
 }
 
-/// Pairs, at every vertex, the edges that continue each other straightest. A sequence of paired edges is a edge path.
+/// Pairs, at every vertex, the edges that continue each other straightest. A sequence of paired edges is an edge path.
 std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
   const std::size_t n = m.vertices.size(), count = m.edges.size();
@@ -125,8 +125,8 @@ std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   for (const std::size_t end : {0u, 1u})
     for (std::uint32_t e = 0; e < count; ++e)
       if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
-  // The rest are rings. A ring is cut where it begins, and the link there stretches far more than others. If the cuts
-  // of neighbouring rings lie apart, what is between them holds it.
+  // The rest are rings. A ring is cut where it begins, and the link there stretches far more than others. If
+  // neighbouring rings have cuts far apart, the cloth between holds it.
   constexpr double kGolden = 0.6180339887498949;
   double begin = 0;
   for (std::uint32_t e = 0; e < count; ++e) {
@@ -245,7 +245,7 @@ std::uint32_t ChainColour::longest() const {
 }
 
 std::vector<ChainColour> colours_of(std::vector<EdgePath> all, std::size_t vertices, std::uint32_t block) {
-  // A compromise: each colour costs a pass, but a chain stretches where it is cut.
+  // A compromise: each colour costs a pass, but an edge path overstretches where it is cut into chains.
   constexpr std::size_t kEnough = 6;
   constexpr std::size_t kShort = 4;
   int wanted = 0;

@@ -7,11 +7,11 @@
 
 namespace clothbench::pbd_gpu {
 
-/// True if the links of a cloth are not all alike, so that chains (chain_pass) solve it instead of lines.
+/// True if the links of a cloth are not uniform, so that Chains solve it instead of Lines.
 bool needs_chain_solver(const Scene&);
 
-/// Factor on the substeps of an even cloth: short links turn faster, by the square root of the ratio of lengths. 1
-/// while the shortest link that is not welded has at least half of the mean length.
+/// Factor on the substeps for equal links: short links rotate faster, by the root of the length ratio. 1 if the
+/// shortest link that is not welded has at least half of the mean length.
 double substeps_for_short_links(const Scene&);
 
 /// Particles and links of a chain cloth, slivers welded (xpbd/mesh/README.md).
@@ -25,15 +25,15 @@ struct ChainCloth {
   std::vector<std::uint32_t> welded;  ///< vertices whose particle is another vertex
   const Link& link(std::uint32_t a, std::uint32_t b) const;
 };
-/// Vertices that hands hold are not welded, because each moves by itself.
+/// A cloth with attachments has no welds, because each attached vertex has a motion of its own.
 ChainCloth chain_cloth(const Scene&);
 
 /// A path of links [v0 v1], [v1 v2], ... that is best solved as a whole: a line of a grid, or edges of a mesh that
 /// continue as straight as its triangles allow.
 struct EdgePath {
   std::vector<std::uint32_t> vertices;  ///< particles; a closed edge path ends with its first
-  int colour = -1;                      ///< wanted colour; -1: any
-  std::vector<float> share = {};        ///< of each link's stiffness; empty: 1
+  int colour = -1;                      ///< preferred colour; -1: any
+  std::vector<float> share = {};        ///< fraction of each link's stiffness; empty: 1
 };
 /// Edge paths of a cloth; every link is on exactly one, or on two that share its stiffness. The edge paths of a grid
 /// are its rows, columns and (with shear) both diagonals.
@@ -44,8 +44,8 @@ struct ChainColour {
   std::vector<EdgePath> chains;   ///< each of at least two vertices and at most a block
   std::uint32_t longest() const;  ///< links of the longest chain
 };
-/// Cuts edge paths into chains and spreads them over few colours, without cutting much. Colours are in the order in
-/// which they are solved: the last colour has the edge paths to be solved last.
+/// Distributes edge paths over few colours, and cuts them into chains where necessary. Colours are in the order in
+/// which they are solved.
 std::vector<ChainColour> colours_of(std::vector<EdgePath> edge_paths, std::size_t vertices, std::uint32_t block);
 
 /// Data of one colour for a kernel: whole chains in blocks, padded with CHAIN_NO_VERTEX. `with_others` adds the

@@ -8,23 +8,23 @@
 namespace clothbench::pbd_gpu {
 
 /// Matrix K [N/m] of the bending energy 1/2 (x'Kx + y'Ky + z'Kz) of a triangle mesh that is flat at rest across every
-/// edge, without its diagonal: rows sum to 0.
+/// edge. The diagonal is not stored, because rows sum to 0.
 struct BendingMatrix {
   std::vector<std::uint32_t> first;    ///< entry of each vertex's row; one more than vertices
   std::vector<std::uint32_t> columns;  ///< of entries, ascending in a row
   std::vector<double> stiffness;       ///< of entries [N/m]
-  double max_per_s2 = 0;  ///< at least the maximum eigenvalue of (diagonal of masses)^-1 K [1/s^2], nothing held
+  double max_per_s2 = 0;  ///< upper bound of the eigenvalues of (diagonal of masses)^-1 K [1/s^2], no vertex held
 };
 
 /// By Morley's element (xpbd/mesh/README.md). Exact for quadratic deflections on any mesh, in energy and in force.
 /// `reference` solves for the derivatives across edges instead.
 BendingMatrix bending_matrix(const Scene&);
 
-/// Chebyshev's iteration for (M + h^2 K) x = M y: count of iterations that leaves a thousandth of the way from y to x,
-/// 2 to 1000, from the maximum eigenvalue of h^2 M^-1 K.
+/// Number of Chebyshev's iterations (2 to 1000) that reduce the error of (M + h^2 K) x = M y to a thousandth.
+/// `largest`: upper bound of the eigenvalues of h^2 M^-1 K.
 std::uint32_t bending_iterations(double largest);
 
-/// Data of the kernel. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
+/// Input of the kernel. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
 SlicedRows<BendingEntry> bending_table(const BendingMatrix&);
 
 /// Stiffness [N/m] of a triangle of constant strain in the elongations d of its edges 0-1, 1-2 and 2-0; its energy is
@@ -37,16 +37,16 @@ struct TriangleStiffness {
 /// Delingette (2008), "Triangular springs for modeling nonlinear membranes", with lengths instead of their squares.
 TriangleStiffness triangle_stiffness(const ClothMesh&, std::size_t triangle, double Y_N_per_m);
 
-/// At least the maximum eigenvalue [1/s^2] of (diagonal of masses)^-1 K, K the matrix of all triangles at rest,
-/// however they are turned, times a factor that leaves room for their deformation. The kernel keeps each triangle's
-/// matrix within that room.
+/// Upper bound of the eigenvalues [1/s^2] of (diagonal of masses)^-1 K, K the matrix of all triangles at rest, at any
+/// orientation, times a factor that leaves room for their deformation. The kernel scales a triangle's matrix down if it
+/// exceeds that room.
 double membrane_bound(const Scene&);
 
-/// Whether an elastic mesh is solved by triangles, all at once; else chains of springs along its edges solve it.
+/// Whether an elastic mesh is solved with triangles, all of them together; otherwise with springs along edge paths.
 FeatureDecision membrane_decision(const Scene&, const nlohmann::json& settings);
 
-/// Input of the kernel: the triangles around each vertex, turned so that it comes first. Rows shorter than the
-/// slice's longest are padded with entries whose `a` is CHAIN_NO_VERTEX.
+/// Input of the kernel: the triangles around each vertex, with corners rotated so that the vertex comes first. Rows
+/// shorter than the slice's longest are padded with entries whose `a` is CHAIN_NO_VERTEX.
 SlicedRows<MembraneCorner> membrane_table(const Scene&);
 
 }  // namespace clothbench::pbd_gpu

@@ -11,11 +11,11 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// How far the trace of a deformed triangle's matrix may exceed that at rest, and the factor on the bound that covers
-/// any triangle within it, with the part of its tension that turns its edges.
+/// Maximum trace of a deformed triangle's matrix relative to that at rest, and the factor on the bound of eigenvalues
+/// that covers such a triangle together with the transverse stiffness of its tension (kMaxTurn).
 constexpr double kMaxTrace = 1.25, kRoom = 1.75;
 
-/// Most iterations per substep. A mesh that needs more is solved by chains.
+/// Maximum iterations per substep. A mesh that needs more is solved by chains.
 constexpr std::uint32_t kMaxIterations = 600;
 
 /// Unit vectors along the edges of a triangle at rest, in its plane.
@@ -49,7 +49,7 @@ std::array<std::array<double, 3>, 3> block_norms(const TriangleStiffness& k, con
   return out;
 }
 
-/// Trace of the triangle's matrix at rest: what the kernel keeps deformed ones near.
+/// Trace of a triangle's matrix at rest. The kernel limits that of the deformed triangle to kMaxTrace times as much.
 double trace(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
   const auto g = directions(rest);
   double sum = 0;

@@ -2,7 +2,7 @@
 layout(std430, binding = BIND_MEMBRANE_SLICES) readonly buffer MembraneSlices { BendingSlice membrane_slices[]; };
 layout(std430, binding = BIND_MEMBRANE_CORNERS) readonly buffer MembraneCorners { MembraneCorner corners[]; };
 
-const float kMaxTurn = 0.3;  // of an edge's stiffness: what its tension may add across itself (membrane.cpp)
+const float kMaxTurn = 0.3;  // maximum transverse stiffness by tension, as a fraction of the edge's (membrane.cpp)
 
 struct Sides {
   vec3 g0, g1, g2;  // unit vectors along the edges
@@ -33,8 +33,8 @@ vec3 membrane_force(MembraneCorner c, vec3 x, vec3 a, vec3 b) {
   return t.x * s.g0 - t.z * s.g2;
 }
 
-/// Force that small steps of its corners add: by a positive semidefinite matrix, which leaves out what pushes
-/// edges aside, and is scaled down where a deformed triangle would exceed the bound of the iteration.
+/// Change of that force by small steps `of_...` of the corners. Its matrix is positive semidefinite: it omits the
+/// destabilising part of compression, and is scaled down if a deformed triangle exceeds the bound of the iteration.
 vec3 membrane_change(MembraneCorner c, vec3 x, vec3 a, vec3 b, vec3 of_x, vec3 of_a, vec3 of_b) {
   vec3 e0 = a - x, e1 = b - a, e2 = x - b;
   Sides s = sides_of(e0, e1, e2);

@@ -1,5 +1,5 @@
 #version 450
-// Vertices that are welded to another go where it goes.
+// Copies position and velocity to each welded vertex from the vertex that it is welded to.
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
 layout(std430, binding = BIND_VELOCITIES) buffer Velocities { vec4 v[]; };

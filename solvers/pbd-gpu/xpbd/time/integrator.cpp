@@ -57,10 +57,10 @@ double reach_m(const Scene& s) {
   return start + 2 * across + speed * t + 0.5 * norm(s.gravity_m_per_s2) * t * t;
 }
 
-/// True if its lines share no links: nothing is left by one colour to another.
+/// True for a grid without shear stiffness: rows and columns have no diagonals that couple them.
 bool is_strip(const Scene& s) { return !s.needs.has(Feature::Shear) && !s.needs.has(Feature::ClothMesh); }
 
-/// True unless a wave crosses more than a part of an elastic cloth in a substep. Rigid links store no energy.
+/// True if a stretch wave crosses at most kMaxWaveOfCloth per substep. Inextensible links have no waves.
 bool resolves_waves(const Scene& scene, int substeps) {
   double largest = scene.material.membrane_stiffness_N_per_m.value_or(0), lightest = 1;
   for (const StiffnessRegion& r : scene.material.regions)
@@ -98,8 +98,8 @@ bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
          tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
 }
 
-/// Whether a cloth that is held may be second order in time at the substeps that it uses. A strip's links are one
-/// system and solved exactly; what a sheet's colours leave to one another is not.
+/// Whether held cloth may be second order in time with its number of substeps. A strip always may: each line is solved
+/// exactly as one system. A sheet's colours are solved one after another, which leaves an error.
 FeatureDecision second_order_decision(const Scene& scene, const nlohmann::json& settings) {
   if (is_strip(scene)) return {true, ""};
   if (!scene.grips.vertices.empty() && !(grip_strain(scene) <= rules::kMaxGripStrain))
@@ -136,7 +136,7 @@ double impact_speed_m_per_s(const Scene& scene) {
 FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "tension");
   if (membrane_decision(scene, settings).enabled)
-    return {true, ""};  // triangles are solved with theirs, whatever the setting
+    return {true, ""};  // the solve of triangles includes their tension, whatever the setting
   if (wanted == "never") return {false, "setting tuning.tension=never"};
   if (!is_contact_free(scene)) return {false, "the cloth touches"};
   if (wanted == "always") return {true, ""};
@@ -156,7 +156,7 @@ FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
   if (!is_held(scene)) return {true, ""};
-  // Tethers hold a grid, whose rows are solved last and whole; no colour that is solved last holds all of a mesh.
+  // Tethers suffice on a grid, whose last colour, the rows, contains all vertices; no colour of a mesh does.
   const FeatureDecision may = second_order_decision(scene, settings);
   if (may.enabled && scene.needs.has(Feature::ClothMesh) && !tension_decision(scene, settings).enabled)
     return {false, "a triangle mesh without implicit tension: single links would stretch far"};
@@ -167,7 +167,7 @@ double substeps_for_splitting(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double way = 2.0 / 3 * scene.time.dt() *
                      std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
-  // Stiffness and tension both go with the square of the step.
+  // by_tension: stiffness times tension at one substep per frame. Both factors are proportional to the squared step.
   const double cell = std::min(c.du(), c.dv()), by_tension = way * way / (cell * cell) * tension_number(scene);
   return std::max(
       way / std::min(rules::kMaxSplittingCells * cell, rules::kMaxSplittingOfSide * std::min(c.width_m, c.height_m)),

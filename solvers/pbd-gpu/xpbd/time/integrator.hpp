@@ -6,7 +6,7 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Whether a scene gets a part of the method, and else why not.
+/// Whether a part of the method is on for a scene, and if not, the reason.
 struct FeatureDecision {
   bool enabled = false;
   std::string reason;
@@ -17,73 +17,73 @@ struct FeatureDecision {
 struct TimeStep {
   double implicit_h_s;      ///< h' [s]
   double history_weight;    ///< fraction of the last substep's change that the prediction repeats
-  double damping_fraction;  ///< fraction of velocity that damping takes
+  double damping_fraction;  ///< fraction of velocity that damping removes
   double force_scale;       ///< factor of all forces: 1 for backward Euler, 1 - damping fraction for BDF2
 };
-/// A substep of h_s after one of last_h_s. A cloth that does not use BDF2 takes backward Euler with explicit damping;
-/// one that uses BDF2 takes implicit damping, and begins (last_h_s 0) with a substep of backward Euler.
+/// A substep of h_s after one of last_h_s. Without BDF2: backward Euler with explicit damping. With BDF2: implicit
+/// damping; backward Euler if last_h_s is 0 (no substep before) or less than half of h_s.
 TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_per_s);
 
-/// Whether a scene is integrated by BDF2. The same for every cloth of the same features that nothing holds.
+/// Whether a scene is integrated by BDF2.
 FeatureDecision bdf2_decision(const Scene&, const nlohmann::json& settings);
 /// Whether its links get implicit tension (xpbd/time/README.md).
 FeatureDecision tension_decision(const Scene&, const nlohmann::json& settings);
 
-/// Whether its diagonals are solved where columns and rows will put the vertices (xpbd/time/README.md).
+/// Whether the splitting error of its diagonals is corrected (xpbd/time/README.md).
 FeatureDecision splitting_correction_decision(const Scene&, const nlohmann::json& settings);
 
-/// Whether links and masses are all alike in an elastic sheet that is held and touches nothing, so that its colours
-/// may be coupled (xpbd/time/README.md); else why not.
+/// Whether the correction suits the scene, whatever the number of substeps: a held, elastic, contact-free sheet with
+/// uniform square cells and masses (xpbd/time/README.md).
 FeatureDecision may_correct_splitting(const Scene&, const nlohmann::json& settings);
-/// Implicit substeps of BDF2 in a frame that a stretch wave takes across as many cells as the correction bears.
+/// Substeps per frame that keep stretch waves and tension within the limits of the correction (rules.hpp).
 double substeps_for_splitting(const Scene&);
 
-/// True if pins or hands hold it.
+/// True if the cloth has pinned or attached vertices.
 bool is_held(const Scene&);
 /// True if the scene has neither self-collision nor a collider that the cloth can reach. The motion is then the same
 /// with and without its colliders. Meshes and kinematic colliders count as in reach.
 bool is_contact_free(const Scene&);
-/// Speed [m/s] at which a cloth that nothing holds meets static colliders: its first speed, and the speed of a fall
-/// by the distance from its centre to the nearest of them. 0 if it is held or has none, or one that moves.
+/// Estimated speed [m/s] at which cloth that is not held hits static colliders: its initial speed plus that of a fall
+/// from its centre to the nearest. 0 if the cloth is held, no collider is in reach, or one is kinematic.
 double impact_speed_m_per_s(const Scene&);
 
-/// Substeps of a frame: setting `substeps`, or if that is 0 the rule of setting `quality` (README, "Substeps"). In a
-/// scene with contact the maximum of a frame.
+/// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality` (README,
+/// "Substeps"). In a scene with contact it is the maximum, because the number may vary by frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
-/// The substeps that fast motion in contact asks for, where a frame's maximum is below; else 0.
+/// The substeps that fast motion in contact needs, if they are more than xpbd_substeps(); otherwise 0.
 int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 
-/// Substeps of a frame in which no collider can be near: as in the scene without colliders, and more where a kinematic
-/// collider may have left the cloth strained in directions that tethers do not limit.
+/// Substeps of a contact-free frame: as in the scene without colliders, or more if a kinematic collider may have
+/// strained the cloth in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Chooses the number of substeps of the next frame, and of lists of pairs, from the largest displacement in the last
-/// one, for cloth in contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many;
-/// most frames have none.
+/// Chooses the next frame's numbers of substeps and pair lists from the last frame's largest displacement, for cloth in
+/// contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many substeps; most
+/// frames have none.
 class SubstepController {
  public:
   SubstepController() = default;
-  /// `adapts`: else every frame takes xpbd_substeps().
+  /// If `adapts` is false, every frame uses xpbd_substeps().
   SubstepController(const Scene&, const nlohmann::json& settings, bool adapts);
   void reset();
   bool adapts() const { return adapts_; }
-  /// Substeps of a frame as long as the scene's.
+  /// Substeps of a frame of the scene's duration.
   int substeps() const { return now_; }
-  /// Lists of candidate pairs that such a frame makes one after another.
+  /// Number of lists of candidate pairs that such a frame builds, one after another.
   int lists() const { return lists_; }
-  /// Before a frame. `cloth_m`: the largest displacement of a vertex in the last frame, in the time of a frame of the
-  /// scene; infinity: unknown.
+  /// Call before each frame. `cloth_m`: largest displacement of a vertex in the last frame, scaled to the scene's frame
+  /// duration; infinity: unknown.
   void next(double cloth_m);
 
  private:
   void halve_if_quiescent(double cloth_m);
 
-  double max_travel_m_ = 0;  ///< in a substep; infinity without colliders and self-contact
+  double max_travel_m_ = 0;  ///< per substep; infinity without colliders and self-contact
   int base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
   bool adapts_ = false;
   double cell_m_ = 0;
-  int halvings_ = 0;          ///< of the base
+  int halvings_ = 0;          ///< how often base_ is halved now
   int quiescent_frames_ = 0;  ///< since the last halving
 };
 

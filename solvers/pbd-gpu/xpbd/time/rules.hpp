@@ -1,14 +1,14 @@
 #pragma once
 #include <array>
 
-// Every threshold by which a scene decides how it is integrated and how many substeps it takes, each with its [unit],
-// reason and (source, unless it is a choice). The pages of xpbd/time say how they act together.
+// All thresholds that decide a scene's integration and number of substeps, each with [unit], reason and (source; none:
+// it is a choice). xpbd/time/README.md describes how they act together.
 
 namespace clothbench::pbd_gpu {
 
-/// At `fast`, `default` and `accurate`.
+/// One value each for `fast`, `default` and `accurate`.
 using PerQuality = std::array<double, 3>;
-/// Substeps of a frame: at least `smallest`, and one for so many links of the longer side.
+/// Substeps per frame: the links along the longer side divided by `links_a_substep`, at least `smallest`.
 struct LinkRule {
   PerQuality smallest, links_a_substep;
 };
@@ -16,29 +16,29 @@ struct LinkRule {
 namespace rules {
 
 // Second order in time, tension and the splitting correction (integrator.cpp).
-// [of the last step] A longer step begins anew: the history says little (zero-stable below 1 + sqrt(2): Hairer, Norsett
-// & Wanner, Solving Ordinary Differential Equations I, III.5)
+// [last steps] A longer step restarts BDF2, which is zero-stable only for ratios below 1 + sqrt(2) (Hairer, Norsett &
+// Wanner, Solving Ordinary Differential Equations I, III.5)
 inline constexpr double kMaxStepRatio = 2;
-// [of the longer side, a substep] Above, a horizontal sheet released by two corners gains up to seven times the energy
-// of backward Euler (energy of released sheets)
+// [longer sides a wave crosses per substep] Above, a sheet released level, two corners held, gains up to seven times
+// backward Euler's energy (energy of released sheets)
 inline constexpr double kMaxWaveOfCloth = 0.6;
 // [h'^2 T / (m l)] Above, explicit tension throws a line aside (xpbd/time/README.md)
 inline constexpr double kMaxExplicitTension = 1.0 / 3;
-// Hands that pull a sheet farther make its links overshoot: 12 % above the converged stretch, 3 % at order 1
-// (two-hand-stretch-10mps)
+// [relative increase of the attachments' distance] Above, links of a sheet overshoot the converged stretch by 12 %; by
+// 3 % at order 1 (two-hand-stretch-10mps)
 inline constexpr double kMaxGripStrain = 0.5;
-// [cells a wave crosses in h'] Above, a sheet leaves its modulus: squared, 100 within seconds, 52 in a minute, 47 never
-// (modulus of a patch of 65 x 17 vertices)
+// [cells a wave crosses in h'] Above, a sheet's modulus drifts: if the square is 100, within seconds; 52, within a
+// minute; 47, never (modulus of a patch of 65 x 17 vertices)
 inline constexpr double kMaxSplittingCells = 6.9;
-// [of the shorter side in h'] Above, what colours keep of one another feeds oscillations (energy of small sheets)
+// [shorter sides a wave crosses in h'] Above, the delayed correction excites oscillations (energy of small sheets)
 inline constexpr double kMaxSplittingOfSide = 1.15;
 // [h'^2 Y / m times h'^2 T / (m l)] Above, a sheet under tension gains energy: 39 is stable over 20 s, 81 grows (33 x
 // 33 vertices held by one corner)
 inline constexpr double kMaxStiffnessTimesTension = 25;
-inline constexpr int kMinSplittingLinks = 4;  // [links across] Fewer leave nothing to correct
-// [of a cell's side] The correction is derived for square cells (xpbd/time/README.md)
+inline constexpr int kMinSplittingLinks = 4;  // [links across] With fewer there is nothing to correct
+// [relative difference of a cell's sides] The correction is derived for square cells (xpbd/time/README.md)
 inline constexpr double kMaxSplittingOblong = 0.05;
-// [substeps] What a frame may cost for its modulus; n/6 if that is more
+// [substeps] Maximum cost of a frame for the correct modulus; n/6 if that is more
 inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 
 // Substeps by what acts on the cloth: the first row that applies (substep_count.cpp). They are counted per frame,
@@ -46,55 +46,55 @@ inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 // error by substeps, in hanging sheets and strips without contact, and strain in contact.
 inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Tethers bound the stretch
 inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
-inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Colours leave error to one another
+inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Each colour disturbs the others
 inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
-// A hand pushes in directions that tethers do not limit (capsule-sweep)
+// A collider strains the cloth in directions that tethers do not limit (capsule-sweep)
 inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
-// Chains of a mesh leave more error than grid lines (garments under capsules)
+// Chains of a mesh are less accurate than grid lines (garments under capsules)
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
-// What a hand has strained relaxes without contact: with the substeps of free cloth 6 of 68 random runs fail
+// Contact-free frames after a collider has strained the cloth: with those of free cloth 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
-inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the cloth is struck at once
+inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the cloth hits the collider at once
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
-inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing acts: any number is right
-// A heap of the cloth's own layers slides on otherwise: one of 32 x 32 vertices for a second at 16, and lies at 24
+inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
+// Otherwise a heap of the cloth's layers slides on: one of 32 x 32 vertices for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
-// [dt sqrt(g / L)] What gravity moves farther in a frame counts as several frames: at 100 g a strip gains energy
+// [dt sqrt(g / L)] Above, held cloth uses proportionally more substeps: at 100 g a strip would gain energy
 inline constexpr double kMaxSwing = 0.15;
-// [h sqrt(g / L)] A sliding strip is first order in time: within 3 % at the first (Atwood's rope on a cylinder)
+// [h sqrt(g / L)] A sliding strip is first order in time: error within 3 % at `fast` (Atwood's rope on a cylinder)
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
-// Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima are of cost.
-// [contact offsets, a substep] A struck vertex pulls its neighbours along before links overstretch
+// Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima only limit cost.
+// [contact offsets per substep] Within, a vertex that is hit pulls its neighbours along before links overstretch
 inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
-inline constexpr double kMinMarginOfCell = 0.125;  // [cells] A thin offset does not ask for more substeps than this
-// [thicknesses, a substep] Responses cannot part layers that approach farther; planes cut their motion
+inline constexpr double kMinMarginOfCell = 0.125;  // [cells] Thinner contact offsets count as this
+// [thicknesses per substep] Above, responses cannot separate layers, and planes cut off their motion
 inline constexpr double kMaxLayerApproach = 2.0 / 3;
-// [m/s] A live session does not know its hand's speed, and a replay must take as many substeps
+// [m/s] Assumed: a live session does not know its hand's speed, and a replay must use as many substeps
 inline constexpr double kUsersHand_m_per_s = 2;
-inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] What a frame may cost
+inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] Maximum cost of a frame
 inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] For free cloth on static colliders
 
-// Substeps by the last frame (SubstepController): cloth at rest on a desk gives by 1 mm when their number changes.
-inline constexpr double kMinOfLast = 0.75;  // [of the last frame's] The strain of an impact relaxes in the next frames
-inline constexpr int kSubstepGrain = 4;     // [substeps] A frame is not recorded anew each time
-inline constexpr double kQuiescent = 1.0 / 24;  // [cells a frame] Below for some frames, the cloth rests
-// [cells a frame] Above, all substeps come back; apart from kQuiescent, so that the number does not oscillate
+// Substeps by the last frame (SubstepController): cloth at rest on a desk moves by 1 mm when their number changes.
+inline constexpr double kMinOfLast = 0.75;  // [of the last number] The strain of an impact relaxes over several frames
+inline constexpr int kSubstepGrain = 4;     // [substeps] Rounding up to multiples avoids recording each frame again
+inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below for kQuiescentFrames, the cloth is at rest
+// [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;
-inline constexpr int kQuiescentFrames = 4;  // [frames] A turning point is not rest
+inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer, cloth may only be turning around
 inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
-// [substeps] A list of self-contact pairs for a longer time has no capacity for fast cloth, and reduced motion bounds
-// slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
+// [substeps] A list of self-contact pairs for a longer time would overflow with fast cloth, and the reduced motion
+// bounds would slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
 inline constexpr int kSubstepsPerList = 8;
-// [cells] Maximum motion per list of pairs with static colliders: farther, and a desk holds back cloth beside it
+// [cells] Maximum motion per list of pairs with static colliders: above, a desk holds back cloth beside it
 // (contact-11204631-desk)
 inline constexpr double kCellsPerList = 2;
 inline constexpr int kMinSubstepsPerList = 4;  // [substeps] A list costs as much as one or two
 
 // Long frames and crumpled starts (solver.cpp).
-inline constexpr double kLongFrame = 1.25;    // [of the scene's frame] Jitter is no hitch
+inline constexpr double kLongFrame = 1.25;    // [of the scene's frame] Below, it is jitter and not a hitch
 inline constexpr double kMaxLongFrame_s = 1;  // [s] In a longer frame the simulation itself has fallen behind
 // With fewer substeps a crumpled start takes longer than 1 s to open (crumpled starts of scenarios/stability)
 inline constexpr int kCrumpledFactor = 4;

@@ -1,4 +1,4 @@
-// Steps of a vertex in a substep that lines and chains share, by the push constants `p` and the constant FEATURES of both.
+// Steps of a vertex in a substep, shared by lines and chains. Both have push constants `p` and a constant FEATURES.
 
 /// a + b = sum + rest exactly (Knuth's two-sum).
 void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
@@ -11,11 +11,11 @@ void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
 
 const bool kUsesBdf2 = (FEATURES & LINES_BDF2) != 0u;
 
-/// v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second the
-/// increments fall below the last bit of x and v, and plain sums would freeze or drift. `rest_`: what the last sums
-/// could not hold. `last_`: before the last substep, and then before this one. A prediction adds a fraction of what the
-/// last substep changed (BDF2; the differences of close numbers are exact, and what their roundings leave out cancels
-/// from substep to substep).
+/// Prediction: v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second
+/// the increments fall below the last bit of x and v, and plain sums would freeze or drift. `rest_`: rounding errors of
+/// the last sums. `last_`: state before the last substep; becomes the state before this one. BDF2 also adds a fraction
+/// of the last substep's change; a difference of close numbers is exact, and the rounding errors that it leaves out
+/// cancel from substep to substep.
 void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
           inout vec3 last_position, inout vec3 last_velocity) {
   vec3 gain = p.gravity_h.xyz, sum, rest, history = vec3(0.0);
@@ -39,11 +39,11 @@ void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, in
   rest_position = rest;
 }
 
-/// How far the prediction of an elastic cloth at rest falls in a substep [m]. A tether must leave it, or it would carry
-/// the load in place of links; 0 for inextensible cloth, whose tethers are to carry it.
+/// Distance that the prediction of elastic cloth at rest falls in a substep [m]. Tethers must allow it, otherwise they
+/// would carry the load instead of the links. 0 for inextensible cloth, whose tethers should carry the load.
 float prediction_fall() { return p.gravity_h.w > 0.0 ? p.h * length(p.gravity_h.xyz) : 0.0; }
 
-/// The displacement back to within `reach` of what a tether ends at; 0 where it is slack.
+/// Displacement that brings a vertex back to within `reach` [m] of its tether's end; 0 if the tether is slack.
 vec3 tethered(vec3 position, vec3 end, float reach) {
   vec3 e = position - end;
   float square = dot(e, e);
@@ -51,12 +51,12 @@ vec3 tethered(vec3 position, vec3 end, float reach) {
 }
 
 const bool kTension = (FEATURES & LINES_TENSION) != 0u;
-/// Least ratio of a link's alpha to inverse mass, in a chain pulled over-constrained between attached vertices; 0 in
-/// others, where `smallest` is. `stretched`: length over rest length. Strips: tension must not turn a link by more than
-/// a substep resolves, or it overshoots and throws what hangs on it; across itself a chain moves by x += L x,
-/// L = dlambda w / l times per second difference, so dlambda w / l is held below 1. In sheets diagonals hold a kink. An
-/// inextensible link torn to several times its length yields bit by bit. Implicit tension turns links by no more than
-/// they can turn, so that elastic links need none of it.
+/// Minimum ratio of a link's alpha to inverse mass. Only over-constrained chains have one; `smallest` is 0 in others.
+/// `stretched`: length divided by rest length. Elastic strips: tension must not turn a link by more than a substep
+/// resolves, otherwise the link overshoots and throws the cloth below it. Tension moves vertices across the chain by
+/// dlambda w / l times their second difference, so dlambda w / l is kept below 1. In elastic sheets diagonals resist
+/// this. An inextensible link torn to several times its length yields gradually. With implicit tension a link cannot
+/// overshoot, so elastic links need no minimum.
 float regularised(float smallest, bool elastic, float stretched) {
   if (kTension) return elastic ? 0.0 : smallest;
   if (smallest == 0.0 || (elastic && (FEATURES & LINES_SHEAR) != 0u)) return smallest;

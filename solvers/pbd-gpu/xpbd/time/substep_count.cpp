@@ -11,7 +11,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Links along the longer side; of a mesh as many as edges of its length fit.
+/// Links along the longer side; for a mesh, its width divided by its edge length.
 double links_of_longer_side(const Cloth& c) {
   return c.mesh ? std::max(1.0, c.width_m / c.mesh->edge_m) : std::max(c.columns, c.rows) - 1;
 }
@@ -21,7 +21,7 @@ std::size_t quality_of(const nlohmann::json& settings) {
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
 }
 
-/// How far [m] a moving collider or a falling cloth may go in a substep; with `layers` also two layers of the cloth.
+/// Maximum travel per substep [m] of a kinematic collider or falling cloth; with `layers` also of each of two layers.
 double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
   const double cell = std::min(scene.cloth.du(), scene.cloth.dv());
   double travel = std::numeric_limits<double>::infinity();
@@ -32,22 +32,22 @@ double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
   return travel;
 }
 
-/// Maximum speed of colliders; for a user's hand, an assumed speed.
+/// Maximum speed of colliders; for a user's hand, at least an assumed speed.
 double speed_m_per_s(const Scene& scene) {
   const bool by_user =
       std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.recorded; });
   return std::max(scripted_collider_speed_m_per_s(scene), by_user ? rules::kUsersHand_m_per_s : 0.0);
 }
 
-/// Whatever they cost.
+/// Substeps that fast motion in contact needs, without a maximum.
 double wanted_for_speed(const Scene& scene, std::size_t quality) {
   const double speed =
       std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
   return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality, false) - 1e-9));
 }
 
-/// Assumed speed: the initial speed, the speed of a fall by the cloth's length and the speed of the fastest grip or
-/// collider.
+/// Substeps that limit the approach of two layers. Assumed speed: the sum of the initial speed, the speed of a fall by
+/// the cloth's length and the speed of the fastest attachment or collider.
 double substeps_for_layers(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const double longer = std::max(c.width_m, c.height_m);
@@ -138,7 +138,7 @@ void SubstepController::next(double cloth_m) {
   lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also of NaN
 }
 
-/// Cloth that lies takes half of the base, and later a quarter, until it moves.
+/// Cloth at rest uses half of base_, and later a quarter, until it moves.
 void SubstepController::halve_if_quiescent(double cloth_m) {
   const double cells = cloth_m / cell_m_;
   quiescent_frames_ = cells <= rules::kQuiescent ? quiescent_frames_ + 1 : 0;
