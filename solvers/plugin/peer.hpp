@@ -1,5 +1,5 @@
-/// Shared by the adapters of external engines: the sheet at rest, its springs, its stages. Header only, so that
-/// an adapter builds only with clothbench_plugin.h and its engine.
+/// Shared by the adapters of external engines: the sheet at rest, its springs, its stages. Header only, so that an
+/// adapter needs only clothbench_plugin.h and its engine.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline std::vector<Point> rest_points(const ClothbenchScene& s) {
   return out;
 }
 
-/// [1/kg]; 0 where pinned.
+/// Inverse masses of vertices [1/kg]; 0 if pinned.
 inline std::vector<double> inverse_masses(const ClothbenchScene& s) {
   std::vector<double> out;
   for (std::uint32_t v = 0; v < s.vertex_count; ++v) out.push_back(1 / s.mass_kg[v]);
@@ -48,7 +48,7 @@ inline std::vector<double> inverse_masses(const ClothbenchScene& s) {
   return out;
 }
 
-/// Two vertices in either order, as a key.
+/// A key for two vertices, whatever their order.
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 inline Pair pair(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -60,8 +60,8 @@ struct Spring {
   Kind kind;
 };
 
-/// The sheet as springs: clothbench_plugin.h's for stretch and shear, and skip edges of B across / along^3 for bending
-/// (none at small curvature).
+/// The sheet as springs: clothbench_plugin.h's for stretch and shear; for bending, skip edges of B across / along^3 (no
+/// rigidity if nearly flat).
 inline std::vector<Spring> springs(const ClothbenchScene& s) {
   std::vector<Spring> out;
   for (std::uint32_t k = 0; k < s.structural_count; ++k) {
@@ -80,7 +80,7 @@ inline std::vector<Spring> springs(const ClothbenchScene& s) {
   return out;
 }
 
-/// Centre of the cloth's bounds [m]. Engines work in float32 around it, so that far cloth keeps its digits.
+/// Centre of the cloth's bounds [m]: the engines' float32 origin, so that cloth far from the world's loses no digits.
 inline Point centre(const ClothbenchScene& s) {
   Point low = point(s.position_m, 0), high = low;
   for (std::uint32_t v = 1; v < s.vertex_count; ++v)
@@ -91,7 +91,7 @@ inline Point centre(const ClothbenchScene& s) {
   return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
 }
 
-/// The normal of each vertex of a mesh: the mean of its triangles' normals, weighted by area. Zero where it has none.
+/// Unit normal of each vertex of a mesh: mean of its triangles' normals, weighted by area; 0 if the mean is 0.
 inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const double* vertices_m) {
   std::vector<Point> out(c.vertex_count, Point{});
   for (std::uint32_t t = 0; t < c.triangle_count; ++t) {
@@ -111,13 +111,13 @@ inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const doub
 constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
                                      CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
 
-/// All features except self-collision and a duplicated layer. `obstacle` names further limits of an engine.
+/// All features except self-collision and a duplicated layer. An engine's `obstacle` gives its further limits.
 constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
                                     CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | kColliders | CLOTHBENCH_FRICTION |
                                     CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
                                     CLOTHBENCH_SPIN | CLOTHBENCH_CLOTH_MESH;
 
-/// The distance at which a collider holds the cloth: the setting, or the scene's margin where the setting is 0.
+/// Contact offset of a collider [m]: the setting or, if that is 0, the scene's margin.
 inline double margin(double setting_m, const ClothbenchCollider& c) { return setting_m > 0 ? setting_m : c.margin_m; }
 
 /// Base of an adapter's solver.
@@ -126,16 +126,16 @@ struct Adapter {
       : scene(s), origin(centre(s)), stage{step, s.needs & kSupports, 0, std::nan(""), std::nan("")} {}
 
   const ClothbenchScene& scene;
-  Point origin;           ///< of the engine's coordinates [m]
-  ClothbenchStage stage;  ///< the only one: an engine's step cannot be divided from outside
+  Point origin;           ///< origin of the engine's coordinates [m]
+  ClothbenchStage stage;  ///< only one, because an engine's step cannot be divided from outside
 };
 
-/// Where the scene starts.
+/// The scene's start as a restart before frame 0.
 inline ClothbenchRestart start_of(const ClothbenchScene& s) {
   return {-1, 0, s.position_m, s.velocity_m_per_s, s.poses, nullptr, nullptr};
 }
 
-/// Free fall [m] by an integrator that changes the velocity [m/s] first: `steps` times v = next(v), x += h v.
+/// Free fall [m] by an integrator that updates velocity [m/s] before position: `steps` times v = next(v), x += h v.
 template <typename Next>
 double fallen_m(std::int64_t steps, double h, double velocity, Next next) {
   double out = 0;
@@ -146,7 +146,7 @@ double fallen_m(std::int64_t steps, double h, double velocity, Next next) {
   return out;
 }
 
-/// A text that is valid until the next call, which comes from the same thread.
+/// Copies a text, valid until the next call; all calls come from one thread.
 inline const char* kept(const std::string& text) {
   static std::string last;
   last = text;
@@ -159,8 +159,8 @@ struct About {
   double (*free_fall_m)(const double*, double, double, double, double, std::int32_t);
 };
 
-/// The C functions over an adapter: `Settings` from an array of values, in the order of `settings`; `Solver`, an
-/// Adapter, from settings and a scene; and `obstacle(settings, scene)`, why the engine cannot run it, or empty.
+/// Makes the C interface of an adapter from three parts: `Settings`, made from an array of values in the order of
+/// `settings`; `Solver`, an Adapter; and `obstacle(settings, scene)`: why the engine cannot run the scene, or empty.
 template <typename Solver, typename Settings, std::uint32_t kCount>
 ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[kCount]) {
   ClothbenchPlugin p{};

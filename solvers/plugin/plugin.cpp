@@ -35,7 +35,7 @@ struct Loaded {
   SolverEntry entry;
 };
 
-std::list<Loaded>& loaded() {  // entries stay where they are
+std::list<Loaded>& loaded() {  // a list, because pointers to its entries must stay valid
   static std::list<Loaded> all;
   return all;
 }
@@ -113,7 +113,7 @@ const ClothbenchPlugin& checked(const std::string& path, const ClothbenchPlugin*
   return *c;
 }
 
-/// Tries its constructors and its description in a child process, which may crash or hang.
+/// Loads a library and reads its description in a child process, because its code may crash or hang.
 void probe(const std::string& path) {
   constexpr unsigned kPatience_s = 30;
   const pid_t child = fork();
@@ -162,7 +162,7 @@ SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
   return info;
 }
 
-/// Exact displacement of a body that falls with damping: dv/dt = g - c v.
+/// Exact displacement of a body in free fall with damping: dv/dt = g - c v.
 double exact_fall_m(double time_s, double gravity, double velocity, double damping) {
   if (damping == 0) return velocity * time_s + gravity * time_s * time_s / 2;
   const double end = gravity / damping;
@@ -183,7 +183,7 @@ SolverEntry entry_of(const std::string& path, const ClothbenchPlugin& c) {
   return entry;
 }
 
-/// For processes started from this one.
+/// Adds a library to $CLOTHBENCH_PLUGINS, for processes started from this one.
 void remember(const std::string& path) {
   const char* before = std::getenv(kPluginsVariable);
   const std::string all = before != nullptr ? before : "";

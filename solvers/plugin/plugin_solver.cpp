@@ -10,7 +10,7 @@
 namespace clothbench::plugin {
 namespace {
 
-/// The interface's codes are in the order of StepStatus; one that it does not know counts as diverged.
+/// The interface's codes have the order of StepStatus; an unknown code counts as Diverged.
 StepStatus status_of(std::int32_t code) {
   static_assert(static_cast<int>(StepStatus::NotFinite) == CLOTHBENCH_NOT_FINITE &&
                 static_cast<int>(StepStatus::Diverged) == CLOTHBENCH_DIVERGED &&
@@ -119,7 +119,7 @@ class PluginSolver final : public ClothSolver {
   const SolverInfo info_;
   const std::vector<double> settings_;
   std::optional<SceneView> view_;
-  void* self_ = nullptr;  ///< valid once a scene is loaded, as are the next members
+  void* self_ = nullptr;  ///< this and the next members are valid once a scene is loaded
   DeviceInfo device_ = {"CPU", "", "plugin", false, "{}"};
   Plan plan_;
 };
@@ -132,7 +132,7 @@ std::vector<double> setting_values(const ClothbenchPlugin& c, const nlohmann::js
     const nlohmann::json v = settings.value(c.settings[k].name, nlohmann::json());
     out.push_back(v.is_number() ? v.get<double>() : c.settings[k].default_value);
   }
-  out.push_back(0);  // a pointer to nothing would be none
+  out.push_back(0);  // so that data() is not null if there are no settings
   return out;
 }
 

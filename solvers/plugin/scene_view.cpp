@@ -10,7 +10,7 @@
 namespace clothbench::plugin {
 namespace {
 
-// Capsules and vectors are shown where they lie.
+// The C interface points to capsules and vectors without copying them.
 static_assert(sizeof(Capsule) == 7 * sizeof(double) && sizeof(Vec3) == 3 * sizeof(double));
 static_assert(static_cast<int>(Collider::Shape::Plane) == CLOTHBENCH_SHAPE_PLANE &&
               static_cast<int>(Collider::Shape::Mesh) == CLOTHBENCH_SHAPE_MESH);
@@ -20,7 +20,7 @@ void copy(double (&to)[N], const From& from) {
   std::copy(std::begin(from), std::end(from), to);
 }
 
-/// The cloth at rest in world coordinates, 3 numbers per vertex: flat, wherever it starts.
+/// The cloth at rest in world coordinates [m], 3 numbers per vertex: flat, whatever its start.
 std::vector<double> rest_positions(const Cloth& c) {
   Scene flat;
   flat.cloth = c;
@@ -92,7 +92,7 @@ void SceneView::add_edges(EdgeKind kind, std::vector<ClothbenchEdge>& out) {
   if (kind == EdgeKind::Structural) Y = edge_stiffnesses(scene_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Edge& e = all[k];
-    // A skip edge stands for a piece of cloth on a grid of even cells.
+    // A skip edge stands for the bending of a strip that is one cell wide, on an even grid.
     const EdgeCell cell = skip ? EdgeCell{e.rest_m / 2, e.b - e.a == 2 ? c.dv() : c.du()} : edge_cell(c, e);
     if (kind == EdgeKind::Shear) Y[k] = membrane_stiffness(scene_, e);
     const double spring = skip ? 0 : Y[k] ? spring_N_per_m(scene_, e, *Y[k]) : kInextensible;

@@ -10,20 +10,20 @@
 
 namespace clothbench::plugin {
 
-/// A scene in the structs of the C interface. The scene must outlive the view and stay at its address.
+/// A scene as structs of the C interface. The scene must outlive the view and keep its address.
 class SceneView {
  public:
   explicit SceneView(const Scene&);
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
-  /// The frame's end; valid until the next call of `frame` or `restart`. Skins moving meshes, which is solver time.
+  /// A frame's input; valid until the next call of `frame` or `restart`. Skins kinematic meshes, which is solver time.
   const ClothbenchFrame* frame(const FrameInput&);
-  /// The state at the end of frame `last`. Valid until the next call of either, while `state` is unchanged.
+  /// The state at the end of frame `last`; valid until the next call of either, while `state` is unchanged.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:
-  /// Poses of all colliders at one instant, with the memory that they point to.
+  /// Poses of all colliders at one instant, with the memory to which they point.
   struct Posed {
     std::vector<ClothbenchPose> poses;
     std::vector<std::vector<double>> vertices;  ///< of skinned meshes, one per collider
@@ -51,7 +51,7 @@ class SceneView {
 /// Values of the settings for the C interface, in the plugin's order.
 std::vector<double> setting_values(const ClothbenchPlugin&, const nlohmann::json& settings);
 
-/// One solver of a plugin whose description was checked.
+/// Makes a solver of a plugin whose description has been checked.
 std::unique_ptr<ClothSolver> make_solver(const ClothbenchPlugin&, const SolverInfo&, const nlohmann::json& settings);
 
 }  // namespace clothbench::plugin

@@ -7,20 +7,20 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Where one mesh collider lies in the buffers of its kind, and how the cloth touches it.
+/// Ranges of one mesh collider in the buffers of its kind, and its contact parameters.
 struct MeshRange {
   std::size_t collider = 0;  ///< index in Scene::colliders; also .w of each of its triangles
   std::uint32_t first_vertex = 0, vertices = 0, first_triangle = 0, triangles = 0;
   float margin_m = 0, friction = 0;
 };
 
-/// All meshes of one kind, one after another; indices count from the first vertex of the first mesh. Null and empty
-/// where the scene has none.
+/// All meshes of one kind, one after another; indices count from the first vertex of the first mesh. Null and empty if
+/// the scene has none.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
-  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider's index; not as convex shapes
-  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of moving meshes, at the frame's end
-  const vulkan::Buffer* start_positions = nullptr;  ///< of moving meshes, at the frame's start; as convex shapes
+  const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider; null if as_convex_shapes
+  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of kinematic meshes, at the frame's end
+  const vulkan::Buffer* start_positions = nullptr;  ///< of kinematic meshes, at its start; only if as_convex_shapes
 };
 
 /// Shapes of one kind: `count` structs of gpu_types.h.
@@ -34,9 +34,9 @@ struct ShapeBuffer {
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
-  /// subtracted in double. `as_convex_shapes`: the method takes them as convex shapes (ConvexShapes), which it
-  /// adds itself. Then static shapes have no buffer except for planes, and positions of moving meshes at the frame's
-  /// start are kept as well (capsules always have both).
+  /// subtracted in double. `as_convex_shapes`: the solver uses convex shapes (ConvexShapes) and adds them itself. Then,
+  /// of static shapes, only planes have buffers, and kinematic meshes also keep positions at the frame's start (as
+  /// capsules always do).
   ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_convex_shapes);
 
   ShapeBuffer planes, spheres, boxes, capsules;
@@ -44,11 +44,11 @@ class ColliderBuffers {
 
   bool written_each_frame() const { return stage_upload_ >= 0; }
 
-  /// Records upload and skinning; must come before any kernel that reads dynamic colliders.
+  /// Records upload and skinning; must come before any kernel that reads kinematic colliders.
   void record();
   /// The host's part of a reset: the next frame starts at motion[0].
   void reset();
-  /// Call before a frame is submitted: dynamic colliders move from the last call's `end` to this one; null: no motion.
+  /// Call before a frame is submitted: kinematic colliders move from the last call's `end` to this `end`; null: none.
   void write(const FrameMotion* end);
 
  private:
@@ -72,21 +72,21 @@ class ColliderBuffers {
   const FrameKernel* skin_ = nullptr;
 };
 
-/// Vertices that hands hold: substep s of n puts a held vertex at (s + 1) / n of its path through the frame.
+/// Attachments: substep s of n puts an attached vertex at (s + 1) / n of its path through the frame.
 class GripBuffer {
  public:
   /// `layers` copies of the cloth's vertices lie one after another in the solver's buffers.
   GripBuffer(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
 
-  /// A kernel that sets position and velocity of attached vertices to the hand's, with .w of both 0. For released
-  /// vertices it sets .w to the inverse mass and nothing else. May be added for several buffers.
+  /// Adds a kernel that sets position and velocity of attached vertices to the hand's, and .w of both to 0. Of released
+  /// vertices it only sets .w, to the inverse mass. May be called for several buffers.
   const FrameKernel* add_kernel(const vulkan::Buffer& positions);
   void record_upload();
   /// `fraction` of the path through the frame, 0 to 1.
   void record_move(const FrameKernel&, double fraction, double frame_s);
 
   void reset();
-  /// As ColliderBuffers::write; true if other vertices are held than before.
+  /// Like ColliderBuffers::write; true if a vertex was attached or released.
   bool write(const FrameMotion* end);
 
  private:

@@ -9,7 +9,7 @@
 layout(local_size_x_id = 0) in;
 #define SPECIALIZE(number, type, name, standard) layout(constant_id = number) const type name = standard;
 
-/// Item of this invocation. Groups are one-dimensional; past 65535 of them they lie in rows (`groups_for`).
+/// Global index of this invocation. Workgroups are one-dimensional, in rows if there are more than 65535 (groups_for).
 uint item() {
   return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
 }

@@ -16,21 +16,21 @@ inline constexpr std::uint32_t kGroupSize = 64;
 /// Code of a kernel by name: its file's, plus the variant's suffix from CMakeLists.txt. Throws Error if there is none.
 vulkan::SpirV shader(const std::string& name);
 
-/// A kernel, and the stage of its dispatches.
+/// A kernel and the stage to which its dispatches belong.
 struct FrameKernel {
   int stage;
   std::uint32_t group_size;
-  std::vector<std::uint32_t> counting;  ///< its code, where it counts bytes
+  std::vector<std::uint32_t> counting;  ///< its code with byte counters; empty: without
   vulkan::Kernel kernel;
 };
 
-/// Why a buffer does not fit a device: it is larger than the largest that the device binds, or all of them together are
+/// Why a buffer does not fit a device: it is larger than the device's limit for one buffer, or all buffers together are
 /// larger than its memory. Empty if it fits.
 std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint64_t all_B, std::uint64_t largest_B,
                         std::uint64_t memory_B);
 
-/// The frame that a method and its parts build for a scene: buffers, stages, kernels, and the frame that is submitted
-/// repeatedly, with its plan. With the setting `count_bytes` kernels count the bytes that they load and store.
+/// What a solver and its parts build for a scene: buffers, stages, kernels, the frame that is submitted repeatedly, and
+/// its plan. With the setting `count_bytes`, kernels count the bytes that they load and store.
 class FrameBuilder {
  public:
   FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device);
@@ -43,8 +43,8 @@ class FrameBuilder {
   const std::shared_ptr<vulkan::Device>& device() const { return device_; }
 
   static constexpr int kUnbound = -1;
-  /// A device buffer that `reset` fills with `initial` and zeros after it. Kernels refer to it by its number (BIND_...,
-  /// gpu_types.h). Throws Error naming the scene, what is needed and what the device has, if it does not fit.
+  /// Adds a device buffer, which `reset` fills with `initial` followed by zeros. Kernels refer to it by its number
+  /// (BIND_..., gpu_types.h). If it does not fit, throws Error with the scene, the needed size and the device's limit.
   const vulkan::Buffer& add_buffer(int binding, const std::string& name, std::uint64_t bytes,
                                    const void* initial = nullptr, std::size_t initial_bytes = 0);
   template <class T>
@@ -56,9 +56,9 @@ class FrameBuilder {
   const vulkan::Buffer& add_host_buffer(const std::string& name, std::uint64_t bytes, int binding = kUnbound);
 
   int add_stage(const std::string& name, FeatureSet serves);
-  /// Kernel `name` with the buffers that its code declares; `own` take precedence over the
-  /// buffers of add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound
-  /// instead. `constants` by number.
+  /// Adds kernel `name`, bound to the buffers that its code declares; `own` take precedence over the buffers of
+  /// add_buffer. A declared buffer that the scene lacks is never accessed, and the positions are bound in its place.
+  /// `constants`: specialization constants by number.
   const FrameKernel* add_kernel(int stage, const std::string& name, std::uint32_t push_bytes,
                                 std::vector<std::uint32_t> constants = {}, std::uint32_t group_size = kGroupSize,
                                 const vulkan::Buffers& own = {});
@@ -100,7 +100,7 @@ class FrameBuilder {
   std::unique_ptr<vulkan::Program> frame_, upload_, download_;
 };
 
-/// Inverse masses [1/kg] of the scene's vertices at the start, 0 where pinned or gripped.
+/// Inverse masses [1/kg] of the scene's vertices at the start, 0 if pinned or attached.
 std::vector<float> inverse_masses(const Scene&);
 
 }  // namespace clothbench::pbd_gpu

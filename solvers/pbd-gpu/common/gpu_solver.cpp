@@ -9,10 +9,10 @@
 
 namespace clothbench::pbd_gpu {
 
-/// A frame that takes longer counts as lost. Software devices are slow; real ones reset themselves after some 2 s.
+/// A frame that takes longer has timed out. GPUs are reset by their drivers after about 2 s; software devices are slow.
 constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
 
-/// As in an application that shows one frame while the next is computed.
+/// Like an application that shows one frame while the next is computed.
 constexpr int kFramesInFlight = 2;
 
 void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
@@ -81,19 +81,19 @@ void GpuSolver::record(double dt_s, double last_dt_s) {
   if (counters_ != nullptr) frame_->copy(0, *zeros_, *counters_);
   record_frame(dt_s, last_dt_s);
   if (counters_ != nullptr) frame_->copy(0, *counters_, *counted_);
-  for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan is of a frame like the last
+  for (std::size_t s = 0; s < plan_.stages.size() && last_dt_s == dt_s; ++s)  // the plan describes steady frames
     plan_.stages[s].dispatches = frame_->dispatches(static_cast<int>(s));
   frame_->record(settings_.value("stage_times", false));
 }
 
-/// Records the next frame unless what is recorded serves.
+/// Records the next frame unless the recorded commands can be submitted again.
 void GpuSolver::prepare(double dt_s) {
   const double last_dt_s = uses_bdf2_ ? done_dt_s_ : dt_s;
   const bool anew = update_substep_count(dt_s);
   if (anew || dt_s != dt_s_ || last_dt_s != last_dt_s_) record(dt_s, last_dt_s);
 }
 
-/// A failed call of Vulkan as the status of a step.
+/// Converts a failed Vulkan call to the status of a step.
 template <class Fn>
 StepStatus GpuSolver::guarded(Fn submit_or_wait) const {
   try {
@@ -130,7 +130,7 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   take_messages();
   if (ready_ != StepStatus::Ok) return last_ = ready_;
   if (colliders_) colliders_->write(frame.motion);
-  // A vertex that was just released has no last substep of its own.
+  // A vertex that was just attached or released has no valid last substep, so BDF2 restarts.
   if (grips_ && grips_->write(frame.motion)) done_dt_s_ = 0;
   prepare(frame.dt_s);
   done_dt_s_ = frame.dt_s;
@@ -196,8 +196,7 @@ void GpuSolver::read_state(ClothState& state) const {
     }
 }
 
-/// The rounding errors of compensated sums restart at 0, a prediction begins anew, and contact has the sides of the
-/// scene's start.
+/// The rounding errors of compensated sums restart at 0, and BDF2 and the number of substeps start as after a reset.
 bool GpuSolver::restart(const ClothState& state) {
   take_messages();
   const bool more_layers = position_->bytes() > read_position_->bytes();

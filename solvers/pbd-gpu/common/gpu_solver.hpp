@@ -9,8 +9,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The part that both methods share: one recorded frame that is submitted repeatedly, reading back the state, and
-/// costs. A method adds its buffers and its frame.
+/// The part that both solvers share: a recorded frame that is submitted repeatedly, read-back of the state, and costs.
+/// A derived solver adds its buffers and records its frame.
 class GpuSolver : public ClothSolver, protected FrameBuilder {
  public:
   GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device);
@@ -42,13 +42,13 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
-  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: after none, or after one that
-  /// ended with another cloth or other attached vertices. `last_dt_s` is `dt_s` unless the method predicts.
+  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: no frame before it, or the
+  /// cloth or attached vertices have changed since. Without BDF2, `last_dt_s` is always `dt_s`.
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
-  /// Whether the next frame is to be recorded anew though its duration is the last one's. Asked once before each frame.
+  /// Updates the number of substeps; true if the frame must then be recorded again. Called once before each frame.
   virtual bool update_substep_count(double /*dt_s*/) { return false; }
-  bool reads_back_ = false;  ///< frames depend on what the host reads of the frame before: one frame in flight
-  bool uses_bdf2_ = false;   ///< a method that predicts from the last substep: its frames depend on the frame before
+  bool reads_back_ = false;  ///< the host reads each frame's result before it submits the next: one frame in flight
+  bool uses_bdf2_ = false;   ///< a frame's first substep depends on the last frame's
 
   /// Adds the buffers of positions, relative to `origin_m` so that a scene far from the world's origin loses no digits,
   /// and velocities; .w of both: inverse mass. `layers` copies of the vertices; read_state reads back the first.
@@ -57,8 +57,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   void add_colliders(Vec3 origin_m, bool as_convex_shapes);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
   const vulkan::Buffer& velocity_buffer() const { return *velocity_; }
-  ColliderBuffers* colliders() { return colliders_.get(); }  ///< null where the scene has none
-  GripBuffer* grips() { return grips_.get(); }               ///< null where the scene has none
+  ColliderBuffers* colliders() { return colliders_.get(); }  ///< null if the scene has none
+  GripBuffer* grips() { return grips_.get(); }               ///< null if the scene has none
 
  private:
   void record(double dt_s, double last_dt_s);
@@ -73,8 +73,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
-  double dt_s_ = 0, last_dt_s_ = 0;    ///< of the recorded frame, and of the one that it follows
-  double done_dt_s_ = 0;               ///< of the last frame done; 0: none that a prediction may go on from
+  double dt_s_ = 0, last_dt_s_ = 0;    ///< durations of the recorded frame and of the one before it
+  double done_dt_s_ = 0;               ///< duration of the last frame; 0: BDF2 has no frame to continue from
   StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
   StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
   Vec3 origin_m_{};

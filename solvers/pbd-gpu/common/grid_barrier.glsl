@@ -1,5 +1,5 @@
-// A barrier over all workgroups of a dispatch. Vulkan does not promise that they run at once; whether they do is tried
-// at loading (`p.passes` = 0), and waiting is bounded: a thread that waits in vain sets a flag for the host.
+// A barrier over all workgroups of a dispatch. Vulkan does not guarantee that they run at once. A trial dispatch while
+// loading (`p.passes` = 0) tests it, and waiting is bounded: a workgroup whose wait times out sets a flag for the host.
 layout(std430, binding = BIND_BARRIER) coherent volatile buffer BarrierCounter { uint arrived, left; };
 layout(std430, binding = BIND_TIMED_OUT) coherent volatile writeonly buffer TimedOut { uint timed_out; };
 shared bool all_arrived;
@@ -10,20 +10,20 @@ shared bool all_arrived;
 /// 4.60, 8.17); readers need none, and one would cost a tenth of the frame.
 bool grid_barrier() {
   memoryBarrierBuffer();
-  barrier();  // this workgroup's writes before its arrival
+  barrier();  // wait for this workgroup's writes before thread 0 reports its arrival
   if (gl_LocalInvocationIndex == 0u) {
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y, seen = atomicAdd(arrived, 1u) + 1u;
     uint all = (seen + groups - 1u) / groups * groups;
-    // The last value read counts, not the reads left: lavapipe ends every loop of its own after 65535.
+    // Success depends on the last value read, not on `looks`: lavapipe ends every loop after 65535 rounds.
     for (uint looks = 0u; looks < p.timeout_polls && seen < all; ++looks) seen = arrived;
     all_arrived = seen >= all;
     if (!all_arrived) timed_out = 1u;
   }
-  barrier();  // the others' arrival before this workgroup's reads
+  barrier();  // wait for the other workgroups' arrival before this workgroup reads
   return all_arrived;
 }
 
-/// The last one out leaves the count as it was found.
+/// The last workgroup that leaves resets the counters.
 void leave_grid_barrier() {
   if (gl_LocalInvocationIndex != 0u) return;
   uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;

@@ -16,7 +16,7 @@ PAPER_CONSTANTS(SPECIALIZE)
 float side;                // -1: triangles push against their normals
 vec3 removed = vec3(0.0);  // tangential displacement that friction takes off the velocity
 
-/// Moves `at` by `push` along `normal`; friction takes its share of the tangential displacement since `from`.
+/// Moves `at` by `push` along `normal`; friction removes a fraction of the tangential displacement since `from`.
 vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {
   at += push * normal;
   if (FRICTION == 0u) return at;
@@ -27,7 +27,7 @@ vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {
   return at;
 }
 
-/// Out of the ball of radius `reach` round `center`; its very centre has no direction and stays.
+/// Moves `at` out of the ball of radius `reach` around `center`; a particle exactly at the centre stays there.
 vec3 out_of_ball(vec3 at, vec3 from, vec3 center, float reach, float friction) {
   vec3 d = at - center;
   float l = length(d);
@@ -40,7 +40,7 @@ vec3 satisfied(vec3 at, vec3 from, uint k) {
   return out_of_ball(at, from, s.center.xyz, s.radius + s.margin, s.friction);
 }
 
-#elif defined(CUBE_COLLISIONS)  // out through the nearest face of the box grown by the margin
+#elif defined(CUBE_COLLISIONS)  // moves out through the nearest face of the box inflated by the margin
 vec3 satisfied(vec3 at, vec3 from, uint k) {
   BoxShape b = boxes[k];
   vec3 d = at - b.center.xyz;
@@ -54,7 +54,7 @@ vec3 satisfied(vec3 at, vec3 from, uint k) {
 }
 
 #elif defined(CAPSULE_COLLISIONS)
-// 3.2.5, Algorithm 3: capsules of a hand where the frame ends, out of the ball round the segment's nearest point.
+// 3.2.5, Algorithm 3: capsules of a hand at the frame's end; moves out of the ball around the segment's nearest point.
 vec3 satisfied(vec3 at, vec3 from, uint k) {
   vec4 a = capsules[k].a1, b = capsules[k].b1;
   vec3 ab = b.xyz - a.xyz;
@@ -64,8 +64,8 @@ vec3 satisfied(vec3 at, vec3 from, uint k) {
 }
 
 #elif defined(MESH_COLLISIONS)
-// 3.2.4 (room) and 3.2.6, Algorithm 4 (hand), no broad phase. A particle whose projection is in the triangle, nearer
-// than the margin in front or than the depth behind, is put at the margin along the triangle's normal.
+// 3.2.4 (room) and 3.2.6, Algorithm 4 (hand), no broad phase. A particle that projects into the triangle, less than the
+// margin in front or the depth behind, moves along the normal to the margin.
 bool projects_into(vec3 d, vec3 ab, vec3 ac, vec3 normal) {
   float u = dot(cross(d, ac), normal), v = dot(cross(ab, d), normal);
   return u >= 0.0 && v >= 0.0 && u + v <= dot(cross(ab, ac), normal);

@@ -1,11 +1,11 @@
 #version 450
-// Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread a constraint; corrections of both ends
-// are added up atomically, since neighbours share particles. Compute shaders of their kind have no float atomics:
-// integer compare-and-swap on the bits, until it holds.
+// Kim, Ma & Hong 2025, 3.2.3, after Müller et al. 2007, eqs. 10-11: one thread per constraint. The corrections of both
+// ends are summed atomically, because constraints share particles. The article's shaders have no float atomics: an
+// integer compare-and-swap of the float's bits is repeated until it succeeds.
 #include "common/common.glsl"
 layout(std430, binding = BIND_CONSTRAINTS) readonly buffer Constraints { DistanceConstraint c[]; };
 layout(std430, binding = BIND_PREDICTED) readonly buffer Bdf2 { vec4 q[]; };
-layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };   // x y z as bits and a count, 4 a particle
+layout(std430, binding = BIND_DELTAS) buffer Deltas { uint d[]; };  // per particle: x, y, z as float bits, count
 layout(push_constant) uniform Push { PaperConstants p; };
 
 void add(uint at, float value) {
@@ -33,7 +33,7 @@ void main() {
   if (w == 0.0) return;
   vec3 d_ab = b.xyz - a.xyz;
   float l = length(d_ab);
-  // Coincident ends have no direction: they count, and move nothing.
+  // Coincident ends have no direction: they count in the average with a correction of 0.
   vec3 s = l > 0.0 ? d_ab * (p.stiffness * (l - e.rest_m) / (l * w)) : vec3(0.0);
   if (a.w > 0.0) add_delta(e.a, a.w * s);
   if (b.w > 0.0) add_delta(e.b, -b.w * s);

@@ -56,8 +56,8 @@ class Paper final : public GpuSolver {
     return s.by_number();
   }
 
-  /// Collisions as published: every particle against every sphere, box, capsule and triangle. Kim, Ma & Hong 2025,
-  /// 3.2.3 to 3.2.6, Algorithms 3 and 4; settings choose what the text leaves open. One stage and kernel for each kind.
+  /// Collisions as published (Kim, Ma & Hong 2025, 3.2.3 to 3.2.6, Algorithms 3 and 4): every particle against every
+  /// sphere, box, capsule and triangle, one stage and kernel per kind. Settings choose what the text leaves open.
   void build_contact() {
     const ColliderBuffers& c = *colliders();
     add_shapes("SatisfySphereCollisions", c.spheres, Feature::Sphere, "satisfy_sphere_collisions");
@@ -142,7 +142,7 @@ class Paper final : public GpuSolver {
   }
 
   void record_step(const PaperConstants& c, int step, int steps, double dt_s) {
-    // Vertices are held or released from the step's start on; the kernels that follow read it from the inverse mass.
+    // Attaches or releases vertices at the step's start; the kernels below read an inverse mass of 0 as attached.
     if (hold_ != nullptr) grips()->record_move(*hold_, static_cast<double>(step) / steps, dt_s);
     dispatch(*forces_, particles(), c);
     if (damp_ != nullptr) dispatch(*damp_, particles(), c);
@@ -219,7 +219,7 @@ std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const Devi
   return std::make_unique<Paper>(paper_info(), settings, device);
 }
 
-/// v <- (v + g h) keep, x <- x + h v, every substep; damping comes after the forces.
+/// Every substep: v <- (v + g h) keep, x <- x + h v; damping comes after the forces.
 double paper_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = settings["substeps"].get<int>();
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];

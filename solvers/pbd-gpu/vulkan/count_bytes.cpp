@@ -5,7 +5,7 @@
 namespace clothbench::vulkan {
 namespace {
 
-constexpr std::size_t kHeader = 5, kBound = 3;  // words of a module's header, and which of them bounds all ids
+constexpr std::size_t kHeader = 5, kBound = 3;  // words of a module's header, and index of the word that bounds ids
 
 using Id = std::uint32_t;
 using Words = std::vector<std::uint32_t>;
@@ -43,7 +43,7 @@ class Counting {
     return out;
   }
 
-  /// Once all() has read the module.
+  /// Call after all(), which reads the module.
   const std::map<std::uint32_t, Access>& accesses() const { return accesses_; }
 
  private:
@@ -63,7 +63,7 @@ class Counting {
     to.insert(to.end(), w, w + (*w >> 16));
   }
 
-  /// Notes sizes of types, pointers, and the buffers that they lead to.
+  /// Records sizes of types, pointers, and the buffers to which pointers lead.
   void note(spv::Op op, const std::uint32_t* w) {
     if (op == spv::OpEntryPoint) entry_ = w[2];
     if (op == spv::OpDecorate && w[2] == spv::DecorationBinding) binding_[w[1]] = w[3];

@@ -18,8 +18,8 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
-/// The only profile: what is known of the Adreno 740 of a Quest 3 (Mesa, freedreno_devices.py, cs_shared_mem_size). The
-/// limit of 256 threads per group is our precaution.
+/// The only profile: the known limit of the Adreno 740 in a Quest 3 (Mesa, freedreno_devices.py, cs_shared_mem_size).
+/// The limit of 256 threads per workgroup is a precaution.
 constexpr const char* kProfile = "adreno-like";
 constexpr std::uint32_t kProfileShared_B = 32u << 10, kProfileThreads = 256;
 
@@ -64,8 +64,8 @@ VkApplicationInfo application() {
   return app;
 }
 
-/// Devices of this process. They are kept to its end and not destroyed then: drivers fail to load again after some
-/// hundred times (NVIDIA 580: VK_ERROR_INCOMPATIBLE_DRIVER), and their own clean-up at exit may come first.
+/// Devices of this process. They are kept until it ends, because drivers fail to load after some hundred times (NVIDIA
+/// 580: VK_ERROR_INCOMPATIBLE_DRIVER), and not destroyed then, because the driver's own clean-up may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;

@@ -99,7 +99,7 @@ void Kernel::push(VkCommandBuffer commands, const std::vector<std::uint8_t>& con
 }
 
 Groups groups_for(std::uint64_t items, std::uint32_t group_size) {
-  constexpr std::uint64_t kMost = 65535;  // least maxComputeWorkGroupCount a Vulkan device may have
+  constexpr std::uint64_t kMost = 65535;  // minimum of maxComputeWorkGroupCount that Vulkan guarantees
   const std::uint64_t groups = items / group_size + (items % group_size != 0 ? 1 : 0);
   if (groups * group_size > std::numeric_limits<std::uint32_t>::max() || groups > kMost * kMost)
     throw Error(fmt::format("{} items in groups of {}: expected at most 2^32 items in a dispatch", items, group_size));

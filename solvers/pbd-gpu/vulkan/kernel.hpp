@@ -10,7 +10,7 @@
 
 namespace clothbench::vulkan {
 
-/// A storage buffer with memory of its own: on the device, or visible to the host and mapped for its whole life.
+/// A storage buffer with its own memory: on the device, or visible to the host and mapped while the buffer exists.
 class Buffer {
  public:
   enum class Place { Device, Host };
@@ -44,13 +44,13 @@ struct SpirV {
 
 enum class Access { Read, Write, ReadWrite };
 
-/// Accesses of a kernel's code to storage buffers, by binding: its loads, stores and atomics through every pointer.
+/// Accesses of a kernel's code to storage buffers, by binding: loads, stores and atomics through all pointers.
 std::map<std::uint32_t, Access> accesses_of(SpirV code);
 
-/// Code that does what `code` does, and counts the bytes of storage buffers that it loads and stores, on whatever path
-/// it takes. An invocation keeps its two sums to itself and adds them at its end to four words of buffer `counter`,
-/// from `first_word` on: bytes read (low and high word), bytes written. An atomic operation reads and writes its word.
-/// Accesses to the bindings `uncounted` are left out: how often a barrier is polled depends on timing.
+/// Returns `code` with instructions that count the bytes of storage buffers that it loads and stores on its path. Each
+/// invocation has two sums of its own and adds them at its end to four words of buffer `counter`, from `first_word` on:
+/// bytes read (low and high word), bytes written (likewise). An atomic operation reads and writes its word. Accesses to
+/// the bindings `uncounted` do not count, because the number of polls of a barrier depends on timing.
 std::vector<std::uint32_t> with_byte_counters(SpirV code, std::uint32_t counter, std::uint32_t first_word,
                                               const std::set<std::uint32_t>& uncounted);
 
@@ -88,7 +88,7 @@ class Kernel {
 
   std::shared_ptr<Device> device_;
   std::string name_;
-  SpirV code_;  ///< not owned: programs are embedded in the library
+  SpirV code_;  ///< not owned: code is embedded in the library
   std::vector<Binding> bindings_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -103,8 +103,8 @@ struct Groups {
 };
 
 /// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows if one row would exceed the
-/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check. Throws Error past
-/// 65535 rows, and past the 32 bits of a kernel's item number.
+/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check. Throws Error for
+/// more than 65535 rows, and for more items than 32 bits can number.
 Groups groups_for(std::uint64_t items, std::uint32_t group_size);
 
 }  // namespace clothbench::vulkan

@@ -95,7 +95,7 @@ void Program::record_steps(Copy& copy) {
   commands_ = copy.commands;
   begin(commands_);
   if (query_count_ > 0) vkCmdResetQueryPool(commands_, copy.queries, 0, query_count_);
-  // Reads and writes of earlier submissions come before any of this one. Later submissions see host writes.
+  // Waits for all accesses of earlier submissions. Host writes before a submission are visible to it without a barrier.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(copy.queries, 0);
   Touched since;

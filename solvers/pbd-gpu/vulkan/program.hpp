@@ -7,8 +7,8 @@
 
 namespace clothbench::vulkan {
 
-/// A frame's work in order: dispatches and copies with their stage. Barriers are placed only where a later step reads
-/// or writes what an earlier one wrote, or writes what it read.
+/// A sequence of dispatches and copies, each with its stage, such as a frame. Barriers are placed only where a step
+/// reads or writes a buffer that an earlier step wrote, or writes one that an earlier step read.
 class Program {
  public:
   explicit Program(std::shared_ptr<Device> device);
@@ -25,15 +25,15 @@ class Program {
   void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, {}, {}, &from, &to}); }
   void clear() { steps_.clear(); }
 
-  /// Records once; `run` submits the same commands repeatedly. With `time_stages` a timestamp follows every step, else
-  /// only the first and last are taken.
+  /// Records once; `run` submits the same commands repeatedly. With `time_stages` a timestamp follows every step;
+  /// otherwise there are only a first and a last one.
   void record(bool time_stages);
   /// Submits and waits; after a time-out, first waits for the earlier submissions. Throws Failure (VK_TIMEOUT after
   /// `timeout_s`, VK_ERROR_DEVICE_LOST, ...).
   void run(double timeout_s);
 
   /// Repeats the last recording until there are `count` copies, so that as many can be in flight at once. Each copy has
-  /// its own commands, fence and queries. It begins with a barrier against everything before, so copies run in order.
+  /// its own commands, fence and queries, and begins with a barrier against all earlier work, so copies run in order.
   void need_copies(std::size_t count);
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);
@@ -46,11 +46,11 @@ class Program {
 
   /// The recorded commands, in order, so that a test finds missing and superfluous barriers.
   struct Recorded {
-    // A barrier, where `is_barrier`:
+    // If `is_barrier`:
     bool is_barrier = false;
     VkPipelineStageFlags stages_before = 0, stages_after = 0;
     VkAccessFlags written = 0, next = 0;
-    // Else a dispatch of `kernel`, or a copy where that is null:
+    // Otherwise a dispatch of `kernel` or, if that is null, a copy:
     const Kernel* kernel = nullptr;
     const Buffer *from = nullptr, *to = nullptr;
   };

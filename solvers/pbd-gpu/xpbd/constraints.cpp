@@ -13,11 +13,11 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-constexpr double kFlat = 1e-6;               // of the longest side
-constexpr double kShort = 0.5, kLong = 1.5;  // of a link's rest length
+constexpr double kFlat = 1e-6;               // height of a flat mesh, relative to its longest side
+constexpr double kShort = 0.5, kLong = 1.5;  // limits of a start that is not crumpled, relative to a link's rest length
 constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below what is visible
 
-/// Why a scene has no tethers, whatever its shape; empty: it may have some.
+/// Why a scene has no tethers, wherever its vertices start; empty: it may have some.
 std::string why_no_tethers(const Scene& scene, bool wanted) {
   if (!wanted) return "setting tethers=false";
   if (!scene.grips.vertices.empty()) return "hands move what holds the cloth";
@@ -26,7 +26,7 @@ std::string why_no_tethers(const Scene& scene, bool wanted) {
   return scene.pins.vertices.empty() ? "nothing is pinned" : "";
 }
 
-/// 1 + slack.
+/// Factor of tether lengths: 1 + slack (tethers_of).
 double tether_stretch(const Scene& scene) {
   const Cloth& c = scene.cloth;
   const auto Y = scene.material.membrane_stiffness_N_per_m;
@@ -37,7 +37,7 @@ double tether_stretch(const Scene& scene) {
   return 1 + slack;
 }
 
-/// Through a grid at rest, from a vertex to one that is u and v away along the grid [m].
+/// Distance [m] through a grid at rest between vertices that are u and v [m] apart along the grid's axes.
 double way_through(const Scene& s, double u, double v) {
   return s.needs.has(Feature::Shear) ? std::hypot(u, v) : u + v;
 }
@@ -50,7 +50,7 @@ double spread_slack_m(const Scene& s, double width, double r) {
 }
 
 constexpr const char* kStartsStretched = "the cloth starts stretched";
-/// True if vertices a and b start within a tether's length. Else pins are too far apart, or it starts stretched.
+/// True if vertices a and b start within a tether's length. Otherwise the cloth starts stretched.
 bool starts_within(const Scene& s, const std::vector<double>& start, std::size_t a, std::size_t b, double length) {
   return norm(minus(vertex_at(start, a), vertex_at(start, b))) <= length + 1e-6 * s.cloth.width_m;
 }
@@ -155,7 +155,7 @@ bool is_convex_sheet(const ClothMesh& m) {
   return area >= (1 - 1e-3) * hull_area;
 }
 
-/// For every vertex, the nearest vertex of a group and its distance through the cloth at rest.
+/// Finds, for every vertex, the nearest vertex of a group and its distance through the cloth at rest [m].
 class Reach {
  public:
   Reach(const Scene& s, const Adjacency& edges)

@@ -17,13 +17,13 @@ namespace clothbench::pbd_gpu {
 /// Length of a vector.
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
-/// Least ratio of alpha to inverse mass in chains pulled over-constrained between attached vertices: with 0 their
-/// system is singular in single precision. Ten times as much visibly lengthens cloth; with a tenth some links blow up.
+/// Minimum ratio of alpha to inverse mass in over-constrained chains: with 0 their system is singular in single
+/// precision. Ten times as much visibly lengthens cloth; with a tenth some links diverge.
 constexpr double kRegularisation = 1e-3;
 
-/// At least the maximum eigenvalue of M^-1 A, A's entries not negative and M the diagonal of masses: the maximum of
-/// (A v)_i / (m_i v_i) for any positive v (Collatz 1942; Wielandt 1950), here after some steps of the power iteration.
-/// `times(v, to)` puts A v into `to`.
+/// Upper bound of the eigenvalues of M^-1 A, where A has no negative entries and M is the diagonal of masses: the
+/// maximum of (A v)_i / (m_i v_i) for a positive v (Collatz 1942; Wielandt 1950), here from a power iteration.
+/// `times(v, to)` stores A v in `to`.
 double eigenvalue_bound(const std::vector<double>& mass,
                         const std::function<void(const std::vector<double>& v, std::vector<double>& to)>& times);
 
@@ -34,7 +34,7 @@ struct SlicedRows {
   std::vector<BendingSlice> slices;
   std::vector<Entry> entries;
 };
-/// `length(i)` is of row i below `rows`; `entry(i, j)` is also requested what pads a row, i up to a whole slice.
+/// `length(i)`: of row i, i below `rows`. `entry(i, j)` also gives padding: j from length(i) on, or i from `rows` on.
 template <class Entry, class Length, class At>
 SlicedRows<Entry> sliced(std::uint32_t rows, const Length& length, const At& entry) {
   SlicedRows<Entry> out;
@@ -63,9 +63,9 @@ struct Tethers {
   double stretch = 1;
   std::string reason;  ///< reason if `to` is empty
 };
-/// Tethers are used if everything that holds the cloth is static and the exact solution stretches less
-/// (xpbd/README.md). Their slack is 5 rho g L / Y for the cloth's weight plus 2 v0 / c for its speed. `wanted`: whether
-/// the settings allow tethers.
+/// Tethers are used if only pins hold the cloth and it starts within their length (xpbd/README.md). Their slack is
+/// 5 rho g L / Y for the cloth's weight plus 2 v0 / c for its initial speed v0, c the speed of stretch waves. `wanted`:
+/// whether the settings allow tethers.
 Tethers tethers_of(const Scene&, bool wanted = true);
 
 /// Tethers listed per vertex, for chains. Each leads to the nearest vertex of a connected group of pinned vertices.
@@ -81,16 +81,16 @@ TetherTable tether_table(const Scene&, bool wanted = true);
 /// 5 M g / Y [m]: five times the elongation scale of a sheet that hangs from a few vertices; 0 if inextensible.
 double tether_spread_m(const Scene&);
 
-/// True if tethers keep every vertex within reach of pinned ones.
+/// True if the scene has tethers with these settings.
 bool is_tethered(const Scene&, const nlohmann::json& settings);
 
 /// True if the cloth starts with a structural link shorter than 0.5 or longer than 1.5 times its rest length: crumpled,
-/// squashed, coincident, pulled out of shape. No physical cloth starts so; the solver only has to recover from it.
+/// squashed, coincident, pulled out of shape. No physical cloth starts like this; the solver need only recover.
 bool starts_crumpled(const Scene&);
 
 /// Moves every free vertex of a crumpled start by less than a thousandth of a cell per axis, the same in every run.
-/// Coincident vertices have no direction to separate in, and a cloth squashed into a plane cannot unfold in it. `x`:
-/// [m].
+/// Coincident vertices have no direction in which to separate, and a cloth squashed into a plane cannot leave it.
+/// `x`: positions [m].
 void break_symmetry(const Scene&, const std::vector<float>& inverse_mass, std::vector<double>& x);
 
 }  // namespace clothbench::pbd_gpu

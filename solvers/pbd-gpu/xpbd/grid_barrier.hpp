@@ -8,12 +8,12 @@
 #include "xpbd/lines/line_layout.hpp"
 #include "xpbd/time/integrator.hpp"
 
-// Shared by lines and chains: constants of a substep, and one dispatch of many workgroups that wait for one another.
+// Shared by lines and chains: constants of a substep, and dispatches whose workgroups synchronise at a grid barrier.
 
 namespace clothbench::pbd_gpu {
 
-/// Most polls of a barrier over the whole dispatch before it times out, at loading (some 10 ms) and in a frame (some
-/// 1 s). A poll takes some 0.5 us on a GPU and 3 ns on a CPU.
+/// Maximum polls of a grid barrier before it times out, while loading (about 10 ms) and in a frame (about 1 s). A poll
+/// takes about 0.5 us on a GPU and 3 ns on a CPU.
 struct TimeoutPolls {
   std::uint32_t at_loading, in_a_frame;
 };
@@ -72,7 +72,7 @@ bool runs_at_once(const FrameBuilder& frame, const std::string& kernel_name, std
   return failed == 0;
 }
 
-/// Adds the buffers of the barrier: its counter, and the flag that it timed out.
+/// Adds the buffers of the barrier: its counters, and the flag that is set if it times out.
 inline void add_grid_barrier(FrameBuilder& frame) {
   frame.add_buffer(BIND_BARRIER, "meeting", 8);
   frame.set_timed_out(frame.add_host_buffer("timed out", 4, BIND_TIMED_OUT));

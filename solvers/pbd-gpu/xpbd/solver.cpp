@@ -1,4 +1,4 @@
-// XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019), every grid line solved at once.
+// XPBD in small steps (Macklin, Müller & Chentanez 2016; Macklin et al. 2019) with a direct solve of every grid line.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -89,8 +89,8 @@ class Xpbd final : public GpuSolver {
     if (touches && lines_) fused_frame_ = FusedFrame::make(frame(), *lines_, *contact_);
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
-    // Friction of strips on edges needs all substeps even where they hardly move; so does a tangle, to come to rest.
-    // Where hands released the cloth, substeps that change make it snap.
+    // Strips on edges need all substeps for friction even if they hardly move, and crumpled starts to come to rest.
+    // Cloth that attachments have released would snap if the number of substeps changed.
     const bool adapts = touches && !contact_->has_kinematic_shapes() && grips() == nullptr &&
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
@@ -117,7 +117,7 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", position_buffer().bytes());
   }
 
-  /// Inverse masses of particles: welded vertices share one, and are held if any of them is.
+  /// Inverse masses of particles: masses of welded vertices are added; a particle is held if one of its vertices is.
   static std::vector<float> welded(std::vector<float> w, const ChainCloth& cloth) {
     for (const std::uint32_t v : cloth.welded) {
       float& of = w[cloth.particle[v]];
@@ -129,12 +129,12 @@ class Xpbd final : public GpuSolver {
 
   int substeps_in(double dt_s) const { return in_frames(controller_.substeps(), dt_s); }
 
-  /// Substeps of a frame that takes `by_rule` of them if it is as long as the scene's.
+  /// Substeps of a frame of dt_s, if a frame of the scene's duration has `by_rule`.
   int in_frames(int by_rule, double dt_s) const {
     return by_rule * frames_in(dt_s) * (crumpled_ && settings()["substeps"] == 0 ? rules::kCrumpledFactor : 1);
   }
 
-  /// Instead of so many substeps of contact.
+  /// Steps of a contact-free frame; `most`: its substeps if it has contact.
   FusedFrame::Steps contact_free_steps(double dt_s, int most) const {
     const int substeps = std::min(most, in_frames(contact_free_substeps(scene(), settings()), dt_s));
     return {substeps, time_step(uses_bdf2_, dt_s / substeps, 0, scene().material.damping_per_s)};
@@ -144,12 +144,12 @@ class Xpbd final : public GpuSolver {
     if (!controller_.adapts()) return false;
     const double of_list_m = contact_->read_max_displacement_m(fused_frame_ != nullptr), frame_s = scene().time.dt();
     const double max_displacement_m = of_list_m * recorded_lists_;
-    // The first frame has none before it.
+    // Before the first frame no displacement is known.
     const double cloth_m =
         last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
     last_dt_s_ = dt_s;
     controller_.next(cloth_m);
-    // After a reset too what was recorded has the last frame's substeps and lists.
+    // The recorded commands keep the last frame's numbers of substeps and lists, also after a reset.
     const int lists = lists_in(dt_s), substeps = controller_.substeps();
     const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
     return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists;
@@ -160,7 +160,7 @@ class Xpbd final : public GpuSolver {
     return time_step(uses_bdf2_, dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
   }
 
-  /// Substeps [first, first + count) in as few dispatches as the kernels allow.
+  /// Records substeps [first, first + count) in as few dispatches as the kernels allow.
   void record_lines(int first, int count, int substeps, double dt_s, const TimeStep& step) {
     if (count == 0) return;
     if (lines_)
@@ -171,7 +171,7 @@ class Xpbd final : public GpuSolver {
 
   void record_frame(double dt_s, double last_dt_s) override {
     const int substeps = substeps_in(dt_s);
-    // The first substep differs where the last frame's were of another length, or where there was none.
+    // The first substep differs if the last frame's substeps had a different length, or if there was no last frame.
     const TimeStep start = time_step_of(dt_s, last_dt_s), step = time_step_of(dt_s, dt_s);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
@@ -183,7 +183,7 @@ class Xpbd final : public GpuSolver {
       return;
     }
     for (int list = 0, lists = lists_in(dt_s); list < lists; ++list) {
-      // Contact takes the substeps of a list for a frame of their own.
+      // Contact treats the substeps of each list as a frame.
       const int first = substeps * list / lists, count = substeps * (list + 1) / lists - first;
       const double list_s = dt_s * (static_cast<double>(count) / substeps);
       if (fused_frame_) {
@@ -192,7 +192,7 @@ class Xpbd final : public GpuSolver {
       }
       if (contact_) contact_->record_list(list_s, count);
       for (int s = first; s < first + count; ++s) {
-        // First, so that a released vertex is free in the frame in one dispatch.
+        // First, as in the fused frame, so that a released vertex moves freely in this substep.
         if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
         if (contact_) contact_->record_before(s - first, count, list_s);
         record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
@@ -205,15 +205,15 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// Lists of pairs that a frame makes one after another. Moving shapes and attachments say how far they go in the
-  /// whole frame.
+  /// Number of lists of pairs that a frame builds, one after another. It is 1 with kinematic shapes or attachments,
+  /// whose displacements are known only for the whole frame.
   int lists_in(double dt_s) const {
     if (!contact_ || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty()) return 1;
     return contact_->with_itself() ? (substeps_in(dt_s) + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList
                                    : controller_.lists() * frames_in(dt_s);
   }
 
-  /// A frame as long as several (a hitch) takes the substeps of several, so that a link turns no farther in a substep.
+  /// Number of the scene's frames that a frame of dt_s counts as: a hitch has the substeps of several frames.
   int frames_in(double dt_s) const {
     const double frame = scene().time.dt();
     if (!(dt_s > rules::kLongFrame * frame)) return 1;
@@ -225,11 +225,11 @@ class Xpbd final : public GpuSolver {
   double last_dt_s_ = 0;  ///< of the last frame; 0: none
 
   bool crumpled_ = false;
-  bool second_solve_ = false;       ///< chains, between the responses of contact
-  std::unique_ptr<Lines> lines_;    ///< if links are all alike
-  std::unique_ptr<Chains> chains_;  ///< else
+  bool second_solve_ = false;       ///< chains are solved again between the response rounds
+  std::unique_ptr<Lines> lines_;    ///< if links are uniform
+  std::unique_ptr<Chains> chains_;  ///< otherwise
   std::unique_ptr<XpbdContact> contact_;
-  std::unique_ptr<FusedFrame> fused_frame_;  ///< lines and contact in one kernel, where it fits
+  std::unique_ptr<FusedFrame> fused_frame_;  ///< null: one kernel per pass
   const FrameKernel* move_grips_ = nullptr;
 };
 
@@ -297,7 +297,7 @@ std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const Devic
   return std::make_unique<Xpbd>(xpbd_info(), settings, device);
 }
 
-/// Only the prediction, every substep: without forces inside the cloth it is the whole step.
+/// Free fall [m]: the prediction of every substep, which without internal forces is the whole substep.
 double xpbd_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = xpbd_substeps(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1];

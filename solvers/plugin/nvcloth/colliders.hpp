@@ -1,4 +1,4 @@
-/// Coordinates and colliders as NvCloth has them. One file includes this.
+/// Coordinates and colliders in NvCloth's form. Only nvcloth.cpp includes this file.
 #pragma once
 
 #include <NvCloth/Cloth.h>
@@ -12,9 +12,9 @@ using peer::Point, physx::PxVec3, physx::PxVec4;
 /// Lengths are in centimetres here, because the engine's epsilons are absolute (1.2e-7 on squared lengths): in metres
 /// the cloth stretches two to three times more.
 constexpr double kPerMetre = 100;
-constexpr std::size_t kMaxShapes = 32;  // the engine keeps sets of shapes in the bits of a word
+constexpr std::size_t kMaxShapes = 32;  // the engine stores sets of shapes as bits of a 32-bit word
 
-/// A point [m] in the engine's frame [cm]; w: radius [cm], inverse mass or nothing.
+/// Converts a point from [m] to the engine's [cm]; w: radius [cm], inverse mass or unused.
 inline PxVec4 to_engine(const Point& x, double w) {
   const auto to = [&](std::size_t k) { return static_cast<float>(x[k] * kPerMetre); };
   return {to(0), to(1), to(2), static_cast<float>(w)};
@@ -25,17 +25,17 @@ nv::cloth::Range<const T> range(const std::vector<T>& v) {
   return {v.data(), v.data() + v.size()};
 }
 
-/// The scene's colliders. Shapes are inflated by their margins. Planes and boxes are convexes with sharp corners;
-/// vertices of triangles move along normals.
+/// The scene's colliders, inflated by their margins. Planes and boxes become convexes, so inflated boxes have sharp
+/// corners; vertices of meshes are moved along their normals.
 class Colliders {
  public:
-  /// `margin_m`: replaces the colliders' margins; 0: theirs.
+  /// `margin_m` replaces the colliders' margins, unless it is 0.
   Colliders(const ClothbenchScene& s, const Point& origin, double margin_m)
       : scene_(s), origin_(origin), margin_m_(margin_m) {
     std::vector<Point> spheres;
     std::uint32_t planes = 0;
     for (std::uint32_t k = 0; k < s.collider_count; ++k) {
-      // Ends of capsules that coincide share a sphere.
+      // Coincident ends of capsules share a sphere.
       for (std::uint32_t n = 0; n < 2 * s.colliders[k].capsule_count; ++n) {
         const Point end = capsule_end(s.poses[k], n);
         const auto same = [&](const Point& other) { return peer::length(end - other) < 1e-6; };
@@ -75,7 +75,7 @@ class Colliders {
     cloth.setTriangles(range(now_.triangles), 0, 0);
   }
 
-  /// Lets moving colliders go from where they are to the frame's poses; one that teleports is there at once.
+  /// Moves colliders from their current poses to the frame's; a collider that teleports starts in its new pose.
   void move(nv::cloth::Cloth& cloth, const ClothbenchFrame& frame) {
     if (!moves_) return;
     Shapes start = std::move(now_);
@@ -94,7 +94,7 @@ class Colliders {
   struct Shapes {
     std::vector<PxVec4> spheres, planes;
     std::vector<PxVec3> triangles;
-    /// The plane with this outward normal through a point, as the engine's equation n x + d = 0.
+    /// Adds the plane with outward normal `n` at `margin` [m] above a point, in the engine's form n x + d = 0.
     void add_plane(const Point& n, const Point& through, double margin) {
       const double d = -peer::dot(n, through) - margin;
       planes.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]),
@@ -143,10 +143,10 @@ class Colliders {
   const ClothbenchScene& scene_;
   Point origin_;
   double margin_m_;
-  std::vector<std::uint32_t> ends_;      ///< sphere of each end of all capsules
-  std::vector<std::uint32_t> convexes_;  ///< sets of planes
+  std::vector<std::uint32_t> ends_;      ///< index of the sphere of each end of all capsules
+  std::vector<std::uint32_t> convexes_;  ///< sets of planes, as bits
   std::size_t capsule_spheres_ = 0;
-  Shapes now_;  ///< where the last frame left them
+  Shapes now_;  ///< at the end of the last frame
   bool moves_ = false;
 };
 
