@@ -113,12 +113,12 @@ std::unique_ptr<btSoftBody> BulletSolver::new_body(btSoftBodyWorldInfo& info) {
   c.kVCF = 1;
   c.kDP = c.kDG = c.kLF = c.kPR = c.kVC = c.kMT = 0;
   c.viterations = c.diterations = c.citerations = c.collisions = 0;
-  // Hard contact, as in PyBullet: with Bullet's default, 0.1, a sweeping hand enters the cloth by 6 mm.
+  // Hard contact, as in PyBullet: with Bullet's default of 0.1, a sweeping hand penetrates the cloth by 6 mm.
   c.kKHR = c.kCHR = 1;
-  // Bullet multiplies the cloth's friction with the collider's, which has the pair's coefficient.
+  // Bullet multiplies the cloth's friction by the collider's, which is set to the pair's coefficient.
   c.kDF = 1;
   made->getCollisionShape()->setMargin(static_cast<btScalar>(contact_margin_m()));
-  // Bullet puts slow deformable bodies to sleep after 2 s, and they then hang in the air.
+  // Otherwise Bullet puts slow deformable bodies to sleep after 2 s, even in mid-air.
   made->setActivationState(DISABLE_DEACTIVATION);
   const std::vector<double> v = initial_velocities(*scene_);
   for (int i = 0; i < made->m_nodes.size(); ++i) {
@@ -136,7 +136,7 @@ void BulletSolver::add_links(btSoftBody& body, const Cloth& cloth, EdgeKind kind
     link.m_rl = static_cast<btScalar>(e.rest_m);
     link.m_c1 = link.m_rl * link.m_rl;
   }
-  // Otherwise Bullet takes the rest lengths from the positions at the first step.
+  // Otherwise Bullet's first step overwrites the rest lengths with distances of the positions.
   body.m_bUpdateRtCst = false;
 }
 
@@ -148,7 +148,7 @@ StepStatus BulletSolver::step(const FrameInput& frame) {
     if (frame.motion != nullptr) hold(*frame.motion, share, h);
     substep(h);
   }
-  // Drops distance field cells that no node has asked for in 256 frames; the lists Bullet searches grow without end.
+  // Removes distance field cells that no node has used in 256 frames, because Bullet's list of cells only grows.
   if (colliders_) body_->getWorldInfo()->m_sparsesdf.GarbageCollect();
   if (frame.motion != nullptr) {
     let_go(*frame.motion);
@@ -165,7 +165,7 @@ void BulletSolver::hold(const FrameMotion& end, double share, btScalar h) {
     btSoftBody::Node& n = body_->m_nodes[static_cast<int>(held[k])];
     if (now_.grip_held[k] == 0) continue;
     const btVector3 a = to_bullet(now_.grip_position_m[k]), b = to_bullet(end.grip_position_m[k]);
-    // A node without mass goes on at its velocity, which the constraints do not change.
+    // A node without mass moves at its velocity, which constraints do not change.
     n.m_v = n.m_vn = (a.lerp(b, static_cast<btScalar>(share)) - n.m_x) / h;
   }
 }
@@ -211,7 +211,7 @@ Plan BulletSolver::plan() const {
   constexpr FeatureSet kContact =
       kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::UnevenGrid, Feature::Spin};
   Plan p;
-  // Bullet's step cannot be divided: one stage serves links of all kinds, damping, pins and grips.
+  // Bullet's step cannot be divided: one stage covers links of all kinds, damping, pins and attachments.
   p.stages = {{"Step", scene_->needs - kContact, 0, kMissing, kMissing}};
   if (!scene_->needs.has(Feature::Shear)) p.left_out.push_back({"diagonals", "the scene has no shear stiffness"});
   if (!scene_->needs.has(Feature::Bend)) p.left_out.push_back({"skip-one links", "the scene has no bending"});

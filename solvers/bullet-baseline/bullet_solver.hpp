@@ -16,9 +16,9 @@ btVector3 to_bullet(const Vec3&);
 
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
 ///
-/// Shapes are exact where Bullet's are (sphere, box, capsule). A plane is the top of a large box, like the ground in
-/// Bullet's own examples: for soft bodies btStaticPlaneShape is such a slab too. A mesh is a thin body for each
-/// triangle; triangles of a moving mesh keep the shape they have at the start.
+/// Spheres, boxes and capsules are exact. A plane is the top of a large box, like the ground in Bullet's examples; for
+/// soft bodies btStaticPlaneShape is such a slab too. A mesh has a thin body per triangle; triangles of a kinematic
+/// mesh keep their shape at the start.
 class ColliderBodies {
  public:
   /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.
@@ -27,7 +27,7 @@ class ColliderBodies {
   ColliderBodies(const ColliderBodies&) = delete;
   ColliderBodies& operator=(const ColliderBodies&) = delete;
 
-  /// Moves dynamic colliders to `share` of the path between two instants. Bullet's next step derives their velocities.
+  /// Moves kinematic colliders to the fraction `share` of their path. Bullet's next step derives their velocities.
   void move(const FrameMotion& from, const FrameMotion& to, double share);
 
  private:
@@ -58,13 +58,13 @@ class ColliderBodies {
   std::vector<MovingTriangle> triangles_;  ///< triangles of one mesh are contiguous
 };
 
-/// Description of a solver of this folder. Settings of contact, which both share, follow its own.
+/// Describes a solver of this folder. Its own settings come first, then the settings of contact, which both share.
 SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings);
 
-/// Share of its velocity that a node keeps in a step of h [s]: e^(-c h), or 1 without damping.
+/// Fraction of velocity that damping leaves after a step of h [s]: e^(-c h), or 1 without damping.
 double kept_share(const Scene&, double h);
 
-/// The setting as an integer; throws Error outside [least, most].
+/// An integer setting. Throws Error unless it is in [least, most].
 int integer_setting(const SolverInfo&, const nlohmann::json& settings, const char* name, int least, int most);
 /// A numeric setting. Throws Error unless it is in (least, most].
 double number_setting(const SolverInfo&, const nlohmann::json& settings, const char* name, double least, double most);
@@ -87,7 +87,7 @@ class BulletSolver : public ClothSolver {
 
  protected:
   virtual int substeps_for(const Scene&) const = 0;
-  /// Makes a new world, if the scene needs one, and a new body in it by new_body().
+  /// Makes a new world, if the scene needs one, and in it the body that new_body() returns.
   virtual void build() = 0;
   /// Removes the body from the world, then destroys the world.
   virtual void tear_down() = 0;
@@ -95,17 +95,17 @@ class BulletSolver : public ClothSolver {
   /// Called after a vertex was attached or released.
   virtual void masses_changed() = 0;
 
-  /// World of the colliders' rigid bodies; null where the scene has none.
+  /// World of the colliders' rigid bodies; null if the scene has no colliders.
   virtual btDiscreteDynamicsWorld* world() = 0;
 
-  /// Makes a body with its nodes at the scene's positions. Pinned and attached nodes have mass 0, which marks a
-  /// static node in Bullet. Everything that Bullet adds by default is off, collisions included.
+  /// Makes a body with its nodes at the scene's positions. Pinned and attached nodes have mass 0, Bullet's mark of a
+  /// static node. All that Bullet adds by default is off, including collisions.
   std::unique_ptr<btSoftBody> new_body(btSoftBodyWorldInfo&);
-  /// Adds links of one kind with the scene's rest lengths; by default Bullet takes the distances at the start.
+  /// Adds links of one kind with the scene's rest lengths, instead of Bullet's default, the distances at the start.
   static void add_links(btSoftBody&, const Cloth&, EdgeKind);
   /// Sets gravity, no air, no water, and the voxel size of the distance fields.
   void set_surroundings(btSoftBodyWorldInfo&) const;
-  /// For the destructors of the two solvers.
+  /// Destroys colliders, body and world; called by the destructors of the two solvers.
   void drop();
 
   const Scene& scene() const { return *scene_; }
@@ -115,7 +115,7 @@ class BulletSolver : public ClothSolver {
   std::unique_ptr<btSoftBody> body_;
 
  private:
-  /// Sets velocities that bring held vertices to `share` of the path from the last frame's end to this one's.
+  /// Sets velocities that bring held vertices to the fraction `share` of their path from the last frame's end to `end`.
   void hold(const FrameMotion& end, double share, btScalar h);
   void let_go(const FrameMotion& end);
 
@@ -126,7 +126,7 @@ class BulletSolver : public ClothSolver {
   const Scene* scene_ = nullptr;
   std::unique_ptr<ColliderBodies> colliders_;
   FrameMotion now_;                  ///< at the end of the last frame; empty in a static scene
-  std::vector<btScalar> free_mass_;  ///< masses of all vertices, held ones too
+  std::vector<btScalar> free_mass_;  ///< masses of all vertices, also of attached ones; 0 if pinned
 };
 
 SolverEntry soft_entry();

@@ -6,11 +6,11 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// Half the side of the box whose top stands for a plane: large against any cloth, but distances in it are float32.
+/// Half the side of the box whose top represents a plane: larger than any cloth, small enough for float32 distances.
 constexpr double kGroundHalf_m = 10;
-/// By how much a triangle is thicker than a triangle; what PyBullet gives its collision shapes.
+/// Collision margin of a triangle's body: PyBullet's value for its collision shapes.
 constexpr btScalar kTriangleMargin_m = 0.001F;
-/// A capsule's length may differ from that at the start by this much: its shape is made once.
+/// Maximum change of a capsule's length since the start, because its shape is made only once.
 constexpr double kLengthTolerance_m = 1e-3;
 
 btVector3 direction(const Capsule& c, const btVector3& otherwise) {
@@ -29,8 +29,8 @@ Capsule between(const Capsule& from, const Capsule& to, double share) {
   return out;
 }
 
-/// Bullet's capsules lie along y. The rotation follows from the last one by the smallest turn. A rotation computed
-/// anew could spin about the capsule's axis, and Bullet would drag the cloth along with that spin.
+/// Bullet's capsules lie along y. The new rotation is the last one, rotated by the smallest angle. Otherwise a capsule
+/// could spin about its axis from frame to frame, and Bullet would drag the cloth along.
 btTransform place(const Capsule& c, btQuaternion& turn) {
   const btVector3 was = quatRotate(turn, btVector3(0, 1, 0));
   turn = shortestArcQuat(was, direction(c, was)) * turn;
@@ -50,7 +50,7 @@ Corners corners_of(const ColliderMesh& mesh, std::size_t triangle, const std::ve
   return out;
 }
 
-/// A frame in the middle of a triangle that turns with it. A triangle without area has no frame, and just moves.
+/// A coordinate frame at a triangle's centroid that rotates with it. A triangle without area is not rotated.
 btTransform place(const Corners& c) {
   const btVector3 middle = (c[0] + c[1] + c[2]) / 3, along = c[1] - c[0], normal = along.cross(c[2] - c[0]);
   if (!(normal.length2() > 0)) return btTransform(btQuaternion::getIdentity(), middle);
@@ -58,7 +58,7 @@ btTransform place(const Corners& c) {
   return frame(x, y, z, middle);
 }
 
-/// Throws Error on a capsule that a rigid body cannot follow.
+/// Throws Error if a capsule changes its length, which a rigid body cannot.
 void check_lengths(const Scene& scene) {
   for (const FrameMotion& m : scene.motion)
     for (std::size_t c = 0; c < scene.colliders.size(); ++c)

@@ -16,17 +16,17 @@
 namespace clothbench::bullet_baseline {
 namespace {
 
-/// From the first end to the second, where Bullet evaluates forces.
+/// Vector from a link's first end to its second, at the positions where Bullet evaluates forces.
 btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
 /// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
 /// along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
-/// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, so it is indefinite where a link is
-/// compressed. They do not damp: Bullet's spring damping is relative to neighbours, the scenes' is not.
+/// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, hence indefinite if a link is compressed.
+/// It has no damping: Bullet's acts relative to neighbours; the scenes' does not.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
-  /// Stiffness of each link of the one body it will be given [N/m, in Bullet's units].
+  /// Stiffness [N/m] of each link of the only body to which this force is added.
   explicit GridSprings(std::vector<btScalar> stiffness) : stiffness_(std::move(stiffness)) {}
 
   void addScaledElasticForce(btScalar scale, TVStack& force) override {
@@ -34,7 +34,7 @@ class GridSprings final : public btDeformableMassSpringForce {
       const btSoftBody::Link& l = body().m_links[i];
       const btVector3 d = reach(l);
       const btScalar length = d.length();
-      if (!(length > SIMD_EPSILON)) continue;  // no direction to push in
+      if (!(length > SIMD_EPSILON)) continue;  // the force has no direction
       const btVector3 pull = d * (scale * stiffness_[static_cast<std::size_t>(i)] * (1 - l.m_rl / length));
       force[l.m_n[0]->index] += pull;
       force[l.m_n[1]->index] -= pull;
@@ -102,7 +102,7 @@ struct DeformableWorld {
 
 /// Stiffness of a link [N/m].
 double link_stiffness(const Scene& s, const Edge& e) {
-  // For scenes whose cloth does not stretch: a spring can only come near, and explicit substeps grow with its root.
+  // For inextensible cloth, which springs only approximate. The number of explicit substeps grows with its root.
   constexpr double kStiff_N_per_m = 1e4;
   if (e.kind != EdgeKind::SkipOne) return spring_N_per_m(s, e, membrane_stiffness(s, e).value_or(kStiff_N_per_m));
   const auto [own, other] = edge_cell(s.cloth, e);
@@ -117,7 +117,7 @@ bool linked(const Scene& scene, EdgeKind kind) {
   return kind != EdgeKind::SkipOne || scene.needs.has(Feature::Bend);
 }
 
-/// The same bound for a mesh at its start. The largest eigenvalue of S_i is at most its Frobenius norm.
+/// stiffest_rad_per_s() of a mesh at its start. The largest eigenvalue of S_i is at most its Frobenius norm.
 double stiffest_of_mesh_rad_per_s(const Scene& scene) {
   const std::vector<double> mass = vertex_masses(scene);
   const std::vector<Vec3>& x = scene.cloth.mesh->vertices;
@@ -138,7 +138,7 @@ double stiffest_of_mesh_rad_per_s(const Scene& scene) {
   return std::sqrt(2 * most);
 }
 
-/// An upper bound of the flat sheet's highest angular frequency [1/s].
+/// Upper bound of the flat sheet's highest angular frequency [rad/s].
 ///
 /// In a mass-spring system sum k (n.(x_i - x_j))^2 <= 2 sum_i x_i.S_i x_i with S_i = sum k n n^T over the links of
 /// vertex i, hence omega^2 <= 2 max_i lambda_max(S_i)/m_i.
@@ -174,7 +174,7 @@ int substeps_of(const Scene& scene, const nlohmann::json& settings) {
   const int asked = settings["substeps"].get<int>();
   if (asked > 0) return asked;
   if (settings["implicit"].get<bool>()) return 4;
-  // Semi-implicit Euler is stable below 2/omega; a fifth is left for cloth that is stretched.
+  // Semi-implicit Euler is stable for steps below 2/omega; a fifth is a reserve for stretched cloth.
   return std::max(1, static_cast<int>(std::ceil(scene.time.dt() * stiffest_rad_per_s(scene) / (2 * 0.8))));
 }
 
@@ -196,7 +196,7 @@ class BulletDeformable final : public BulletSolver {
     const btVector3 gravity = to_bullet(scene().gravity_m_per_s2);
     w.setGravity(gravity);
     w.setImplicit(implicit_);
-    // Without it implicit steps do not move at all: Bullet's other preconditioner does not know them.
+    // Without projection implicit steps do not move the cloth, because Bullet's other preconditioner ignores them.
     w.setUseProjection(true);
     body_ = new_body(w.getWorldInfo());
     std::vector<btScalar> stiffness;
@@ -206,7 +206,7 @@ class BulletDeformable final : public BulletSolver {
       for (const Edge& e : edges(scene().cloth, kind))
         stiffness.push_back(static_cast<btScalar>(link_stiffness(scene(), e)));
     }
-    // Nodes meet rigid bodies, faces do not: PyBullet's face contacts make this cloth jump, at three times the cost.
+    // Only nodes collide with rigid bodies: PyBullet's face contacts make this cloth jump, at three times the cost.
     if (touches()) body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
     w.addSoftBody(body_.get());
     springs_ = std::make_unique<GridSprings>(std::move(stiffness));
@@ -234,7 +234,7 @@ class BulletDeformable final : public BulletSolver {
     parts_->world.stepSimulation(h, 0);
   }
 
-  void masses_changed() override {}  // Bullet reads them anew every step
+  void masses_changed() override {}  // Bullet reads masses in every step
 
   const nlohmann::json settings_;
   const bool implicit_;
@@ -243,7 +243,7 @@ class BulletDeformable final : public BulletSolver {
   std::unique_ptr<btDeformableGravityForce> gravity_;
 };
 
-/// v <- e^(-c h) v + g h, x <- x + h v every substep.
+/// Every substep: v <- e^(-c h) v + g h, x <- x + h v.
 double deformable_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = substeps_of(scene, settings);
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);

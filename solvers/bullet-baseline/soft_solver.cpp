@@ -52,7 +52,7 @@ class BulletSoft final : public BulletSolver {
     body_->updateLinkConstants();
     if (!touching_) return;
     body_->m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
-    // The nodes' boxes have Bullet's default margin of 0.25 m, and Bullet keeps a box until its node leaves it.
+    // Otherwise nodes' boxes have Bullet's default margin of 0.25 m, and Bullet keeps a box until its node leaves it.
     body_->m_sst.radmrg = body_->getCollisionShape()->getMargin();
     body_->updateNodeTree(false, true);
     touching_->world.setGravity(to_bullet(scene().gravity_m_per_s2));
@@ -81,11 +81,11 @@ class BulletSoft final : public BulletSolver {
 
   const int iterations_, substeps_;
   const double relaxation_;
-  std::unique_ptr<btSoftBodyWorldInfo> alone_;  ///< without colliders there is no world
+  std::unique_ptr<btSoftBodyWorldInfo> alone_;  ///< replaces the world in scenes without colliders
   std::unique_ptr<SoftWorld> touching_;
 };
 
-/// v <- v + g h, x <- x + h v, and v <- (x - x_old)/h (1 - kDP) after the constraints, every substep.
+/// Every substep: v <- v + g h, x <- x + h v and, after the constraints, v <- (x - x_old)/h (1 - kDP).
 double soft_free_fall_m(const Scene& scene, const nlohmann::json& settings, int frames) {
   const int substeps = settings["substeps"].get<int>();
   const double h = scene.time.dt() / substeps, g = scene.gravity_m_per_s2[1], keep = kept_share(scene, h);

@@ -16,7 +16,7 @@ Vector masses3(const Model& m) {
   return out;
 }
 
-/// The free entries of a 3-per-vertex vector.
+/// The entries of free vertices of a vector with 3 entries per vertex.
 Vector gather(const Model& m, const Vector& full) {
   Vector out(m.free_dofs());
   for (std::size_t v = 0; v < m.vertices(); ++v)
@@ -37,11 +37,11 @@ void add_mass(const Model& m, double scale, Triplets& out) {
 
 double largest(const Vector& v) {
   double most = 0;
-  for (double x : v) most = std::abs(x) <= most ? most : std::abs(x);  // NaN stays
+  for (double x : v) most = std::abs(x) <= most ? most : std::abs(x);  // the comparison lets NaN through
   return most;
 }
 
-/// One implicit step in the unknowns y (position where forces are taken) and lambda:
+/// One implicit step in the unknowns y (where forces are evaluated) and lambda:
 ///   M (mass_scale * (y - base)) = force(y) - G(y)^T lambda,   C(y) = compliance * lambda.
 /// Both implicit integrators have this form.
 StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolerance, double mass_scale,
@@ -67,7 +67,7 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
     for (std::size_t v = 0; v < m.vertices(); ++v)
       if (!m.held(v)) y.segment<3>(static_cast<Eigen::Index>(3 * v)) += rhs.segment<3>(m.dof(v));
     lambda += rhs.tail(all - n);
-    // With very stiff bending of tiny cells rounding may exceed the tolerance; the residual then no longer falls.
+    // With very stiff bending of tiny cells, rounding may exceed the tolerance. The residual then stops falling.
     const bool at_rounding = i > 0 && residual > 0.5 * before;
     if ((residual <= tolerance.acceleration || at_rounding) && largest(rhs.head(n)) <= tolerance.length_m)
       return StepStatus::Ok;
@@ -76,7 +76,7 @@ StepStatus solve_implicit(Model& m, SaddlePoint& system, const Tolerance& tolera
   return StepStatus::Diverged;
 }
 
-/// Its first step is backward Euler.
+/// BDF2; the first step is backward Euler.
 class Bdf2 final : public Integrator {
  public:
   using Integrator::Integrator;
@@ -90,11 +90,11 @@ class Bdf2 final : public Integrator {
     const bool first = before_.x.size() == 0 || h != h_;
     if (first) system_.forget();
     const double c = model_.damping_per_s();
-    // x' = (k0 x + px)/h and v' = (k0 v + pv)/h with the history in px, pv.
+    // dx/dt = (k0 x + px)/h and dv/dt = (k0 v + pv)/h at the step's end; px, pv: the history.
     const double k0 = first ? 1.0 : 1.5;
     const Vector px = first ? Vector(-s.x) : Vector(-2 * s.x + 0.5 * before_.x);
     const Vector pv = first ? Vector(-s.v) : Vector(-2 * s.v + 0.5 * before_.v);
-    // M ((k0 (k0 x + px)/h + pv)/h + c (k0 x + px)/h) = F: in the form mass_scale (x - base).
+    // M ((k0 (k0 x + px)/h + pv)/h + c (k0 x + px)/h) = F, in the form M mass_scale (x - base) = F.
     const double a = k0 / h * (k0 / h + c);
     const Vector base = -((k0 / h + c) / h * px + pv / h) / a;
     Vector x = s.x + h * s.v, lambda = s.lambda;
@@ -118,8 +118,8 @@ class Midpoint final : public Integrator {
   using Integrator::Integrator;
 
   StepStatus step(State& s, const Vector& held_x, double h) override {
-    // y = (x + x')/2, v' = 4 (y - x)/h - ... : M (v' - v)/h + c M (v + v')/2 = F(y), v' = 4 (y - x)/h - v - ...
-    // with x' = x + h (v + v')/2, so (v + v')/2 = 2 (y - x)/h and v' - v = 4 (y - x)/h - 2 v.
+    // M (v' - v)/h + c M (v + v')/2 = F(y) at the midpoint y = (x + x')/2, with x', v' at the step's end.
+    // x' = x + h (v + v')/2, so (v + v')/2 = 2 (y - x)/h and v' - v = 4 (y - x)/h - 2 v.
     const double c = model_.damping_per_s(), a = 4 / (h * h) + 2 * c / h;
     const Vector base = s.x + 2 / h * s.v / a;
     Vector y = s.x + h / 2 * s.v, lambda = s.lambda;
@@ -139,7 +139,7 @@ class Rattle final : public Integrator {
   StepStatus step(State& s, const Vector& held_x, double h) override {
     if (!(h * model_.highest_bending_frequency() < 2)) return StepStatus::Diverged;
     const Vector mass = masses3(model_);
-    const double keep = std::exp(-model_.damping_per_s() * h / 2);  // half a step of drag on either side
+    const double keep = std::exp(-model_.damping_per_s() * h / 2);  // damping, half a step before and half after
     const Vector v_half = keep * s.v + h / 2 * model_.force(s.x).cwiseQuotient(mass);
     Vector x = s.x + h * v_half, lambda = s.lambda;
     put_held(model_, held_x, x);
@@ -154,8 +154,8 @@ class Rattle final : public Integrator {
   }
 
  private:
-  /// x <- x - h^2/2 M^-1 G(from)^T lambda with C(x) = 0, by Newton on lambda with the exact Jacobian G(x) M^-1
-  /// G(from)^T replaced by the symmetric one at `from`, whose fixed point is the same.
+  /// x <- x - h^2/2 M^-1 G(from)^T lambda with C(x) = 0, by Newton on lambda with the Jacobian G(x) M^-1 G(from)^T
+  /// replaced by the symmetric one at `from`; the fixed point is the same.
   StepStatus to_manifold(const Vector& from, double h, const Vector& mass, Vector& x, Vector& lambda) {
     const double scale = h * h / 2;
     const Vector free = x;
@@ -212,11 +212,11 @@ class Rattle final : public Integrator {
 
 }  // namespace
 
-/// Without compliance the lower block is 0 and a factorisation without pivoting meets zero pivots. A little is taken
-/// off it (quasi-definite: every ordering works, Vanderbei 1995); refinement by the true matrix undoes it.
+/// Without compliance the lower block is 0, and a factorisation without pivoting meets zero pivots. So its diagonal is
+/// shifted below 0 (quasi-definite: every ordering works, Vanderbei 1995); iterative refinement removes the error.
 void SaddlePoint::solve(int size, const Triplets& lower, Vector& rhs) {
   constexpr double kShift =
-      1e-9;  // relative to the largest diagonal entry of G A^-1 G^T, which is 2 / smallest diagonal of A
+      1e-9;  // relative to the largest diagonal entry of G A^-1 G^T, estimated as 2 / (smallest diagonal entry of A)
   constexpr int kRefinements = 6;
   Eigen::SparseMatrix<double> K(size, size);
   K.setFromTriplets(lower.begin(), lower.end());

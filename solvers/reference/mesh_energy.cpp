@@ -17,7 +17,7 @@ using Corners = std::array<std::uint32_t, 3>;
 
 /// A triangle at rest, unfolded into a plane.
 struct Flat {
-  std::array<Eigen::Vector2d, 3> along, outward;  ///< unit, of the edge from corner k to corner k + 1
+  std::array<Eigen::Vector2d, 3> along, outward;  ///< unit vectors of edge k, from corner k to corner k + 1
   std::array<double, 3> length_m;
   double area_m2;
 };
@@ -41,14 +41,15 @@ Flat flatten(const ClothMesh& mesh, std::size_t triangle) {
   return f;
 }
 
-/// Second derivatives (xx, yy, sqrt(2) xy) of a triangle to which the derivative d along the direction `of` at the
-/// middle of edge k contributes: the mean of the gradient's derivative is an integral over the border.
+/// Contribution to a triangle's second derivatives (xx, yy, sqrt(2) xy) by a unit derivative in direction `of` at the
+/// middle of edge k: the triangle's mean second derivative is an integral of first derivatives over its border.
 Eigen::Vector3d curvature(const Flat& f, int k, const Eigen::Vector2d& of) {
   const Eigen::Vector2d n = f.length_m[k] / f.area_m2 * f.outward[k];
   return {n.x() * of.x(), n.y() * of.y(), (n.x() * of.y() + n.y() * of.x()) / std::sqrt(2.0)};
 }
 
-/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle that has them ascending.
+/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle whose corners ascend
+/// there.
 class Unknowns {
  public:
   Unknowns(const ClothMesh& mesh, const std::vector<std::uint32_t>& pinned) : vertices_(mesh.vertices.size()) {
@@ -67,7 +68,7 @@ class Unknowns {
   std::size_t vertices() const { return vertices_; }
   std::size_t count() const { return vertices_ + edges_.size(); }
 
-  /// Adds to `row`, by unknowns, `factor` times the derivative along edge k's outward normal.
+  /// Adds `factor` times the derivative along edge k's outward normal to `row`, which has one entry per unknown.
   void add_across(const ClothMesh& mesh, std::size_t triangle, int k, const Eigen::Vector3d& factor,
                   std::map<std::size_t, Eigen::Vector3d>& row) const {
     const Corners& c = mesh.triangles[triangle];
@@ -76,7 +77,8 @@ class Unknowns {
       at(row, edges_.at(key(c, k))) += (c[k] < c[(k + 1) % 3] ? 1 : -1) * factor;
       return;
     }
-    // The gradient of the clamped triangle's linear motion: each corner contributes minus the opposite edge's normal.
+    // Gradient of the linear position in the clamped triangle: each corner contributes along the opposite edge's
+    // normal.
     const Flat f = flatten(mesh, clamp->second);
     const Corners& held = mesh.triangles[clamp->second];
     int edge = 0;
@@ -124,7 +126,7 @@ Sparse bending_matrix(const ClothMesh& mesh, double rigidity_N_m, const std::vec
   Sparse whole(n + m, n + m);
   whole.setFromTriplets(all.begin(), all.end());
   Sparse across = whole.block(n, n, m, m);
-  // The derivative across an edge between clamped triangles is no unknown: a row without entries.
+  // The derivative across a clamp's edge is no unknown; its empty row gets a diagonal of 1.
   for (int e = 0; e < m; ++e)
     if (!(across.coeff(e, e) > 0)) across.coeffRef(e, e) = 1;
   const Sparse vertex = whole.block(0, 0, n, n), mixed = whole.block(n, 0, m, n);

@@ -16,21 +16,21 @@ namespace clothbench::reference {
 ///
 /// Morley's element ("The triangular equilibrium element in the solution of plate bending problems", Aeronautical
 /// Quarterly 19, 1968): second derivatives are constant in a triangle, and the derivative across each edge is an
-/// unknown at its middle. These unknowns have no mass; K is what is left when they are solved for. It is exact for
-/// quadratic deflections on any mesh, in energy and in force, and converges with order 2.
+/// unknown at its middle. These unknowns have no mass; K remains after their elimination. It is exact for quadratic
+/// deflections on any mesh, in energy and in force, and converges with order 2.
 ///
-/// A triangle whose vertices are all in `pinned` (ascending) is a clamp: derivatives across its edges are its own.
-/// Entries below 1e-13 of the maximum are left out. Needs one factorisation and one solution per vertex.
+/// A triangle with all vertices in `pinned` (ascending) is a clamp: its plane sets derivatives across its edges.
+/// Entries below 1e-13 of the maximum are omitted. Needs one factorisation and one solve per vertex.
 Eigen::SparseMatrix<double> bending_matrix(const ClothMesh&, double rigidity_N_m,
                                            const std::vector<std::uint32_t>& pinned);
 
-/// Poisson's ratio of a triangle mesh, equal to the ratio of grid springs: equilateral triangles then are springs.
+/// Poisson's ratio of triangle meshes, as of grid springs. With it an equilateral triangle is equal to three springs.
 inline constexpr double kMeshPoissonRatio = 1.0 / 3;
 
 /// Compliance S [m/N] of a triangle of constant strain: S t are the elongations of the edges 0-1, 1-2 and 2-0 under the
 /// tensions t [N] in them. Its energy 1/2 d' S^-1 d in the elongations d is, for small d, the energy of an isotropic
-/// sheet of plane stress, of `stiffness_N_per_m` and Poisson's ratio 1/3 (Delingette, "Triangular springs for modeling
-/// nonlinear membranes", IEEE TVCG 14, 2008, has it for squared lengths). `corners` are at rest and not on one line.
+/// sheet in plane stress with `stiffness_N_per_m` and Poisson's ratio 1/3 (Delingette, "Triangular springs for modeling
+/// nonlinear membranes", IEEE TVCG 14, 2008, for squared lengths). `corners`: at rest, not on one line.
 Eigen::Matrix3d triangle_compliance(const std::array<Vec3, 3>& corners, double stiffness_N_per_m);
 
 }  // namespace clothbench::reference

@@ -15,7 +15,7 @@ bool pinned(std::uint32_t v, const Scene& s) {
 using Map3 = Eigen::Map<const Eigen::Vector3d>;
 Map3 at(const Vector& x, std::uint32_t v) { return Map3(x.data() + 3 * v); }
 
-/// Adds a symmetric 3x3 block that couples two free vertices (lower triangle of the whole).
+/// Appends the lower triangle's part of a symmetric 3x3 block; skips held vertices (negative row or column).
 void add_block(const Eigen::Matrix3d& block, int row, int column, Triplets& out) {
   if (row < 0 || column < 0) return;
   for (int r = 0; r < 3; ++r)
@@ -54,7 +54,7 @@ Model::Model(const Scene& scene) : mass_(vertex_masses(scene)) {
   } else if (scene.needs.has(Feature::Bend)) {
     for (const Edge& e : edges(c, EdgeKind::SkipOne)) {
       const double a = e.rest_m / 2, w = edge_cell(c, e).across_m;
-      // Two pinned vertices in a row are a clamp: its hinge stands for half a cell, so it is twice as stiff.
+      // Two successive pinned vertices are a clamp. The hinge there covers half a cell, so it is twice as stiff.
       const std::uint32_t b = (e.a + e.b) / 2;
       const bool clamp = pinned(e.a, scene) + pinned(b, scene) + pinned(e.b, scene) == 2 && pinned(b, scene);
       const double share = (on_border(c, e) ? 0.5 : 1) * (clamp ? 2 : 1);

@@ -1,4 +1,4 @@
-// The reference solver: double precision, implicit, sparse direct solves, constraints where there is no compliance.
+// The reference solver: double precision, implicit, sparse direct solves; springs without compliance are constraints.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -90,7 +90,7 @@ class Reference final : public ClothSolver {
     out.velocity.assign(state_.v.begin(), state_.v.end());
   }
 
-  /// BDF2 begins again with a step of backward Euler.
+  /// BDF2 restarts with a step of backward Euler.
   bool restart(const ClothState& state) override {
     if (!scene_->motion.empty()) return false;
     reset();
@@ -132,7 +132,7 @@ class Reference final : public ClothSolver {
   std::vector<std::uint8_t> grip_held_;
 };
 
-/// Fall of one particle by the solver's own time step (RATTLE and the midpoint rule agree on it without damping).
+/// Free fall [m] of one particle by the solver's integrator. Without damping, RATTLE and the midpoint rule agree.
 double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
   const int substeps = settings["substeps"].get<int>();
   const double h = s.time.dt() / substeps, g = s.gravity_m_per_s2[1], c = s.material.damping_per_s;

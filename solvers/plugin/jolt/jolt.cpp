@@ -31,12 +31,12 @@ using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::Point;
 using Shared = JPH::SoftBodySharedSettings;
 
 constexpr JPH::ObjectLayer kCloth = 0, kObstacle = 1;
-/// Compliance of the bend constraints [m/N]. At the engine samples' 1e-5 an inextensible sheet of 64 x 64 tears apart.
+/// Compliance of bend constraints [m/N]. With 1e-5, as in the engine's samples, an inextensible 64 x 64 sheet tears.
 constexpr float kBendCompliance = 1e-2F;
 
 Vec3 vec3(const double* x) { return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])}; }
 
-/// A point of the world [m] in the engine's float32, around `origin`.
+/// Converts a point [m] to the engine's float32 coordinates relative to `origin`.
 Vec3 to_engine(const Point& x, const Point& origin) { return vec3((x - origin).data()); }
 
 JPH::Ref<JPH::Shape> made(const JPH::ShapeSettings& settings) {
@@ -45,7 +45,7 @@ JPH::Ref<JPH::Shape> made(const JPH::ShapeSettings& settings) {
   return result.Get();
 }
 
-/// Constraints that the engine makes of the faces, on a copy without anything else.
+/// A copy of vertices and faces with the constraints that the engine makes from the faces.
 Shared created(const Shared& from, const Shared::VertexAttributes& attributes, Shared::EBendType bend) {
   Shared copy;
   copy.mVertices = from.mVertices;
@@ -54,8 +54,8 @@ Shared created(const Shared& from, const Shared::VertexAttributes& attributes, S
   return copy;
 }
 
-/// The engine's constraints in the engine's order, because the order affects convergence: an edge with a spring of the
-/// scene gets the compliance of the spring, and a diagonal without a spring is removed.
+/// Adds the engine's edge constraints in the engine's order, which affects convergence. An edge with a spring of the
+/// scene gets the spring's compliance, and a diagonal without a spring is removed.
 void add_edges(const ClothbenchScene& s, Shared& to) {
   constexpr float kDiagonal = 2;  // marks the engine's diagonals
   std::map<peer::Pair, Shared::Edge> springs;
@@ -79,7 +79,7 @@ void add_edges(const ClothbenchScene& s, Shared& to) {
   for (const auto& [vertices, e] : springs) to.mEdgeConstraints.push_back(e);
 }
 
-/// The sheet at rest. Long-range attachments go only to pins, because grips can be released.
+/// The sheet at rest. Long-range attachments lead only to pins, because attached vertices can be released.
 JPH::Ref<Shared> shared_settings(const ClothbenchScene& s) {
   JPH::Ref<Shared> out = new Shared;
   const std::vector<double> inverse_mass = peer::inverse_masses(s);
@@ -195,7 +195,7 @@ class Solver : public peer::Adapter {
       }
   }
 
-  /// The engine has one radius for all vertices: the largest margin of the scene.
+  /// Contact offset [m]: the engine has one radius for all vertices, so it is the scene's largest margin.
   double margin_m(std::uint32_t = 0) const {
     double largest = 0;
     for (std::uint32_t k = 0; k < scene.collider_count; ++k)
@@ -203,7 +203,7 @@ class Solver : public peer::Adapter {
     return largest;
   }
 
-  /// The constraints of the shared settings have the rest lengths already, so their vertices can move to the start.
+  /// The constraints of the shared settings already have rest lengths, so the vertices can be moved to the start.
   void restart(const ClothbenchRestart& start) {
     world_ = std::make_unique<World>();
     world_->system.SetGravity(vec3(scene.gravity_m_per_s2));
@@ -276,7 +276,7 @@ class Solver : public peer::Adapter {
     return made(settings);
   }
 
-  /// Moving colliders reach the frame's poses at its end. Meshes get a new shape per frame: the engine's cannot deform.
+  /// Kinematic colliders reach the frame's poses at its end. Meshes get a new shape per frame: the engine's are rigid.
   void move_colliders(const ClothbenchFrame& frame) {
     JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) {
@@ -295,7 +295,7 @@ class Solver : public peer::Adapter {
     }
   }
 
-  /// Attached vertices are kinematic: without inverse mass, at the velocity that takes them to the frame's end.
+  /// Attached vertices are kinematic: inverse mass 0, and the velocity that brings them to their end position.
   void move_grips(const ClothbenchFrame& frame) {
     for (std::uint32_t k = 0; k < scene.grip_count; ++k) {
       const std::uint32_t v = scene.grips[k];

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kFree = 1e7F;  // radius [cm] of a motion constraint that does not act
 
-/// The engine allocates, reports and asserts through this one object.
+/// The engine's allocator, error callback and assertion handler in one object.
 struct Callbacks : physx::PxAllocatorCallback, physx::PxErrorCallback, nv::cloth::PxAssertHandler {
   std::string message;
   void* allocate(std::size_t size, const char*, const char*, int) override {
@@ -42,7 +42,7 @@ struct Settings {
   double frequency_hz, substeps, tethers, margin_m, frictionless_triangles;
   explicit Settings(const double* v)
       : frequency_hz(v[0]), substeps(v[1]), tethers(v[2]), margin_m(v[3]), frictionless_triangles(v[4]) {}
-  /// Solver iterations in a frame of `dt_s` seconds, rounded as the engine rounds.
+  /// Solver iterations in a frame of `dt_s` seconds, rounded like the engine does.
   int iterations(double dt_s) const {
     const double n = substeps > 0 ? substeps : std::floor(dt_s * frequency_hz + 0.5);
     return static_cast<int>(std::max(1.0, n));
@@ -56,7 +56,7 @@ void describe(nv::cloth::BoundedData& to, const T* from, std::size_t count, std:
   to.stride = static_cast<physx::PxU32>(per_item * sizeof(T));
 }
 
-/// The sheet at rest, cooked: cells of a grid, triangles of a mesh.
+/// Passes the sheet at rest to the cooker: quads of a grid, triangles of a mesh.
 void cook_mesh(nv::cloth::ClothFabricCooker& cooker, const ClothbenchScene& s,
                const std::vector<double>& inverse_mass) {
   std::vector<PxVec3> points;
@@ -79,15 +79,15 @@ void cook_mesh(nv::cloth::ClothFabricCooker& cooker, const ClothbenchScene& s,
 }
 
 struct Cooked {
-  nv::cloth::Fabric* fabric = nullptr;         ///< one reference, the caller's
+  nv::cloth::Fabric* fabric = nullptr;         ///< the caller owns one reference
   std::vector<nv::cloth::PhaseConfig> phases;  ///< phases that the scene needs, with their stiffness
 };
 
-/// Fabric of the sheet at rest. `NvClothExt`'s cooker sorts constraints into phases: vertical and horizontal edges,
-/// diagonals, and pairs two edges apart for bending; tethers go to the pins. Phases without a spring of the scene are
-/// left out. The stiffness of a constraint is the fraction of its error that one iteration removes, W k h^2 / (1 + W k
-/// h^2) with the sum W of inverse masses and the spring k. Because an iteration is a step of its own here, this is the
-/// compliance of the constraint (Macklin et al., XPBD, 2016, eq. 18 with lambda = 0).
+/// Makes the fabric of the sheet at rest. `NvClothExt`'s cooker sorts constraints into phases: vertical and horizontal
+/// edges, diagonals, and pairs two edges apart for bending; tethers lead to pins. Phases without a spring of the scene
+/// are omitted. The stiffness of a constraint is the fraction of its error that one iteration removes, W k h^2 /
+/// (1 + W k h^2), W: sum of inverse masses, k: spring stiffness. Each iteration here is a whole step of h, so this is
+/// equivalent to compliance 1 / k (Macklin et al., XPBD, 2016, eq. 18 with lambda = 0).
 Cooked cook(nv::cloth::Factory& factory, const ClothbenchScene& s, const std::vector<double>& inverse_mass,
             bool tethers, double iteration_s) {
   const auto free = [](nv::cloth::ClothFabricCooker* cooker) { NV_CLOTH_DELETE(cooker); };
@@ -104,7 +104,7 @@ Cooked cook(nv::cloth::Factory& factory, const ClothbenchScene& s, const std::ve
     return x / (1 + x);
   };
   Cooked out;
-  std::vector<float> each(data.mRestvalues.size(), 0);  // logarithm to base 2 of the error fraction that is left
+  std::vector<float> each(data.mRestvalues.size(), 0);  // log2 of the fraction of the error that one iteration leaves
   bool even = true;
   for (std::uint32_t phase = 0; phase < data.mPhaseIndices.size(); ++phase) {
     const std::uint32_t set = data.mPhaseIndices[phase];
@@ -120,7 +120,7 @@ Cooked cook(nv::cloth::Factory& factory, const ClothbenchScene& s, const std::ve
     even = even && (high < low || high - low <= 1e-3 * high);
     if (config.mStiffness > 0) out.phases.push_back(config);
   }
-  // The engine skips phases of low stiffness, also where each constraint states its own.
+  // The engine skips phases of low stiffness even if each constraint has its own stiffness.
   if (!even)
     for (nv::cloth::PhaseConfig& config : out.phases) config.mStiffness = std::max(config.mStiffness, 0.5F);
   const nv::cloth::Range<const std::uint32_t> no_anchors;
@@ -170,7 +170,7 @@ class Solver : public peer::Adapter {
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
 
-  /// Velocities are differences of positions in the engine: the previous ones lie an iteration back.
+  /// The engine stores velocities as differences of positions, so previous positions are set one iteration back.
   void restart(const ClothbenchRestart& start) {
     drop_cloth();
     colliders_.put(start.poses);
@@ -233,14 +233,14 @@ class Solver : public peer::Adapter {
     const bool friction = peer::needs(scene, CLOTHBENCH_FRICTION) && scene.collider_count > 0;
     cloth_->setStiffnessFrequency(static_cast<float>(1 / iteration_s_));
     cloth_->setGravity(PxVec3(static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2])));
-    // The share of the velocity that is lost in an iteration.
+    // The fraction of velocity that an iteration removes.
     cloth_->setDamping(PxVec3(static_cast<float>(-std::expm1(-scene.damping_per_s * iteration_s_))));
     cloth_->setPhaseConfig(range(cooked_.phases));
     cloth_->setFriction(static_cast<float>(friction ? scene.colliders[0].friction : 0));
     cloth_->enableContinuousCollision(colliders_.has_spheres());
   }
 
-  /// One at the middle of each triangle. The engine tests them only against spheres and capsules.
+  /// Adds a particle at the middle of each triangle. The engine tests these only against spheres and capsules.
   void add_virtual_particles() {
     std::vector<std::array<std::uint32_t, 4>> particles;
     for (std::uint32_t t = 0; t < scene.triangle_count; ++t) {
@@ -253,8 +253,8 @@ class Solver : public peer::Adapter {
     cloth_->setVirtualParticles(nv::cloth::Range<Indices>(first, first + particles.size()), range(weights));
   }
 
-  /// Motion constraints of radius 0, which the engine interpolates over the frame's iterations. `position_m`, `held`:
-  /// of the grips. If null, all grips hold their vertices at the initial positions.
+  /// Attaches vertices by motion constraints of radius 0, which the engine interpolates over the frame's iterations.
+  /// `position_m`, `held`: one entry per grip. If null, all grips hold their vertices at the initial positions.
   void attach(const double* position_m, const std::uint8_t* held) {
     if (scene.grip_count == 0) return;
     const nv::cloth::Range<PxVec4> spheres = cloth_->getMotionConstraints();
