@@ -116,9 +116,8 @@ class Integrator {
   SaddlePoint system_;
 };
 
-/// Default: BDF2 (first step: backward Euler) with positions, velocities and tensions at the step's end: stiffly
-/// accurate, order 2, damps unresolved frequencies (Hairer & Wanner, Solving Ordinary Differential Equations II, V,
-/// VII)
+/// Default: BDF2 (first step: backward Euler) with x, v and tensions at the step's end: stiffly accurate, order 2,
+/// damps unresolved frequencies. Hairer & Wanner, Solving Ordinary Differential Equations II, V and VII.
 ///
 /// `conservative`: for elastic cloth the implicit midpoint rule with tensions at the midpoint: order 2, conserves
 /// momentum, no numerical damping. For inextensible cloth RATTLE (Andersen 1983): order 2, symplectic; explicit forces.

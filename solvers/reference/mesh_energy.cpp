@@ -48,8 +48,7 @@ Eigen::Vector3d curvature(const Flat& f, int k, const Eigen::Vector2d& of) {
   return {n.x() * of.x(), n.y() * of.y(), (n.x() * of.y() + n.y() * of.x()) / std::sqrt(2.0)};
 }
 
-/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle whose corners ascend
-/// there.
+/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle with ascending corners.
 class Unknowns {
  public:
   Unknowns(const ClothMesh& mesh, const std::vector<std::uint32_t>& pinned) : vertices_(mesh.vertices.size()) {
@@ -77,8 +76,7 @@ class Unknowns {
       at(row, edges_.at(key(c, k))) += (c[k] < c[(k + 1) % 3] ? 1 : -1) * factor;
       return;
     }
-    // Gradient of the linear position in the clamped triangle: each corner contributes along the opposite edge's
-    // normal.
+    // Gradient of the linear position in the clamped triangle: a corner contributes along its opposite edge's normal.
     const Flat f = flatten(mesh, clamp->second);
     const Corners& held = mesh.triangles[clamp->second];
     int edge = 0;
