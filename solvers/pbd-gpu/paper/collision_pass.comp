@@ -14,7 +14,7 @@ layout(push_constant) uniform Push { PaperContactConstants p; };
 PAPER_CONSTANTS(SPECIALIZE)
 
 float side;                // -1: triangles push against their normals
-vec3 removed = vec3(0.0);  // tangential displacement that friction takes off the velocity
+vec3 removed = vec3(0.0);  // tangential displacement that friction removes from the velocity
 
 /// Moves `at` by `push` along `normal`; friction removes a fraction of the tangential displacement since `from`.
 vec3 touched(vec3 at, vec3 from, vec3 normal, float push, float friction) {

@@ -1,6 +1,6 @@
 // XPBD with a direct solve of whole grid lines (xpbd/lines/README.md). A chain is a line of one of four colours: 0
-// rows, 1 columns, 2 and 3 diagonals. Diagonals wrap around the cloth's sides, so that all have ROWS vertices; no link
-// is where they wrap. LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// rows, 1 columns, 2 and 3 diagonals. Diagonals wrap around the cloth's sides, so that all have ROWS vertices, but have
+// no link there. LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // by chain

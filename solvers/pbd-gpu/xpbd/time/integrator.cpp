@@ -72,8 +72,8 @@ bool resolves_waves(const Scene& scene, int substeps) {
 }
 
 /// h'^2 T / (m l) for the maximum tension T [N] of a link at a pin, at one substep per frame: the number that decides
-/// whether tension may be explicit. The weight is taken to hang evenly from the pinned vertices that have free
-/// neighbours; a single pinned vertex is taken to stand on the border, whose vertices have half the mass.
+/// whether tension may be explicit. The weight is assumed to hang evenly from the pinned vertices that have free
+/// neighbours. Few such vertices are assumed to lie on the border, where a vertex has half the mass.
 double tension_number(const Scene& s) {
   const Cloth& c = s.cloth;
   if (s.pins.vertices.empty()) return 0;
@@ -91,8 +91,8 @@ double tension_number(const Scene& s) {
   return h * h * total * norm(s.gravity_m_per_s2) / carrying / (share * inner * link);
 }
 
-/// True if tethers hold the cloth well enough without implicit tension: inextensible cloth, whose tethers carry the
-/// load, and elastic cloth whose tension may be explicit.
+/// True if tethers suffice without implicit tension: for inextensible cloth, whose tethers carry the load, and for
+/// elastic cloth whose tension may be explicit.
 bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
   return !scene.material.membrane_stiffness_N_per_m ||
          tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
