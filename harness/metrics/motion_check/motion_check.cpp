@@ -55,7 +55,7 @@ const char* name_of(Check check) {
 
 namespace {
 
-/// When a frame ends [s]; frames after the scene's end are as long as its others.
+/// End time [s] of a frame; frames after the scene's end have the duration of equal frames.
 double time_of(const TimeSpan& t, std::size_t frame) {
   const int k = static_cast<int>(frame), beyond = k - t.frames();
   return beyond > 0 ? t.at(t.frames()) + beyond * t.dt() : t.at(k);
@@ -92,7 +92,7 @@ void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
   }
 }
 
-/// A cloth that meets itself crosses itself by no more than the corner of a cell.
+/// A cloth with self-collision may cross itself only at the corner of a cell.
 void check_self(const Motion& m, Bodies&, Findings& found) {
   if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
   found.define("self_crossing");
