@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Names of the two sides of a comparison, and of a failure.
+/// Names of the two sides of a comparison, and the word for a failure.
 struct Sides {
   const char *a = "baseline", *b = "found", *worse = "FAILED";
 };
@@ -33,7 +33,7 @@ Table findings_table(Table t, const std::vector<CheckedRun>& runs, const Sides& 
   return t;
 }
 
-/// Table and messages of `runs`; empty if there is no finding.
+/// Table and messages of `runs`; empty if they have no findings.
 std::string findings_text(const std::string& title, const std::vector<CheckedRun>& runs, const Sides& sides = {}) {
   std::string messages;
   const Table t = findings_table({title, "", {}}, runs, sides, messages);
@@ -88,13 +88,13 @@ json run_json(const CheckedRun& run) {
 
 std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 ? "" : "s"); }
 
-/// Valid UTF-8, whatever a solver put into its message.
+/// Valid UTF-8 for any bytes in a solver's message.
 std::string valid_utf8(const std::string& text) {
   return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/// For element text and attributes alike. Line breaks are written as references, or attributes would lose them; other
-/// control characters, U+FFFE and U+FFFF exist in no XML 1.0 text.
+/// Escapes element text and attributes alike. Line breaks become references, because attributes would lose them; other
+/// control characters, U+FFFE and U+FFFF are not allowed in XML 1.0.
 std::string xml_escaped(const std::string& text) {
   static const std::map<char, const char*> kReferences = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}, {'\r', "&#13;"}, {'\t', "&#9;"}};

@@ -30,7 +30,7 @@ using nlohmann::json;
 
 constexpr const char* kWhatToDo = "results of both would be mixed; give another --out, or undo the change";
 
-/// Where a solver is known both are completed: a process that crashed has stored settings as they were given.
+/// If the solver is known, both settings are completed first: a crashed process leaves them as they were given.
 bool same_settings(const RunSpec& run, const json& stored) {
   if (!run.entry->make) {
     json both = stored;
@@ -40,7 +40,7 @@ bool same_settings(const RunSpec& run, const json& stored) {
   try {
     return complete_settings(run.entry->info, run.settings) == complete_settings(run.entry->info, stored);
   } catch (const Error&) {
-    return false;  // a setting that this version of the solver does not have
+    return false;  // a setting that this version of the solver lacks
   }
 }
 
@@ -49,14 +49,14 @@ std::string short_hash(const std::string& sha256) {
   return sha256.empty() ? "none" : sha256.substr(0, kShown);
 }
 
-/// The file of a finished run, else of a run that was begun, else an empty path.
+/// The file of a finished run, otherwise of an unfinished run, otherwise an empty path.
 fs::path stored_run(const fs::path& folder, const std::string& run) {
   if (fs::path file = finished_file(folder, run); !file.empty()) return file;
   const fs::path part = folder / (run + ".part");
   return fs::exists(part) ? part : fs::path();
 }
 
-/// Null if there is none. Another process of a sharded study may be finishing the run: its part file then disappears.
+/// Null if there is none. Another process of a sharded study may finish the run meanwhile, which removes its part file.
 std::optional<RunHeader> stored_header(const fs::path& folder, const std::string& run, fs::path& file) {
   for (int attempt = 0;; ++attempt) {
     file = stored_run(folder, run);
@@ -201,7 +201,7 @@ ChosenSolver chosen_solver(const std::string& name, const Overrides& overrides) 
 std::vector<const SolverEntry*> all_solvers() {
   std::vector<const SolverEntry*> out;
   for (const SolverEntry& e : solvers()) out.push_back(&e);
-  const char* plugins = std::getenv(kPluginsVariable);  // --solver adds to it
+  const char* plugins = std::getenv(kPluginsVariable);  // --solver appends to it
   std::istringstream paths(plugins != nullptr ? plugins : "");
   for (std::string path; std::getline(paths, path, ':');)
     if (!path.empty()) out.push_back(&find_solver(kPluginPrefix + path));
@@ -244,7 +244,7 @@ void require_same_run(const fs::path& folder, const RunSpec& run) {
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";
   const SolverInfo& solver = run.entry->info;
-  if (run.entry->make && !version.empty() && version != solver.version)  // a crash before the start leaves none
+  if (run.entry->make && !version.empty() && version != solver.version)  // a crash before the start stores no version
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             solver.name, solver.version, kWhatToDo));
 }

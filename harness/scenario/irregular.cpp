@@ -116,7 +116,7 @@ class IrregularReader {
   const std::string& source_;
 };
 
-/// Element `n` of the van der Corput sequence in base 2, in [0, 1). A seed is an offset of `n`: no generator state.
+/// Element `n` of the van der Corput sequence in base 2, in [0, 1). Seeds are offsets of `n`, so no state is needed.
 double scattered(std::uint64_t n) {
   double out = 0, half = 0.5;
   for (; n > 0; n >>= 1, half /= 2)

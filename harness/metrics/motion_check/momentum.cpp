@@ -256,7 +256,7 @@ class Momentum {
     return out;
   }
 
-  /// Friction times the normal force drags cloth that slides on a face, no more any other. Means of `span` intervals.
+  /// Coulomb's law averaged over `span` intervals: friction is mu N against the motion of sliding cloth, else less.
   void sliding(std::size_t k, std::size_t span) {
     if (k < span + 1) return;
     V3 across = V3::Zero(), drag = V3::Zero();
