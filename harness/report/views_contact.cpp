@@ -28,7 +28,7 @@ ViewColumn values(const char* head, std::vector<const char*> names, double per_s
   });
 }
 
-/// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
+/// Passed runs with Wilson's interval, "53/58 (81–96 %)"; empty without runs.
 Cell pass_rate(const Group& g, const Keys& /*keys*/) {
   VerdictCounts n;
   for (const Row* r : g) n.add(*r->run);
@@ -76,7 +76,7 @@ View contact() {
   return v;
 }
 
-/// Procedural assets replace scans, so their scenes are another kind.
+/// Scenes with procedural assets differ from those with scans, so they are a separate kind.
 std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
 }

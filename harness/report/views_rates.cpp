@@ -7,12 +7,12 @@
 namespace clothbench {
 namespace {
 
-/// "12.3 / 4.50" of the bytes read and written, times `scale`.
+/// "12.3 / 4.50": bytes read and written, times `scale`.
 Cell bytes(const Row& r, const char* read, const char* written, double scale) {
   return paired_cell(scale * r.value(read), scale * r.value(written), 3);
 }
 
-/// Rows of a run's frame times: by clock, of all frames and of those with contact.
+/// Rows for a run's frame times: per clock, over all frames and over frames with contact.
 constexpr std::pair<const char*, FrameTimes RunTimes::*> kClocks[] = {
     {"wall", &RunTimes::wall},  {"wall, with contact", &RunTimes::contact_wall},
     {"GPU", &RunTimes::device}, {"GPU, with contact", &RunTimes::contact_device},
@@ -40,7 +40,7 @@ Cell tails_cell(const FrameTimes& t) {
   return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
-/// Times that a row is about, and their run; null without any.
+/// A run and the times that a row shows; null if there are none.
 using Timed = std::pair<const Row*, const FrameTimes*>;
 
 void add_time_columns(View& v, const std::function<Timed(const Group&, const Keys&)>& of) {
@@ -65,7 +65,7 @@ ViewColumn quantiles(const char* head, FrameTimes RunTimes::*times, const Pick& 
   return column(head, text, false, pick);
 }
 
-/// Adds the conditions in which solvers of one table can differ.
+/// Adds columns for conditions in which the solvers of a table can differ.
 void add_conditions(View& v, const Pick& pick) {
   const auto add = [&](const char* head, std::function<Cell(const Row&)> cell) {
     v.columns.push_back(column(head, std::move(cell), true, pick));

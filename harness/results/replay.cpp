@@ -48,7 +48,7 @@ void add_triangles(std::vector<double> positions, std::span<const std::array<std
   out.push_back(std::move(triangles));
 }
 
-/// The mesh once; where it is skinned also its weights, and the joints at every frame.
+/// Adds the mesh once; if it is skinned, also its weights, and its joints at every frame.
 void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) {
   const ColliderMesh& mesh = *scene.colliders[k].mesh;
   const std::uint64_t vertices = mesh.vertex_count();
@@ -96,7 +96,7 @@ void add_jumps(const Scene& scene, std::vector<StoredArray>& out) {
   out.insert(out.end(), {frame, distance});
 }
 
-/// The mesh without its triangles, which every file has, and its groups: what pins, masses and regions name.
+/// Adds the mesh without its triangles, which every file has, and its groups, to which pins, masses and regions refer.
 void add_cloth(const ClothMesh& mesh, std::vector<StoredGroup>& out) {
   StoredGroup& cloth = out.emplace_back();
   cloth.path = "cloth";
@@ -125,7 +125,7 @@ const StoredArray* array_of(const StoredGroup& g, const std::string& name) {
   return nullptr;
 }
 
-/// Throws unless its shape is `shape`, 0 standing for any length.
+/// Returns the array; throws unless its shape is `shape`, in which 0 stands for any length.
 const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
                                 const std::vector<std::uint64_t>& shape) {
   const StoredArray* a = array_of(g, name);
@@ -140,7 +140,7 @@ const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
   return *a;
 }
 
-/// The number of a vertex. Throws unless it is one of `vertices`.
+/// A vertex index. Throws unless it is below `vertices`.
 std::uint32_t vertex_of(double stored, std::size_t vertices, const std::string& path) {
   if (!(stored >= 0 && stored < static_cast<double>(vertices)))
     throw Error("/" + path + ": expected numbers of vertices");
@@ -267,7 +267,7 @@ void each_numbered(const std::map<std::string, const StoredGroup*>& groups, cons
   }
 }
 
-/// Sets colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; changes nothing else.
+/// Sets colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; nothing else.
 void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
   const auto named = by_path(groups);
   if (!named.contains("colliders")) return;
@@ -281,7 +281,7 @@ void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
   if (named.contains("colliders/grips")) read_grips(*named.at("colliders/grips"), scene);
 }
 
-/// The cloth's mesh. `triangles`: the corners of its triangles, 3 per triangle, which files store apart.
+/// The cloth's mesh. `triangles`: 3 vertex indices per triangle, which files store elsewhere.
 std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& groups,
                                               const std::vector<std::uint32_t>& triangles) {
   const auto named = by_path(groups);
@@ -312,7 +312,7 @@ Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& grou
   Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
                                  {[&](json&) { return restore_mesh(groups, header.triangles); },
                                   [&](json&, Scene& s) { restore_replay(groups, s); }});
-  // A study renames scenes; the scenario keeps the name of its file.
+  // A study renames scenes, but the scenario keeps the name in its file.
   scene.name = header.scene;
   scene.json = header.scenario_json;
   scene.sha256 = header.scenario_sha256;

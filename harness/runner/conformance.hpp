@@ -19,14 +19,14 @@ struct ConformanceCase {
   bool mesh = false;    ///< the grid's cloth as a triangle mesh (as_mesh)
   /// Relation of this run of the whole scene to a run of the unchanged scene. The maximum distance of a vertex in any
   /// frame from its expected position, divided by the longer side, is at most:
-  ///  "repeat"    a second solver object, and a reset: 0 (bit-identical); 1e-6 for the averaged Jacobi of `paper`,
-  ///              whose atomic additions have no fixed order
-  ///  "restart"   a second solver object continues from the positions and velocities of the middle frame: 1e-4, or
-  ///              the change due to frames half as long, whichever is larger
-  ///  "mirror"    x -> -x: 1e-4
-  ///  "renumber"  vertices numbered column by column: as for restart, because the order of solving may change the
-  ///              result within the solver's own error
-  ///  "no-op"     a sphere and a box with friction 100 m away: 1e-6
+  ///   "repeat"    a second solver object, and a reset: 0 (bit-identical); 1e-6 for the averaged Jacobi of `paper`,
+  ///               whose atomic additions have no fixed order
+  ///   "restart"   a second solver object continues from the positions and velocities of the middle frame: 1e-4, or
+  ///               the change due to frames half as long, whichever is larger
+  ///   "mirror"    x -> -x: 1e-4
+  ///   "renumber"  vertices numbered column by column: as for restart, because the order of solving may change the
+  ///               result within the solver's own error
+  ///   "no-op"     a sphere and a box with friction 100 m away: 1e-6
   std::string relation = {};
 };
 

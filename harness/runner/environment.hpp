@@ -23,9 +23,9 @@ void describe_solver(const SolverInfo&, nlohmann::json& environment);
 std::string utc_now();
 
 /// Clocks and temperatures from Linux and Android in Hz and degrees Celsius, without the values that cannot be read:
-///  cpus: [{cpu, frequency_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
-///  gpu: {model, frequency_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
-///  temperatures: [{type, temperature_C}]   /sys/class/thermal
+///   cpus: [{cpu, frequency_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
+///   gpu: {model, frequency_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
+///   temperatures: [{type, temperature_C}]   /sys/class/thermal
 /// Units and files: Linux, Documentation/admin-guide/pm/cpufreq.rst and driver-api/thermal/sysfs-api.rst; Qualcomm's
 /// kgsl driver. `root` replaces "/".
 nlohmann::json read_sensors(const std::filesystem::path& root = "/");

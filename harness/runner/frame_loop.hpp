@@ -33,7 +33,7 @@ inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
 
 /// The only loop that steps a solver through a scene. Accuracy passes, trials, references and conformance read what
 /// they need after each frame:
-///  for (FrameLoop loop(solver, scene, rules); loop.next();) …
+///   for (FrameLoop loop(solver, scene, rules); loop.next();) …
 /// The solver must already be in its start state: loaded, reset or restarted. The clock covers only the step: the
 /// frame's input is prepared before it starts, and the step function is known at compile time.
 class FrameLoop {

@@ -36,8 +36,8 @@ struct ReferenceRules {
 /// Runs three levels of time steps, each half as long as the one before, with two integrators; the coarsest also with a
 /// tenth of the tolerance. Extrapolation and uncertainty as the grid convergence index of Roache (J. Fluids Eng. 116,
 /// 1994, 405):
-///  p = log2((f3 - f2)/(f2 - f1)),  f* = f1 + (f1 - f2)/(2^p - 1),
-///  U = max(Fs |f1 - f2|/(2^p - 1), |f*_A - f*_B|, |f(tol) - f(tol/10)|),
+///   p = log2((f3 - f2)/(f2 - f1)),  f* = f1 + (f1 - f2)/(2^p - 1),
+///   U = max(Fs |f1 - f2|/(2^p - 1), |f*_A - f*_B|, |f(tol) - f(tol/10)|),
 /// where f1 is from the finest level, A and B are the integrators, and Fs = 1.25, or Fs = 3 with p = 2 if the observed
 /// p is off by more than 0.5. A shape at rest does not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|,
 /// tolerance, change of f1 in the last tenth of the run), and no order is observed. Rows of a grid without shear move

@@ -40,15 +40,15 @@ class ContactDrawer {
   explicit ContactDrawer(Assets assets);
 
   /// A scene, not yet resolved, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Random are:
-  ///  desk     any table of any room; position on it, height, yaw, tilt, initial velocity (not upwards)
-  ///  shape    as desk, and the size of the cloth; over a sphere, or over a box in any orientation
-  ///  sweep    a hand's pose, orientation, direction (any, from either side), depth and speed
-  ///  push     a hand's pose, orientation, direction, depth and the durations of push and hold
-  ///  stretch  speed and displacement of two hands, and the vertices that they grip
-  ///  fold     radius, height, thickness and noise of a folded cloth
-  ///  keys     any numbers of the scene, each range named by its dotted key; the grid stays
-  ///  box      as keys, and settings of solvers, from points that fill the box of all ranges evenly
-  ///  crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
+  ///   desk     any table of any room; position on it, height, yaw, tilt, initial velocity (not upwards)
+  ///   shape    as desk, and the size of the cloth; over a sphere, or over a box in any orientation
+  ///   sweep    a hand's pose, orientation, direction (any, from either side), depth and speed
+  ///   push     a hand's pose, orientation, direction, depth and the durations of push and hold
+  ///   stretch  speed and displacement of two hands, and the vertices that they grip
+  ///   fold     radius, height, thickness and noise of a folded cloth
+  ///   keys     any numbers of the scene, each range named by its dotted key; the grid stays
+  ///   box      as keys, and settings of solvers, from points that fill the box of all ranges evenly
+  ///   crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
   /// Hands approach, leave and stay away for 1 s. Dropped cloth has a floor 1 m below. Hands and grips faster than 5
   /// m/s get shorter frames: a hand moves at most 70 mm per frame. Throws Error with a range that is missing, unknown
   /// or empty.

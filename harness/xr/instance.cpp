@@ -16,11 +16,11 @@ AndroidContext& context() {
 }
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
-/// Beside XR_KHR_vulkan_enable2, which there must be.
+/// Optional extensions; XR_KHR_vulkan_enable2 is required.
 constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
                                  XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME};
 
-/// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our requests and its own.
+/// XR_KHR_vulkan_enable2: the runtime creates Vulkan objects from our requests and its own.
 class RuntimeMaker : public vulkan::Maker {
  public:
   explicit RuntimeMaker(const Instance& xr) : xr_(xr) {}

@@ -1,7 +1,7 @@
 // Every feature is a row here and a bit in clothbench_plugin.h, in the same order. A file that includes this one first
 // defines the macro FEATURE with these arguments:
-//  enumerator, name in files, suffix of the plugin's bit CLOTHBENCH_<suffix>, category (FeatureOf), description,
-//  expression that is true if `scene` needs the feature (it may use helpers of harness/scenario/load.cpp).
+//   enumerator, name in files, suffix of the plugin's bit CLOTHBENCH_<suffix>, category (FeatureOf), description,
+//   expression that is true if `scene` needs the feature (it may use helpers of harness/scenario/load.cpp).
 
 FEATURE(Stretch, stretch, STRETCH, Cloth, "stretch along the edges of the grid or mesh", true)
 FEATURE(Shear, shear, SHEAR, Cloth, "shear, along the diagonals of a grid", scene.material.shear && !scene.cloth.mesh)
