@@ -30,7 +30,7 @@ HandPose pose_of(const HandKey& key, const Hand& hand) {
 static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
 
 constexpr float kMostCoordinate_m = 1e4f;
-constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
+constexpr double kUnit = 1e-3;  // allowed deviation from 1 of a float32 norm or a sum of weights
 
 constexpr char kRecordingSchema[] =
 #include "hand_recording.schema.inc"
@@ -56,7 +56,7 @@ bool good(const RecordedCapsule& c) {
   return c.radius_m >= 0 && c.radius_m <= kMostCoordinate_m;
 }
 
-/// `per_frame` items of each frame.
+/// Decodes `per_frame` items for each frame.
 template <class Item>
 std::vector<Item> read_block(const nlohmann::json& recording, const char* key, std::size_t per_frame,
                              const char* expected, const std::string& source) {
@@ -163,7 +163,7 @@ bool usable(const RecordedHand& hand) {
 }
 
 const RecordedHand& HandRecording::at(double time_s) const {
-  constexpr double kSame = 1e-6;  // of a frame: times are whole frames up to rounding
+  constexpr double kSame = 1e-6;  // of a frame's duration: tolerance for rounding
   const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
   if (!(std::abs(frame - std::round(frame)) <= kSame))
     throw Error(fmt::format("hand recording: no frame at {:g} s; expected the scene to run at the recording's {:g} Hz",

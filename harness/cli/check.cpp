@@ -56,7 +56,7 @@ void add_check(CLI::App& app, Console& console) {
       "clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
-      fs::remove(a.junit);  // an older verdict must not outlive a failed check
+      fs::remove(a.junit);  // no old verdict may remain if the check fails
     if (!a.update && !fs::exists(a.baseline))
       throw Error(a.baseline + ": no such baseline; --update creates it from these results");
     const std::vector<RunRecord> runs = collect(std::vector<fs::path>(a.runs.begin(), a.runs.end()));

@@ -13,7 +13,7 @@ struct CompareArguments {
 
 namespace fs = std::filesystem;
 
-/// `given` itself if it is a folder of results; the folders in it, by name, if it contains only such folders.
+/// `given` itself if it is a folder of results; if it contains only such folders, these by name.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
   if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};

@@ -12,7 +12,7 @@ struct XrArguments {
   DeviceFlags device;
 };
 
-/// File, scenario, outcome and summary; and the same for the terminal.
+/// File, scenario, outcome and summary of a session as JSON.
 nlohmann::json loop_json(const xr::LoopResult& r) {
   return {{"file", r.file.string()},
           {"scenario", r.scenario.string()},
