@@ -91,7 +91,7 @@ void Session::pause() {
   const std::lock_guard lock(shared_->mutex);
   shared_->paused = true;
   if (shared_->running && !shared_->destroyed) hold_runs(true);
-  if (!shared_->ended) shared_->activity.log("paused: the run holds between frames");
+  if (!shared_->ended) shared_->activity.log("paused: the run waits between frames");
 }
 
 void Session::resume() {

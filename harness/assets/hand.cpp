@@ -47,7 +47,7 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
     const Eigen::Affine3d& bind = world[static_cast<std::size_t>(skin.joints[j])];
     hand.inverse_bind[slot].matrix() = Eigen::Map<const Eigen::Matrix4d>(inverse.data() + 16 * j);
     if (!(((bind * hand.inverse_bind[slot]).matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() <= 1e-3))
-      fail(source, fmt::format("/skins/0: the bind matrix of \"{}\" is not the inverse of its node", node.name));
+      fail(source, fmt::format("/skins/0: bind matrix of \"{}\" does not invert its node matrix", node.name));
     seen[slot] = true;
     joints.push_back(static_cast<std::uint8_t>(known));
   }

@@ -121,7 +121,7 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
     const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s),
                  distance_m = (track.keys[i + 1].position_m - key.position_m).norm();
     if (key.sweep && !(distance_m > 0))
-      throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
+      throw Error(fmt::format("hand track: key {} is a sweep, but the next key has the same position", i));
     const double takes_s = key.sweep ? distance_m / speed_m_per_s : before_s;
     any = any || key.sweep;
     shift_s += takes_s - before_s;
@@ -136,7 +136,7 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
 
 HandSample sample(const HandTrack& track, const Hand& hand, double time_s) {
   if (track.side != hand.side)
-    throw Error(fmt::format("hand track: it is of the {} hand: expected one of the {} hand", name_of(track.side),
+    throw Error(fmt::format("hand track: it is for the {} hand; expected one for the {} hand", name_of(track.side),
                             name_of(hand.side)));
   if (!std::isfinite(time_s)) throw Error("hand track: argument time_s: expected a finite time");
   std::size_t next = 0;

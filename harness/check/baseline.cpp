@@ -38,11 +38,11 @@ std::string stage_text(const StageRecord& s) {
 
 double number_at(const json& value, const std::string& name, const std::string& where) {
   if (find_gate(name) == nullptr)
-    throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in harness/check/README.md)", where,
-                            nearest_known(name, gated_names())));
+    throw Error(fmt::format("{}: no regression rule for this scalar{} (see the table in harness/check/README.md)",
+                            where, nearest_known(name, gated_names())));
   if (value.is_null()) return kMissing;
   if (!value.is_number())
-    throw Error(fmt::format("{}: expected number, or null for not measured; found {}", where, value.dump()));
+    throw Error(fmt::format("{}: expected a number, or null for not measured; found {}", where, value.dump()));
   return value.get<double>();
 }
 
@@ -191,11 +191,10 @@ void DifferingRuns::refuse(const std::string& a, const std::string& b) const {
     if (!contains(kinds, e.difference.kind)) kinds.push_back(e.difference.kind);
   }
   if (lines.empty()) return;
-  throw Error(
-      fmt::format("{} and {} cannot be compared, so nothing was:{}\nRepeat one of them under the conditions of the "
-                  "other. `--allow {}` compares them nevertheless and marks the output",
-                  a, b, lines, joined(kinds, ",")),
-      ExitCode::BadInput);
+  throw Error(fmt::format("{} and {} were not compared, because their conditions differ:{}\nRepeat one of them under "
+                          "the conditions of the other, or use `--allow {}` to compare them anyway and mark the output",
+                          a, b, lines, joined(kinds, ",")),
+              ExitCode::BadInput);
 }
 
 std::string DifferingRuns::marks(const std::string& what) const {

@@ -76,7 +76,7 @@ void add_conditions(const Pair& p, const std::vector<std::string>& allowed, Chec
       }
   run.in_turns = in_turns(p.a, p.b);
   if (!run.in_turns && contains(allowed, std::string("order"))) {
-    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not mixed"});
+    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not interleaved"});
     kinds.emplace_back("order");
     run.in_turns = true;
   }
@@ -170,8 +170,8 @@ std::size_t Checked::count(Verdict v) const {
 
 std::string CheckedRun::time_verdict() const {
   const std::string out = !std::isfinite(time.ratio) ? "not timed"
-                          : !time.enough() ? fmt::format("too few processes: at least {} a side", kMinProcesses)
-                          : !in_turns      ? "no statement: A and B ran one after the other"
+                          : !time.enough() ? fmt::format("too few processes: {} per side needed", kMinProcesses)
+                          : !in_turns      ? "undecided: A and B ran one after the other"
                           : time.noise()   ? "noise"
                           : time.ratio < 1 ? "faster"
                                            : "slower";
@@ -236,7 +236,7 @@ Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs)
   Updated out;
   for (const auto& [name, r] : results) {
     if (is_missing(r))
-      throw Error(fmt::format("--update: {}: {}; a baseline is made of whole studies (`clothbench study … --resume`)",
+      throw Error(fmt::format("--update: {}: {}; a baseline needs complete studies (`clothbench study … --resume`)",
                               name, r->outcome.message));
     for (const Finding& f : motion_findings(*r))
       throw Error(fmt::format("--update: {}: {}; repeat the run", name, f.message));

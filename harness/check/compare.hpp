@@ -44,7 +44,7 @@ class DifferingRuns {
   /// Throws Error with every difference that is not allowed, and both its values. `a`, `b`: names of the sides.
   void refuse(const std::string& a, const std::string& b) const;
   /// One line per allowed difference, as a note in the output; each line begins with `what`. Empty if none.
-  std::string marks(const std::string& what = "Compared although it differs, by --allow") const;
+  std::string marks(const std::string& what = "Compared despite a difference, by --allow") const;
   nlohmann::json json() const;
   bool empty() const { return all_.empty(); }
 

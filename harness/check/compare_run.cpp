@@ -77,7 +77,7 @@ std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& i
   std::string message;
   if (!added.empty()) message = "not in the baseline: " + added;
   if (!gone.empty()) message += (message.empty() ? "" : "; ") + ("missing: " + gone);
-  if (message.empty()) message = "the same stages in another order or number";
+  if (message.empty()) message = "the same stages, order or number differs";
   return {{Verdict::Failed, "stages", fmt::format("{} stages", was.stages.size()),
            fmt::format("{} stages", is.stages.size()), "", message}};
 }
@@ -164,7 +164,8 @@ double motion_distance(const RunRecord& a, const RunRecord& b) {
 std::vector<Finding> motion_findings(const RunRecord& r) {
   if (r.file.empty()) return {};
   if (const std::string fault = trajectory_fault(r.file); !fault.empty())
-    return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
+    return {
+        {Verdict::Failed, "positions", "the outcome's motion", "a different one, or none", "", r.file + ": " + fault}};
   if (!r.summary.contains(kMotionCheck + "finite") || std::filesystem::is_directory(r.file)) return {};
   // The motion is read from the file; the summary's own statement about it is not trusted.
   const StoredMotion motion = read_motion(r.file);

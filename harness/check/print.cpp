@@ -58,7 +58,7 @@ Table times_table(const Checked& c) {
   return {"Time per frame, A against B",
           fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
                       "omitted. Change: ratio of the geometric means. p: exact permutation test over the processes. "
-                      "*noise*: the 95 % interval contains 0. If none of the {} runs differed, about {:.0f} would be "
+                      "*noise*: the interval contains 0 %. If none of the {} runs differed, about {:.0f} would be "
                       "called faster or slower by chance.",
                       timed, 0.05 * static_cast<double>(timed)),
           rows};
@@ -157,7 +157,7 @@ json check_json(const Checked& checked, const std::string& file) {
 std::string update_text(const Updated& u, const std::string& file) {
   std::string out = findings_text("Changed in " + file, u.changes, {.worse = "changed"});
   for (const RunKey& key : u.removed) out += "  removed, no result: " + key.file_name() + "\n";
-  return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with other values within slack\n", file,
+  return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with different values within tolerance\n", file,
                            runs_word(u.baseline.runs.size()), u.changes.size(), u.removed.size(), u.within_slack);
 }
 

@@ -43,7 +43,7 @@ void add_check(CLI::App& app, Console& console) {
       cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and print the changes");
   cmd->add_option(
          "--allow", a.allowed,
-         "Check although these differ from the baseline's (scene, device, precision, length), and mark the output")
+         "Check despite these differences from the baseline (scene, device, precision, length), and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
@@ -52,7 +52,7 @@ void add_check(CLI::App& app, Console& console) {
       ->excludes(rewrite);
   cmd->footer(
       "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without "
-      "matching positions, 2 bad input, or runs measured under other conditions than the baseline.\nExample: "
+      "matching positions, 2 bad input, or runs measured under conditions different from the baseline's.\nExample: "
       "clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))

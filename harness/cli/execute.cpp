@@ -76,7 +76,7 @@ std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::p
   if (verdicts.runs > 0) text += "; with a bound: " + verdicts.text();
   text += fmt::format("; results in {}\n", out.string());
   if (ends.over_budget > 0)
-    text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
+    text += fmt::format("not run: {} settings, because settings with less work had timed out (over_budget)\n",
                         ends.over_budget);
   return (part ? in_short_table(RunTable(runs)).console() : "") + text;
 }

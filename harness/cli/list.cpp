@@ -151,7 +151,7 @@ std::string rows_text(const nlohmann::json& rows) {
   std::string out;
   for (const auto& r : rows) {
     std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
-    if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
+    if (r.value("software", false)) text += "  (software; its times tell nothing about a GPU)";
     if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
     if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
     out += wrapped(text, 25, console_columns(), r["name"]);

@@ -137,7 +137,7 @@ void add_study(CLI::App& app, Console& console) {
                   "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
   cmd->add_option("--jobs", a.jobs,
-                  "Number of processes at a time for what is not timed (default 1); timed trials follow one at a time")
+                  "Number of concurrent processes for untimed work (default 1); timed trials follow one at a time")
       ->check(CLI::Range(1, 256));
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =

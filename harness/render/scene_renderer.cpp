@@ -22,7 +22,7 @@ std::shared_ptr<vulkan::Device> drawing(std::shared_ptr<vulkan::Device> device) 
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device->physical(), &count, families.data());
   if ((families.at(device->queue_family()).queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return device;
-  throw Error(device->info().name + ": its first queue that computes does not draw", ExitCode::NoDevice);
+  throw Error(device->info().name + ": its first compute queue does not support graphics", ExitCode::NoDevice);
 }
 
 vec4 as_vec4(const Vec3& v, double w) {

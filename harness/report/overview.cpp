@@ -22,7 +22,8 @@ constexpr double kFastest = 1e9;     // frames per second: above any real rate
 constexpr const char* kRateNote =
     "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
     "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). The columns after the "
-    "resolutions are for the largest mesh. × bullet-soft: ratio of the rates, the two intervals combined. Rank: among "
+    "resolutions are for the largest mesh. × bullet-soft: ratio of the rates, with the extreme ratios of both "
+    "intervals. Rank: among "
     "rows with the same sides, on which the cloth would have contact. ";
 /// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
@@ -69,11 +70,11 @@ std::string about_rates(const Group& runs) {
     return std::any_of(runs.begin(), runs.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
   };
   Texts out;
-  if (any("free_fall_error")) out.push_back("An error of free fall above 1 % (!) makes a rate meaningless.");
+  if (any("free_fall_error")) out.push_back("A free-fall error above 1 % (!) makes a rate meaningless.");
   if (any("stretch_max_last_second"))
-    out.push_back(
-        "Stretch: of structural edges in the last second; edges shorter than at rest count as 0 in the mean.");
-  if (out.empty()) out.push_back("These runs have no error to compare: `clothbench study work-precision` has.");
+    out.push_back("Stretch: structural edges, last second; edges shorter than at rest count as 0 in the mean.");
+  if (out.empty())
+    out.push_back("These runs have no comparable error; runs of `clothbench study work-precision` have one.");
   if (runs.front()->paper_table != 3) return joined(out, " ");
   const json published = published_table3();
   out.push_back(
@@ -283,8 +284,8 @@ std::vector<std::string> warnings_of(const RunTable& table) {
   }
   std::vector<std::string> out;
   for (const std::string& device : software)
-    out.push_back(
-        fmt::format("Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.", device));
+    out.push_back(fmt::format(
+        "Software Vulkan device ({}): its results are valid, but its times tell nothing about a GPU.", device));
   for (const std::string& reason : invalid) out.push_back(fmt::format("Not a valid measurement: {}.", reason));
   if (const std::string withheld = withheld_note(all); !withheld.empty()) out.push_back(withheld);
   return out;

@@ -89,15 +89,15 @@ std::string ranked_text(const Group& g) {
 
 View work() {
   View v{"accuracy", "Error against run time",
-         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
-         "brackets the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; "
-         "for triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at "
-         "most that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with "
-         "an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
+         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) if supported; in brackets "
+         "the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; for "
+         "triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at most "
+         "that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with an "
+         "error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
          "distinguished, which is three times the reference's uncertainty or the error of the mesh. Failed: runs "
-         "without a finite error. Not run: settings that need more work than the solver's time on the scene allowed. A "
-         "refused scene ranks no solver; the table of reference cases has the reason. Ranked: the solver has every "
-         "stiffness that the scene depends on, as its plan states; effective stiffness is not measured here.",
+         "without a finite error. Not run: settings with more work than one that ran into the time limit. In a refused "
+         "scene no solver is ranked; see the table of reference cases. Ranked: the solver controls every stiffness on "
+         "which the scene depends, as its plan states; effective stiffness is not measured here.",
          in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key("solver", &Row::solver, true)};
@@ -125,13 +125,13 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 }
 
 View reference_cases() {
-  View v{
-      "accuracy", "Reference cases and their reference solutions",
-      "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from the "
-      "continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the reference "
-      "case's quantity, over its scale. On a grid, the distance of the reference solution from the exact one must be "
-      "below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time steps agree.",
-      in_truth};
+  View v{"accuracy", "Reference cases and their reference solutions",
+         "Space: distance from the continuum's solution, of the exact solution on this grid or of the reference "
+         "solution on this triangle mesh. U_ref: uncertainty of the reference solution (two integrators, three time "
+         "steps) in the reference case's quantity, over its scale. On a grid, the distance of the reference solution "
+         "from the exact one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is "
+         "declared. –: all time steps agree.",
+         in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
@@ -325,7 +325,7 @@ int grade_of(const Row& r) {
 
 View feature_view() {
   View v{"features", "Table 4: features",
-         "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+         "As declared by the solvers. Ignored: the solver runs the scene without the feature.",
          [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {{"feature", [](const Row&) {
                Keys out;

@@ -81,12 +81,12 @@ View frame_times() {
       std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
                   "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
                   "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
-                  "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
-                  "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
-                  "frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, the two "
-                  "intervals combined. Rank 1: no ranked run of the scene is certainly faster (has its whole interval "
-                  "below the run's); runs that failed, and cloths with an edge of more than twice its length, are not "
-                  "ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
+                  "Missed: frames longer than one refresh period of the display. Real-time factor: simulated time over "
+                  "the median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for "
+                  "each frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, with the "
+                  "extreme ratios of both intervals. Rank 1: no ranked run of the scene is certainly faster (has its "
+                  "whole interval below the run's); runs that failed, and cloths with an edge longer than twice its "
+                  "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
           kIntervalMethod,
       [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
@@ -118,9 +118,9 @@ View frame_times() {
 
 View memory() {
   View v{"time", "Bytes and device memory per frame",
-         "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
-         "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or "
-         "of the whole trial where it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
+         "Bytes: loads and stores of the shaders, counted by instrumented kernels in an untimed run of the same "
+         "frames; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or of "
+         "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
                   std::isfinite(r.value("device_memory_B"));
@@ -142,13 +142,14 @@ View memory() {
 }
 
 View in_short(std::function<bool(const Row&)> where) {
-  View v{"overview", "In short",
-         "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
-         "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
-         "the 95 % interval of the median; with contact: of the frames in which something touches the cloth. Not "
-         "ranked: runs that failed, cloths with an edge of more than twice its length, and medians whose interval is "
-         "wider than 20 % (~).",
-         std::move(where)};
+  View v{
+      "overview", "In short",
+      "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
+      "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
+      "the 95 % interval of the median; with contact: of the frames in which something touches the cloth. Not "
+      "ranked: runs that failed, cloths with an edge longer than twice its rest length, and medians whose interval is "
+      "wider than 20 % (~).",
+      std::move(where)};
   v.keys = {scene_key(), solver_key()};
   v.columns = {column("outcome",
                       [](const Row& r) {

@@ -109,8 +109,8 @@ Cell options_of(const Point& p) {
 
 View claims() {
   View v{"contact", "Claims of the article, over what it leaves open",
-         "Share of the points of the box at which a claim holds, with Wilson's 95 % interval, also by iterations × "
-         "substeps of a frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
+         "Fraction of the box's points at which a claim holds, with Wilson's 95 % interval, also by iterations × "
+         "substeps per frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
          "point. Fewest dispatches: the cheapest point, in dispatches per frame of its most expensive claim. Paper, "
          "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
          "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
@@ -201,8 +201,8 @@ View work_model() {
   View v{"rates", "Table 3: work per frame",
          "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
          "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
-         "error. C2, C3: ratios of times. Iterations: constraint iterations of a frame, and how many would take the "
-         "published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
+         "error. C2, C3: ratios of times. Iterations: constraint iterations per frame, and the number that would take "
+         "the published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
          "allows fewer. The published times include rendering.",
          [](const Row& r) {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&

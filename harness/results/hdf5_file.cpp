@@ -234,7 +234,7 @@ class Writer {
     const Id g = make_group(file_, "trajectory"), frames = make_group(file_, "frames");
     const std::uint64_t steps = r_.accuracy.time_s.size(), points = r_.header.vertices;
     const Id time = scale(write_numbers(g, "time_s", {steps}, r_.accuracy.time_s, {"s", "time"}), "time_s");
-    const Id vertex = index_scale(g, "vertex", points, "vertex, row after row of the grid");
+    const Id vertex = index_scale(g, "vertex", points, "vertex, row by row of the grid");
     const Id xyz = scale(write_strings(g, "xyz", {"x", "y", "z"}, {"1", "axis; y is up"}), "xyz");
     attach(write_numbers(g, "position", {steps, points, 3}, r_.accuracy.position, {"m", "vertex positions"},
                          {1, points, 3}),

@@ -147,7 +147,7 @@ void read_trials(hid_t file, RunRecord& r) {
     const auto values = numbers<double>(group, s.name, H5T_NATIVE_DOUBLE);
     const std::size_t width = s.by_stage ? r.header.stages.size() : 1;
     if (values.size() != trials * frames * width)
-      throw Error(std::string("/") + s.group + "/" + s.name + " has another length than /timing/frame_wall_s");
+      throw Error(std::string("/") + s.group + "/" + s.name + " differs in length from /timing/frame_wall_s");
     for (std::size_t t = 0; t < trials; ++t) {
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(t * frames * width);
       std::vector<double>& out = r.trials[t].*s.values;
@@ -162,7 +162,7 @@ std::vector<float> positions_of(hid_t file, const std::vector<std::size_t>& fram
   const Id d(H5Dopen2(file, "trajectory/position", H5P_DEFAULT), H5Dclose, "opening trajectory/position"),
       space(H5Dget_space(d), H5Sclose, "H5Dget_space");
   if (const Dims dims = dims_of(d); dims.size() != 3 || dims[0] <= frames.back() || dims[1] != vertices || dims[2] != 3)
-    throw Error("trajectory/position: expected positions of as many frames and vertices as there are");
+    throw Error("trajectory/position: expected positions of all frames and vertices");
   std::vector<float> out(frames.size() * vertices * 3);
   const hsize_t count[3] = {1, vertices, 3};
   const Id memory = h5::space({1, vertices, 3});

@@ -104,7 +104,7 @@ std::vector<MetricSeries> metrics_from_json(const json& j, std::size_t frames) {
   for (const json& m : j) {
     metrics.push_back({m.at("name"), m.at("units"), m.at("long_name"), {}});
     unpack(m.at("values"), metrics.back().values);
-    expect(metrics.back().values.size() == frames, "a metric has another number of frames");
+    expect(metrics.back().values.size() == frames, "a metric has a different number of frames");
   }
   return metrics;
 }
@@ -133,7 +133,7 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
 void take(const std::string& kind, const json& body, RunRecord& r) {
   if (kind == "header") {
     RunHeader h = header_from_json(body);
-    expect(r.accuracy.time_s.empty() || h.vertices == r.header.vertices, "its headers are of different cloths");
+    expect(r.accuracy.time_s.empty() || h.vertices == r.header.vertices, "its headers describe different cloths");
     expect(r.trials.empty() || h.stages.size() == r.header.stages.size(), "its headers differ in stages");
     r.header = std::move(h);
   }

@@ -23,15 +23,14 @@ struct TrialSeries {
 inline constexpr TrialSeries kTrialSeries[] = {
     {"timing", "frame_wall_s", "s", "wall time of a frame", &TimedTrial::frame_wall_s},
     {"timing", "frame_device_s", "s", "device time of a frame, first to last timestamp", &TimedTrial::frame_device_s},
-    {"timing", "frame_rendered_s", "s", "wall time of a frame and its picture", &TimedTrial::frame_rendered_s, false,
+    {"timing", "frame_rendered_s", "s", "wall time of a frame with its rendering", &TimedTrial::frame_rendered_s, false,
      true},
     {"timing", "frame_cpu_s", "s", "CPU time of a frame, of all threads of the process", &TimedTrial::frame_cpu_s,
      false, true},
     {"timing", "stage_device_s", "s", "device time of a stage, from the profiled twin", &TimedTrial::stage_device_s,
      true},
-    {"bandwidth", "read_B", "B", "bytes loaded by shaders, counted in a run of its own", &TimedTrial::stage_read_B,
-     true},
-    {"bandwidth", "write_B", "B", "bytes stored by shaders, counted in a run of its own", &TimedTrial::stage_write_B,
+    {"bandwidth", "read_B", "B", "bytes loaded by shaders, counted in a separate run", &TimedTrial::stage_read_B, true},
+    {"bandwidth", "write_B", "B", "bytes stored by shaders, counted in a separate run", &TimedTrial::stage_write_B,
      true},
 };
 

@@ -48,7 +48,7 @@ std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
       return fmt::format("the position of vertex {} in frame {} is not finite", k / 3 % vertices, k / 3 / vertices);
   for (std::size_t f = 0; f < pass.time_s.size(); ++f)
     if (!std::isfinite(pass.time_s[f]) || (f > 0 && !(pass.time_s[f] > pass.time_s[f - 1])))
-      return fmt::format("the time of frame {} is not after the frame before", f);
+      return fmt::format("the time of frame {} is not after the previous one's", f);
   return "";
 }
 
@@ -143,7 +143,7 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
   const RunHeader& h = before.header;
   if (h.scenario_sha256 != header.scenario_sha256 || h.settings != header.settings)
     throw Error(fmt::format(
-        "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
+        "{}: holds trials of a different run (scene {} settings {}; now scene {} settings {}); give another --out",
         part_.string(), h.scenario_sha256.substr(0, 12), h.settings.dump(), header.scenario_sha256.substr(0, 12),
         header.settings.dump()));
   has_replay_ = !before.replay.empty();
@@ -265,8 +265,8 @@ std::string trajectory_fault(const std::filesystem::path& path) {
     if (std::string fault = fault_of_values(pass, r.header.vertices); !fault.empty()) return fault;
   const std::string &stored = r.outcome.trajectory_sha256, found = trajectory_sha256(pass);
   if (stored == found) return "";
-  return fmt::format("its positions are not the motion that its outcome is of (SHA-256 {}, stored {})",
-                     found.substr(0, 12), stored.empty() ? "none" : stored.substr(0, 12));
+  return fmt::format("its positions are not its outcome's motion (SHA-256 {}, stored {})", found.substr(0, 12),
+                     stored.empty() ? "none" : stored.substr(0, 12));
 }
 
 std::vector<fs::path> import_runs(const fs::path& file_or_folder, DeviceSamples* samples) {

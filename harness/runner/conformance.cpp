@@ -63,7 +63,7 @@ class Conformer {
     double off = 0;
     for (std::size_t k = 0; k < rest_.size(); ++k) off = max_or_nan(off, std::abs(start_.position[k] - rest_[k]));
     if (!(off <= kStill * scene_.cloth.width_m))
-      fault(fmt::format("start: a vertex is {:.3g} m from where the scene puts it", off));
+      fault(fmt::format("start: a vertex is {:.3g} m from its initial position in the scene", off));
   }
 
   void check_profile(const std::string& profile) {
@@ -106,7 +106,7 @@ class Conformer {
         if (motion->grip_held[g] != 0) grips = max_or_nan(grips, length(minus(x, motion->grip_position_m[g])));
       }
     if (info_.ignores.has(Feature::MovingPins) || grips <= kHeld_m) return true;
-    fault(fmt::format("frame {}: a held vertex is {:.3g} m from its hand", frame, grips));
+    fault(fmt::format("frame {}: an attached vertex is {:.3g} m from its hand", frame, grips));
     return false;
   }
 
@@ -115,7 +115,7 @@ class Conformer {
     const std::size_t stages = plan_.stages.size();
     if (cost.stage_device_s.size() != stages || cost.stage_read_B.size() != stages ||
         cost.stage_write_B.size() != stages)
-      fault(fmt::format("costs of a frame: expected one a stage, {}", stages));
+      fault(fmt::format("costs of a frame: expected one per stage, {}", stages));
     if (std::isfinite(cost.device_s) != info_.on_gpu)
       fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
                          : "device time: given, though the solver runs on the CPU");
@@ -126,7 +126,7 @@ class Conformer {
     ClothState again;
     solver_.read_state(again);
     if (again.position != start_.position || again.velocity != start_.velocity)
-      fault("reset: expected the start bit for bit");
+      fault("reset: expected a bit-identical start");
   }
 
   const SolverInfo& info_;
@@ -218,7 +218,7 @@ std::string conformance_skip(const SolverInfo& info, const Scene& s) {
       (s.needs.has(Feature::Shear) || s.cloth.mesh))
     return "reference diverges: over-determined";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
-    return "xpbd has self_collision only for grids";
+    return "xpbd: self_collision is for grids only";
   if (s.cloth.mesh && s.needs.has(Feature::Bend) && (info.name == "paper" || info.name.starts_with("bullet-")))
     return info.name + " has no resistance to bending for triangle meshes";
   return missing_features(info, s.needs);

@@ -103,8 +103,8 @@ class RelationCheck {
     if (bits && !(distance <= at_most) && by_.own_error) at_most = std::max(at_most, own_error(base, scene));
     if (!bits || !(distance <= at_most))
       out.faults.push_back(
-          fmt::format("a vertex is {:.4g} of the longer side from where it must be, more than {:.4g}{}", distance,
-                      at_most, at_most > 0 ? "" : ", or the bits differ"));
+          fmt::format("a vertex is {:.4g} of the longer side from its expected position, more than {:.4g}{}", distance,
+                      at_most, at_most > 0 ? "" : ", or not bit-identical"));
   }
 
   /// Largest distance over vertices and frames, divided by the longer side of the cloth; NaN if any position is NaN.

@@ -21,8 +21,9 @@ namespace {
 [[noreturn]] void refuse_name(const std::string& name) {
   std::vector<std::string> known = solver_names_of_tree();
   for (const SolverEntry* e : all_solvers()) known.push_back(e->info.name);
-  throw Error("the study names a solver " + in_quotes(name) + ", which is neither of clothbench nor a plugin in $" +
-              kPluginsVariable + nearest_known(name, known));
+  throw Error("the study names a solver " + in_quotes(name) +
+              ", which is neither a solver of clothbench nor a plugin in $" + kPluginsVariable +
+              nearest_known(name, known));
 }
 
 namespace fs = std::filesystem;
@@ -236,10 +237,10 @@ void require_same_run(const fs::path& folder, const RunSpec& run) {
   const std::optional<RunHeader> h = stored_header(folder, run_name(run), file);
   if (!h) return;
   if (h->scenario_sha256 != run.scene->sha256)
-    throw Error(fmt::format("{}: stored for another scene (SHA-256 of the completed scenario {}, now {}); {}",
+    throw Error(fmt::format("{}: stored for another scene (SHA-256 of the resolved scene {}, now {}); {}",
                             file.string(), short_hash(h->scenario_sha256), short_hash(run.scene->sha256), kWhatToDo));
   if (!same_settings(run, h->settings))
-    throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(),
+    throw Error(fmt::format("{}: run with different settings ({}, now {}); {}", file.string(),
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";

@@ -167,7 +167,7 @@ void notice_welded(const ClothMesh& m, const std::string& file) {
   static std::set<std::string> noticed;
   const std::lock_guard lock(mutex);
   if (m.welded_vertices == 0 || !noticed.insert(file).second) return;
-  fmt::print(stderr, "notice: {}: {} vertices lie where an earlier one does and were welded to it\n", file,
+  fmt::print(stderr, "notice: {}: {} vertices coincide with an earlier one and were welded to it\n", file,
              m.welded_vertices);
 }
 
@@ -204,7 +204,7 @@ ClothMesh cloth_mesh(assets::MeshFile file, const std::string& source, std::vect
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
   if (j.contains("drawn")) {
-    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
+    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh from a file, not a drawn one");
     return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
   }
   const fs::path file = needed_file(j["file"].get<std::string>(), source, "/cloth/mesh/file");

@@ -221,7 +221,7 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
     round_table = assets::cut(room.mesh, box);
     if (round_table.triangles.empty()) reader.refuse("", "expected at least one triangle of the room in the box");
   } else if (cut != "none") {
-    reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
+    reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" needs one", cut));
   }
   c.mesh = collider_mesh(cut == "none" ? room.mesh : round_table);
   // Even if the collider is the whole room, the cloth is placed over the cut-out mesh, because the room has a ceiling.

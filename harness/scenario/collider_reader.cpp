@@ -162,7 +162,7 @@ std::optional<std::filesystem::path> file_of_scene(const std::string& name, cons
 std::filesystem::path needed_file(const std::string& name, const std::string& source, const std::string& pointer) {
   if (const auto found = file_of_scene(name, source)) return *found;
   refuse(source, pointer,
-         fmt::format("{}: no such file beside the scene or in {}", in_quotes(name), scenario_root().string()));
+         fmt::format("{}: no such file next to the scene or in {}", in_quotes(name), scenario_root().string()));
 }
 
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh& from) {

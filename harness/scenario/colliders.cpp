@@ -180,7 +180,7 @@ class StageReader {
   Grip hand_grip(const json& j) {
     Grip g;
     g.by = moving_hand(j, reader_, false);
-    if (g.by->recording) reader_.refuse("/track", "a recorded hand holds nothing; expected a hand track");
+    if (g.by->recording) reader_.refuse("/track", "a recorded hand cannot hold cloth; expected a hand track");
     const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0);
     if (!start.grip)
       reader_.refuse("/track", "expected \"grip\": true in the first key; this hand holds nothing at time 0");

@@ -254,7 +254,7 @@ struct ContactDrawer::Tables {
 
 ContactKind contact_kind(const json& entry, const std::filesystem::path& base, const std::string& at, const json& quick,
                          const json& box) {
-  if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing, for protocol contact");
+  if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing; protocol contact needs it");
   const json& draw = entry["draw"];
   ContactKind kind{draw["kind"],   draw["how"],  parse_json(read_text(base), base.string()),
                    draw["ranges"], at + "/draw", box};
@@ -294,7 +294,7 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
         {"shape", draw_shape}, {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
         {"fold", draw_fold},   {"crumple", draw_crumple}, {"keys", draw_keys}};
     const auto how = std::find_if(std::begin(kHow), std::end(kHow), [&](const auto& h) { return kind.how == h.first; });
-    if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": nothing draws that");
+    if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": no generator has this name");
     speed = how->second(scene, draw);
   }
   if (kind.how != "box") draw.check_all_used();
@@ -358,8 +358,8 @@ int DrawnValues::whole(const std::string& name) {
 void DrawnValues::check_all_used() const {
   for (const auto& [name, unused] : ranges_.items())
     if (!used_.contains(name))
-      throw Error(fmt::format("{}/{}: nothing is drawn from it{}", at_, name,
-                              nearest_known(name, {used_.begin(), used_.end()})));
+      throw Error(
+          fmt::format("{}/{}: this range is not used{}", at_, name, nearest_known(name, {used_.begin(), used_.end()})));
 }
 
 }  // namespace clothbench

@@ -42,7 +42,7 @@ class IrregularReader {
                    right = line < c.column_factors.size() ? c.column_factors[line] : 0;
       if (!(left + right > 0))
         refuse(source_, "/cloth/column_factors",
-               fmt::format("grid line {}: expected a cell of width above 0 beside it; its vertices would have no mass",
+               fmt::format("grid line {}: expected a cell of width above 0 next to it; its vertices would have no mass",
                            line));
     }
     if (c.span_m > 0)

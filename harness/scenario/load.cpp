@@ -93,7 +93,7 @@ Cloth read_cloth(json& j, const std::string& source, const SceneParts& parts) {
       refuse(source, std::string("/cloth/pose/") + name, "expected a vector of length 1");
   }
   if (!(std::abs(dot(c.axis_u, c.axis_v)) <= kOrthonormal))
-    refuse(source, "/cloth/pose/axis_v", "expected a vector at right angles to axis_u");
+    refuse(source, "/cloth/pose/axis_v", "expected a vector perpendicular to axis_u");
   return c;
 }
 

@@ -49,7 +49,7 @@ void check_numbers(const Words& words, std::size_t least, std::size_t most, cons
 /// Checks corners: 1, 1/2, 1//3 or 1/2/3. Of other words the library would read the start, or overflow.
 void check_corners(const Words& words, const std::string& source, std::uint32_t line) {
   constexpr std::size_t kMostDigits = 9;
-  if (words.size() < 4) refuse_line(source, line, "expected at least three corners of a face");
+  if (words.size() < 4) refuse_line(source, line, "expected at least three corners in a face");
   for (std::size_t k = 1; k < words.size(); ++k) {
     bool good = std::count(words[k].begin(), words[k].end(), '/') <= 2;
     std::size_t length = 0;

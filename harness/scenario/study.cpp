@@ -48,11 +48,11 @@ struct Variant {
 
 void check_lengths(const json& axis, std::size_t a, const std::string& pointer, const std::string& source) {
   if (axis["values"].size() != axis["labels"].size())
-    throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label a value, {}; found {}", source, pointer, a,
+    throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label per value, {}; found {}", source, pointer, a,
                             axis["values"].size(), axis["labels"].size()));
   for (const auto& [key, values] : axis["with"].items())
     if (values.size() != axis["values"].size())
-      throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source,
+      throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one per value of the axis, {}; found {}", source,
                               pointer, a, key, axis["values"].size(), values.size()));
 }
 
@@ -283,8 +283,9 @@ class Builder {
       Study::Item& item = study_.scenes[at->second];
       const bool is_first = names_.insert(item.scene.name + " " + solver.name()).second;
       if (names_.size() > kMostRuns)
-        throw Error(fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, rungs or solvers",
-                                source_, pointer, kMostRuns));
+        throw Error(
+            fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, sweep settings or solvers",
+                        source_, pointer, kMostRuns));
       item.solvers.push_back(s);
       if (!is_first)
         throw Error(fmt::format("{}: {}: two runs are named {} with {}; labels must differ", source_, pointer,

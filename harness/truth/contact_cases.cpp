@@ -149,14 +149,14 @@ ReferenceCase capstan(const Strip& s) {
   const int m = static_cast<int>(std::lround(turns));
   const double first = middle - (m - 1) / 2.0, light = std::round(first);
   s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
-         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
-         "cells to suit");
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for an integer m, and a matching offset in "
+         "half cells");
   const double heavy = s.links - (m - 1) - light;
   s.need(light >= 1 && heavy >= 1, "ends that hang");
   s.need(heavy >= light, "an offset towards u1, or none");
   const double half_turn = std::numbers::pi / (2 * m), friction = collider.friction;
   s.need(friction > 0 && friction * std::tan(half_turn) < 1,
-         "friction above 0 and below 1 / tan(half a turn of the strip)");
+         "friction above 0 and below 1 / tan(half the angle between rows)");
   const double light_m = (light - 0.5) * cell, heavy_m = (heavy - 0.5) * cell;  // overhangs below the axis
   const auto moved = [&](int rows) {
     const Capstan cylinder{friction, c.drape_radius_m, c.areal_density_kg_per_m2, s.g, rows};

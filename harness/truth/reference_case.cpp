@@ -88,7 +88,7 @@ void need_flat_mesh(const Strip& s) {
            std::abs(x[1]) <= (0.5 + Strip::kFlat) * c.height_m;
   });
   s.need(flat && c.mesh->pattern_m.empty(),
-         "a mesh that is a flat rectangle round the middle of its frame, its longer side along x");
+         "a mesh that is a flat rectangle around the middle of its frame, its longer side along x");
 }
 
 // Twice the 1 % error for which work-precision diagrams show the time: runs with larger errors are not accurate.
@@ -196,7 +196,7 @@ const std::vector<Tolerance>& tolerances() {
       {"free-fall", kOfMotion, 0, "Newton's law: no parameter of the cloth enters", moving},
       {"pendulum", kOfMotion, 0, "one degree of freedom, half a swing at most", moving},
       {"swing-strip", kOfMotion, 0, "the chain is not chaotic until the end of the scene", moving},
-      {"heavy-strip", kOfMotion, 1e-3, "statics; 10^-3 of the length is what stability class F3 takes for no stretch",
+      {"heavy-strip", kOfMotion, 1e-3, "statics; stability class F2 treats 10^-3 of the length as no stretch",
        "stretch of the strip at rest / exact stretch"},
       {"cantilever", kOfMotion, 0, "statics", at_rest},
       {"two-hand-pull", kOfMotion, 0, "waves that the ramp makes longer than a cell",

@@ -58,7 +58,7 @@ struct Strip {
     const double factor = c.mass_factors.back();
     for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
       need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1),
-           "masses scaled on edge u1 at most, all alike");
+           "masses scaled only on edge u1, all equally");
     return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
   }
   void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }

@@ -131,7 +131,7 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need_even_masses();
   const double horizon_s = 0.5 * std::sqrt(s.length_m * 9.81 / s.g);
   s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
-         "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
+         "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): after it the motion is chaotic");
   ReferenceCase known = s.reference_case();
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along); };
   using States = std::vector<Nodes>;

@@ -95,7 +95,7 @@ void Instance::load() {
   using InitializeLoader = XrResult(XRAPI_PTR*)(const void*);
   const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");  // only on Android
   if (initialize != nullptr && XR_FAILED(initialize(&info)))
-    throw Error("the OpenXR loader does not accept an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
+    throw Error("the OpenXR loader rejected the Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
 }
 
 void Instance::create() {
@@ -157,7 +157,7 @@ void Instance::find_system() {
         "xrGetVulkanGraphicsRequirements2KHR");
   if (needs.minApiVersionSupported > XR_MAKE_VERSION(1, 1, 0xffff))
     throw Error(
-        fmt::format("{} wants Vulkan {}.{} at least; this program uses 1.1", runtime_name_,
+        fmt::format("{} needs at least Vulkan {}.{}; this program uses 1.1", runtime_name_,
                     XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported)),
         ExitCode::NoDevice);
 }

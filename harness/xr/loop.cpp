@@ -38,7 +38,7 @@ class Loop {
       : o_(options), live_(live), session_(session), device_(device), painter_(device, session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
     show_at_rest();
-    tell(fmt::format("{} on {}; {} x {} pixels an eye", xr.system_name(), xr.runtime_name(), session.extent().width,
+    tell(fmt::format("{} on {}; {} x {} pixels per eye", xr.system_name(), xr.runtime_name(), session.extent().width,
                      session.extent().height));
   }
 
@@ -249,7 +249,7 @@ class Loop {
     const std::uint64_t n = live_.scene().cloth.vertex_count();
     g.arrays.push_back({"final_position_m",
                         "m",
-                        "where the cloth was after the last frame",
+                        "positions of the cloth after the last frame",
                         {"vertex", "xyz"},
                         {n, 3},
                         false,

@@ -115,7 +115,7 @@ void Session::create_eyes() {
   for (const VkFormat f : kFormats)
     if (format_ == VK_FORMAT_UNDEFINED && std::find(formats.begin(), formats.end(), f) != formats.end()) format_ = f;
   if (format_ == VK_FORMAT_UNDEFINED)
-    throw Error("OpenXR: the runtime has no swapchain of 8-bit sRGB (RGBA or BGRA)", ExitCode::NoDevice);
+    throw Error("OpenXR: the runtime has no 8-bit sRGB swapchain (RGBA or BGRA)", ExitCode::NoDevice);
   for (Eye& eye : eyes_) {
     auto info = blank<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;

@@ -188,7 +188,7 @@ TEST(CompareRuns, ResultsHaveATolerance) {
 TEST(CompareRuns, OneProcessASideMakesNoStatement) {
   const Processes a = processes({run("x", 1e-3, 0.5)}, 1), b = processes({run("x", 9e-3, 0.5)}, 1);
   const nlohmann::json row = comparison_json(compare_processes(a, b))["runs"][0]["time"];
-  EXPECT_EQ(row["verdict"], "too few processes: at least 5 a side");
+  EXPECT_EQ(row["verdict"], "too few processes: 5 per side needed");
   EXPECT_TRUE(row["p"].is_null());
 }
 

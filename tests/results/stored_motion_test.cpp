@@ -178,7 +178,7 @@ TEST_F(StoredMotionFile, WhatDoesNotFitIsNamed) {
   const Scene mesh = load_scene("validation/hang-mesh");
   RunWriter writer(dir_, header_of(mesh));
   writer.write_accuracy(at_start(mesh, 2));
-  EXPECT_PRED2(mentions, fault(writer.finish({}, {})), "/cloth is missing");
+  EXPECT_PRED2(mentions, fault(writer.finish({}, {})), "/cloth, the cloth's mesh, is missing");
 }
 
 TEST_F(StoredMotionFile, ARunWithoutTrajectoryHasNone) {

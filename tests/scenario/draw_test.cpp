@@ -194,7 +194,7 @@ TEST(DrawContact, RefusesBadInput) {
   EXPECT_PRED2(mentions, with([](json& j) { j["scenes"][2]["draw"]["ranges"].erase("way_m"); }),
                "/scenes/2/draw/ranges: \"way_m\" is missing");
   EXPECT_PRED2(mentions, ranged("wy_m", {0, 1}),
-               "/scenes/2/draw/ranges/wy_m: nothing is drawn from it; nearest known: way_m");
+               "/scenes/2/draw/ranges/wy_m: this range is not used; nearest known: way_m");
   EXPECT_PRED2(mentions, ranged("way_m", {1, 0}), "/scenes/2/draw/ranges/way_m: expected the lower bound first");
   EXPECT_PRED2(mentions, ranged("speed_m_per_s", {0, 1}), "expected a range above 0");
   EXPECT_PRED2(mentions, with([](json& j) { j["scenes"][2].erase("draw"); }), "/scenes/2: \"draw\" is missing");

@@ -88,7 +88,7 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
   EXPECT_EQ(s.scenes[0].scene.time.duration_s, 0.25);
   EXPECT_EQ(s.scenes[1].scene.time.duration_s, 0.5);
   EXPECT_PRED2(mentions, study_error(with(R"({"time.duration_s":[0.25]})")),
-               "/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1");
+               "/scenes/0/axes/0/with/time.duration_s: expected one per value of the axis, 2; found 1");
 }
 
 TEST(Study, AKeyOfAnAxisIsNotOverridden) {

@@ -172,7 +172,7 @@ struct SolverEntry {
 /// For solvers that bend only grids: throws if the scene has a triangle mesh with bending rigidity.
 inline void refuse_mesh_bending(const Scene& scene) {
   if (scene.cloth.mesh && scene.material.bending_rigidity_N_m > 0)
-    throw UnsupportedScene("it has no resistance to bending for triangle meshes; the solvers reference and xpbd have");
+    throw UnsupportedScene("it cannot bend triangle meshes; the solvers reference and xpbd can");
 }
 
 /// All registered solvers, in registration order (solvers/CMakeLists.txt).
