@@ -37,7 +37,7 @@ PageTemplate page_template() {
 try {
   install();
 } catch (error) {
-  console.error(`The report's page is left out: ${error.message}. Once that is mended, delete ${out}/template.cpp and build again.`);
+  console.error(`The report's page is left out: ${error.message}. After fixing that, delete ${out}/template.cpp and build again.`);
   write('', 'npm ci failed when this was built (it needs Node 18 or later)', '');
   process.exit();
 }

@@ -109,9 +109,9 @@ function rates(doc) {
     hero: true,
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
-        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
-        'above 1 %, so the rate has no meaning. Slow frames: among frames with contact, where there are any. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
-        'per second of wall time; the bytes of CPU solvers are not known. Numbers of figures are the article\'s.',
+        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is '  +
+        'above 1 %, so the rate has no meaning. Slow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
+        'per second of wall time; unknown for CPU solvers. Figure numbers are the article\'s.',
     remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
     choices: [
       choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v]))), undefined, v => kRates[v].text),
@@ -311,14 +311,14 @@ const forest = doc => shares(judged(doc, 'generated').filter(r => r.status !== '
   id: 'forest',
   section: 'contact',
   title: () => 'Pass rate by kind of generated scene',
-  caption: 'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
+  caption: 'Fraction of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
 const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported'))), 'case', r => r.grade === 0, {
   id: 'stability',
   section: 'stability',
   title: () => 'Stable runs by case',
-  caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
+  caption: 'Fraction of the runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
 
 // What the article leaves open ------------------------------------------------

@@ -107,7 +107,7 @@ class Figure {
     if (!rows.length) {
       this.marks = [];
       return void this.plot.replaceChildren(
-          element('p', {class: 'note'}, 'No run is left: see the filter of solvers above.'));
+          element('p', {class: 'note'}, 'No runs are left: see the solver filter above.'));
     }
     const drawn = draw(entry.chart(rows, this.state, width), page_look(this.look, width < 560), width, entry.title(this.state));
     this.plot.innerHTML = drawn.svg;  // chart.js escapes text in it
