@@ -1,4 +1,4 @@
-// A run counts as passed or not equally in every table, on the console and in JSON.
+// All tables, the terminal and JSON agree on whether a run passed.
 
 #include <gtest/gtest.h>
 
