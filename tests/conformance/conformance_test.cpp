@@ -26,7 +26,7 @@ struct Case : ConformanceCase {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.solver << " on " << c.scene; }
 
-/// One of a scene's twelve combinations of sides, grid and mesh, another one for another scene; all in the slow tier.
+/// Selects some of a scene's twelve combinations of sides, grid and mesh, varying by scene; the slow tier runs all.
 bool chosen(const std::string& scene, std::size_t combination) {
   if (CLOTHBENCH_ALL_CASES) return true;
   const auto shift = std::accumulate(scene.begin(), scene.end(), std::size_t{0},

@@ -123,7 +123,7 @@ Mesh lowered_sheet(int cells, double d) {
   return sheet(cells, cells, Point<3>(0, kRadius - d, 0) - 0.5 * (u + v), v, u);
 }
 
-/// Sphere turned so that the plane cuts it in no special way, but with a vertex on top, where the depth is largest.
+/// A sphere rotated so that the plane cuts it in general position, but with a vertex on top, the deepest point.
 Mesh ball(int n) {
   const Mesh plain = octasphere(n, kRadius);
   const Point<3> top = plain.view().vertex(plain.triangles[n][0]).normalized();

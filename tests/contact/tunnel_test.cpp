@@ -71,7 +71,7 @@ TEST(Tunnel, RoundTheBorderAndBackCountsNothingButThroughAndRoundDoes) {
   EXPECT_EQ(w.move(at(0.9, -0.3)), 0);
 }
 
-/// A cloth that slides off the patch: level above it, round its rim at x = 0.5 in a quarter circle, down beside it.
+/// A cloth that slides off the patch: horizontal above, a quarter circle around its rim at x = 0.5, then vertical.
 Mesh sliding_off(double slid) {
   constexpr double kAbove = 0.02;
   return sheet(8, 40, {-0.4, 0, -0.4}, {0, 0, 0.8}, {0.8, 0, 0}).mapped([=](const Point<3>& p) {

@@ -45,7 +45,7 @@ TEST_F(Gpu, RowsOfGroupsReachEveryItemOnce) {
 }
 
 TEST_F(Gpu, MessagesAreOfTheSolverThatCausedThem) {
-  // A device of its own, so that the messages are not held against another test.
+  // A separate device, so that its messages do not count against another test.
   const DeviceOptions own{0, true};
   const auto device = vulkan::Device::get(own);
   ASSERT_NE(device, device_);

@@ -93,7 +93,7 @@ const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a
   "time":{"frame_rate_hz":60,"duration_s":0.5},
   "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101}}})";
 
-// The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
+// The right half is folded over the left half; in the last frame they cross along one line, as long as the width.
 const char* const kCrossed = R"({"name":"crossed","why":"A sheet laid over itself and through.",
   "cloth":{"grid":[17,9],"size_m":[1,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{},"self_collision":{"thickness_m":0.002}},
   "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},

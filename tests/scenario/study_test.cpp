@@ -54,7 +54,7 @@ std::string study_error(const std::string& text, StudyOptions options = {}) {
   return refusal([&] { study_of(text, options); });
 }
 
-/// Names of solvers and scenes, with the sides of the cloth they get.
+/// Names of solvers and scenes, with the sides of the cloth in each run.
 std::vector<std::string> runs(const Study& s) {
   std::vector<std::string> out;
   for (const Study::Item& item : s.scenes)
@@ -167,7 +167,7 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
         << item.scene.name << " touches nothing";
     for (const std::size_t k : item.solvers)
       if (s.solvers[k].solver == "paper") {
-        // It knows no two-sided contact without a second layer.
+        // It does not support two-sided contact without a second layer.
         EXPECT_EQ(item.scene.cloth.sides == Sides::Double, item.scene.colliders.empty()) << item.scene.name;
         EXPECT_FALSE(item.scene.needs.has(Feature::SelfCollision)) << item.scene.name << ": it passes through itself";
       }

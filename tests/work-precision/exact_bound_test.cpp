@@ -101,7 +101,7 @@ void expect_two_sided(const Scene& s) {
   const double of = moves ? tolerance.of_motion : tolerance.at_rest;
   for (const double sign : {-1.0, 1.0}) {
     EXPECT_EQ(j.verdict(moves ? scaled(j, 1 + sign * 0.5 * of) : crept(s, sign * 0.5 * of)), "pass") << sign;
-    if (moves && moved_m < 200 * rounding_m) continue;  // stiff strips far away: float32 does not show some per cent
+    if (moves && moved_m < 200 * rounding_m) continue;  // stiff strips far away: float32 cannot resolve some per cent
     EXPECT_TRUE(j.fails(moves ? scaled(j, 1 + sign * 3 * of) : crept(s, sign * 3 * of))) << sign;
   }
 }

@@ -51,7 +51,7 @@ TEST_P(ReferenceCases, TheTruthIsNoDistanceFromItself) {
   EXPECT_TRUE(std::isnan(judge.judge(last, state).quantity_error));
 }
 
-/// Held vertices of the truth are where the scene holds them, and moving truths begin where the scene does.
+/// Attached vertices of the solution are at the scene's prescribed positions; moving solutions start at its start.
 TEST_P(ReferenceCases, AgreeWithTheScene) {
   const Scene s = scene(GetParam());
   const auto known = truth::reference_case_of(s);
@@ -94,7 +94,7 @@ TEST(MeshCases, DoNotDependOnTheTriangles) {
   }
 }
 
-/// Semi-implicit Euler of one step a frame is g t dt/2 behind free fall: what the ballistic solver's error must be.
+/// Semi-implicit Euler with one step per frame lags g t dt/2 behind free fall: the expected error of `ballistic`.
 TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
   const Scene s = scene("free-fall");
   const SolverEntry& entry = find_solver("ballistic");
