@@ -59,7 +59,7 @@ struct Help : CLI::Formatter {
   }
 };
 
-/// Message about the first word that is no command or no option of its command, with the most similar one; or empty.
+/// Message about the first word that is no command or no option of its command, with the nearest known word; or empty.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   std::vector<std::string> commands, options;
