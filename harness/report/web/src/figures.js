@@ -109,7 +109,7 @@ function rates(doc) {
     hero: true,
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
-        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is '  +
+        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
         'above 1 %, so the rate has no meaning. Slow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
         'per second of wall time; unknown for CPU solvers. Figure numbers are the article\'s.',
     remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
