@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the published studies one after another into OUT, and makes the published files from them.
-#   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N]
-#   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz]
+#   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N] [--device N]
+#   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz] [--jobs N]
 # First form, exit status: 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; call it again: complete studies
 # are skipped, finished runs stay. 2: bad input. Otherwise the status of the study that failed.
 # Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must
@@ -44,15 +44,15 @@ END
 fail() { echo "scripts/publish.sh: $*" >&2; exit 2; }
 bench=${CLOTHBENCH:-$here/build/release/clothbench}
 [ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
-folders=() to=$here/results/reference/h200 table=gpu only=' ' limit=570 jobs=$(nproc) report= archive=
+folders=() to=$here/results/reference/h200 table=gpu only=' ' limit=570 jobs=$(nproc) report='' archive='' device=()
 while [ $# -gt 0 ]; do
   case $1 in
     --report) report=1 ;;
-    --to | --archive | --table | --only | --limit | --jobs)
+    --to | --archive | --table | --only | --limit | --jobs | --device)
       [ $# -gt 1 ] || fail "$1: expected a value"
-      case $1 in --to) to=$2 ;; --archive) archive=$(realpath -m "$2") ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; esac
+      case $1 in --to) to=$2 ;; --archive) archive=$(realpath -m "$2") ;; --table) table=$2 ;; --only) only+="$2 " ;; --limit) limit=$2 ;; --jobs) jobs=$2 ;; --device) device=(--device "$2") ;; esac
       shift ;;
-    -*) fail "$1: expected --table, --only, --limit, --jobs, --report, --to or --archive" ;;
+    -*) fail "$1: expected --table, --only, --limit, --jobs, --device, --report, --to or --archive" ;;
     *) folders+=("$(realpath -m "$1")") ;;
   esac
   shift
@@ -74,16 +74,23 @@ if [ -n "$report" ]; then
   rm -rf "$to" && mkdir -p "$to"
   scratch=$(mktemp -d)
   trap 'rm -rf "$scratch"' EXIT
-  for name in "${names[@]}"; do
-    parts=()
+  one_report() {
+    local name=$1 file parts=() figures
     for file in "${complete[@]}"; do [ "$(basename "${file%.done}" | sed 's/+.*//')" != "$name" ] || parts+=("${file%.done}"); done
     "$bench" report "${parts[@]}" -o "$scratch/$name" >"$scratch/$name.log" || { tail -5 "$scratch/$name.log" >&2; exit 1; }
     mkdir "$to/$name"
     cp "$scratch/$name/report.md" "$scratch/$name/runs.csv" "$to/$name"
     mapfile -t figures < <(find "$scratch/$name" -name '*-wide.svg')
     [ ${#figures[@]} -eq 0 ] || { mkdir "$to/$name/figures" && cp "${figures[@]}" "$to/$name/figures"; }
+  }
+  "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null &
+  processes=($!)
+  for name in "${names[@]}"; do
+    while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 0.2; done
+    one_report "$name" &
+    processes+=($!)
   done
-  "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null
+  for process in "${processes[@]}"; do wait "$process"; done
   cp "$scratch/all/index.html" "$to"
   # The commands, their times in seconds, and the hashes of all raw results and all published files.
   { printf 'study\tseconds\tcommand\n'; cat "${complete[@]}"; } >"$to/commands.tsv"
@@ -134,7 +141,7 @@ while read -r in name line; do
   [ ! -d "$out/$name" ] || resume=(--resume)
   # At the limit clothbench is interrupted and keeps finished runs. Exit status 1 (runs crashed, diverged or timed out) is also a result.
   left=$((deadline - SECONDS))
-  [ $left -le 0 ] || { status=0; timeout --foreground -s INT -k 30 "$left" "$bench" "${command[@]}" --out "$out/$name" "${resume[@]}" </dev/null >>"$out/$name.log" 2>&1 || status=$?; }
+  [ $left -le 0 ] || { status=0; timeout --foreground -s INT -k 30 "$left" "$bench" "${command[@]}" "${device[@]}" --out "$out/$name" "${resume[@]}" </dev/null >>"$out/$name.log" 2>&1 || status=$?; }
   seconds=$((SECONDS - start + $(cat "$out/$name.seconds" 2>/dev/null || echo 0)))
   echo $seconds >"$out/$name.seconds"
   case $status in

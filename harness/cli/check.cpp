@@ -43,7 +43,7 @@ void add_check(CLI::App& app, Console& console) {
       cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and print the changes");
   cmd->add_option(
          "--allow", a.allowed,
-         "Check despite these differences from the baseline (scene, device, precision, length), and mark the output")
+         "Check despite differences from the baseline in these conditions, separated by commas, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);

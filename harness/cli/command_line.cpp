@@ -93,7 +93,7 @@ int run_command_line(const std::vector<std::string>& words) {
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
       "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nTerms: clothbench list "
       "terms\nExit codes: 0 ok, 1 a "
-      "check failed, 2 bad input, 3 no device, 130 interrupted.");
+      "check or a solver failed, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   console.command_line = "clothbench " + joined(words, " ");
   app.add_flag("--json", console.json, "Print a machine-readable summary");

@@ -51,7 +51,7 @@ void add_compare(CLI::App& app, Console& console) {
       kMinProcesses);
   cmd->add_option("a", given.a, several)->required();
   cmd->add_option("b", given.b, "Results of the other build, likewise")->required();
-  cmd->add_option("--allow", given.allowed, "Compare despite these differences, and mark the output")
+  cmd->add_option("--allow", given.allowed, "Compare despite these differences (comma-separated), and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember(condition_kinds()));
   cmd->footer(

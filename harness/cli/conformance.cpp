@@ -44,12 +44,12 @@ void add_conformance(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand(
       "conformance",
       "Check the requirements on every solver: stages, start, pins, attachments, finite positions, reset; on small "
-      "grids of every scene and on whole scenes");
+      "grids and whole scenes of paper, contact, validation and conformance");
   a.with.add_to(*cmd, "solver", "Solvers", "Setting of the solver: solver.substeps=20");
   cmd->get_option("solver")->required();
   cmd->add_option("--scene", a.scenes, "Only these scenes, such as paper/gravity");
   cmd->add_flag("--no-whole", a.no_whole, "Six frames on small grids only, no whole scenes");
-  cmd->add_option("--limit", a.limit_s, "A whole scene ends after this much time in the solver [s]; 0: never")
+  cmd->add_option("--limit", a.limit_s, "A whole scene is cut off after this much time in the solver [s]; 0: never")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   a.with.device.add_to(*cmd);

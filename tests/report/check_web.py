@@ -24,7 +24,7 @@ if not (report / "index.html").exists():
     print("SKIPPED:", line)
     sys.exit(77)
 html = (report / "index.html").read_text(encoding="utf-8")
-embedded = lambda name: json.loads(re.search(rf'<script type="application/json" id="{name}">(.*?)</script>', html, re.S)[1])  # noqa: E731
+embedded = lambda name: json.loads(zlib.decompress(base64.b64decode(re.search(rf' id="{name}">(.*?)</script>', html)[1])))  # noqa: E731
 doc, motions = embedded("clothbench-data"), embedded("clothbench-motions")
 blobs = {int(k): v for k, v in re.findall(r'<script type="text/plain" id="blob-(\d+)">([^<]*)</script>', html)}
 files = {}

@@ -138,7 +138,7 @@ MetricGroup timing_metrics() {
   using T = TimedTrial;
   using B = Bandwidth;
   using enum Better;
-  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same everywhere"};
+  static constexpr Gate kCount{0, SlackUnit::One, 0, false, "a count, the same in every run on one device"};
   return {
       {},
       {

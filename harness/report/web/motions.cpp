@@ -22,10 +22,10 @@ constexpr std::size_t kMostOfScene = 6;  // the viewer shows at most six side by
 constexpr std::size_t kMostFrames = 150;
 constexpr double kMostGrowth = 20;  // relative to the cloth's initial extent; larger cloth shows nothing
 
-/// zlib of the words, which are little-endian on all supported machines.
-template <class Word>
-std::string deflated(const std::vector<Word>& words) {
-  const uLong bytes = words.size() * sizeof(Word);
+/// zlib of a text, or of words, which are little-endian on all supported machines.
+template <class Words>
+std::string deflated(const Words& words) {
+  const uLong bytes = words.size() * sizeof(words[0]);
   uLongf size = compressBound(bytes);
   std::string out(size, '\0');
   const int status =
@@ -33,6 +33,10 @@ std::string deflated(const std::vector<Word>& words) {
   if (status != Z_OK) throw Error("zlib: compress2 failed with " + std::to_string(status), ExitCode::CheckFailed);
   out.resize(size);
   return out;
+}
+
+std::string base64_of(const std::string& bytes) {
+  return assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 std::string deflated(const StoredArray& a) {
@@ -116,7 +120,7 @@ class Packer {
 
  private:
   std::size_t blob(const std::string& bytes) {
-    out_.blobs.push_back(assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+    out_.blobs.push_back(base64_of(bytes));
     left_B_ -= std::min(left_B_, out_.blobs.back().size());
     return out_.blobs.size() - 1;
   }
@@ -149,6 +153,8 @@ class Packer {
 };
 
 }  // namespace
+
+std::string packed(const json& j) { return base64_of(deflated(j.dump(-1, ' ', true, json::error_handler_t::replace))); }
 
 PackedMotion pack_motion(const Replay& replay) {
   PackedMotion out;

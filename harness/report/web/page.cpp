@@ -162,19 +162,11 @@ json table_json(const ViewTable& t, const RunTable& table) {
           {"solvers", t.solvers}};
 }
 
-std::string replaced(const std::string& text, const std::map<char, const char*>& by) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text)
-    if (const auto at = by.find(c); at != by.end())
-      out += at->second;
-    else
-      out += c;
-  return out;
-}
-
 std::string escaped(const std::string& text) {
-  return replaced(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
+  static const std::map<char, std::string> kNames = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
+  std::string out;
+  for (const char c : text) out += kNames.contains(c) ? kNames.at(c) : std::string(1, c);
+  return out;
 }
 
 std::string table_html(const Table& t) {
@@ -232,20 +224,16 @@ json page_document(const RunTable& table, const Page& page) {
 }
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
-  const auto data = [](const char* id, const json& j) {
-    const std::string text = j.dump(-1, ' ', true, json::error_handler_t::replace);
-    // Inside a script element, "</script" would end it and "<!--" would change its meaning, so both are escaped.
-    return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
-                       replaced(text, {{'<', "\\u003c"}}));
+  const auto data = [](const std::string& id, const std::string& base64) {
+    return "<script type=\"text/plain\" id=\"" + id + "\">" + base64 + "</script>\n";
   };
   std::string blobs, out = html;
-  for (std::size_t k = 0; k < motions.blobs.size(); ++k)
-    blobs += fmt::format("<script type=\"text/plain\" id=\"blob-{}\">{}</script>\n", k, motions.blobs[k]);
-  for (const auto& [mark, text] :
-       {std::pair<std::string, std::string>{"<!--clothbench:motions-->", blobs},
-        {"<!--clothbench:data-->", data("clothbench-data", document) + data("clothbench-motions", motions.document)},
-        {"<!--clothbench:head-->", head_html(page)},
-        {"<!--clothbench:title-->", escaped(page.heading.title)}})
+  for (std::size_t k = 0; k < motions.blobs.size(); ++k) blobs += data(fmt::format("blob-{}", k), motions.blobs[k]);
+  for (const auto& [mark, text] : {std::pair<std::string, std::string>{"<!--clothbench:motions-->", blobs},
+                                   {"<!--clothbench:data-->", data("clothbench-data", packed(document)) +
+                                                                  data("clothbench-motions", packed(motions.document))},
+                                   {"<!--clothbench:head-->", head_html(page)},
+                                   {"<!--clothbench:title-->", escaped(page.heading.title)}})
     out.replace(out.find(mark), mark.size(), text);
   return out;
 }
@@ -253,6 +241,7 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
 #ifndef CLOTHBENCH_WITH_PAGE
 PageTemplate page_template() { return {"", "this build was made without it, or without Node and npm"}; }
 Motions motions_of(const RunTable&, std::size_t) { return {}; }
+std::string packed(const json&) { return ""; }
 #endif
 
 std::string write_page(const fs::path& out, const RunTable& table, const Page& page, const PageTemplate& from) {

@@ -63,6 +63,9 @@ struct Motions {
 /// Reads trajectories from the runs' files by priority, at most 150 frames each, until the base64 reaches this size.
 Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
 
+/// Base64 of zlib of the text.
+std::string packed(const nlohmann::json&);
+
 /// Rounded to six digits; null if not finite.
 nlohmann::json rounded(double);
 

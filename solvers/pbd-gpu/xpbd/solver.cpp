@@ -54,7 +54,7 @@ class Xpbd final : public GpuSolver {
     if (const int wanted = uncapped_substeps_if_capped(scene(), settings()); wanted > 0)
       disable(std::to_string(wanted) + " substeps",
               "the colliders are fast: " + std::to_string(xpbd_substeps(scene(), settings())) +
-                  " are the maximum per frame; the cloth is overstretched for some frames, but passes through nothing");
+                  " are the maximum per frame; the cloth is overstretched for some frames");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
       throw Error(

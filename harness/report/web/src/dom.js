@@ -22,6 +22,12 @@ export function select(label, options, value, changed) {
   return element('label', {}, label, list);
 }
 
+/// The buffer behind base64 of zlib.
+export function unpacked(id) {
+  const packed = Uint8Array.from(atob(document.getElementById(id).textContent), c => c.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
+}
+
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
 

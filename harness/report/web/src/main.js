@@ -1,6 +1,6 @@
 // Builds the page from its document: figures and tables by section, solver filter, contents, theme and motions.
 import {symbol, unique} from './chart.js';
-import {button, element, say} from './dom.js';
+import {button, element, say, unpacked} from './dom.js';
 import {make_figures} from './figures.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
@@ -37,7 +37,7 @@ function chips(doc, look) {
 }
 
 /// First screen: the first figure, the leading scenes below it, Table 3 next to them. All else follows in sections.
-function sections(doc, look) {
+function sections(doc, look, motions) {
   const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
         below = doc.sections[0]?.id === 'overview' ? 1 : 0, links = [['overview', 'Overview']];
   const first = lead.map(t => table_block(doc, look, t));
@@ -57,7 +57,6 @@ function sections(doc, look) {
       links.push([s.id, s.title]);
     }
   }
-  const motions = JSON.parse($('clothbench-motions').textContent);
   if (motions.runs.length) {
     $('motions').hidden = false;
     links.push(['motions', 'Motions']);
@@ -113,15 +112,16 @@ function start_navigation() {
   spy();
 }
 
-function start() {
-  const doc = JSON.parse($('clothbench-data').textContent), anchor = load_state();
+async function start() {
+  const data = async id => JSON.parse(new TextDecoder().decode(await unpacked(id)));
+  const doc = await data('clothbench-data'), motions = await data('clothbench-motions'), anchor = load_state();
   const look = looks(unique(doc.runs.map(r => r.solver)), doc.solvers);
   document.head.append(element('style', {}, style_of(look), `@page{@top-left{content:${JSON.stringify(doc.title)}}}`));
   document.documentElement.classList.add('js');
   window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
   start_theme();
   chips(doc, look);
-  sections(doc, look);
+  sections(doc, look, motions);
   $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
   $('commands')
       .append(...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));

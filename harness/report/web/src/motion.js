@@ -1,11 +1,8 @@
 // Unpacks motions and colliders into numbers; layout: harness/report/web/page.hpp.
 import {Box3, Vector3} from 'three';
+import {unpacked} from './dom.js';
 
-/// Decodes base64 of zlib into a buffer.
-function words(index) {
-  const packed = Uint8Array.from(atob(document.getElementById(`blob-${index}`).textContent), c => c.charCodeAt(0));
-  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
-}
+const words = index => unpacked(`blob-${index}`);
 
 function grid_triangles([columns, rows]) {
   const out = [];

@@ -1,10 +1,11 @@
 // Draws the figures of a report in Node; bundle.mjs makes figures.cjs from this file.
 //   node figures.cjs REPORT/index.html OUT
-// Reads the data that the page embeds. Writes OUT/<figure>.svg (84 mm wide), OUT/<figure>-wide.svg (174 mm), PDF files of both with rsvg-convert, and
-// OUT/figures.md, which shows the wide ones from the parent folder. Puts the first screen's figure into the page for readers without JavaScript.
+// writes OUT/<figure>.svg (84 mm wide), OUT/<figure>-wide.svg (174 mm), PDF files of both with rsvg-convert, and OUT/figures.md,
+// which shows the wide ones from the parent folder. Puts the first screen's figure into the page for readers without JavaScript.
 import {execFileSync} from 'node:child_process';
 import {readFileSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';
+import {inflateSync} from 'node:zlib';
 
 import {draw_on_paper, paper_widths, unique} from './chart.js';
 import {make_figures, settled} from './figures.js';
@@ -26,7 +27,8 @@ function convert(pictures) {
 }
 
 function main(from, out) {
-  const page = readFileSync(from, 'utf8'), doc = JSON.parse(page.match(/<script type="application\/json" id="clothbench-data">([^]*?)<\/script>/)[1]);
+  const page = readFileSync(from, 'utf8'), packed = page.match(/ id="clothbench-data">([^]*?)<\/script>/)[1];
+  const doc = JSON.parse(inflateSync(Buffer.from(packed, 'base64')));
   const look = paper_look(looks(unique(doc.runs.map(r => r.solver)), doc.solvers));
   const pictures = [];
   let markdown = '', hero = '';

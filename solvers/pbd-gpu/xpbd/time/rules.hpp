@@ -65,7 +65,7 @@ inline constexpr double kMaxSwing = 0.15;
 // [h sqrt(g / L)] A sliding strip is first order in time: within 3 % at the first (Atwood's rope on a cylinder)
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
-// Substeps by speed in contact (substep_count.cpp). Nothing is passed with any number, so the maxima are of cost.
+// Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima are of cost.
 // [contact offsets, a substep] A struck vertex pulls its neighbours along before links overstretch
 inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
 inline constexpr double kMinMarginOfCell = 0.125;  // [cells] A thin offset does not ask for more substeps than this
