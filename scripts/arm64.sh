@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The device build without a device: library, command, activity and APK for arm64 with Debian's cross compiler, run under
-# qemu-user with arm64 lavapipe. Where ANDROID_NDK is set, the real APK is built too.
+# Tests the device build without a device: library, command, activity and APK for arm64, built with Debian's cross
+# compiler and run under qemu-user with arm64 lavapipe. If ANDROID_NDK is set, builds the real APK too.
 #   scripts/arm64.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,7 +11,7 @@ build() {
   cmake --preset arm64-linux -DCMAKE_UNITY_BUILD=ON
   cmake --build --preset arm64-linux -j "$JOBS" --target clothbench clothbench_quest fake_host clothbench_assets_packed null_xr_runtime
 }
-# The program for this machine, to compare with, and to import results of the device build.
+# Builds the program for this machine, for comparison and for importing results of the device build.
 host() {
   [ -f build/release/CMakeCache.txt ] || configure release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
   cmake --build build/release -j "$JOBS" --target clothbench

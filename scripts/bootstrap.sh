@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what clothbench needs from Debian 12 or 13, and only what is missing. Sourced or run by run.sh and test.sh.
+# Installs the missing ones of clothbench's Debian 12 or 13 packages. Sourced or run by run.sh and test.sh.
 #   scripts/bootstrap.sh [--short | --tests] [--ci] [--arm64]     --tests: also what only the tests use; --short: what those of test.sh --short use
 #                                                                 --ci: what only CI's tests and the slow ones use
 #                                                                 --arm64: also the cross build and the packaging of the APK
@@ -10,7 +10,7 @@ packages=(clang cmake make ninja-build ccache
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libopenxr-loader1 libpng-dev fonts-dejavu-core
           python3-h5py python3-matplotlib librsvg2-bin git)
-# The report's page is bundled with Node 18 or later. Debian's npm and one from elsewhere conflict: any that is there is used.
+# The report's page is bundled with Node 18 or later. Debian's npm conflicts with others, so an existing npm is used.
 command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case $argument in

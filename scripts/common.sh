@@ -1,4 +1,4 @@
-# Sourced by the other scripts: how many jobs run side by side, and stages with a time budget each.
+# Sourced by the other scripts: the number of parallel jobs, and stages with time budgets.
 #   JOBS                  default: number of cores, at most available memory / 1.5 GiB
 #   CLOTHBENCH_CMAKE      further arguments of `cmake` when a build is configured, such as -DCMAKE_CXX_COMPILER=g++
 # shellcheck shell=bash
@@ -12,7 +12,7 @@ default_jobs() {
 }
 export JOBS=${JOBS:-$(default_jobs)}
 
-# configure PRESET [arguments of cmake…]: the first time with clang, which compiles faster than g++
+# configure PRESET [arguments of cmake…]: configures, the first time with clang, which compiles faster than g++
 configure() {
   local extra compilers=
   [ -f build/release/CMakeCache.txt ] || compilers='-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++'
@@ -25,15 +25,15 @@ over_budget=0
 stage_logs=${CLOTHBENCH_LOGS:-build/log}
 mkdir -p "$stage_logs"
 
-# stage [--show] NAME LIMIT_MINUTES COMMAND…: runs it, in a subshell, with its output in a file (--show: also printed), and prints one line: the
-#   time it has taken so far while it runs, the whole time afterwards. Where it fails, the end of its output and the file's name.
+# stage [--show] NAME LIMIT_MINUTES COMMAND…: runs COMMAND in a subshell with its output in a file (--show: also printed). Prints one line:
+#   the time so far while it runs, then the total time. If it fails, prints the end of its output and the file's name.
 stage() {
   local show=
   if [ "$1" = --show ]; then show=1; shift; fi
   local name=$1 limit=$(($2 * 60)) start=$SECONDS log status=0 ticker=
   log=$stage_logs/${name//[^A-Za-z0-9]/-}.log
   shift 2
-  # In a shell of its own and not after `if` or `||`, where a command that fails inside a function would be passed over.
+  # Runs in a separate shell, not after `if` or `||`, which would ignore a failing command inside a function.
   set +e
   if [ -n "$show" ]; then
     echo "== $name (log: $log)"
@@ -61,7 +61,7 @@ stage() {
   return "$status"
 }
 
-# On a terminal the line is written over itself; in a file a line a minute says that the stage is alive.
+# On a terminal the line is overwritten; in a file, one line per minute shows that the stage is alive.
 stage_line() {
   if [ -t 1 ]; then printf '\r%-12s %5d s  %s\e[K' "$1" "$2" "$3"; else printf '%-12s %5d s  %s\n' "$1" "$2" "$3"; fi
 }
@@ -76,10 +76,10 @@ stage_ticker() {
     stage_line "$1" $((SECONDS - from)) "$(stage_progress "$3")"
   done
 }
-# The last count that ninja printed; nothing for other programs.
+# Prints the last count that ninja printed; nothing for other programs.
 stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
 
-# side_by_side COMMAND…: runs each in a process of its own, which an error ends, and fails where one fails.
+# side_by_side COMMAND…: runs each in its own process, which ends at an error; fails if one of them fails.
 side_by_side() {
   local command processes=() process
   for command in "$@"; do
@@ -90,8 +90,8 @@ side_by_side() {
   for process in "${processes[@]}"; do wait "$process"; done
 }
 
-# Prints the time of every stage. With `enforce`, in CI, a stage that took three times its budget is a failure: the same work was seen
-# to take twice as long on a machine with other work beside it, and that is no fault of the change.
+# Prints the time of every stage. With `enforce`, in CI, a stage that took three times its budget fails. The factor is this large
+# because other work on the machine can double the time, which is no fault of the change.
 print_budget() {
   echo
   echo "time used, of the budget on 2 cores (this run: $JOBS jobs; logs: $stage_logs):"

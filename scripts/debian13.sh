@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Both README commands on a bare Debian 13, as a newcomer would type them: a chroot made by debootstrap, a clone of the committed HEAD,
-# one build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the
-# Debian package, and that package installed in a second bare Debian 13.
+# Runs both README commands on a bare Debian 13 as a newcomer would: a chroot made by debootstrap, a clone of the committed HEAD, one
+# build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the Debian
+# package, and that package installed in a second bare Debian 13.
 #   scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the
 #                                                                                     bare system and downloads
-# --prepare: only make the system and install packages; it waits for the network and the disk more than it computes.
-# --keep: go on with the system of the last call, at today's HEAD.
-# --suite bookworm: the same on a bare Debian 12, with its own compiler and without Monado, which it does not have; FOLDER: build/bookworm.
-# Needs root (chroot). Without it the stage is skipped and says so, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
+# --prepare: only makes the system and installs packages, which mostly waits for network and disk.
+# --keep: continues with the system of the last call, at the current HEAD.
+# --suite bookworm: on a bare Debian 12, with its own compiler and without Monado, which it lacks; FOLDER: build/bookworm.
+# Needs root (chroot). Without root the stage is skipped with a message, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage() {
@@ -32,7 +32,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 folder=$(realpath -m "${1:-build/$name}")
-# Inside the other stages' names: logs of their own.
+# Separate logs, named after the outer stage.
 CLOTHBENCH_LOGS=${CLOTHBENCH_LOGS:-build/log}/$name
 source scripts/common.sh
 here=$PWD
@@ -55,14 +55,14 @@ bare() {
   if [ ! -f "$folder/base/.complete" ]; then
     rm -rf "$folder/base"
     mkdir -p "$folder/base"
-    # The mirror this machine itself uses for Debian; security updates have another.
+    # The Debian mirror of this machine; security updates come from another one.
     local mirror
     mirror=$(apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' |
       grep -v -- '-security$' | cut -d' ' -f1 | sort -u | head -1)
     [ -n "$mirror" ] || { echo "apt knows no Debian mirror (run apt-get update once)"; return 1; }
     debootstrap --variant=minbase "$suite" "$folder/base" "$mirror" || return 1
     rm -f "$folder/base"/var/cache/apt/archives/*.deb
-    # Nothing in here outlives the test: no need to wait for the disk.
+    # Nothing here outlives the test, so dpkg need not sync the disk.
     echo force-unsafe-io >"$folder/base/etc/dpkg/dpkg.cfg.d/unsafe-io"
     touch "$folder/base/.complete"
   fi
@@ -75,7 +75,7 @@ bare() {
     rm -rf "$folder/installed"
     return
   fi
-  # Copies of earlier runs hold no mounts: those live in a namespace of their own.
+  # Copies from earlier runs contain no mounts: mounts are in a separate namespace.
   rm -rf "$folder/build" "$folder/installed"
   cp -a "$folder/base" "$folder/build"
   cp -a "$folder/base" "$folder/installed"
@@ -84,7 +84,7 @@ bare() {
   git -C "$folder/build/root/clothbench" checkout -q --detach "$(git rev-parse HEAD)"
 }
 
-# in_chroot ROOT COMMAND: as root of a fresh login would run it, with this machine's way to the network.
+# in_chroot ROOT COMMAND: runs COMMAND as root after a fresh login, with this machine's network access.
 in_chroot() {
   local root=$1 variables=(HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8
     DEBIAN_FRONTEND=noninteractive "JOBS=$JOBS")
@@ -106,7 +106,7 @@ set_up() {
   newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates
             git config --global --add safe.directory "*"; scripts/bootstrap.sh --short'
 }
-# Not optimised: half of the time to compile, and no speed is judged here. Words are split on purpose: arguments of cmake.
+# Not optimised, which halves the compile time; no speed is measured here. Word splitting is intended.
 options='-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-DNDEBUG'
 [ "$suite" != trixie ] || options+=' -DCLOTHBENCH_WERROR=ON'
 compiler="export CLOTHBENCH_CMAKE='$options'"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Debian's arm64 packages (libraries that the arm64-linux build links, and a Vulkan driver to run it with) unpacked into a
-# folder: nothing is installed, and the machine's own apt state is not touched. Does nothing where they are there already.
+# Unpacks Debian's arm64 packages (libraries for the arm64-linux build, and a Vulkan driver to run it with) into a folder.
+# Installs nothing and leaves the machine's apt state unchanged. Does nothing if they are already there.
 #   scripts/fetch-arm64-root.sh [FOLDER]     default build/arm64-root
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,7 +16,7 @@ rm -rf "$root"
 state="$root.apt"
 mkdir -p "$root" "$state"/{lists/partial,cache/archives/partial}
 : >"$state/status"
-# The mirrors this machine itself uses for Debian.
+# The Debian mirrors of this machine.
 keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 signed=""
 [ -f "$keyring" ] && signed="[signed-by=$keyring] "
@@ -25,7 +25,7 @@ mirrors() {
     sort -u >"$state/sources.list"
 }
 mirrors
-# A fresh image may have no lists yet.
+# A fresh image may lack package lists.
 if [ ! -s "$state/sources.list" ] && [ "$(id -u)" -eq 0 ]; then
   apt-get update >/dev/null 2>&1 || true
   mirrors
@@ -45,9 +45,9 @@ if ! { apt-get "${options[@]}" update && apt-get "${options[@]}" -y --download-o
   exit 1
 fi
 for package in "$state"/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
-# The driver file names an absolute path of an installed system.
+# The driver file contains the absolute path of an installed system.
 sed -i -E "s|\"library_path\": *\"([^\"]*/)?|\"library_path\": \"$root/usr/lib/aarch64-linux-gnu/|" "$root"/usr/share/vulkan/icd.d/lvp_icd*.json
-# Links that name absolute paths would leave the folder.
+# Links to absolute paths would point outside the folder.
 find "$root" -type l -lname '/*' -print0 | while IFS= read -r -d '' link; do
   ln -sfn "$root$(readlink "$link")" "$link"
 done

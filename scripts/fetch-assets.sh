@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Downloads the room captures, hand meshes and hand poses pinned by assets-package-lock.json. A source tree gets them in
-# build/assets/node_modules; an installed program in the user's ~/.local/share/clothbench/assets/node_modules (below $XDG_DATA_HOME if that is set).
+# Downloads the room captures, hand meshes and hand poses pinned by assets-package-lock.json. Target: build/assets/node_modules in a source tree;
+# for an installed program, the user's ~/.local/share/clothbench/assets/node_modules (below $XDG_DATA_HOME if set).
 #   scripts/fetch-assets.sh [--require-assets]
 # Without them clothbench uses procedural assets, so a failure prints one line and exits with 0; with --require-assets it exits with 1.
 # Nothing from the packages is executed.
@@ -25,13 +25,13 @@ give_up() {
   exit "$require"
 }
 
-# Written last, so an interrupted fetch is started again.
+# Written last, so that an interrupted fetch is repeated.
 if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "$target/node_modules/@iwer/sem" ]; then
   echo "assets: already in $target"
   exit 0
 fi
 
-# Debian's npm and one from elsewhere conflict: any npm that is there is used, and Debian's only where there is none.
+# Debian's npm conflicts with others, so Debian's is installed only if there is none.
 if ! command -v npm >/dev/null; then
   [ "$installed" = 0 ] || give_up "no npm (Debian: apt-get install npm)"
   as_root=()

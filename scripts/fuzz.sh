@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fuzz every reader of other people's files for some seconds each, JOBS at a time, under address and undefined-behaviour sanitizers.
+# Fuzzes every reader of foreign files for some seconds each, JOBS at a time, with address and undefined-behaviour sanitizers.
 #   scripts/fuzz.sh [seconds] [reader...]     default: 10 s, all readers; new inputs go to build/fuzz/found
-# SEED=N repeats the inputs of an earlier run, within the time; by default, inputs differ in every run.
+# SEED=N repeats the inputs of an earlier run as far as time allows; by default, inputs differ in every run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh

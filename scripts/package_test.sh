@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Is the Debian package whole? Installs it into a bare system and does there what a new user would.
+# Checks that the Debian package is complete: installs it into a bare system and works there as a new user would.
 #   scripts/package_test.sh CLOTHBENCH.deb CHROOT
-# CHROOT: a bare Debian of the release that the package was made for (debootstrap --variant=minbase), with no build packages in it; it is
+# CHROOT: a bare Debian of the release for which the package was made (debootstrap --variant=minbase), without build packages; it is
 # changed. Needs root, and the chroot's own apt sources.
 set -euo pipefail
 
@@ -10,7 +10,7 @@ deb=$(realpath "$1") root=$(realpath "$2")
 [ -f "$deb" ] || { echo "package: $deb: expected a .deb" >&2; exit 2; }
 [ -x "$root/usr/bin/apt-get" ] || { echo "package: $root: expected a folder made by debootstrap" >&2; exit 2; }
 if [ -z "${PACKAGE_TEST_OWN_MOUNTS:-}" ]; then
-  # Mounts of a name space of its own end with it, however this ends.
+  # Mounts in a separate namespace end with it, however this script ends.
   PACKAGE_TEST_OWN_MOUNTS=1 exec unshare --mount "$0" "$deb" "$root"
 fi
 mount -t proc proc "$root/proc"
@@ -18,7 +18,7 @@ mount --rbind /dev "$root/dev"
 
 home=/home/clothbench-test
 as_root() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
-# A user that is not root and cannot write into /usr.
+# A user who is not root and cannot write into /usr.
 as_user() { chroot --userspec=65534:65534 "$root" /usr/bin/env -i -C $home PATH=/usr/bin:/bin HOME=$home LC_ALL=C.UTF-8 "$@"; }
 fail() { echo "package: $*" >&2; exit 1; }
 ok() { echo "package: $*"; }
@@ -43,7 +43,7 @@ install_it() {
   ok "$version installed, with what it depends on"
 }
 
-# Every place is named, and the one of the source tree is not there.
+# The message names every place, and the source tree's place does not exist.
 refuses_without_data() {
   local share=/usr/share/clothbench status=0 text source
   mv "$root$share" "$root$share.away"

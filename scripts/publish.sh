@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# Runs the published studies one after another into OUT, and makes what is published of them.
+# Runs the published studies one after another into OUT, and makes the published files from them.
 #   scripts/publish.sh OUT [--table gpu | software | peers | quick] [--only STUDY]... [--limit SECONDS] [--jobs N] [--device N]
 #   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz] [--jobs N]
 # First form, exit status: 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; call it again: complete studies
 # are skipped, finished runs stay. 2: bad input. Otherwise the status of the study that failed.
-# Second form: writes one report per study, one page of all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must come
-# from one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
-# Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH names the program (default:
-# build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS take part.
+# Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must
+# come from one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
+# Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH: the program (default:
+# build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS are included.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
-# Columns: table (where the study runs), name (names that are equal up to a "+" are reported together), command of clothbench without --out.
-# PEERS: --solver for each engine of build/peers. JOBS: the number of --jobs.
-# SEED: the first digits of the commit's hash, so that nobody can choose the scenes to suit a solver.
+# Columns: table (where the study runs), name (equal up to a "+": reported together), command of clothbench without --out.
+# PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
+# SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {
   cat <<'END'
 gpu       table3            study table3 --trials 5 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
@@ -92,7 +92,7 @@ if [ -n "$report" ]; then
   done
   for process in "${processes[@]}"; do wait "$process"; done
   cp "$scratch/all/index.html" "$to"
-  # What was run, in how many seconds, and the hashes of all raw results and of all that is published.
+  # The commands, their times in seconds, and the hashes of all raw results and all published files.
   { printf 'study\tseconds\tcommand\n'; cat "${complete[@]}"; } >"$to/commands.tsv"
   for file in "${complete[@]%.done}"; do (cd "$(dirname "$file")" && find "$(basename "$file")" -name '*.h5' -exec sha256sum {} +); done | sort -k2 >"$to/RESULTS.SHA256"
   (cd "$to" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs -d '\n' sha256sum >"$scratch/sums" && cp "$scratch/sums" SHA256SUMS)
@@ -139,7 +139,7 @@ while read -r in name line; do
   done
   resume=() status=124 start=$SECONDS
   [ ! -d "$out/$name" ] || resume=(--resume)
-  # clothbench is interrupted at the limit and keeps finished runs. Exit status 1: runs crashed, diverged or timed out, which are results, too.
+  # At the limit clothbench is interrupted and keeps finished runs. Exit status 1 (runs crashed, diverged or timed out) is also a result.
   left=$((deadline - SECONDS))
   [ $left -le 0 ] || { status=0; timeout --foreground -s INT -k 30 "$left" "$bench" "${command[@]}" "${device[@]}" --out "$out/$name" "${resume[@]}" </dev/null >>"$out/$name.log" 2>&1 || status=$?; }
   seconds=$((SECONDS - start + $(cat "$out/$name.seconds" 2>/dev/null || echo 0)))

@@ -28,7 +28,7 @@ PROPERTIES = ("debug.oculus.cpuLevel", "debug.oculus.gpuLevel", "debug.oculus.re
 LOG = ("logcat", "-v", "epoch", "-T", "1", "-s", "clothbench", "VrApi", "XrPerformanceManager")
 STAMP = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
 TRACE = "/data/misc/perfetto-traces/clothbench.pftrace"
-# What adb says when the headset is missing, not when the command fails.
+# Output of adb if the headset is missing, as opposed to a failing command.
 NO_ANSWER = re.compile("no devices|device offline|device ('.*' )?not found|error: closed|protocol fault|connection reset|cannot connect")
 
 
@@ -78,7 +78,7 @@ class Adb:
 
     def call(self, *words, timeout=30, check=True):
         """What the command printed, with plain line ends. Raises Problem if the headset does not answer, or if the command fails and `check`."""
-        try:  # a session of its own: Ctrl-C is handled here, not by adb
+        try:  # a separate process group, so that Ctrl-C is handled here, not by adb
             done = subprocess.run(self.words(*words), stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout, start_new_session=True, check=False)
         except subprocess.TimeoutExpired:
             raise Problem(f"adb {words[0]}: no answer in {timeout} s", 3) from None
@@ -116,7 +116,7 @@ def fixed_settings(adb, a):
     before = {name: adb.shell("getprop " + name).strip() for name in PROPERTIES}
     try:
         set_properties(adb, dict(zip(PROPERTIES, (str(a.cpu_level), str(a.gpu_level), f"{a.refresh_hz:g}", "1"))))
-        # The headset counts as worn while it lies on a desk.
+        # Makes the headset count as worn while it lies on a desk.
         adb.shell("am broadcast -a com.oculus.vrpowermanager.prox_close")
         yield
     finally:
@@ -139,7 +139,7 @@ def traced(adb, into):
     try:
         yield bool(pid)
     finally:
-        if pid:  # it writes the rest of the trace before it ends
+        if pid:  # wait until the process has written the rest of the trace
             adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done")
     if pid:
         adb.call("pull", TRACE, into, timeout=1800)
@@ -155,7 +155,7 @@ class Run:
         reported = samples.number(adb.shell("date +%s.%N").strip())
         if reported is None:
             raise Problem("the headset does not report its time (date +%s.%N)")
-        # How far the device's clock is ahead of this computer's, good to half the duration of the command.
+        # The device's clock minus this computer's, accurate to half the duration of the command.
         self.offset_s = reported - (before + time.time()) / 2
         self.vrapi, self.changes, self.log, self.counters, self.result = [], [], [], samples.Counters(), None
 
@@ -165,7 +165,7 @@ class Run:
         chosen = ",".join(str(ids[name]) for name in samples.WANTED if name in ids)
         self.adb.shell(f"am force-stop {PACKAGE}")
         log = Stream(self.adb.words(*LOG))
-        # On a terminal, so that the profiler ends when the connection does.
+        # -tt: a terminal, so that the profiler ends when the connection does.
         profiler = Stream(self.adb.words("shell", "-tt", f'ovrgpuprofiler -r"{chosen}"')) if chosen else None
         try:
             self.started = time.time() + self.offset_s
@@ -184,7 +184,7 @@ class Run:
             if log.process.poll() is not None:
                 raise Problem("the log ended: the headset was unplugged. The app goes on without the cable; fetch its results with `quest_run.py pull`", 3)
             if time.monotonic() >= next_poll:
-                # The process may end a moment before its last log line arrives.
+                # The process may end shortly before its last log line arrives.
                 missing = 0 if self.adb.shell(f"pidof {PACKAGE}", check=False).strip() else missing + 1
                 next_poll = time.monotonic() + 1
             self._take(log, profiler)

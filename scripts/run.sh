@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# The main job: set up, build, run a study on the best Vulkan device present (without a GPU: its quick form), print its tables.
+# The main job: sets up, builds, runs a study on the best Vulkan device (without a GPU: its quick form), prints its tables.
 #   scripts/run.sh [STUDY] [--quick] [options of `clothbench study`]     STUDY: table3 (the default), penetration, stability
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# A first build compiles files together, in about half the time; a folder that was configured before stays as it is.
+# A first build is a unity build, which takes half the time; an already configured folder keeps its settings.
 build() {
   local together=()
   [ -f build/release/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
   configure release -DBUILD_TESTING=OFF "${together[@]}"
   cmake --build --preset release -j "$JOBS" --target clothbench
 }
-# The network is slow where the processor is not: while the assets come, the build goes on.
+# The assets are fetched during the build, because one needs the network and the other the processor.
 fetched=$stage_logs/fetch-assets
 assets() {
   while [ ! -f "$fetched.status" ]; do sleep 0.2; done
@@ -36,7 +36,7 @@ stage build 4 build
 stage assets 1 assets
 tail -1 "$fetched.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
-# Times of a software device say nothing of a GPU, and all sizes take it many minutes.
+# Times of a software device tell nothing about a GPU, and all sizes take it many minutes.
 build/release/clothbench list devices --json | grep -q '"software": false' || form=(--quick)
 stage study 3 build/release/clothbench study "$study" --out "$out" "${form[@]}" "$@"
 stage --show report 1 build/release/clothbench report "$out" -o "$out/report"

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Set up, build and pass the tests.
+# Sets up, builds and runs the tests.
 #   scripts/test.sh [--full | --short]     --full: also what CI runs and the slow tier; --short: a named few programs, in a few minutes
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# --short: what differs first on another system: readers of JSON, HDF5 and meshes, exact arithmetic, Bullet, Vulkan, the command.
+# --short: tests of system-dependent parts: readers of JSON, HDF5 and meshes, exact arithmetic, Bullet, Vulkan, the command.
 short=(assets_test bullet_test check_test cli_test contact_test pbd_gpu_self_contact_test results_test scenario_test truth_test)
 
-# A first build compiles files together, in about half the time, and leaves out slow tests that are not run; a folder
-# that was configured before keeps its choice of both.
+# A first build is a unity build, which takes half the time, and omits slow tests that are not run. An already
+# configured folder keeps both settings.
 build() {
   local first=()
   [ -f build/release/CMakeCache.txt ] || first=(-DCMAKE_UNITY_BUILD=ON)
@@ -21,10 +21,10 @@ build() {
   configure ci "${first[@]}"
   cmake --build --preset ci -j "$JOBS" --target "${targets[@]}"
 }
-# One more than the machine has cores: some tests wait for a clock or another program.
+# One job more than cores, because some tests wait for a clock or another program.
 tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
 
-# A study's short form against its committed baseline; gates nothing that depends on the machine's speed.
+# Compares a study's short form with its committed baseline; values that depend on the machine's speed are not compared.
 #   against_baseline STUDY OPTIONS...    $kind: the end of the name of the baseline
 against_baseline() {
   local study=$1 out=build/$1-quick
@@ -35,11 +35,11 @@ against_baseline() {
   build/release/clothbench check "$out" --baseline "results/baselines/$study$kind.json" --junit "$out.xml"
 }
 
-# What penetrates what: the published scenes, and scenes drawn by fixed seeds. Beside them the stiff and extreme cases: the first of the three
-# has timed trials, which are run one at a time and use one core.
+# Penetration: the published scenes, and random scenes with fixed seeds. In parallel the stiff and extreme cases: of these three, only the
+# first has timed trials, which run one at a time and use one core.
 studies() {
   local kind='' procedural=()
-  # Results on procedural rooms and hands have baselines of their own.
+  # Results with procedural rooms and hands have separate baselines.
   if build/release/clothbench list assets | grep -q '^procedural'; then kind=-procedural procedural=(--procedural); fi
   against_baseline penetration &
   local penetration=$!
@@ -49,7 +49,7 @@ studies() {
   wait "$penetration"
 }
 
-# Stiff and extreme cases: no process dies, and xpbd is finite and bounded in every case that it supports.
+# Stiff and extreme cases: no process may die, and xpbd must be finite and bounded in every case that it supports.
 stability() {
   local out=build/stability-quick
   rm -rf "$out"
@@ -71,7 +71,7 @@ case ${1:-} in
   --short)
     tier=short packages=(--short)
     targets=(clothbench "${short[@]}")
-    # Without cases that take long and show nothing else on another system, or that judge speed.
+    # Without slow cases that show nothing new on a different system, and without tests of speed.
     selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce|AThinSheet|AShortList|TriangleMesh')
     ;;
   *) echo "usage: scripts/test.sh [--full | --short]" >&2; exit 2 ;;

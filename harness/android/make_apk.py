@@ -106,12 +106,12 @@ def main():
     a.out.parent.mkdir(parents=True, exist_ok=True)
     unaligned, aligned = a.out.with_suffix(".unaligned"), a.out.with_suffix(".aligned")
     major, minor, patch = (int(n) for n in a.version.split("."))
-    # Debian's aapt2 does not know <queries>, which came with API 30, but writes it all the same.
+    # Debian's aapt2 does not know <queries>, an element of API 30, but writes it correctly.
     run(aapt2, "link", "--warn-manifest-validation", "-o", str(unaligned), "--manifest", str(HERE / "AndroidManifest.xml"), "-I", framework,
         "--min-sdk-version", str(MIN_SDK), "--target-sdk-version", str(TARGET_SDK),
         "--version-code", str(major * 10000 + minor * 100 + patch + 1), "--version-name", a.version)
     add_files(unaligned, [a.library, *a.also], a.assets)
-    # -p: libraries on pages, as the loader maps them.
+    # -p: page-aligned libraries, because the loader maps them.
     run(zipalign, "-f", "-p", "4", str(unaligned), str(aligned))
     run(zipalign, "-c", "-p", "4", str(aligned))
     file, password = keystore(a.out.parent)

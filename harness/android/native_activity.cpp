@@ -1,5 +1,5 @@
-// The activity as Android calls it: own ANativeActivity callbacks around a Session. Everything that can
-// be tested without Android lies in session.
+// The activity that Android calls: ANativeActivity callbacks around a Session. Code that can be tested without Android
+// is in session.cpp.
 #include <android/asset_manager.h>
 #include <android/input.h>
 #include <android/log.h>
@@ -29,7 +29,7 @@ constexpr const char* kTag = "clothbench";
 
 void to_log(const std::string& line) { __android_log_write(ANDROID_LOG_INFO, kTag, line.c_str()); }
 
-/// Sends stdout and stderr of the process to the log, line by line and until the process ends, because Android discards
+/// Sends the process's stdout and stderr to the log, line by line until the process ends, because Android discards
 /// them.
 void send_output_to_log() {
   static const bool once = [] {
@@ -52,7 +52,7 @@ void send_output_to_log() {
   (void)once;
 }
 
-/// Through stdout, so that it comes after everything printed before.
+/// Prints to stdout, so that the line comes after everything printed before.
 void print_line(const std::string& line) { std::printf("%s\n", line.c_str()); }
 
 Session& session_of(ANativeActivity* a) { return *static_cast<Session*>(a->instance); }
@@ -89,11 +89,11 @@ std::optional<std::string> read_asset(AAssetManager* manager, const std::string&
   return content;
 }
 
-/// Scenes and assets become plain files; results go, and relative paths lead, to the files folder.
+/// Unpacks scenes and assets to plain files; results and relative paths go to the files folder.
 void prepare(ANativeActivity* a, const std::string& files) {
   const std::filesystem::path packed = std::filesystem::path(a->internalDataPath) / "packed";
   unpack_assets([a](const std::string& path) { return read_asset(a->assetManager, path); }, packed);
-  // An app is a library in a process of the system: there is no program to start as a worker.
+  // An app is a library in a process of the system, so there is no executable for workers.
   run_solvers_in_process();
   setenv("CLOTHBENCH_SCENARIOS", (packed / "scenarios").c_str(), 1);
   if (std::filesystem::exists(packed / "assets")) setenv("CLOTHBENCH_ASSETS", (packed / "assets").c_str(), 1);
@@ -101,7 +101,7 @@ void prepare(ANativeActivity* a, const std::string& files) {
   if (chdir(files.c_str()) != 0) to_log("cannot change to " + files);
 }
 
-/// The system reports an activity as hung when its input queue is not emptied.
+/// Empties the input queue; otherwise the system reports the activity as hung.
 int drain_input(int, int, void* queue) {
   AInputEvent* event = nullptr;
   while (AInputQueue_getEvent(static_cast<AInputQueue*>(queue), &event) >= 0) {
@@ -111,8 +111,8 @@ int drain_input(int, int, void* queue) {
   return 1;
 }
 
-/// The command line; of a live session the runtime asks for the activity, which the session's thread outlives for a
-/// moment.
+/// Runs a command line. In a live session the runtime uses the activity, which the session's thread may outlive
+/// briefly.
 std::function<int(const std::vector<std::string>&)> command_of([[maybe_unused]] ANativeActivity* a) {
 #ifdef CLOTHBENCH_WITH_XR
   const xr::AndroidContext context{a->vm, a->env->NewGlobalRef(a->clazz)};

@@ -16,7 +16,7 @@
 namespace clothbench::android {
 namespace {
 
-/// Locked by the session that runs: the log and the interrupt are the process's.
+/// Held by the running session, because log and interrupt belong to the process.
 std::mutex& running_session() {
   static auto* const mutex = new std::mutex;  // outlives every thread
   return *mutex;
@@ -35,10 +35,10 @@ struct Session::Shared {
   Activity activity;
   std::mutex mutex;
   std::condition_variable changed;
-  bool running = false;  ///< it is this session's turn
+  bool running = false;  ///< this session holds running_session()
   bool paused = false, destroyed = false, ended = false;
 
-  /// Runs the command; true if it passed.
+  /// Runs the command; true if its exit code is 0.
   bool run() {
     std::vector<std::string> words = split_words(activity.arguments);
     if (words.empty()) words = {"study", "table3"};
@@ -91,7 +91,7 @@ void Session::pause() {
   const std::lock_guard lock(shared_->mutex);
   shared_->paused = true;
   if (shared_->running && !shared_->destroyed) hold_runs(true);
-  if (!shared_->ended) shared_->activity.log("paused: the run holds between frames");
+  if (!shared_->ended) shared_->activity.log("paused: the run waits between frames");
 }
 
 void Session::resume() {
@@ -105,7 +105,7 @@ void Session::destroy() {
   std::unique_lock lock(shared_->mutex);
   shared_->destroyed = true;
   if (shared_->running) request_interrupt();
-  // A session that waits for its turn stops when that comes.
+  // A session that waits for its turn stops when its turn comes.
   shared_->changed.wait_for(lock, kTimeout, [&] { return shared_->ended || !shared_->running; });
 }
 
@@ -123,7 +123,7 @@ void unpack_assets(const AssetReader& read, const std::filesystem::path& to) {
     std::filesystem::create_directories((to / path).parent_path());
     write_file_atomically(to / path, *content);
   }
-  // Last, so that an interrupted unpacking is done again.
+  // Written last, so that an interrupted unpacking is repeated.
   write_file_atomically(to / kIndex, *index);
 }
 

@@ -25,7 +25,7 @@ fs::path pose_file(const fs::path& root, std::string_view name) {
   return root / "iwer/lib/device/configs/hand" / (std::string(name) + ".js");
 }
 
-/// The first file that is not there; empty if all are.
+/// The first missing file; empty if all exist.
 fs::path first_missing(const fs::path& root) {
   std::vector<fs::path> wanted;
   for (auto name : kRoomNames) wanted.push_back(room_file(root, name));
@@ -48,7 +48,7 @@ std::string versions(const fs::path& root) {
   });
 }
 
-/// Where a user's own data lie (XDG base directories); empty if there is no home.
+/// Folder of a user's own data (XDG base directories); empty if there is no home.
 fs::path user_data() {
   if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/')
     return fs::path(data) / "clothbench";
@@ -67,7 +67,7 @@ std::string fetching_script() {
   return script;
 }
 
-/// Folders that are searched, in order: an installed tree's or the source tree's own, then the user's.
+/// Folders to search, in order: the installed or source tree's own, then the user's.
 std::vector<fs::path> asset_places() {
   std::vector<fs::path> places = usual_places(kAssetFolder);
   if (const fs::path own = user_data(); !own.empty()) places.push_back(own / kAssetFolder.installed);

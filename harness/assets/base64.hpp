@@ -54,7 +54,7 @@ inline std::vector<std::uint8_t> decode_base64(const std::string& text, const st
   return out;
 }
 
-/// The bytes as items that lie in memory as they do in the text.
+/// The bytes, copied unchanged into items.
 template <class Item>
 std::vector<Item> decode_items(const std::string& text, const std::string& source, const std::string& pointer) {
   static_assert(std::is_trivially_copyable_v<Item> && std::endian::native == std::endian::little);

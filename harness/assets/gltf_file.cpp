@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-// The header again, for the definitions; a file that is compiled together with this one must not get them twice.
+// The header with its definitions. Undefined below, so that the next file of a unity build does not get them again.
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION
@@ -21,7 +21,7 @@
 namespace clothbench::assets::gltf {
 namespace {
 
-/// Types of all values of a glTF 2.0 file that the readers use. tinygltf leaves out a value of another type.
+/// Types of all values of a glTF 2.0 file that the readers use, because tinygltf skips values of a wrong type.
 constexpr char kSchema[] =
 #include "gltf.schema.inc"
     ;
@@ -45,26 +45,26 @@ Eigen::Affine3d local_transform(const tinygltf::Node& node) {
   return t;
 }
 
-/// Images are not needed and this build cannot decode them, so each stays empty.
+/// Leaves every image empty: images are not needed, and this build cannot decode them.
 bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }
 
-/// Extensions that change no position: a file may require them.
+/// Extensions that change no position, so a file may require them.
 bool is_appearance(const std::string& extension) {
   static const std::vector<std::string> kNames = {"KHR_lights_punctual", "KHR_texture_basisu", "KHR_texture_transform",
                                                   "EXT_texture_webp",    "EXT_texture_avif",   "KHR_xmp_json_ld"};
   return extension.starts_with("KHR_materials_") || contains(kNames, extension);
 }
 
-/// The JSON part of a file, with every value of the type that it should have.
+/// The JSON part of a file, with the types of its values checked.
 nlohmann::json checked_json(const std::string& text, const std::string& source) {
   nlohmann::json parsed = parse_json(text, source);
   validate_json(parsed, kSchema, source);
   return parsed;
 }
 
-/// glTF 2.0, sections 3.2 and 3.12: what a reader that is right must not ignore.
+/// glTF 2.0, sections 3.2 and 3.12: conditions that a reader must not ignore.
 void check_header(const tinygltf::Model& model, const std::string& source) {
   const tinygltf::Asset& asset = model.asset;
   if (!asset.minVersion.empty() && asset.minVersion != "2.0")
@@ -91,7 +91,7 @@ tinygltf::Model loaded(const std::string& source, const char* kind, Load load) {
     error = e.what();
   }
   while (!error.empty() && error.back() == '\n') error.pop_back();
-  // The library's text may hold the file's.
+  // Shortened, because the library's message may quote the file.
   if (!ok) fail(source, fmt::format("not a {}: {}", kind, error.empty() ? "unreadable" : shortened(error, 200)));
   check_header(model, source);
   return model;
@@ -126,7 +126,7 @@ std::vector<double> numbers(const tinygltf::Model& model, int index, int type, s
   for (std::size_t i = 0; i < accessor.count; ++i)
     for (std::size_t k = 0; k < components; ++k) {
       const unsigned char* from = buffer.data.data() + view.byteOffset + accessor.byteOffset + i * stride + k * item;
-      std::uint32_t whole = 0;  // of 1, 2 or 4 bytes
+      std::uint32_t whole = 0;  // value of 1, 2 or 4 bytes
       if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) std::memcpy(&whole, from, item);
       out.push_back(accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ? double{item_at<float>(from)} : whole);
       if (!std::isfinite(out.back())) fail(source, fmt::format("{}: item {} is not finite", where, i));
@@ -175,7 +175,7 @@ tinygltf::Model parse_binary(const std::string& content, const std::string& sour
 
 tinygltf::Model parse_text(const std::string& text, const std::string& source) {
   const nlohmann::json parsed = checked_json(text, source);
-  // The library would open any file that the text names; the hash of a scene's mesh would not include it.
+  // The library would open any file named in the text, and the hash of a scene's mesh would not cover that file.
   const nlohmann::json buffers = parsed.value("buffers", nlohmann::json::array());
   for (std::size_t k = 0; k < buffers.size(); ++k)
     if (!buffers[k].value("uri", "").starts_with("data:"))
@@ -221,7 +221,7 @@ class MeshReader {
   }
 
  private:
-  /// Nodes of the active scene, or of the only scene if the file names none; all nodes of a file without scenes.
+  /// Nodes of the active scene, or of the only scene if none is active; all nodes of a file without scenes.
   std::set<std::size_t> active_nodes() const {
     const auto count = static_cast<int>(model_.scenes.size());
     if (model_.defaultScene < 0 && count > 1)
@@ -260,7 +260,7 @@ class MeshReader {
     return all;
   }
 
-  /// Positions with the displacements of morph targets added.
+  /// Positions including the displacements of morph targets.
   std::vector<double> positions(const tinygltf::Primitive& p, const std::vector<double>& weights,
                                 const std::string& where) const {
     std::vector<double> x = attribute(p.attributes, "POSITION", TINYGLTF_TYPE_VEC3);
@@ -285,7 +285,7 @@ class MeshReader {
     const std::size_t count = x.size() / 3;
     const std::vector<double> corners = indices(p, count);
     if (corners.size() % 3 != 0) fail(source_, where + ": expected indices in threes");
-    // Primitives may share one list of vertices, so only those that triangles name are taken.
+    // Primitives may share one list of vertices, so only vertices of triangles are copied.
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> taken(count, kNone);
     const bool mirrored = place.linear().determinant() < 0;

@@ -28,7 +28,7 @@ int attribute(const tinygltf::Primitive& primitive, const char* name, const std:
   return found->second;
 }
 
-/// The skin's joints as indices into kJointNames; fills the inverses of their frames at rest.
+/// The skin's joints as indices into kJointNames; fills the inverses of the joints' rest frames.
 std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& hand, const std::string& source) {
   const auto& skin = pick(model.skins, 0, source, "skins");
   const auto inverse =
@@ -47,7 +47,7 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
     const Eigen::Affine3d& bind = world[static_cast<std::size_t>(skin.joints[j])];
     hand.inverse_bind[slot].matrix() = Eigen::Map<const Eigen::Matrix4d>(inverse.data() + 16 * j);
     if (!(((bind * hand.inverse_bind[slot]).matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() <= 1e-3))
-      fail(source, fmt::format("/skins/0: the bind matrix of \"{}\" is not the inverse of its node", node.name));
+      fail(source, fmt::format("/skins/0: bind matrix of \"{}\" does not invert its node matrix", node.name));
     seen[slot] = true;
     joints.push_back(static_cast<std::uint8_t>(known));
   }
@@ -56,7 +56,7 @@ std::vector<std::uint8_t> read_skin(const tinygltf::Model& model, SkinnedMesh& h
   return joints;
 }
 
-/// The object literal of a module as JSON: names in double quotes, no trailing commas.
+/// Converts a module's object literal to JSON: names in double quotes, no trailing commas.
 std::string as_json(const std::string& text, const std::string& source) {
   const std::size_t start = text.find("= {"), end = text.rfind("};");
   if (start == std::string::npos)

@@ -30,7 +30,7 @@ HandPose pose_of(const HandKey& key, const Hand& hand) {
 static_assert(sizeof(RecordedJoint) == 32 && sizeof(RecordedCapsule) == 28, "stored as they lie in memory");
 
 constexpr float kMostCoordinate_m = 1e4f;
-constexpr double kUnit = 1e-3;  // how far from 1 a norm of float32 or a sum of weights may be
+constexpr double kUnit = 1e-3;  // allowed deviation from 1 of a float32 norm or a sum of weights
 
 constexpr char kRecordingSchema[] =
 #include "hand_recording.schema.inc"
@@ -56,7 +56,7 @@ bool good(const RecordedCapsule& c) {
   return c.radius_m >= 0 && c.radius_m <= kMostCoordinate_m;
 }
 
-/// `per_frame` items of each frame.
+/// Decodes `per_frame` items for each frame.
 template <class Item>
 std::vector<Item> read_block(const nlohmann::json& recording, const char* key, std::size_t per_frame,
                              const char* expected, const std::string& source) {
@@ -121,7 +121,7 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
     const double before_s = track.keys[i + 1].time_s - (key.time_s - shift_s),
                  distance_m = (track.keys[i + 1].position_m - key.position_m).norm();
     if (key.sweep && !(distance_m > 0))
-      throw Error(fmt::format("hand track: key {} is a sweep, but the next key is in the same place", i));
+      throw Error(fmt::format("hand track: key {} is a sweep, but the next key has the same position", i));
     const double takes_s = key.sweep ? distance_m / speed_m_per_s : before_s;
     any = any || key.sweep;
     shift_s += takes_s - before_s;
@@ -136,7 +136,7 @@ HandTrack retimed(HandTrack track, double speed_m_per_s) {
 
 HandSample sample(const HandTrack& track, const Hand& hand, double time_s) {
   if (track.side != hand.side)
-    throw Error(fmt::format("hand track: it is of the {} hand: expected one of the {} hand", name_of(track.side),
+    throw Error(fmt::format("hand track: it is for the {} hand; expected one for the {} hand", name_of(track.side),
                             name_of(hand.side)));
   if (!std::isfinite(time_s)) throw Error("hand track: argument time_s: expected a finite time");
   std::size_t next = 0;
@@ -163,7 +163,7 @@ bool usable(const RecordedHand& hand) {
 }
 
 const RecordedHand& HandRecording::at(double time_s) const {
-  constexpr double kSame = 1e-6;  // of a frame: times are whole frames up to rounding
+  constexpr double kSame = 1e-6;  // of a frame's duration: tolerance for rounding
   const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
   if (!(std::abs(frame - std::round(frame)) <= kSame))
     throw Error(fmt::format("hand recording: no frame at {:g} s; expected the scene to run at the recording's {:g} Hz",

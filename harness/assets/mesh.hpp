@@ -9,7 +9,7 @@ namespace clothbench::assets {
 
 using Vector = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
-/// A rigid placement: rotation and translation [m].
+/// A rigid transformation: rotation and translation [m].
 using Frame = Eigen::Isometry3d;
 
 /// positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from free space.
@@ -22,16 +22,16 @@ struct TriangleMesh {
   void add_vertex(const Vector& p) { positions.insert(positions.end(), {p.x(), p.y(), p.z()}); }
 };
 
-/// Whether the mesh is a closed surface: no border, every edge used once in each direction, one fan of triangles around
-/// every vertex.
+/// Whether the mesh is a closed manifold: no border, every edge used once in each direction, one fan of triangles
+/// around every vertex.
 bool is_closed_manifold(const TriangleMesh&);
 
-/// Volume [m^3] by the divergence theorem: positive if the normals of a closed mesh point outwards, negative for a
-/// room, whose normals point inwards.
+/// Volume [m^3] by the divergence theorem: positive if a closed mesh's normals point outwards, negative for a room,
+/// whose normals point inwards.
 double signed_volume(const TriangleMesh&);
 
-/// Closed regular prism with `sides` sides around `axis` (unit vector) and corners at `radius` from it. Normals point
-/// outwards; the ends are triangle fans.
+/// Closed regular prism with `sides` sides around `axis` (unit vector) and corners at distance `radius` from it.
+/// Normals point outwards; the ends are triangle fans.
 TriangleMesh prism(const Vector& axis, const Vector& center, double radius, double length, std::uint32_t sides);
 
 }  // namespace clothbench::assets

@@ -9,10 +9,10 @@
 namespace clothbench::assets {
 namespace {
 
-// A right hand in its palm frame, of round measures near an adult's: metres and degrees. The thumb is on the -x side.
+// A right hand in its palm frame, with rounded sizes of an adult's hand in metres and degrees. The thumb is at -x.
 struct Finger {
   std::size_t first;         ///< metacarpal joint
-  double x_base, x_knuckle;  ///< of metacarpal and proximal joint
+  double x_base, x_knuckle;  ///< x of the metacarpal and the proximal joint
   double y_knuckle;
   std::array<double, 3> bones;  ///< proximal, intermediate, distal (to the tip)
   std::array<double, 5> radius;
@@ -26,8 +26,8 @@ const double kBaseY = -0.030;
 const std::array<double, 3> kThumbBones = {0.031, 0.033, 0.025};
 const std::array<double, 4> kThumbRadius = {0.019, 0.012, 0.010, 0.009};
 
-/// Bends [degrees] of each finger's three joints, from index to little finger; where the thumb starts, and the
-/// direction of its bones. In `pinch` the thumb is straight and ends at the tip of the index finger.
+/// Bends [degrees] of each finger's three joints, from index to little finger; the thumb's start and the direction of
+/// its bones. In `pinch` the thumb is straight and ends at the tip of the index finger.
 struct Bends {
   const char* name;
   std::array<std::array<double, 3>, 4> fingers;
@@ -47,7 +47,7 @@ const Bends kBends[] = {{"relaxed",
                          {-0.028, -0.031, -0.009},
                          {{{-0.72, 0.68, -0.18}, {-0.60, 0.79, -0.12}, {-0.81, 0.57, -0.11}}}}};
 
-/// A joint whose -z runs along `bone` and whose +y is as near to `back` as can be.
+/// A joint with -z along `bone` and +y as close to `back` as possible.
 Frame joint_frame(const Vector& at, const Vector& bone, const Vector& back) {
   Frame frame = Frame::Identity();
   const Vector z = -bone.normalized();
@@ -57,7 +57,7 @@ Frame joint_frame(const Vector& at, const Vector& bone, const Vector& back) {
   return frame;
 }
 
-/// Bent by `degrees` towards the palm from straight along +y.
+/// Direction +y, rotated by `degrees` towards the palm.
 Frame bent(const Vector& at, double degrees) {
   const double a = degrees * std::numbers::pi / 180;
   return joint_frame(at, {0, std::cos(a), -std::sin(a)}, {0, std::sin(a), std::cos(a)});
@@ -119,7 +119,7 @@ class TubeMaker {
     return static_cast<std::uint32_t>(hand_.rest.vertex_count() - 1);
   }
 
-  /// A ring `along` the bone from a joint, joined to the ring before.
+  /// Adds a ring at distance `along` the bone from a joint, and joins it to the previous ring.
   void ring(const Frame& joint, double along, double radius, std::size_t a, std::size_t b) {
     const auto start = static_cast<std::uint32_t>(hand_.rest.vertex_count());
     for (std::uint32_t s = 0; s < kSides; ++s) {
@@ -159,7 +159,7 @@ class TubeMaker {
   std::uint32_t before_ = 0;
 };
 
-constexpr double kCoarse = 0.25, kFine = 0.05;  ///< edge lengths [m], walls and tables
+constexpr double kCoarse = 0.25, kFine = 0.05;  ///< edge lengths [m]: walls; tables
 constexpr double kSlab = 0.04, kLeg = 0.05;     ///< thickness of table tops and legs [m]
 
 struct Block {
@@ -172,7 +172,7 @@ struct Plan {
   double length_x, length_z;
 };
 
-// Heights and sizes are rounded from the two scanned tables.
+// Heights and sizes are rounded from those of the two scanned tables.
 const Plan kPlans[] = {{"procedural-low-table", "444c8313", {1.2, 0.45, -0.4}, 0.6, 1.1},
                        {"procedural-desk", "1088a241", {-1.4, 0.76, 0.2}, 0.75, 1.3}};
 
@@ -188,13 +188,13 @@ std::vector<Block> solids_of(const Plan& p) {
   return blocks;
 }
 
-/// Grid lines of one axis through all block faces, between them no further apart than `kFine` over a table, else
+/// Grid lines of one axis through all block faces; gaps in between are at most `kFine` over a table, otherwise at most
 /// `kCoarse`.
 std::vector<double> grid_lines(int axis, double low, double high, const std::vector<Block>& blocks) {
   std::vector<double> faces = {low, high};
   for (const Block& b : blocks) faces.insert(faces.end(), {b.low[axis], b.high[axis]});
   std::sort(faces.begin(), faces.end());
-  // Faces of legs and slab that ought to be one differ by rounding.
+  // Faces of legs and slab that should coincide differ by rounding errors.
   faces.erase(std::unique(faces.begin(), faces.end(), [](double a, double b) { return b - a < kFine / 1000; }),
               faces.end());
   std::vector<double> lines;
@@ -210,7 +210,7 @@ std::vector<double> grid_lines(int axis, double low, double high, const std::vec
   return lines;
 }
 
-/// The faces between free and solid cells of a grid, which is how a closed surface comes for nothing.
+/// Collects the faces between free and solid cells of a grid, which form a closed surface by construction.
 class CellRoom {
  public:
   CellRoom(const Block& room, const std::vector<Block>& solids) : solids_(solids), room_(room) {
@@ -257,7 +257,7 @@ class CellRoom {
     return place->second;
   }
 
-  /// The normal points back into the free cell.
+  /// Adds a face whose normal points back into the free cell.
   void add_face(const std::array<int, 3>& cell, int axis, int step) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     std::array<int, 3> base = cell;
@@ -280,7 +280,7 @@ class CellRoom {
   TriangleMesh mesh_;
 };
 
-/// Three waves of unlike length and direction: rms 5 mm, at most 12 mm. The longest is below the tables' size.
+/// Sum of three waves of different lengths and directions: rms 5 mm, at most 12 mm, all shorter than the tables.
 double roughness(double x, double z) {
   return 0.0041 *
          (std::sin(9.1 * x + 4.7 * z) + std::sin(21.3 * z - 6.1 * x + 1.0) + std::sin(33.7 * x + 27.9 * z + 2.0));
@@ -314,7 +314,7 @@ Room procedural_room() {
     Table table;
     table.uuid = plan.uuid;
     table.stands_for = plan.stands_for;
-    // As in captures: the box's z is up, its top at z = 0.
+    // As in captures: the box's z is up, and its top is at z = 0.
     table.frame = Frame::Identity();
     table.frame.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     table.frame.translation() = plan.centre;

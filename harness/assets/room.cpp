@@ -28,7 +28,7 @@ Frame pose_of(const json& entity, const std::string& source, const std::string& 
   const json &located = entity["locatable_META"], &turned = located["orientation"];
   const Eigen::Quaterniond q(turned.value("w", 0.0), turned.value("x", 0.0), turned.value("y", 0.0),
                              turned.value("z", 0.0));
-  // Captures hold unit quaternions to 1e-6; anything far from that is another kind of data.
+  // Captures have unit quaternions to 1e-6; a large deviation means that the data is something else.
   if (!(std::abs(q.norm() - 1) <= 1e-3))
     refuse(source, pointer + "/locatable_META/orientation",
            fmt::format("expected a unit quaternion, not of norm {}", q.norm()));
@@ -150,7 +150,7 @@ Box box_around(const Table& table, double below_m, double above_m) {
 }
 
 bool is_closed_manifold(const TriangleMesh& mesh) {
-  // Corner 3 t + k is where the k-th edge of triangle t starts.
+  // Corner 3 t + k is the start of edge k of triangle t.
   const auto vertex = [&](std::size_t corner) { return mesh.triangles[corner / 3][corner % 3]; };
   const auto next = [](std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
   const auto edge = [](std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; };
@@ -177,7 +177,7 @@ bool is_closed_manifold(const TriangleMesh& mesh) {
 
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
-  // From one of its own points: a mesh far from the origin would lose digits.
+  // Volume relative to one of the mesh's points: far from the origin, digits would be lost.
   const Vector origin = mesh.vertex(mesh.triangles[0][0]);
   double six = 0;
   for (const auto& t : mesh.triangles)

@@ -8,15 +8,15 @@
 
 namespace clothbench::assets {
 
-/// A table as the headset's user marked it. Captures also contain each table's top as a rectangle, up to 3 mm off the
+/// A table as marked by the headset's user. Captures also contain each table's top as a rectangle, up to 3 mm off the
 /// box; it is not read.
 struct Table {
   std::string uuid;        ///< of the box
-  std::string stands_for;  ///< procedural rooms: uuid prefix of the scanned table that it replaces; otherwise empty
+  std::string stands_for;  ///< in procedural rooms: uuid prefix of the scanned table that it replaces; otherwise empty
   Frame frame;             ///< of the box; +z is up in the world
-  Box box;                 ///< in that frame
+  Box box;                 ///< in the coordinates of `frame`
 
-  /// Corners of the box's upper face in the world [m], counter-clockwise from above.
+  /// Corners [m] of the box's upper face in world coordinates, counter-clockwise seen from above.
   std::array<Vector, 4> top_corners() const;
   /// Height of that face [m].
   double top_height() const;
@@ -30,23 +30,23 @@ struct Room {
   std::vector<Table> tables;
 };
 
-/// Reads a Quest room capture as @iwer/sem stores them (protobuf JSON: zero fields are left out). It takes the mesh of
-/// the one entity with `triangleMesh_META`. Its label is not used, as one of the five captures labels it UNRECOGNIZED.
+/// Reads a Quest room capture in the format of @iwer/sem (protobuf JSON: zero fields are omitted). Uses the mesh of the
+/// one entity with `triangleMesh_META`. Ignores its label, because one of the five captures labels it UNRECOGNIZED.
 /// Throws Error with the file and JSON pointer.
 Room load_room(const std::filesystem::path&);
-/// The same from text; `source` is for messages, `name` for the room.
+/// As load_room, from text; `source` is for messages, `name` for the room.
 Room parse_room(const std::string& text, const std::string& source, const std::string& name);
 
-/// The table whose uuid (or `stands_for`) starts with `prefix`. Throws Error listing the room's tables if none or more
-/// than one does.
+/// The table whose uuid (or `stands_for`) starts with `prefix`. Throws Error listing the room's tables if none or
+/// several do.
 const Table& find_table(const Room&, const std::string& prefix);
 
-/// The triangles of a mesh that have a vertex in a box, faces included, in the order of the source: Algorithm 2 of Kim,
-/// Ma & Hong (2025), section 3.2.4. It leaves out large triangles that cross the box without a vertex in it.
+/// The triangles of a mesh that have a vertex in or on a box, in the source's order: Algorithm 2 of Kim, Ma & Hong
+/// (2025), section 3.2.4. It omits large triangles that cross the box without a vertex in it.
 TriangleMesh cut(const TriangleMesh&, const Box&);
 
-/// The box that the algorithm cuts out around a table: the bounding box of six points, which are the corners of its top
-/// and the top's centre `below_m` lower and `above_m` higher.
+/// The box that the algorithm cuts out around a table: the bounding box of six points, the corners of its top and the
+/// top's centre moved `below_m` down and `above_m` up.
 Box box_around(const Table&, double below_m = 0.10, double above_m = 0.05);
 
 }  // namespace clothbench::assets

@@ -20,7 +20,7 @@ extern char** environ;
 namespace clothbench {
 namespace {
 
-/// 0, or why it could not be started. `input`: descriptor for its standard input, -1 for this process's.
+/// Returns 0, or the errno that prevented the start. `input`: descriptor for its standard input, -1 for this process's.
 int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int input, pid_t& pid) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
@@ -34,7 +34,7 @@ int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int inp
   else if (!setup.err.empty())
     open(STDERR_FILENO, setup.err);
 #ifdef __GLIBC__
-  // A result file that another thread writes now would stay locked for as long as this child lives.
+  // Otherwise a result file that another thread is writing would stay locked while this child lives.
   posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
 #endif
   std::vector<char*> words;
@@ -55,7 +55,7 @@ std::string ChildEnd::text() const {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetup& setup) {
   int ends[2] = {-1, -1};
-  // Closed in every other child: a hang-up then means that this child has ended, and no other.
+  // Close-on-exec, so that no other child inherits it: a hang-up then means that this child has ended.
   int failed = setup.socket && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 ? errno : 0;
   if (failed == 0) failed = spawn(argv, setup, ends[1], pid_);
   socket_ = ends[0];
@@ -98,7 +98,7 @@ void ChildProcess::close_socket() {
   socket_ = -1;
 }
 
-/// Whether it has ended; waits for that without WNOHANG.
+/// Whether the child has ended; without WNOHANG, waits until it has.
 bool ChildProcess::ended(int options) {
   if (end_) return true;
   int status = 0;

@@ -42,7 +42,7 @@ fs::path find_data(const DataFolder& folder, const DataRoots& roots) {
   std::error_code ec;
   if (const std::string named = named_data(folder); !named.empty()) {
     if (fs::is_directory(named, ec)) return named;
-    throw Error(fmt::format("no {}: {}={} is no folder; without {} they are looked for in {}", folder.what,
+    throw Error(fmt::format("no {}: {}={} is not a folder; without {} they are searched for in {}", folder.what,
                             folder.variable, named, folder.variable, listed(places)));
   }
   for (const fs::path& place : places)

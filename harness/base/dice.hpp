@@ -9,16 +9,16 @@
 
 namespace clothbench {
 
-/// Random numbers that are the same on every machine: the standard fixes its engines but not its distributions.
+/// Random numbers that are equal on every machine: the standard specifies its engines, but not its distributions.
 class Dice {
  public:
-  /// One sequence for each pair of a seed and a word.
+  /// Each pair of a seed and a word gives its own sequence.
   Dice(std::uint64_t seed, const std::string& word);
 
   double unit();  ///< uniform in [0, 1)
   double between(double low, double high);
-  double log_between(double low, double high);  ///< uniform in the logarithm; both above 0
-  int whole(int low, int high);                 ///< both included
+  double log_between(double low, double high);  ///< uniform in the logarithm; both bounds above 0
+  int whole(int low, int high);                 ///< both bounds included
 
   /// Rows of a rotation, uniform in SO(3). Source: Shoemake, Graphics Gems III, 1992.
   std::array<std::array<double, 3>, 3> rotation();

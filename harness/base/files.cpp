@@ -16,7 +16,7 @@
 namespace clothbench {
 namespace {
 
-/// Throws. A path at which no file can exist is a wrong argument (its own exit code); a full or broken disk is not.
+/// Throws. The exit code is a bad argument's for a path at which no file can exist, but not for a full or broken disk.
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
   const int why = errno;
   const bool wrong_path = why == ENOENT || why == ENOTDIR || why == EISDIR || why == ENAMETOOLONG || why == EACCES ||
@@ -93,7 +93,7 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
   const auto folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const Descriptor dir(folder, O_RDONLY | O_DIRECTORY);
   if (dir.get() < 0) fail(folder, "cannot be opened");
-  // Some file systems, a phone's shared storage among them, do not sync folders.
+  // Some file systems, such as a phone's shared storage, cannot sync folders.
   if (fsync(dir.get()) != 0 && errno != EINVAL && errno != ENOTSUP) fail(folder, "cannot be synced");
 }
 

@@ -5,25 +5,25 @@
 
 namespace clothbench {
 
-/// Separates a file's name from the id of the writing process in a temporary name.
+/// Stands between a file's name and the id of the writing process in a temporary name.
 inline constexpr char kTemporaryMark[] = ".tmp.";
 
-/// `<path>.tmp.<pid>`: the name of a file until it is complete.
+/// `<path>.tmp.<pid>`: name of an incomplete file.
 std::filesystem::path temporary_name(const std::filesystem::path& path);
 
-/// The whole file; empty if it cannot be read.
+/// Content of a file; empty if it cannot be read.
 std::string content_of(const std::filesystem::path&);
 
 /// Calls fsync on the temporary file, renames it to `path`, calls fsync on the folder. Throws Error naming the file.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
-/// Writes a temporary file and publishes it, so that readers see the old or the new file, never a part.
+/// Writes a temporary file and publishes it, so that readers see either the old or the complete new file.
 void write_file_atomically(const std::filesystem::path&, const std::string& content);
 
 /// SHA-256 of `data` in lower-case hexadecimal (FIPS 180-4).
 std::string sha256(const std::string& data);
 
-/// A kind of data that the program reads at run time, and the places of its folder.
+/// A kind of data that the program reads at run time, and the locations of its folder.
 struct DataFolder {
   const char* what;       ///< name in messages
   const char* variable;   ///< the environment variable that names the folder
@@ -35,22 +35,22 @@ inline constexpr DataFolder kScenarioFolder{"scenes and studies", "CLOTHBENCH_SC
 inline constexpr DataFolder kAssetFolder{"rooms and hands", "CLOTHBENCH_ASSETS", "assets/node_modules",
                                          "build/assets/node_modules"};
 
-/// Roots that the folders lie below.
+/// Folders that contain the data folders.
 struct DataRoots {
   std::filesystem::path installed;  ///< share/clothbench of this program's tree; empty if unknown
   std::filesystem::path source;     ///< the source tree this was built from
 };
 
-/// The roots of this program, also after it was moved.
+/// The roots of this program, correct also if it was moved.
 DataRoots data_roots();
 
 /// Value of the environment variable; empty if it is not set.
 std::string named_data(const DataFolder&);
 
-/// Places to search if the variable is not set: the installed tree, then the source tree.
+/// Folders to search if the variable is not set: in the installed tree, then in the source tree.
 std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoots& = data_roots());
 
-/// The folder that the variable names; if not set, the first usual place that exists. Throws Error with all places.
+/// The variable's folder; if it is not set, the first usual place that exists. Throws Error with all places.
 std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
 
 }  // namespace clothbench

@@ -9,13 +9,13 @@
 
 namespace clothbench {
 
-/// Bounds of a value; NaN where they are not known.
+/// Bounds of a value; NaN if unknown.
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN(), high = low;
 };
 
-/// 95 % Wilson score interval of the pass probability, if `passed` of `drawn` independent trials passed; [0, 1] without
-/// trials. Throws Error if more passed than were drawn. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
+/// 95 % Wilson score interval of the pass probability if `passed` of `drawn` independent trials passed; [0, 1] if there
+/// were none. Throws Error if passed > drawn. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
 inline Interval wilson_95(std::size_t passed, std::size_t drawn) {
   if (passed > drawn)
     throw Error("Wilson's interval: " + std::to_string(passed) + " of " + std::to_string(drawn) + " passed");
@@ -26,7 +26,7 @@ inline Interval wilson_95(std::size_t passed, std::size_t drawn) {
   return {passed == 0 ? 0 : std::max(0.0, middle - half), passed == drawn ? 1 : std::min(1.0, middle + half)};
 }
 
-/// Quantile `q` (0 to 1) of the finite values, linear between them; NaN if there are none.
+/// Quantile `q` (0 to 1) of the finite values, interpolated linearly; NaN if there are none.
 inline double quantile(std::vector<double> v, double q) {
   std::erase_if(v, [](double x) { return !std::isfinite(x); });
   if (v.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 64;
-constexpr std::size_t kShown = 120;  // bytes of the input, or of a library's words about it, in a message
+constexpr std::size_t kShown = 120;  // bytes of the input, or of a library's text about it, that a message shows
 
 std::string at(const std::string& text, std::size_t byte) {
   byte = std::min(byte, text.size());
@@ -33,7 +33,7 @@ std::string at(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, newline == std::string::npos ? byte : byte - newline - 1);
 }
 
-/// Rejects what nlohmann's own parser lets pass: repeated keys and bottomless nesting; builds nothing.
+/// Rejects repeated keys and unlimited nesting, which nlohmann's parser accepts; builds no value.
 class Strict : public nlohmann::json_sax<json> {
  public:
   Strict(const std::string& text, const std::string& source) : text_(text), source_(source) {}
@@ -85,7 +85,7 @@ const json& sub_schema(const json& schema, const json& root) {
   return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
 }
 
-/// An object that is right without any key, so that its defaults may stand for it.
+/// Whether an empty object is valid, so that its defaults may replace a missing one.
 bool may_be_empty(const json& s) {
   return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") &&
          s.value("type", json()) == "object";
@@ -120,7 +120,7 @@ std::string pointer_of(const std::vector<std::string>& context) {
   return pointer.to_string();
 }
 
-/// Sub-schema a pointer leads to; null where the schema says nothing of it.
+/// Sub-schema for a pointer; null if the schema does not define it.
 json schema_at(const json& root, const std::string& pointer) {
   json s = root;
   std::size_t i = 1;
@@ -160,7 +160,7 @@ std::string expectation(const json& s) {
   return joined(parts);
 }
 
-/// First key of an object that its schema does not know, with the nearest known one (valijson names only the object).
+/// First key of an object that its schema lacks, with the most similar known one (valijson names only the object).
 std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
   const json s = json(sub_schema(schema, root));
   if (value.is_object() && s.contains("properties")) {
@@ -182,7 +182,7 @@ std::string unknown_key(const json& value, const json& schema, const json& root,
   return "";
 }
 
-/// The validator matches patterns by recursion, a step per character: a long string would overflow the stack.
+/// Long strings would overflow the stack, because the validator matches patterns by recursion, one level per character.
 void refuse_long_strings(const json& value, const std::string& source, const std::string& pointer) {
   constexpr std::size_t kMost = 4096;
   if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
@@ -201,7 +201,7 @@ std::string missing_key(const json& value, const json& schema) {
 
 }  // namespace
 
-// For a syntax error the library says where, what, "last read:" with the text, and perhaps what it expected.
+// For a syntax error the library gives position, cause, "last read:" with the text, and sometimes what it expected.
 std::string what_without_text(const std::exception& e) {
   const std::string what = e.what();
   const std::size_t place = what.find("column"), colon = what.find(": ", place), read = what.find("; last read: ");
@@ -242,7 +242,7 @@ void fill_defaults(nlohmann::json& value, const std::string& schema_text) {
   fill(value, schema, schema);
 }
 
-// Reduces valijson's errors to one message: the deepest violation, what was expected there, and what was found.
+// Reduces valijson's errors to one message: place of the deepest violation, the expected value, and the value found.
 
 void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
                    const std::string& base) {

@@ -10,32 +10,32 @@ namespace clothbench {
 /// Reads a whole file. Throws Error naming the file if it is missing, a folder, unreadable or over `most_bytes`.
 std::string read_text(const std::filesystem::path&, std::uintmax_t most_bytes = 16u << 20);
 
-/// Strict JSON: no duplicate keys, no NaN or Infinity, no number beyond double range, nesting <= 64. Throws Error with
-/// `source` and line and column, or the JSON pointer of a repeated key.
+/// Parses strict JSON: no duplicate keys, no NaN or Infinity, no number beyond double range, nesting <= 64. Throws
+/// Error with `source` and line and column, or with the JSON pointer of a repeated key.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
-/// The message of an exception of the JSON library, without the text that it had read.
+/// Message of a JSON library's exception, without the input text that it quotes.
 std::string what_without_text(const std::exception&);
 
-/// Throws Error for an invalid value that the schema cannot detect, with its place and what was expected.
+/// Throws Error, with place and expectation, for an invalid value that the schema cannot detect.
 [[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected);
 
-/// Checks against one of the schemas in scenarios/schema (compiled in). Throws Error of the deepest violation:
-/// `source`, JSON pointer (below `pointer`, the value's place in its file), what was expected, the nearest known key.
+/// Checks a value against a schema of scenarios/schema (compiled in). Throws Error for the deepest violation: `source`,
+/// JSON pointer (below `pointer`, the value's place in its file), the expected value, the most similar known key.
 void validate_json(const nlohmann::json&, const std::string& schema_text, const std::string& source,
                    const std::string& pointer = "");
 
-/// Adds each missing value that has a `default` in the schema.
+/// Adds each missing value for which the schema has a `default`.
 void fill_defaults(nlohmann::json&, const std::string& schema_text);
 
-/// Encodes a double for stored JSON. JSON has neither NaN nor infinity: null is a missing value, and the strings "inf"
-/// and "-inf" are the infinities. Every JSON file that is read back uses these functions.
+/// Encodes a double for stored JSON, which has neither NaN nor infinity: null is a missing value, and the strings "inf"
+/// and "-inf" are the infinities. Use it for every JSON file that is read back.
 nlohmann::json number_to_json(double);
 
-/// For pages and figures, which draw finite numbers only: null for NaN and for the infinities.
+/// For pages and figures, which draw only finite numbers: null for NaN and the infinities.
 nlohmann::json finite_or_null(double);
 
-/// Throws Error naming `name` if the value is none of number, null, "inf" and "-inf".
+/// Throws Error naming `name` unless the value is a number, null, "inf" or "-inf".
 double number_from_json(const nlohmann::json&, const std::string& name);
 
 nlohmann::json numbers_to_json(const std::map<std::string, double>&);

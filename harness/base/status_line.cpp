@@ -12,7 +12,7 @@
 namespace clothbench {
 namespace {
 
-int kept = -1;  // the first standard output while another file has its number
+int kept = -1;  // descriptor of the original standard output during a redirection
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -41,7 +41,7 @@ void StatusLine::show(const std::string& what, std::size_t done, std::size_t tot
   std::string line = total > 0 ? fmt::format("[{}/{}] {}", done, total, what) : what, eta;
   if (done > 0 && done < total)
     eta = "  " + left_for(elapsed_s / static_cast<double>(done) * static_cast<double>(total - done));
-  // A line that breaks could not be rewritten.
+  // A line that wraps could not be overwritten.
   const std::size_t room = columns() - 1;
   if (line.size() + eta.size() > room) line.resize(room > eta.size() ? room - eta.size() : 0);
   line += eta;
@@ -58,7 +58,7 @@ SummaryOutput::SummaryOutput() {
 
 SummaryOutput::~SummaryOutput() {
   if (kept < 0) return;
-  std::fflush(stdout);  // a plugin shares the C library's buffer
+  std::fflush(stdout);  // plugins use the C library's buffer
   dup2(kept, STDOUT_FILENO);
   close(kept);
   kept = -1;
@@ -69,7 +69,7 @@ void SummaryOutput::write(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t n = ::write(kept < 0 ? STDOUT_FILENO : kept, text.data() + at, text.size() - at);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return;  // its reader has gone
+    if (n < 0) return;  // the reader has closed its end
     at += static_cast<std::size_t>(n);
   }
 }

@@ -4,14 +4,14 @@
 
 namespace clothbench {
 
-/// A line on the terminal that is rewritten in place and removed at the end; prints nothing into a pipe.
+/// A line on the terminal that is overwritten in place and removed at the end; prints nothing into a pipe.
 class StatusLine {
  public:
   explicit StatusLine(bool enabled);
   ~StatusLine();
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
-  /// `total` 0: unknown, so neither counts nor remaining time are printed.
+  /// `total` 0: unknown, so neither counts nor remaining time are shown.
   void show(const std::string& what, std::size_t done = 0, std::size_t total = 0);
 
  private:
@@ -20,8 +20,8 @@ class StatusLine {
   std::size_t width_ = 0;
 };
 
-/// Keeps standard output for a machine-readable summary. While an object of this class exists (at most one), all other
-/// output of this process, also by plugins, goes to standard error.
+/// Reserves standard output for a machine-readable summary. While an object of this class exists (at most one), all
+/// other output of this process, including that of plugins, goes to standard error.
 class SummaryOutput {
  public:
   SummaryOutput();
@@ -29,7 +29,7 @@ class SummaryOutput {
   SummaryOutput(const SummaryOutput&) = delete;
   SummaryOutput& operator=(const SummaryOutput&) = delete;
 
-  /// Writes to the standard output that this process was started with.
+  /// Writes to the process's original standard output.
   static void write(const std::string& text);
 };
 

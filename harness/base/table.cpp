@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t kGap = 2;
 
-/// A bar or line break inside a cell would end it.
+/// Escapes bars and line breaks, which would end the cell.
 std::string markdown_cell(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '|' ? "\\|" : std::string(1, c == '\n' || c == '\r' ? ' ' : c);
   return out;
 }
 
-/// Characters that LaTeX reserves or does not know, and what it prints them for.
+/// Characters that LaTeX reserves or lacks, and their replacements.
 constexpr std::pair<std::string_view, std::string_view> kCharacters[] = {{"\\", "\\textbackslash{}"},
                                                                          {"{", "\\{"},
                                                                          {"}", "\\}"},
@@ -61,7 +61,7 @@ constexpr std::pair<std::string_view, std::string_view> kCharacters[] = {{"\\", 
                                                                          {"\n", " "},
                                                                          {"\r", " "}};
 
-/// Text in LaTeX; what stands between backticks is set in the typewriter font.
+/// Text for LaTeX; text between backticks becomes typewriter text.
 std::string latex_text(std::string_view text) {
   std::string out;
   bool code = false;
@@ -102,7 +102,7 @@ std::string paired(double a, double b, const std::string& between, int digits) {
 }
 
 std::size_t display_width(const std::string& s) {
-  // Bytes that do not continue a UTF-8 sequence.
+  // Counts the bytes that do not continue a UTF-8 sequence.
   return static_cast<std::size_t>(
       std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
 }
@@ -115,7 +115,7 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t col
     line.append(to > width ? to - width : 0, ' ');
     width = std::max(width, to);
   };
-  bool any = false;  // a word stands in the line
+  bool any = false;  // whether the line has a word
   pad(head.empty() ? indent : std::max(indent, width + 2));
   for (std::string word; words >> word; any = true) {
     if ((any || width > indent) && width + (any ? 1 : 0) + display_width(word) > columns) {
@@ -146,7 +146,7 @@ std::string Table::markdown() const {
   return out + (note.empty() ? "" : "\n" + note + "\n");
 }
 
-/// Number of columns that each piece of a wide table repeats: those that tell its rows apart, at most 2.
+/// Number of leading columns that each piece of a wide table repeats to identify its rows; at most 2.
 static std::size_t label_columns(const std::vector<std::vector<std::string>>& rows) {
   std::set<std::string> names;
   for (const auto& row : rows)

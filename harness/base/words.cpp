@@ -27,7 +27,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 std::string shortened(const std::string& text, std::size_t most) {
   std::size_t end = std::min(most, text.size());
-  // Not in the middle of a character of UTF-8.
+  // Cuts no UTF-8 character in two.
   while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   std::string out = text.substr(0, end);
   std::replace_if(
@@ -47,7 +47,7 @@ std::string nearest(const std::string& word, const std::vector<std::string>& kno
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const std::string& k : known) {
-    // A word is no nearer than its length says, and one of the input may be long.
+    // The difference in length is a lower bound of the distance; it is compared first because the input may be long.
     if (std::max(word.size(), k.size()) - std::min(word.size(), k.size()) >= least) continue;
     if (const std::size_t d = distance(word, k); d < least) {
       least = d;

@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// The items one after another, separated by `between`. `text(item)`: the text of an item.
+/// The items in order, separated by `between`. `text(item)`: the text of an item.
 template <class Items, class Text = std::identity>
 std::string joined(const Items& items, const std::string& between = ", ", Text text = {}) {
   std::string out;
@@ -22,16 +22,16 @@ bool contains(const Items& items, const Item& item) {
   return std::find(std::begin(items), std::end(items), item) != std::end(items);
 }
 
-/// Text of unknown length for a message: at most `most` bytes and "…", control characters as "?".
+/// Shortens a text of unknown length for a message: at most `most` bytes and "…", control characters as "?".
 std::string shortened(const std::string& text, std::size_t most);
 
 /// A word of the input for a message: shortened to 40 bytes, between quotes.
 std::string in_quotes(const std::string& word);
 
-/// ASCII letters as small ones, for file extensions.
+/// Converts ASCII letters to lower case, for file extensions.
 std::string lower_case(std::string);
 
-/// "; nearest known: …", the end of a sentence about an unknown word; empty if none is near (clothbench/solver.hpp).
+/// "; nearest known: …", the end of a message about an unknown word; empty if none is similar (clothbench/solver.hpp).
 std::string nearest_known(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace clothbench

@@ -38,15 +38,15 @@ std::string stage_text(const StageRecord& s) {
 
 double number_at(const json& value, const std::string& name, const std::string& where) {
   if (find_gate(name) == nullptr)
-    throw Error(fmt::format("{}: not a scalar that is checked{} (the table is in harness/check/README.md)", where,
-                            nearest_known(name, gated_names())));
+    throw Error(fmt::format("{}: no regression rule for this scalar{} (see the table in harness/check/README.md)",
+                            where, nearest_known(name, gated_names())));
   if (value.is_null()) return kMissing;
   if (!value.is_number())
-    throw Error(fmt::format("{}: expected number, or null for not measured; found {}", where, value.dump()));
+    throw Error(fmt::format("{}: expected a number, or null for not measured; found {}", where, value.dump()));
   return value.get<double>();
 }
 
-/// The kind to which a condition belongs ("GPU": "device").
+/// The kind of a condition, as used by --allow ("GPU": "device").
 std::string kind_of_condition(const std::string& what) {
   return what == "GPU"                                ? "device"
          : what == "precision"                        ? "precision"
@@ -70,7 +70,7 @@ BaselineRun run_from(const json& j, const std::string& where) {
 
 ordered_json json_of(const BaselineRun& c) {
   ordered_json j = {{"scene", c.key.scene}, {"solver", c.key.solver}, {"setting", c.key.setting}};
-  std::map<std::string, std::string> conditions;  // in the order in which they are read
+  std::map<std::string, std::string> conditions;  // in the order of reading
   for (const Condition& condition : c.conditions) conditions[condition.what] = condition.value;
   j["conditions"] = conditions;
   j["status"] = c.status;
@@ -82,7 +82,7 @@ ordered_json json_of(const BaselineRun& c) {
   return j;
 }
 
-/// Those that results hang on and times do not: all but the machine, the driver and the trials.
+/// Conditions on which results depend and times do not: all except the machine, the driver and the trials.
 std::vector<Condition> conditions_of_results(const RunRecord& r) {
   std::vector<Condition> out = conditions_of(r);
   std::erase_if(out, [](const Condition& c) {
@@ -91,7 +91,7 @@ std::vector<Condition> conditions_of_results(const RunRecord& r) {
   return out;
 }
 
-/// The part of a result without the scalars that `has` leaves out.
+/// The part of a result with only those scalars for which `has` is true.
 BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
   BaselineRun c;
   c.key = {r.header.scene, r.header.solver, r.header.setting};
@@ -129,7 +129,7 @@ std::vector<Condition> conditions_of(const RunRecord& r) {
       {"device", "device profile", environment("device_profile")},
       {"precision", "precision", environment("precision")},
   };
-  // Procedural rooms and hands are other scenes than scanned ones: a run without the scans must not pass for them.
+  // Procedural rooms and hands differ from the scanned ones: a run without the scans must not count as a run with them.
   const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
   if (scene.is_object() && scene.contains("assets"))
     out.insert(out.begin() + 1, {"scene", kAssets, shown_value(scene["assets"])});
@@ -191,11 +191,10 @@ void DifferingRuns::refuse(const std::string& a, const std::string& b) const {
     if (!contains(kinds, e.difference.kind)) kinds.push_back(e.difference.kind);
   }
   if (lines.empty()) return;
-  throw Error(
-      fmt::format("{} and {} cannot be compared, so nothing was:{}\nRepeat one of them under the conditions of the "
-                  "other. `--allow {}` compares them nevertheless and marks the output",
-                  a, b, lines, joined(kinds, ",")),
-      ExitCode::BadInput);
+  throw Error(fmt::format("{} and {} were not compared, because their conditions differ:{}\nRepeat one of them under "
+                          "the conditions of the other, or use `--allow {}` to compare them anyway and mark the output",
+                          a, b, lines, joined(kinds, ",")),
+              ExitCode::BadInput);
 }
 
 std::string DifferingRuns::marks(const std::string& what) const {

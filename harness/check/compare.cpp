@@ -16,7 +16,7 @@
 namespace clothbench {
 namespace {
 
-/// Results by file name, because that is all there is of a planned run without a result, whose status is "missing".
+/// Results by file name, the only key of a planned run without a result; such a run has the status "missing".
 std::map<std::string, const RunRecord*> by_name(const std::vector<RunRecord>& runs) {
   std::map<std::string, const RunRecord*> out;
   for (const RunRecord& r : runs) {
@@ -55,13 +55,13 @@ bool same_values(const BaselineRun& a, const BaselineRun& b) {
   return baseline_text(Baseline{{a}}) == baseline_text(Baseline{{b}});
 }
 
-/// One run in the processes of two builds.
+/// One run, with its results from the processes of two builds.
 struct Pair {
   RunKey key;
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds what differs between the first run of A and the others. Another order only gives no statement on times.
+/// Adds the conditions that differ between A's first run and the others. A different order only forbids time verdicts.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);
@@ -76,14 +76,14 @@ void add_conditions(const Pair& p, const std::vector<std::string>& allowed, Chec
       }
   run.in_turns = in_turns(p.a, p.b);
   if (!run.in_turns && contains(allowed, std::string("order"))) {
-    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not mixed"});
+    differing.add(p.key.file_name(), {"order", "processes", "A", "B one after the other, not interleaved"});
     kinds.emplace_back("order");
     run.in_turns = true;
   }
   run.marks = joined(kinds);
 }
 
-/// A file whose positions are damaged proves nothing about a build.
+/// Refuses a file with damaged positions, because it proves nothing about a build.
 void require_motions(const Pair& p) {
   for (const auto* side : {&p.a, &p.b})
     for (const RunRecord* r : *side)
@@ -112,13 +112,13 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Ascending, for every other assignment of the logarithms to two sides of these sizes: the shift of B that gives it
-/// the actual difference of means. That is the mean of those that change sides, B's minus A's.
+/// Ascending, for every other split of the log times into these sizes: the shift of B at which its difference of means
+/// is the actual one. It is the mean of B's moved values minus that of A's.
 std::vector<double> shifts_of(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t m = a.size(), n = m + b.size();
   const std::uint32_t actual = (1u << m) - 1, end = 1u << n;
   std::vector<double> out;
-  // Gosper's hack: the next larger number with as many bits.
+  // Gosper's hack: the next larger number with the same number of bits set.
   for (std::uint32_t on_a = actual; on_a < end;) {
     double moved = 0;
     int count = 0;
@@ -170,8 +170,8 @@ std::size_t Checked::count(Verdict v) const {
 
 std::string CheckedRun::time_verdict() const {
   const std::string out = !std::isfinite(time.ratio) ? "not timed"
-                          : !time.enough() ? fmt::format("too few processes: at least {} a side", kMinProcesses)
-                          : !in_turns      ? "no statement: A and B ran one after the other"
+                          : !time.enough() ? fmt::format("too few processes: {} per side needed", kMinProcesses)
+                          : !in_turns      ? "undecided: A and B ran one after the other"
                           : time.noise()   ? "noise"
                           : time.ratio < 1 ? "faster"
                                            : "slower";
@@ -236,7 +236,7 @@ Updated update_baseline(const Baseline& old, const std::vector<RunRecord>& runs)
   Updated out;
   for (const auto& [name, r] : results) {
     if (is_missing(r))
-      throw Error(fmt::format("--update: {}: {}; a baseline is made of whole studies (`clothbench study … --resume`)",
+      throw Error(fmt::format("--update: {}: {}; a baseline needs complete studies (`clothbench study … --resume`)",
                               name, r->outcome.message));
     for (const Finding& f : motion_findings(*r))
       throw Error(fmt::format("--update: {}: {}; repeat the run", name, f.message));
@@ -299,7 +299,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>& processes
 }
 
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b) {
-  std::vector<std::pair<double, bool>> order;  // start, on B
+  std::vector<std::pair<double, bool>> order;  // start time, whether on side B
   for (const auto* side : {&a, &b})
     for (const RunRecord* r : *side) {
       if (r->trials.empty() || !std::isfinite(r->trials.front().start_unix_s)) return true;

@@ -12,16 +12,16 @@
 
 namespace clothbench {
 
-/// A condition that must be equal in two compared runs. `kind`: the word for `--allow`, shared by several conditions.
+/// A condition that must be equal in two compared runs. `kind`: word for `--allow`, which several conditions may share.
 struct Condition {
   std::string kind, what, value;  ///< `value`: "–" if the run does not state it
 };
 
-/// The kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
+/// The condition kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
 const std::vector<std::string>& condition_kinds();
 
-/// All conditions of a run, in the order of the kinds. A run that did not end well has no "length", since it is the
-/// result that is shorter; one without timed trials has no "trials".
+/// All conditions of a run, in the order of the kinds. A run that is not "ok" has no "length": an early end is a
+/// result; one without timed trials has no "trials".
 std::vector<Condition> conditions_of(const RunRecord&);
 
 struct ConditionDifference {
@@ -29,22 +29,22 @@ struct ConditionDifference {
   bool operator==(const ConditionDifference&) const = default;
 };
 
-/// Conditions that both have with different values.
+/// Conditions that both lists contain with different values.
 std::vector<ConditionDifference> differences(const std::vector<Condition>& a, const std::vector<Condition>& b);
 
-/// Keys of the two completed scenes that differ, with both values: "/cloth/grid/0: 8, 24"; at most 4, then a count.
+/// Keys that differ between the two resolved scenes, with both values: "/cloth/grid/0: 8, 24"; at most 4, then a count.
 std::string scene_difference(const RunRecord& a, const RunRecord& b);
 
-/// Differences of several runs, each with the runs that have it.
+/// Condition differences of several runs, each with the runs in which it occurs.
 class DifferingRuns {
  public:
   explicit DifferingRuns(std::vector<std::string> allowed = {}) : allowed_(std::move(allowed)) {}
 
   void add(const std::string& run, const ConditionDifference&);
-  /// Throws Error that names every difference that is not allowed, with both values. `a`, `b`: names of the sides.
+  /// Throws Error with every difference that is not allowed, and both its values. `a`, `b`: names of the sides.
   void refuse(const std::string& a, const std::string& b) const;
-  /// A line for each difference, which marks an output and begins with `what`; empty if there is none.
-  std::string marks(const std::string& what = "Compared although it differs, by --allow") const;
+  /// One line per allowed difference, as a note in the output; each line begins with `what`. Empty if none.
+  std::string marks(const std::string& what = "Compared despite a difference, by --allow") const;
   nlohmann::json json() const;
   bool empty() const { return all_.empty(); }
 
@@ -62,89 +62,89 @@ class DifferingRuns {
 /// Key of a run.
 struct RunKey {
   std::string scene, solver, setting;
-  // Not <=>: strings have none yet in the libc++ of Android's NDK r25.
+  // Not <=>: the libc++ of Android's NDK r25 does not yet define it for strings.
   bool operator==(const RunKey&) const = default;
   bool operator<(const RunKey& o) const {
     return std::tie(scene, solver, setting) < std::tie(o.scene, o.solver, o.setting);
   }
 
-  std::string file_name() const;  ///< "<scene>__<solver>__<setting>", as the result file is called
+  std::string file_name() const;  ///< "<scene>__<solver>__<setting>", the name of the result file
 };
 
 /// The part of a run that does not depend on the machine.
 struct BaselineRun {
   RunKey key;
-  std::vector<Condition> conditions;  ///< under which its values hold, scene included, but no machine, driver or trials
+  std::vector<Condition> conditions;  ///< valid only for these; scene included, but no machine, driver or trials
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
-  std::map<std::string, double> scalars;  ///< only gated ones; NaN or absent = not measured
+  std::map<std::string, double> scalars;  ///< only those with a regression rule; NaN or absent = not measured
 };
 
 struct Baseline {
   std::vector<BaselineRun> runs;  ///< sorted by key, no key twice
 };
 
-/// The part of a result that is gated. A scalar that is not finite counts as not measured and is left out.
+/// The part of a result that the regression rules cover, without scalars that are not finite (not measured).
 BaselineRun gated_part(const RunRecord&);
-/// The same with every scalar that does not depend on the machine.
+/// As gated_part, but with every scalar that does not depend on the machine.
 BaselineRun whole_part(const RunRecord&);
 
-/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for a
-/// key that is unknown or missing, a scalar that has no gate, or a run that is listed twice.
+/// Reads and checks a baseline. Throws Error with file and JSON pointer (line and column if the text is not JSON) for
+/// an unknown or missing key, a scalar without a regression rule, or a run that is listed twice.
 Baseline read_baseline(const std::filesystem::path&);
 
-/// The file's text: one line per value, sorted; numbers read back exactly.
+/// Text of a baseline file: one line per value, sorted; numbers are read back exactly.
 std::string baseline_text(const Baseline&);
 
 /// results/baselines/baseline.schema.json, compiled in.
 extern const char* const kBaselineSchema;
 
-/// Rule that compares a summary scalar with its baseline; nullptr: it is not compared. Results of bounds have no slack.
+/// Regression rule of a summary scalar; nullptr: it is not compared. Results of bounds have no tolerance.
 const Gate* find_gate(const std::string& name);
 
-/// Whether it is the result of a bound, 1 pass or 0 fail: fail after pass fails, pass after fail is an improvement.
+/// Whether it is the result of a bound (1 pass, 0 fail). Pass to fail is a failure, fail to pass an improvement.
 bool is_verdict(const std::string& name);
 
 std::vector<std::string> gated_names();
 
-/// Allowed deviation from `baseline` in either direction [unit of the scalar]. `length_m`: shorter side of the cloth.
+/// Allowed deviation from `baseline` in each direction [unit of the scalar]. `length_m`: shorter side of the cloth.
 double slack(const Gate&, double baseline, double length_m);
 
 /// "0.01 L + 10 %; none at 0", where L is the shorter side.
 std::string slack_text(const Gate&);
 
-/// Processes that each side needs for a statement about times. With 5 and 5 the test has a size of 4.8 %.
+/// Minimum number of processes per side for a statement about times. With 5 and 5 the test has a size of 4.8 %.
 inline constexpr std::size_t kMinProcesses = 5;
-inline constexpr std::size_t kMaxProcesses = 12;  ///< of each side; all C(24, 12) assignments are evaluated
+inline constexpr std::size_t kMaxProcesses = 12;  ///< per side; the test evaluates all C(24, 12) assignments
 
-/// Ratio of the frame times B/A, estimated from processes. The unit of replication is the process, since the trials of
-/// one process share its memory layout, its clocks and the state of its driver. `ratio`: of the geometric means over
-/// the processes. `p`: exact permutation test of the difference of the mean logarithms over all assignments of the
-/// processes to the two sides, twice the smaller tail. `low`, `high`: the ratios that this test does not reject at 5 %
-/// (equal tails of 2.5 % at most). Source: Good, Permutation, Parametric and Bootstrap Tests of Hypotheses (3rd
-/// ed.), 3.2. It assumes that processes are exchangeable if the builds are equally fast, so run A and B in
-/// random order. If A and B alternate strictly, the test rejects less than 5 %.
+/// Ratio of the frame times B/A, estimated from processes. Processes are the units of replication, because the trials
+/// of one process share its memory layout, clocks and driver state. `ratio`: ratio of the geometric means over the
+/// processes. `p`: exact permutation test of the difference of the mean logarithms over all assignments of the
+/// processes to the two sides, twice the smaller tail. `low`, `high`: smallest and largest ratio that this test does
+/// not reject at 5 % (equal tails of at most 2.5 %). Source: Good, Permutation, Parametric and Bootstrap Tests of
+/// Hypotheses (3rd ed.), 3.2. The test assumes that processes are exchangeable if the builds are equally fast, so run A
+/// and B in random order. If A and B alternate strictly, the test rejects in less than 5 % of cases.
 struct TimeRatio {
   double ratio = kMissing, low = kMissing, high = kMissing, p = kMissing;
   std::size_t processes_a = 0, processes_b = 0;
   bool enough() const { return processes_a >= kMinProcesses && processes_b >= kMinProcesses; }
-  /// True if no difference is shown: too few processes, or an interval that contains 1.
+  /// True if no difference is shown: too few processes, or the interval contains 1.
   bool noise() const { return !(low > 1) && !(high < 1); }
 };
 
 /// `a`, `b`: frame time [s] of each process, positive. Throws Error if a side has more than kMaxProcesses.
 TimeRatio compare_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Frame times [s] of one run, one per process that has trials: the median over its trials of their mean frame time.
+/// Frame times [s] of one run, one per process with trials: median over the trials of their mean frame time.
 std::vector<double> process_times(const std::vector<const RunRecord*>&);
 
-/// Whether the processes of the two sides ran mixed, by the start of their trials: from one side to the other at least
-/// half as often as in a random order, m n/(m + n) times of m and n processes. Otherwise a drift of the machine is
-/// taken for a difference of the builds. True if a start is not known.
+/// Whether the processes of the two sides alternated enough, by the start of their trials: for m and n processes at
+/// least m n/(m + n) changes of side, half the mean of a random order. Otherwise a drift of the machine would count as
+/// a difference of the builds. True if a start is unknown.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; a whole has the worst verdict of its parts. Changed: of two builds, neither of them right.
+/// Ordered from good to bad; a whole has its worst part's verdict. Changed: two builds differ (neither is a baseline).
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
@@ -162,80 +162,80 @@ struct Finding {
 struct CheckedRun {
   RunKey key;
   std::vector<Finding> findings = {};
-  TimeRatio time = {};                              ///< of two builds
+  TimeRatio time = {};                              ///< only for two builds
   double time_a_s = kMissing, time_b_s = kMissing;  ///< median over the processes of each side
   bool in_turns = true;                             ///< see in_turns
   std::string marks = {};  ///< kinds of conditions that differ and were allowed: "scene, machine"
 
   Verdict verdict() const;
-  /// "noise", "faster", "slower", or why there is no statement about times.
+  /// "noise", "faster", "slower", or the reason why there is no statement about times.
   std::string time_verdict() const;
-  /// A line for each finding whose verdict `is` accepts.
+  /// One line per finding whose verdict `is` accepts.
   std::string sentences(const std::function<bool(Verdict)>& is) const;
 };
 
 struct Checked {
-  std::vector<CheckedRun> runs;               ///< every run of baseline and results, sorted by key
+  std::vector<CheckedRun> runs;               ///< every run of the baseline or the results, sorted by key
   DifferingRuns differing = DifferingRuns();  ///< conditions that differ from the baseline's and were allowed
 
   std::size_t count(Verdict) const;
   bool passed() const { return count(Verdict::Failed) == 0; }
 };
 
-/// The fault of the motion in the record's file; empty if there is none, or if it was not read from a file.
+/// Faults of the motion in the record's file; empty if it has none, or if the record was not read from a file.
 std::vector<Finding> motion_findings(const RunRecord&);
 
-/// Differences of `record` from its baseline (outcome, stages, gated scalars), trials that repeat another one, and
-/// faults of the stored motion (results/store.hpp). If the outcome differs, the rest is not compared. Throws Error if
-/// the record's scene has no cloth size.
+/// Differences of `record` from its baseline (outcome, stages, scalars with a regression rule), trials that repeat
+/// another one, and faults of the stored motion (results/store.hpp). If the outcome differs, stages and scalars are not
+/// compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
-/// Differences of two builds' results of one run: outcome, stages, every scalar that does not depend on the machine
-/// (relative tolerance 1e-9), and, where one differs, the maximum distance of the motions over the longer side.
+/// Differences of two builds' results of one run: outcome, stages, every machine-independent scalar (relative tolerance
+/// 1e-9) and, if any differs, the maximum distance between the motions divided by the longer side.
 std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
 
 /// One element per process: the runs of its folder.
 using Processes = std::vector<std::vector<RunRecord>>;
 
-/// Compares two builds run by run: the results of each side's first process, and the times of all processes. The runs
-/// of A come first, then the runs that only B has. Throws Error if paired runs, or processes of one side, differ in a
-/// condition whose kind is not in `allowed`, or if a process has a run twice.
+/// Compares two builds run by run: results of each side's first process, times of all processes. A's runs come first,
+/// then the runs that only B has. Throws Error if a process has a run twice, or if the runs of a pair, or the processes
+/// of a side, differ in a condition whose kind is not in `allowed`.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
-/// Compares results with a baseline. A run of the baseline without a result fails, and so does a planned run without a
-/// result. A run that is not in the baseline is new. Throws Error if a run is twice among the results, or if a
-/// condition of a kind that is not in `allowed` differs from the baseline's.
+/// Compares results with a baseline. A run of the baseline or a planned run fails if it has no result. A run that is
+/// not in the baseline is new. Throws Error if the results have a run twice, or if a condition differs from the
+/// baseline's and its kind is not in `allowed`.
 Checked check_runs(const Baseline&, const std::vector<RunRecord>&, const std::vector<std::string>& allowed = {});
 
 struct Updated {
   Baseline baseline;
-  std::vector<CheckedRun> changes;            ///< beyond slack, from `compare_run`
+  std::vector<CheckedRun> changes;            ///< runs with changes beyond tolerance, from `compare_run`
   std::vector<RunKey> removed;                ///< runs without a result
-  std::size_t within_slack = 0;               ///< runs with changed values, all of them within slack
+  std::size_t within_slack = 0;               ///< runs with changed values, all within tolerance
   DifferingRuns differing = DifferingRuns();  ///< conditions that differ from the old baseline's
 };
 
-/// The baseline made from the results. Throws Error if there is no result, a run is listed twice, a planned run has no
-/// result, or something is wrong with the motion in a file.
+/// The baseline made from the results. Throws Error if there are no results, a run is listed twice, a planned run has
+/// no result, or the motion in a file is faulty.
 Updated update_baseline(const Baseline& old, const std::vector<RunRecord>&);
 
-/// A table of failures, improvements and new runs, the explanations below it, and the verdict in one line.
+/// A table of failures, improvements and new runs, explanations below it, and the overall verdict in one line.
 std::string check_text(const Checked&, const std::string& baseline_file);
 nlohmann::json check_json(const Checked&, const std::string& baseline_file);
 
-/// The changes that --update made: for each run, and a summary in one line.
+/// The changes by --update: one line per run, and a summary line.
 std::string update_text(const Updated&, const std::string& baseline_file);
 nlohmann::json update_json(const Updated&, const std::string& baseline_file);
 
-/// Times and results of two builds: tables, and the JSON of both.
+/// Times and results of two builds as tables and JSON.
 std::string comparison_text(const Checked&);
 nlohmann::json comparison_json(const Checked&);
 
-/// JUnit XML as CI servers read it: one test case per run (class = scene, name = solver and setting), with a <failure>
-/// if it failed. Improvements and new runs are in <system-out>. Replaces text that XML 1.0 or UTF-8 forbids.
+/// JUnit XML for CI servers: one test case per run (class = scene, name = solver and setting), with a <failure> if it
+/// failed. Improvements and new runs are in <system-out>. Characters that XML 1.0 or UTF-8 forbids are replaced.
 std::string junit_xml(const Checked&);
 
-/// A command of GitHub Actions per failure, which shows it at the top of the job.
+/// One GitHub Actions command per failure, which shows the failure at the top of the job.
 std::string github_annotations(const Checked&);
 
 }  // namespace clothbench

@@ -15,13 +15,13 @@
 namespace clothbench {
 namespace {
 
-/// A blow-up grows exponentially from rounding errors, so devices differ a little in the frame in which it is found.
+/// A blow-up grows exponentially from rounding errors, so the frame in which it is detected differs between devices.
 constexpr int kFailedFrameSlack = 2;
 constexpr double kFailedFrameRelativeSlack = 0.1;
 
 constexpr const char* kNotMeasured = "not measured";
 
-/// Sides of the cloth [m], or of its mesh where it has one; none if the result file has neither.
+/// Sides [m] of the cloth grid, or of the bounding box of its mesh; none if the result file has neither.
 std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
   const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
   const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");
@@ -77,12 +77,12 @@ std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& i
   std::string message;
   if (!added.empty()) message = "not in the baseline: " + added;
   if (!gone.empty()) message += (message.empty() ? "" : "; ") + ("missing: " + gone);
-  if (message.empty()) message = "the same stages in another order or number";
+  if (message.empty()) message = "the same stages, order or number differs";
   return {{Verdict::Failed, "stages", fmt::format("{} stages", was.stages.size()),
            fmt::format("{} stages", is.stages.size()), "", message}};
 }
 
-/// Two trials with the same times frame by frame are one trial twice: a clock of nanoseconds does not repeat itself.
+/// Two trials with equal times in every frame are copies of one trial: times with ns resolution do not repeat.
 std::vector<Finding> compare_trials(const RunRecord& r) {
   for (std::size_t i = 0; i < r.trials.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -101,7 +101,7 @@ std::string shown(const std::string& name, double v) {
   return fmt::format("{:.6g}", v);
 }
 
-/// Written so that NaN fails: a value passes only by a comparison that holds.
+/// NaN fails, because a value passes only if a comparison is true.
 Verdict judge(const std::string& name, double was, double is, double slack) {
   if (!std::isfinite(was)) return std::isfinite(is) ? Verdict::New : Verdict::Same;
   if (is_verdict(name)) return is == was ? Verdict::Same : is > was ? Verdict::Improved : Verdict::Failed;
@@ -114,7 +114,7 @@ double scalar(const BaselineRun& c, const std::string& name) {
   return at == c.scalars.end() ? kMissing : at->second;
 }
 
-/// Names of the scalars of either.
+/// Names of the scalars in `was` or `is`.
 std::set<std::string> scalar_names(const BaselineRun& was, const BaselineRun& is) {
   std::set<std::string> out;
   for (const BaselineRun* c : {&was, &is})
@@ -128,7 +128,7 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
   for (const std::string& name : scalar_names(was, is)) {
     const double before = scalar(was, name), now = scalar(is, name);
     const Gate& gate = *find_gate(name);
-    // Measured moduli and relations of runs have no cloth of their own.
+    // Measured moduli and relations of runs have no cloth, so the length is read only if the rule needs it.
     if (gate.unit != SlackUnit::One && !length) length = length_of(record);
     const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : *length);
     const Verdict verdict = judge(name, before, now, tolerance);
@@ -146,7 +146,7 @@ std::vector<float> positions_of(const RunRecord& c) {
   return !c.accuracy.position.empty() || c.file.empty() ? c.accuracy.position : read_run(c.file).accuracy.position;
 }
 
-/// Maximum distance of a vertex between the motions, over the longer side; NaN with other frames or no cloth size.
+/// Maximum vertex distance between the motions over the longer side; NaN if frames differ or the cloth size is unknown.
 double motion_distance(const RunRecord& a, const RunRecord& b) {
   const std::vector<float> p = positions_of(a), q = positions_of(b);
   const auto size = cloth_size_m(a);
@@ -164,9 +164,10 @@ double motion_distance(const RunRecord& a, const RunRecord& b) {
 std::vector<Finding> motion_findings(const RunRecord& r) {
   if (r.file.empty()) return {};
   if (const std::string fault = trajectory_fault(r.file); !fault.empty())
-    return {{Verdict::Failed, "positions", "the motion of the outcome", "another or none", "", r.file + ": " + fault}};
+    return {
+        {Verdict::Failed, "positions", "the outcome's motion", "a different one, or none", "", r.file + ": " + fault}};
   if (!r.summary.contains(kMotionCheck + "finite") || std::filesystem::is_directory(r.file)) return {};
-  // The summary's own statement on the motion is not trusted.
+  // The motion is read from the file; the summary's own statement about it is not trusted.
   const StoredMotion motion = read_motion(r.file);
   if (!kWithContactMetrics && !motion.scene.colliders.empty()) return {};
   std::vector<Finding> out;

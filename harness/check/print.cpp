@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Names of the two sides of a comparison, and of a failure.
+/// Names of the two sides of a comparison, and the word for a failure.
 struct Sides {
   const char *a = "baseline", *b = "found", *worse = "FAILED";
 };
@@ -33,7 +33,7 @@ Table findings_table(Table t, const std::vector<CheckedRun>& runs, const Sides& 
   return t;
 }
 
-/// Table and messages of `runs`; empty if there is no finding.
+/// Table and messages of `runs`; empty if they have no findings.
 std::string findings_text(const std::string& title, const std::vector<CheckedRun>& runs, const Sides& sides = {}) {
   std::string messages;
   const Table t = findings_table({title, "", {}}, runs, sides, messages);
@@ -58,7 +58,7 @@ Table times_table(const Checked& c) {
   return {"Time per frame, A against B",
           fmt::format("Median over the processes; runs that shared the machine with other clothbench processes are "
                       "omitted. Change: ratio of the geometric means. p: exact permutation test over the processes. "
-                      "*noise*: the 95 % interval contains 0. If none of the {} runs differed, about {:.0f} would be "
+                      "*noise*: the interval contains 0 %. If none of the {} runs differed, about {:.0f} would be "
                       "called faster or slower by chance.",
                       timed, 0.05 * static_cast<double>(timed)),
           rows};
@@ -88,13 +88,13 @@ json run_json(const CheckedRun& run) {
 
 std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 ? "" : "s"); }
 
-/// Valid UTF-8, whatever a solver put into its message.
+/// Valid UTF-8 for any bytes in a solver's message.
 std::string valid_utf8(const std::string& text) {
   return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/// For element text and attributes alike. Line breaks are written as references, or attributes would lose them; other
-/// control characters, U+FFFE and U+FFFF exist in no XML 1.0 text.
+/// Escapes element text and attributes alike. Line breaks become references, because attributes would lose them; other
+/// control characters, U+FFFE and U+FFFF are not allowed in XML 1.0.
 std::string xml_escaped(const std::string& text) {
   static const std::map<char, const char*> kReferences = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}, {'\r', "&#13;"}, {'\t', "&#9;"}};
@@ -157,7 +157,7 @@ json check_json(const Checked& checked, const std::string& file) {
 std::string update_text(const Updated& u, const std::string& file) {
   std::string out = findings_text("Changed in " + file, u.changes, {.worse = "changed"});
   for (const RunKey& key : u.removed) out += "  removed, no result: " + key.file_name() + "\n";
-  return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with other values within slack\n", file,
+  return out + fmt::format("{}: {}: {} changed or new, {} removed, {} with different values within tolerance\n", file,
                            runs_word(u.baseline.runs.size()), u.changes.size(), u.removed.size(), u.within_slack);
 }
 

@@ -43,7 +43,7 @@ void add_check(CLI::App& app, Console& console) {
       cmd->add_flag("--update", a.update, "Rewrite the baseline from these results and print the changes");
   cmd->add_option(
          "--allow", a.allowed,
-         "Check although these conditions, separated by commas, differ from the baseline's, and mark the output")
+         "Check despite differences from the baseline in these conditions, separated by commas, and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
@@ -52,11 +52,11 @@ void add_check(CLI::App& app, Console& console) {
       ->excludes(rewrite);
   cmd->footer(
       "Exit codes: 0 every run is as in the baseline or better, 1 a run is worse, missing, or without "
-      "matching positions, 2 bad input, or runs measured under other conditions than the baseline.\nExample: "
+      "matching positions, 2 bad input, or runs measured under conditions different from the baseline's.\nExample: "
       "clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))
-      fs::remove(a.junit);  // an older verdict must not outlive a failed check
+      fs::remove(a.junit);  // no old verdict may remain if the check fails
     if (!a.update && !fs::exists(a.baseline))
       throw Error(a.baseline + ": no such baseline; --update creates it from these results");
     const std::vector<RunRecord> runs = collect(std::vector<fs::path>(a.runs.begin(), a.runs.end()));

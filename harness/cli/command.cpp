@@ -30,7 +30,7 @@ std::pair<int, int> pixels_of(const std::string& option, const std::string& text
 void DeviceFlags::add_to(CLI::App& app) {
   app.add_option("--device", options.index, "Vulkan device number (see `list devices`); default: the best one");
   app.add_option("--device-profile", options.profile,
-                 "Use only what a class of devices offers: adreno-like (32 KiB shared memory, groups of 256)");
+                 "Limit the device to a device class: adreno-like (32 KiB shared memory, groups of 256)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
 }

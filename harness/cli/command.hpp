@@ -18,7 +18,7 @@
 
 namespace clothbench {
 
-/// results/runs/<study>-<UTC>, and a number where two began in the same second.
+/// results/runs/<study>-<UTC>, with a number appended if two begin in the same second.
 std::filesystem::path default_folder(const std::string& study);
 
 /// State shared by all commands. A command adds itself to the app and runs in its callback; it throws Error on failure.
@@ -27,8 +27,8 @@ struct Console {
   std::string command_line;
   ExitCode exit_code = ExitCode::Ok;
 
-  /// Storage for a command's arguments: a new object for every command line, since one process may run several (an
-  /// app's session does). They live as long as the console.
+  /// Storage for a command's arguments, new for every command line, because one process may run several (an app's
+  /// session does). It lives as long as the console.
   template <class Arguments>
   Arguments& arguments() {
     auto made = std::make_shared<Arguments>();
@@ -40,7 +40,7 @@ struct Console {
   static void print(const nlohmann::json& j) {
     SummaryOutput::write(j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
-  /// The form that the user asked for; the other is not made.
+  /// Prints the requested form only; the other one is not computed.
   template <class Json, class Text>
   void print(Json&& as_json, Text&& as_text) const {
     json ? print(as_json()) : fmt::print("{}", as_text());
@@ -50,7 +50,7 @@ struct Console {
   std::vector<std::shared_ptr<void>> kept_;
 };
 
-/// A message as it is printed: it may name keys and files of any length.
+/// A message shortened for printing, because it may contain keys and file names of any length.
 inline std::string message_of(const std::string& text) {
   constexpr std::size_t kMost = 2000;
   return text.size() > kMost ? text.substr(0, kMost) + "…" : text;
@@ -61,7 +61,7 @@ using AddCommand = void(CLI::App&, Console&);
 AddCommand add_list, add_validate, add_plan, add_run, add_run_child, add_study, add_report, add_import, add_check,
     add_compare, add_render, add_xr, add_conformance;
 
-/// The rendering that --with-rendering times, from the size of a picture.
+/// The rendering for --with-rendering, from an image size.
 Rendering rendering_of(const std::string& eye);
 
 /// Options of every command that runs a solver: --device, --device-profile, --validate.
@@ -70,7 +70,7 @@ struct DeviceFlags {
   void add_to(CLI::App&);
 };
 
-/// Options of commands that run solvers: which, with which settings, on which device.
+/// Options of commands that run solvers: the solvers, their settings, the device.
 struct SolverFlags {
   std::vector<std::string> solvers, set;
   DeviceFlags device;
@@ -79,26 +79,26 @@ struct SolverFlags {
   std::vector<ChosenSolver> chosen(const std::vector<std::string>& by_default) const;
 };
 
-/// How a command executes a plan.
+/// Options that decide how a command executes a plan.
 struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
-  bool part = false;  ///< only some of the manifest's runs: no figures of the folder at the end
+  bool part = false;  ///< some runs of the study only: the folder's report is not made at the end
   int jobs = 1;
-  std::string eye = {};  ///< size of the pictures that the plan renders
+  std::string eye = {};  ///< size of the images that the plan renders
   DeviceFlags device = {};
 };
 
-/// Makes the folder of a plan and executes the plan in worker processes; calls `before_runs` in between, if the folder
-/// is usable. Prints faults, tables and summary, and sets the exit code.
+/// Creates the folder of a plan and executes the plan in worker processes; calls `before_runs` in between, if the
+/// folder is usable. Prints faults, tables and summary, and sets the exit code.
 void execute_study(const RunPlan&, StudyManifest, const RunFlags&, Console&,
                    const std::function<void()>& before_runs = {});
 
-/// An option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
+/// Adds an option or positional that names solvers; "plugin:PATH" becomes the name of the solver in that library.
 CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,
                          const std::string& help);
 
-/// --require-assets: using stand-ins for rooms and hands is an Error.
+/// --require-assets: stand-ins for rooms and hands are an Error.
 void add_require_assets(CLI::App&, bool& required);
 inline Assets asset_policy(bool required) { return required ? Assets::Required : Assets::MayBeProcedural; }
 

@@ -13,7 +13,7 @@
 namespace clothbench {
 namespace {
 
-/// Says why the command failed, to people and, with --json, to machines.
+/// Reports the reason of a failure as text and, with --json, as JSON.
 int report_error(const Console& console, const std::string& message, ExitCode code) {
   const std::string why = message_of(message);
   fmt::print(stderr, "clothbench: {}\n", why);
@@ -21,7 +21,7 @@ int report_error(const Console& console, const std::string& message, ExitCode co
   return static_cast<int>(code);
 }
 
-/// In the order of the help.
+/// In the order of the help text.
 constexpr AddCommand* kCommands[] = {
     add_list,   add_validate, add_plan,  add_run,     add_run_child,   add_study,
     add_report, add_import,   add_check, add_compare, add_conformance,
@@ -33,7 +33,7 @@ constexpr AddCommand* kCommands[] = {
 #endif
 };
 
-/// Help that fits the terminal.
+/// Help text that fits the terminal.
 struct Help : CLI::Formatter {
   std::string fitted(const std::string& text, std::size_t left) const {
     std::string out = wrapped(text, 0, console_columns() - left);
@@ -47,7 +47,7 @@ struct Help : CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override {
     std::istringstream lines(app->get_footer());
     std::string out;
-    for (std::string line; std::getline(lines, line);)  // a command is not wrapped, so it can be copied
+    for (std::string line; std::getline(lines, line);)  // commands are not wrapped, so that they can be copied
       out += line.find(" clothbench ") < line.size() ? line + "\n" : fitted(line, 0) + "\n";
     return out;
   }
@@ -59,7 +59,7 @@ struct Help : CLI::Formatter {
   }
 };
 
-/// Message on the first word that is no command, or no option of its command, with the nearest known word; else empty.
+/// Message about the first word that is no command or no option of its command, with the nearest known word; or empty.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   std::vector<std::string> commands, options;
@@ -99,7 +99,7 @@ int run_command_line(const std::vector<std::string>& words) {
   app.add_flag("--json", console.json, "Print a machine-readable summary");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
-  // Must come before the words are parsed, because parsing loads plugins.
+  // Before the words are parsed, because parsing loads plugins.
   if (contains(words, "--in-process")) run_solvers_in_process();
   std::optional<SummaryOutput> summary_alone;
   if (contains(words, "--json")) summary_alone.emplace();
@@ -107,7 +107,7 @@ int run_command_line(const std::vector<std::string>& words) {
 
   for (AddCommand* add : kCommands) add(app, console);
   try {
-    // CLI11 takes the words last first.
+    // CLI11 expects the words in reverse order.
     std::vector<std::string> given(words.rbegin(), words.rend());
     if (!given.empty() && given.back() == "help") {  // help, help run
       given.pop_back();
@@ -117,11 +117,11 @@ int run_command_line(const std::vector<std::string>& words) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     const std::string unknown = unknown_word(app, words);
-    console.json = contains(words, "--json");  // not every word was read
+    console.json = contains(words, "--json");  // parsing may have stopped before it
     return report_error(console, (unknown.empty() ? e.what() : unknown) + "; --help explains", ExitCode::BadInput);
   } catch (const Error& e) {
     return report_error(console, e.what(), e.code());
-  } catch (const std::filesystem::filesystem_error& e) {  // of a path that the user gave
+  } catch (const std::filesystem::filesystem_error& e) {  // from a path that the user gave
     return report_error(console, e.path1().string() + ": " + e.code().message(), ExitCode::BadInput);
   } catch (const std::exception& e) {
     return report_error(console, std::string("internal error: ") + e.what(), ExitCode::CheckFailed);

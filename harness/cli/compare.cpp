@@ -13,7 +13,7 @@ struct CompareArguments {
 
 namespace fs = std::filesystem;
 
-/// `given` itself if it is a folder of results; the folders in it, by name, if it contains only such folders.
+/// `given` itself if it is a folder of results; if it contains only such folders, these by name.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
   if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};
@@ -46,12 +46,12 @@ void add_compare(CLI::App& app, Console& console) {
       "compare",
       "Compare two builds on the same runs: which runs are faster or slower beyond noise, and which results differ");
   const std::string several = fmt::format(
-      "Results of one build: a study folder or result file. To compare times, {} or more, each from a process of its "
-      "own, run in random order: A,B,C,D,E or the folder that holds them",
+      "Results of one build: a study folder or result file. To compare times, give {} or more (A,B,C,D,E or their "
+      "folder), each from its own process, run in random order",
       kMinProcesses);
   cmd->add_option("a", given.a, several)->required();
   cmd->add_option("b", given.b, "Results of the other build, likewise")->required();
-  cmd->add_option("--allow", given.allowed, "Compare although these, separated by commas, differ, and mark the output")
+  cmd->add_option("--allow", given.allowed, "Compare despite these differences (comma-separated), and mark the output")
       ->delimiter(',')
       ->check(CLI::IsMember(condition_kinds()));
   cmd->footer(

@@ -14,24 +14,24 @@
 namespace clothbench {
 namespace {
 
-/// Selects the stored runs that belong to the plan of a command.
+/// Reads the stored runs of a command's plan.
 std::vector<RunRecord> stored_runs(const std::vector<std::string>& names, const std::filesystem::path& out) {
   std::vector<RunRecord> runs = collect({out});
   std::erase_if(runs, [&](const RunRecord& c) { return !contains(names, run_name(c.header)); });
   return withhold_times(std::move(runs));
 }
 
-/// Outcome and every figure of each run.
+/// Outcome and all scalars of each run.
 nlohmann::json figures_of(const std::vector<RunRecord>& runs) {
   nlohmann::json all = runs_json(runs);
-  for (nlohmann::json& run : all) run.erase("environment");  // in the result files
+  for (nlohmann::json& run : all) run.erase("environment");  // it is in the result files
   return all;
 }
 
-/// How runs ended, and the stability grades of those whose scene is graded.
+/// Counts of outcomes, and of stability grades.
 struct Ends {
   int ok = 0, unsupported = 0, over_budget = 0, failed = 0;
-  int stable = 0, degraded = 0, unstable = 0, crashed = 0;  ///< crashed: unstable ones whose process crashed or hung
+  int stable = 0, degraded = 0, unstable = 0, crashed = 0;  ///< crashed: unstable runs whose process crashed or hung
 
   explicit Ends(const std::vector<RunRecord>& runs) {
     for (const RunRecord& r : runs) {
@@ -65,7 +65,7 @@ nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vec
           {"runs", figures_of(runs)}};
 }
 
-/// `part`: no report was printed, so the runs follow in short.
+/// `part`: no report was printed, so a short list of the runs follows.
 std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::path& out, bool part) {
   const VerdictCounts verdicts = count_verdicts(runs);
   const Ends ends(runs);
@@ -76,7 +76,7 @@ std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::p
   if (verdicts.runs > 0) text += "; with a bound: " + verdicts.text();
   text += fmt::format("; results in {}\n", out.string());
   if (ends.over_budget > 0)
-    text += fmt::format("not run: {} settings, because settings of less work had timed out (over_budget)\n",
+    text += fmt::format("not run: {} settings, because settings with less work had timed out (over_budget)\n",
                         ends.over_budget);
   return (part ? in_short_table(RunTable(runs)).console() : "") + text;
 }

@@ -52,7 +52,7 @@ nlohmann::json list_studies() {
   nlohmann::json rows = nlohmann::json::array();
   for (const std::string& name : scene_names({"studies"})) {
     const std::string file = (scenario_root() / (name + ".json")).string();
-    rows.push_back({{"name", name.substr(name.find('/') + 1)},  // as `study` takes it
+    rows.push_back({{"name", name.substr(name.find('/') + 1)},  // as the command `study` expects it
                     {"why", parse_json(read_text(file), file).value("why", "")}});
   }
   return rows;
@@ -64,7 +64,7 @@ nlohmann::json list_devices() {
     if (!e.devices) continue;
     for (const DeviceInfo& d : e.devices())
       rows.push_back({{"name", d.name}, {"driver", d.driver}, {"api", d.api}, {"software", d.is_software}});
-    break;  // all GPU backends here see the same Vulkan devices
+    break;  // all GPU backends see the same Vulkan devices
   }
   return rows;
 }
@@ -83,7 +83,7 @@ nlohmann::json list_metrics() {
 
 nlohmann::json list_scalars() {
   nlohmann::json rows = nlohmann::json::array();
-  auto s = scalars().begin();  // in the order of the groups, with what they are made from in their doc
+  auto s = scalars().begin();  // in the order of the groups; `doc` states from what each is computed
   for (const MetricGroup& g : metric_groups())
     for (std::size_t k = 0; k < g.scalars.size(); ++k, ++s) {
       rows.push_back({{"name", s->name},
@@ -151,7 +151,7 @@ std::string rows_text(const nlohmann::json& rows) {
   std::string out;
   for (const auto& r : rows) {
     std::string text = r.value("summary", r.value("why", r.value("long_name", r.value("driver", std::string()))));
-    if (r.value("software", false)) text += "  (software; its times say nothing of a GPU)";
+    if (r.value("software", false)) text += "  (software; its times tell nothing about a GPU)";
     if (r.value("plugin", false)) text += "  (" + r["folder"].get<std::string>() + ")";
     if (r.contains("units")) text += " [" + r["units"].get<std::string>() + "]";
     out += wrapped(text, 25, console_columns(), r["name"]);

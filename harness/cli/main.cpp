@@ -10,7 +10,7 @@
 namespace {
 
 void on_signal(int) {
-  // A second Ctrl-C means it.
+  // A second Ctrl-C exits at once.
   if (clothbench::interrupt_requested()) std::_Exit(130);
   clothbench::request_interrupt();
 }
@@ -22,6 +22,6 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, on_signal);
   const int code = clothbench::run_command_line({argv + (argc > 0 ? 1 : 0), argv + argc});
   std::fflush(stdout);
-  dup2(STDERR_FILENO, STDOUT_FILENO);  // what a plugin prints when it is unloaded is no part of a summary
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // keeps what plugins print on unloading out of a summary
   return code;
 }

@@ -46,7 +46,7 @@ std::vector<std::string> words(const json& list) { return list; }
 
 std::string bytes(const json& b) { return b.is_null() ? "–" : fmt::format("{:.0f}", b.get<double>()); }
 
-/// The plan of a solver for a scene: the worker's side of `clothbench plan`.
+/// The plan of a solver for a scene: `clothbench plan` in the worker.
 json plan_answer(const json& request) {
   const SolverEntry& entry = find_solver(request.at("solver"));
   const Scene scene = load_scene(request.at("scene"), request.at("set").get<std::vector<std::string>>());
@@ -127,7 +127,7 @@ void add_plan(CLI::App& app, Console& console) {
 
 void add_run_child(CLI::App& app, Console& console) {
   CLI::App* cmd = app.add_subcommand("run-child", "Execute what another process of this program asks for");
-  cmd->group("");  // not for people
+  cmd->group("");  // hidden from the help text
   cmd->callback([&console] {
     const auto silent = [](json (*work)(const json&)) {
       return [work](const json& request, const WorkerProgress&) { return work(request); };

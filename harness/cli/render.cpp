@@ -30,7 +30,7 @@ void render_all(const RenderArguments& a, const Console& console) {
       StatusLine line(!console.json);
       taken = render::take(m, shots, a.device.options, [&](const std::string& what, std::size_t done, std::size_t of) {
         if (interrupt_requested())
-          throw Error("interrupted; the pictures drawn so far are kept", ExitCode::Interrupted);
+          throw Error("interrupted; the images rendered so far are kept", ExitCode::Interrupted);
         line.show(what, done, of);
       });
     }

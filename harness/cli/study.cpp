@@ -35,7 +35,7 @@ void print_jobs(const std::vector<std::string>& names, const Console& console) {
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
-/// Prints one line per generated scene. If a study has many, it prints none, because the result files contain them.
+/// Prints one line per generated scene; for a study with many scenes none, because the result files contain them.
 void print_drawn(const Study& study) {
   constexpr std::size_t kFew = 24;
   std::set<std::string> names;
@@ -51,12 +51,12 @@ void print_drawn(const Study& study) {
   }
 }
 
-/// Random scenes require scanned assets unless --procedural is given.
+/// Random scenes need scanned assets unless --procedural is given.
 Assets assets_of(const StudyArguments& a) {
   return asset_policy(a.require_assets || (!a.procedural && is_study_of(a.study, "contact")));
 }
 
-/// Options that only some protocols have.
+/// Refuses options that the study's protocol does not have.
 void check_options(const Study& study, const StudyArguments& a) {
   if (is_drawn(study) || study.protocol == "stability-map") {
     const std::string of = ": studies of protocol " + study.protocol + " have no timed trials";
@@ -97,7 +97,7 @@ void run_study(StudyArguments& a, Console& console) {
   if (!a.chosen.empty()) {
     if (a.run.out.empty()) throw Error("--job needs --out DIR, the folder that collects all runs of this study");
     const std::vector<std::size_t> chosen = parse_runs(a.chosen, names.size());
-    require_same_runs(a.run.out, plan, true);  // also the runs that other processes have stored
+    require_same_runs(a.run.out, plan, true);  // checks runs of other processes, too
     plan = only_runs(std::move(plan), chosen);
     manifest.runs = names;
     a.run.resume = a.run.part = true;
@@ -137,7 +137,7 @@ void add_study(CLI::App& app, Console& console) {
                   "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
   cmd->add_option("--jobs", a.jobs,
-                  "Number of processes at a time for what is not timed (default 1); timed trials follow one at a time")
+                  "Number of concurrent processes for untimed work (default 1); timed trials follow one at a time")
       ->check(CLI::Range(1, 256));
 #ifdef CLOTHBENCH_WITH_DRAW
   CLI::Option* rendering =

@@ -12,7 +12,7 @@ struct XrArguments {
   DeviceFlags device;
 };
 
-/// File, scenario, outcome and summary; and the same for the terminal.
+/// File, scenario, outcome and summary of a session as JSON.
 nlohmann::json loop_json(const xr::LoopResult& r) {
   return {{"file", r.file.string()},
           {"scenario", r.scenario.string()},
@@ -27,7 +27,7 @@ std::string loop_text(const xr::LoopResult& r) {
          fmt::format("frames per second  median {:.1f}   slowest {:.1f}\n", of("xr_fps_median"), of("xr_fps_worst")) +
          fmt::format("late frames        {:.1f} %\n", 100 * of("xr_late_frames")) +
          fmt::format("step               median {:.3f} ms\n", 1e3 * of("frame_wall_median_s")) +
-         fmt::format("both pictures      median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s")) +
+         fmt::format("both eye views     median {:.3f} ms on the device\n", 1e3 * of("xr_paint_device_median_s")) +
          fmt::format("results in {}; the session replays with: clothbench run {}\n", r.file.string(),
                      r.scenario.string());
 }

@@ -13,8 +13,8 @@
 namespace clothbench {
 namespace {
 
-constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side, beyond the margin
-constexpr double kTouchMargin = 0.1;  // of the margin
+constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side; added to the contact offset
+constexpr double kTouchMargin = 0.1;  // of the contact offset; added to it if larger
 
 using contact::Nearest;
 using contact::Point;
@@ -103,7 +103,7 @@ class Probes final : public ColliderContact {
     meshes[k] = std::make_unique<TriangleTree>(TriangleMeshView{surface.positions, surface.triangles});
   }
 
-  /// Places what moves and has triangles.
+  /// Moves the surfaces of dynamic mesh colliders to their poses at the end of `frame`.
   void advance(int frame) {
     if (frame == placed) return;
     for (std::size_t k = 0; k < meshes.size(); ++k)
@@ -128,7 +128,7 @@ class Probes final : public ColliderContact {
     return contact::mesh_contact(cloth, links, *meshes[k], has_inside(c));
   }
 
-  /// Nearest point of collider k for every vertex within reach.
+  /// For every vertex, the nearest point of collider k if it is at most reach_m[k] away.
   std::vector<std::optional<Nearest>> near(std::size_t k, int frame, const std::vector<double>& x) const {
     const Collider& c = scene.colliders[k];
     const ColliderKind& kind = kind_of(c);
@@ -158,7 +158,7 @@ class Probes final : public ColliderContact {
     return out;
   }
 
-  /// Triangles none of whose vertices touches collider k, but an edge or the face does. A half-space has none.
+  /// Marks triangles that touch collider k although none of their vertices does. Impossible for a half-space.
   template <class Mark>
   void touch_between(std::size_t k, int frame, const std::vector<double>& x, Mark mark) const {
     const ColliderKind& kind = kind_of(scene.colliders[k]);
@@ -186,13 +186,13 @@ class Probes final : public ColliderContact {
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<contact::Link> links;
-  std::vector<std::unique_ptr<TriangleTree>> meshes;  ///< of each collider in frame `placed`; null without one
+  std::vector<std::unique_ptr<TriangleTree>> meshes;  ///< of each collider in frame `placed`; null if no triangles
   int placed = 0;
   bool any_inside = false;
   std::vector<double> area;                ///< of the triangles, at rest
-  std::vector<double> reach_m;             ///< one per collider: up to this distance cloth touches it
-  std::vector<std::vector<char>> touched;  ///< (collider, vertex), at the last frame
-  std::vector<double> before;  ///< positions at the last frame; empty at the start and after a state that is not finite
+  std::vector<double> reach_m;             ///< one per collider: maximum distance at which cloth touches it
+  std::vector<std::vector<char>> touched;  ///< (collider, vertex): whether it touched at the last frame
+  std::vector<double> before;  ///< positions at the last frame; empty at the start and after non-finite positions
 };
 
 }  // namespace

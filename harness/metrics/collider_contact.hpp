@@ -10,31 +10,31 @@ namespace clothbench {
 #ifdef CLOTHBENCH_HAS_CONTACT_METRICS
 inline constexpr bool kWithContactMetrics = true;
 #else
-inline constexpr bool kWithContactMetrics = false;  // built without CGAL: the contact rows apply to no scene
+inline constexpr bool kWithContactMetrics = false;  // built without CGAL: metrics of colliders apply to no scene
 #endif
 
 inline constexpr Needs kColliders{"colliders",
                                   [](const Scene& s) { return kWithContactMetrics && !s.colliders.empty(); }};
 
-/// The contact of one cloth with all colliders of its scene, frame after frame: each collider
-/// placed as Scene::motion prescribes. The geometry of the collider kind decides the method
-/// (scenario/collider_kinds.hpp): capsules, half-spaces, triangles. Lengths are summed over the colliders (where they
-/// overlap, both count); the depth is the maximum over colliders.
+/// The contact of one cloth with all colliders of its scene, frame by frame. Scene::motion gives the colliders' poses.
+/// The kind of a collider decides its geometry (scenario/collider_kinds.hpp): capsules, a half-space or triangles.
+/// Contour lengths are summed over the colliders (if two overlap, both count); the depth is the maximum over the
+/// colliders.
 ///
-/// A point of the cloth touches a collider up to the distance at which the solver holds cloth plus the greater of a
-/// tenth of it and a thousandth of the cloth's shorter side. A triangle touches if any of its points does, edges and
-/// face included. Only vertices slide.
+/// A point of the cloth touches a collider if it is at most this far away: the solver's contact offset plus a tenth of
+/// it, or plus a thousandth of the cloth's shorter side if that is larger. A triangle touches if any of its points
+/// does, on its edges and face too. Slip is computed from vertices only.
 class ColliderContact {
  public:
   virtual ~ColliderContact() = default;
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   virtual SceneContact probe(int frame, const std::vector<double>& positions) = 0;
-  /// The same; in the order of frames, because it compares with the one before. NaN touches nothing.
+  /// Touch and slip in a frame. Call in the order of frames: slip compares with the one before. NaN touches nothing.
   virtual SceneTouch touch(int frame, const std::vector<double>& positions) = 0;
 };
 
-/// `scene` outlives the result. `held_at_m`: how far off each collider the solver keeps cloth, as in
-/// Plan::contact_margins_m; its margin where it does not say. Throws Error naming the collider that cannot be probed.
+/// `scene` outlives the result. `held_at_m`: the solver's contact offset per collider, as in Plan::contact_margins_m;
+/// if not stated, the collider's margin_m. Throws Error naming a collider that cannot be probed.
 std::unique_ptr<ColliderContact> collider_contact(const Scene& scene, const std::vector<double>& held_at_m = {});
 
 /// Self-intersection of a cloth with these triangles; exact (contact::self_contour).

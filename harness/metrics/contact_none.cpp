@@ -1,4 +1,4 @@
-// Built without CGAL, as on a device: scenes with colliders are not measured; motion_check serves the other scenes.
+// Built without CGAL, as on a headset: contact is not measured. motion_check works for scenes without colliders.
 #include "clothbench/error.hpp"
 #include "metrics/collider_contact.hpp"
 #include "metrics/motion_check/motion.hpp"

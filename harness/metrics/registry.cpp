@@ -25,7 +25,7 @@ bool fits(const std::string& pattern, const std::string& name) {
 
 constexpr double kSettled_s = 0.5, kLast_s = 1;
 
-/// A reduction of a series from a given frame on; NaN if the run does not have those frames.
+/// A reduction of a series from a given frame on; NaN if the run has no such frames.
 Reduction of(const char* name, const char* how, std::size_t (*from)(const RunView&),
              double (*reduce)(const std::vector<double>& values, std::size_t from)) {
   return {{name}, how, [=, series = std::string(name)](const RunView& r) {
@@ -40,7 +40,7 @@ constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 std::size_t from_start(const RunView&) { return 0; }
 std::size_t if_settled(const RunView& r) { return r.whole() ? r.settled_from() : kNever; }
 
-/// Half a frame later than one second before the end, so that rounding adds no frame.
+/// Searches from half a frame later than one second before the end, so that rounding adds no frame.
 std::size_t last_second(const RunView& r) {
   if (!r.whole()) return kNever;
   const std::vector<double>& t = r.pass.time_s;
@@ -182,7 +182,7 @@ const std::vector<double>* RunView::series(const std::string& name) const {
 
 std::size_t RunView::settled_from() const {
   std::size_t from = pass.time_s.size() - 1;
-  // Half a frame earlier, so that rounding omits no frame.
+  // Starts half a frame earlier, so that rounding omits no frame.
   while (from > 0 && pass.time_s[from - 1] >= pass.time_s.back() - kSettled_s - 0.5 * scene.time.dt()) --from;
   return from;
 }

@@ -18,7 +18,7 @@ truth::ReferenceCase required_case(const Scene& scene) {
   return *known;
 }
 
-/// Strain of every edge along u, row by row; of every edge of a mesh.
+/// Strain of every edge along u, row by row; for a mesh, of every edge.
 std::vector<double> strains(const Cloth& c, const std::vector<double>& x) {
   std::vector<double> out;
   for (const Edge& e : edges(c, EdgeKind::Structural))
@@ -46,11 +46,11 @@ double change(const TruthJudge& judge, const Scene& scene, const std::string& ke
   return most / std::log(kMore);
 }
 
-constexpr double kNothing = 1e-12;  // a motion of rounding errors only
+constexpr double kNothing = 1e-12;  // displacement that is rounding error only
 
-/// Error of the mesh as a fraction of the exact motion. A triangle mesh has no exact solution of its own and is
-/// compared with the continuum: linear triangles, irregular and perhaps locked, are of first order in their size. A
-/// strip that slides by the law of a smooth one: its distance from that. Other grids have their own exact solution.
+/// Error of the mesh as a fraction of the exact motion. A triangle mesh is compared with the continuum; its linear
+/// elements, irregular and perhaps locking, have errors of first order in their size. A strip that slides by a smooth
+/// law differs from that law by space_error. Other grids have their own exact solution.
 double mesh_error(const TruthJudge& judge, double moved_quantity) {
   const Cloth& c = judge.scene().cloth;
   if (c.mesh) return c.mesh->edge_m / c.width_m;
@@ -65,8 +65,8 @@ double rounding_m(const std::vector<Vec3>& columns) {
   return std::exp2(-24) * largest_m;
 }
 
-/// Three standard deviations of the quantity if every coordinate is rounded (uniformly, by `by_m` at most), over its
-/// scale. Each column is a mean over as many vertices as lie across the strip.
+/// Three standard deviations of the quantity, over its scale, if every coordinate is rounded (uniformly, by at most
+/// `by_m`). Each column is a mean over the vertices across the strip.
 double rounding_of_quantity(const TruthJudge& judge, std::vector<Vec3> columns, double by_m) {
   const truth::ReferenceCase& known = judge.reference_case();
   const Cloth& c = judge.scene().cloth;

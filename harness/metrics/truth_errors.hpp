@@ -7,7 +7,7 @@
 
 namespace clothbench {
 
-/// Judges the frames of one scene by its reference case.
+/// Evaluates the frames of one scene against its reference case.
 class TruthJudge {
  public:
   /// Throws Error if the scene has no reference case, or does not meet its requirements.
@@ -15,10 +15,10 @@ class TruthJudge {
   const Scene& scene() const { return scene_; }
   const truth::ReferenceCase& reference_case() const { return case_; }
   TruthErrors judge(int frame, const ClothState&) const;
-  /// The ranking error of frames judged at these times, as a run's `truth_error`: RMS over time, at rest the last.
+  /// The ranking error of frames at these times, as a run's `truth_error`: RMS over time; for a case at rest, the last.
   double ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>&) const;
-  /// The ranking error (see ReferenceCase) of the mesh's own truth against the continuum: a lower bound that no smaller
-  /// time step removes. NaN for a sheet that shears and for a mesh, whose truth is not known (see compute_reference).
+  /// Ranking error (see ReferenceCase) of the grid's exact solution against the continuum, which smaller time steps
+  /// cannot reduce. NaN for a sheet with shear and for a mesh: no exact solution is known (compute_reference).
   double space_error() const;
 
  private:
@@ -34,24 +34,24 @@ class TruthJudge {
 /// Scenes whose strips conserve energy (metric energy_rise): no damping, shear, bending, hands or colliders.
 bool keeps_energy(const Scene&);
 
-/// How much a scene's truth depends on its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is the
-/// change of what ranks the scene's runs (quantity or positions, truth::ReferenceCase) with the logarithm of the
-/// membrane stiffness or the bending rigidity, from evaluating the reference case at 10 % more of each. 1 means that it
-/// changes by 1 % for 1 % more stiffness; 0 that the scene has no such stiffness. For truths in motion it is the
-/// maximum over a few frames. Empty for a scene without a reference case.
+/// Sensitivity of a scene's exact solution to its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is
+/// the change of the ranking value (quantity or positions, truth::ReferenceCase) per logarithm of the membrane
+/// stiffness or the bending rigidity, from evaluating the reference case with 10 % more. 1: the value changes by 1 %
+/// for 1 % more stiffness. 0: the scene has no such stiffness. For a moving solution it is the maximum over a few
+/// frames. Empty for a scene without a reference case.
 std::map<std::string, double> truth_dependence(const Scene&);
 
-/// Bounds on two scalars of a whole run of a scene with an exact solution: the distance of the positions (`truth_e2`)
-/// and the error of the reference case's quantity (`truth_quantity_error`). Both are norms of a difference, so too
-/// small a value fails like too large a one. Each bound is
+/// Bounds on two scalars of a complete run of a scene with an exact solution: the distance of the positions
+/// (`truth_e2`) and the error of the reference case's quantity (`truth_quantity_error`). Both are norms of a
+/// difference, so values that are too small or too large both fail. Each bound is
 ///   tolerance * moved + mesh + rounding
-/// moved: the scalar of a cloth that keeps its start (if 0, the tolerance at rest replaces this term); mesh: the error
-/// of a triangle mesh itself; rounding: the change of the scalar by positions in float32.
+/// moved: the scalar of a cloth that stays at its start (if 0, the tolerance at rest replaces this term); mesh: error
+/// of a triangle mesh itself; rounding: change of the scalar if positions are rounded to float32.
 struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };
 
-/// The judge's scene is the one that was run. Throws Error if its reference case has no tolerance.
+/// The judge's scene is the one that was run. Throws Error if its reference case defines no tolerance.
 ExactBound exact_bound(const TruthJudge&);
 
 }  // namespace clothbench

@@ -12,20 +12,20 @@
 namespace clothbench::render {
 namespace {
 
-constexpr double kFieldOfView = 28;  // degrees of the picture's height: little perspective, as a photograph from afar
+constexpr double kFieldOfView = 28;  // degrees over the image's height: little perspective, as from a distance
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// Towards -z, from these angles to the right and up.
+/// Looks towards -z after rotations by these angles to the right and up.
 void look(Camera& c, double azimuth, double elevation) {
   c.back = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
   c.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
   c.up = cross(c.back, c.right);
 }
 
-/// Camera position along one axis of the picture such that every point is within the slope `tangent` on both sides:
-/// |x - middle| <= tangent (distance - z), z towards the viewer. Exact: the two outermost lines of slope `tangent` meet
-/// there.
+/// Camera position along one image axis such that every point is within the slope `tangent` on both sides: |x - middle|
+/// <= tangent (distance - z), z towards the viewer. Exact: the intersection of the two outermost lines of slope
+/// `tangent`.
 struct Stand {
   double middle, distance;
 };
@@ -49,7 +49,7 @@ Vec3 unit_or_zero(const Vec3& v) {
 
 bool finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
-/// Two directions across one.
+/// Two directions perpendicular to an axis.
 std::array<Vec3, 2> across(const Vec3& axis) {
   const Vec3 first = unit_or_zero(cross(axis, std::abs(axis[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
   return {first, cross(axis, first)};
@@ -62,9 +62,9 @@ std::uint32_t add_vertex(Surfaces& s, const Vec3& p, const Vec3& n, int look) {
   return static_cast<std::uint32_t>(s.position_m.size() - 1);
 }
 
-/// Rings from one pole to the other; a sphere if a = b.
+/// Triangles of a capsule as rings from pole to pole; a sphere if a = b.
 void add_capsule(Surfaces& s, const Capsule& c, int look) {
-  constexpr int kSides = 32, kRings = 10;  // rings of each half ball
+  constexpr int kSides = 32, kRings = 10;  // rings per hemisphere
   if (!finite(c.a_m) || !finite(c.b_m) || !(c.radius_m > 0)) return;
   Vec3 axis = unit_or_zero(minus(c.b_m, c.a_m));
   if (dot(axis, axis) == 0) axis = {0, 1, 0};
@@ -97,7 +97,7 @@ bool meets(const Bounds& b, const std::array<Vec3, 3>& t) {
   return true;
 }
 
-/// Hands are smooth, other meshes have edges.
+/// Hands get smooth normals; other meshes keep sharp edges.
 void add_triangles(Surfaces& s, const Collider& c, const ColliderPose& pose, const Bounds& near) {
   const Extent seen{scaled(0.5, plus(near.low, near.high)), near.diagonal() / 2};
   const auto [x, triangles] = kind_of(c).surface(c, pose, seen);
@@ -163,7 +163,7 @@ Camera frame(std::span<const double> points, double aspect) {
     nearest = std::max(nearest, z);
     furthest = std::min(furthest, z);
   }
-  // A single point, or a sheet seen edge on: any distance would do.
+  // For a single point, or a sheet seen edge-on, any distance would do.
   const double size = std::max({nearest - furthest, distance - nearest, 1e-9});
   distance = std::max(distance, nearest + 0.05 * size);
   for (std::size_t k = 0; k < 3; ++k) c.eye_m[k] = x.middle * c.right[k] + y.middle * c.up[k] + distance * c.back[k];

@@ -18,19 +18,19 @@ struct Camera {
   double tan_half_width = 0, tan_half_height = 0;
   double near_m = 0, far_m = 0;
 
-  /// From world coordinates relative to `origin_m` to the camera's axes.
+  /// Transforms world coordinates relative to `origin_m` to the camera's axes.
   Mat4 view(const Vec3& origin_m) const;
-  /// To Vulkan's clip space: y down, depth 0 at `near_m` to 1 at `far_m`. Matches xr::projection_of.
+  /// Transforms to Vulkan's clip space: y down, depth 0 at `near_m` to 1 at `far_m`. Matches xr::projection_of.
   Mat4 projection() const;
 };
 
-/// The nearest camera that sees all of `points` (xyz interleaved [m], finite), with 4 % of the picture's width and
-/// height free on every side. It looks from the front, 30 degrees to the right and 24 up. `aspect`: width over height.
-/// Throws Error without points.
+/// The nearest camera that sees all of `points` (xyz interleaved [m], finite), with a margin of 4 % of the image's
+/// width and height on every side. It looks from the front, 30 degrees to the right and 24 up. `aspect`: width over
+/// height. Throws Error if there are no points.
 Camera frame(std::span<const double> points, double aspect);
 
-/// Left and right eye of a user looking along -z at the middle of a box from `distance_m` away. 110 x 96 degrees is
-/// the field of view of a Quest 3 (Meta's technical specifications), 63 mm apart the mean of adults.
+/// Left and right eye of a user who looks along -z at the middle of a box from `distance_m` away. The field of view of
+/// 110 x 96 degrees is a Quest 3's (Meta's technical specifications); 63 mm between the eyes is the mean of adults.
 std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
 
 struct Bounds {
@@ -52,8 +52,8 @@ struct Surfaces {
 };
 
 /// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Static meshes are drawn without
-/// the triangles that do not meet `near` (a room has more walls than its desk); infinite planes are clipped to `near`;
-/// moving colliders are drawn whole. Triangles that are not finite are left out.
+/// triangles outside `near` (a room has more walls than its desk); infinite planes are clipped to `near`; moving
+/// colliders are drawn completely. Triangles that are not finite are omitted.
 Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 
 }  // namespace clothbench::render

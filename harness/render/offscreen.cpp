@@ -14,7 +14,7 @@ namespace {
 
 using vulkan::check;
 
-constexpr std::uint64_t kPatience_ns = 60'000'000'000;  // a software device takes seconds for a large picture
+constexpr std::uint64_t kPatience_ns = 60'000'000'000;  // a software device takes seconds for a large image
 
 }  // namespace
 
@@ -63,7 +63,7 @@ Picture Offscreen::read(std::size_t k) {
   const std::size_t pixels = static_cast<std::size_t>(extent_.width) * extent_.height;
   if (!pixels_) pixels_ = std::make_unique<vulkan::Buffer>(device_, "picture", 4 * pixels, vulkan::Buffer::Place::Host);
   submit([&] {
-    // Wait for the drawing before the copy. Afterwards the image returns to the layout in which the drawing left it.
+    // The copy waits for the rendering. Afterwards the image returns to the layout in which rendering left it.
     auto drawn = blank<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
     drawn.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
     drawn.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;

@@ -8,7 +8,7 @@
 
 namespace clothbench::render {
 
-/// 8 bits a channel, sRGB, rgb interleaved, the top row first.
+/// 8 bits per channel, sRGB, rgb interleaved, top row first.
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
@@ -19,7 +19,7 @@ struct Picture {
   }
 };
 
-/// Images for offscreen drawing: one for each view (an eye), all of one size.
+/// Images for offscreen rendering: one per view (eye), all of equal size.
 class Offscreen {
  public:
   static constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;  ///< mandatory for colour targets (Vulkan 1.1, table 62)
@@ -30,8 +30,8 @@ class Offscreen {
   Offscreen(const Offscreen&) = delete;
   Offscreen& operator=(const Offscreen&) = delete;
 
-  /// Draws each image with its camera (one camera per image); complete on return. The renderer must outlive this
-  /// object. Throws vulkan::Failure.
+  /// Renders each image with its own camera; complete on return. The renderer must outlive this object. Throws
+  /// vulkan::Failure.
   void draw(SceneRenderer&, std::span<const Camera> cameras);
   /// Reads back image `k`.
   Picture read(std::size_t k);
@@ -49,9 +49,9 @@ class Offscreen {
   SceneRenderer* drawn_by_ = nullptr;
 };
 
-/// Draws both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. For a GPU
-/// solver the vertex shader reads the solver's buffer; for a CPU solver the positions of read_state are uploaded. Both
-/// are part of the measured time. Nothing is displayed, so it contains no wait for a display.
+/// Renders both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. For a GPU
+/// solver the vertex shader reads the solver's buffer; for a CPU solver the positions of read_state are uploaded. The
+/// measured time includes this. Nothing is displayed, so it includes no wait for a display.
 Rendering stereo_rendering(int width, int height);
 
 }  // namespace clothbench::render

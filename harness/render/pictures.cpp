@@ -26,10 +26,10 @@ std::uint32_t middle_vertex(const Cloth& c) {
 
 bool is_free(const Scene& s) { return s.colliders.empty() && s.grips.vertices.empty() && s.pins.vertices.empty(); }
 
-/// An MP4 of pictures of one size by the program ffmpeg, which reads them from a pipe.
+/// An MP4 movie of equally large images, made by the program ffmpeg, which reads the images from a pipe.
 class Movie {
  public:
-  // H.264 with colours of a quarter of the resolution, which every player shows, needs even sizes.
+  // H.264 with 4:2:0 chroma, which every player shows, needs even sizes.
   Movie(fs::path file, int width, int height, double frames_per_s)
       : file_(std::move(file)),
         log_(file_.string() + ".log"),
@@ -51,7 +51,7 @@ class Movie {
 
   void add(const Picture& picture) {
     if (ffmpeg_.write({reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size()})) return;
-    finish();  // throws with what ffmpeg printed, if it printed anything
+    finish();  // throws with ffmpeg's output, if there is any
     throw Error(file_.string() + ": ffmpeg ended too early");
   }
 
@@ -90,9 +90,9 @@ Motion stored_motion(const fs::path& path) {
 }
 
 Framing framing_of(const Motion& m) {
-  constexpr double kSeenBeside = 0.12;  // of the sheet's size: colliders this close to the cloth are in the picture,
+  constexpr double kSeenBeside = 0.12;  // fraction of the sheet's size: colliders this close to the cloth are in view,
   constexpr double kDrawnBeside = 0.5;  // and colliders this close are drawn
-  constexpr std::size_t kSamples = 48;  // of the frames
+  constexpr std::size_t kSamples = 48;  // number of frames
   Framing f;
   const Cloth& cloth = m.scene.cloth;
   const double size = std::max({cloth.width_m, cloth.height_m, 1e-9});

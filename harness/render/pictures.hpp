@@ -8,7 +8,7 @@
 
 namespace clothbench::render {
 
-/// Input of pictures: the trajectory of a cloth, and the colliders that it touches.
+/// Input for images: the trajectory of a cloth, and the scene with its colliders.
 struct Motion {
   Scene scene;
   std::string name;  ///< of the run, for file names
@@ -20,16 +20,16 @@ struct Motion {
   std::vector<double> at(std::size_t frame) const;
 };
 
-/// Reads a result file. Throws Error naming the file and what is wrong with it; also if it has no trajectory.
+/// Reads a result file. Throws Error naming the file and its fault, such as a missing trajectory.
 Motion stored_motion(const std::filesystem::path&);
 
-/// Content of all pictures of a motion, from one camera: a box around the cloth of all frames, without vertices that
-/// are not finite or are further from the initial bounds than the cloth's size.
+/// Common view of all images of a motion, for one camera: a box around the cloth of all frames, without vertices that
+/// are not finite or are farther from the initial bounds than the cloth's size.
 struct Framing {
-  Bounds near;                 ///< of the cloth, with a margin; colliders beyond are cut off
+  Bounds near;                 ///< around the cloth, with a margin; colliders are clipped to it
   Vec3 origin_m{};             ///< centre of the cloth's bounds
   std::vector<double> points;  ///< corners of the box that must be in the picture, xyz interleaved [m]
-  bool follows = false;        ///< the camera follows the cloth's middle vertex: free cloth
+  bool follows = false;        ///< the camera follows the cloth's middle vertex, for free cloth
 };
 Framing framing_of(const Motion&);
 
@@ -44,20 +44,19 @@ struct Shots {
 struct Taken {
   std::vector<std::filesystem::path> pictures;
   std::filesystem::path movie;  ///< empty: none
-  std::string no_movie;         ///< why there is none although one was requested
+  std::string no_movie;         ///< why there is no movie although one was requested
 };
 
-/// Draws the motion at the requested frames, <name>__<frame>.png. `progress` (may be empty) gets the number of
-/// pictures drawn. Throws Error on a frame that the motion does not have, a file that cannot be written, or a missing
-/// device.
+/// Renders the motion at the requested frames, <name>__<frame>.png. `progress` (may be empty) gets the number of images
+/// so far. Throws Error for a frame that the motion does not have, a file that cannot be written, or a missing device.
 Taken take(const Motion&, const Shots&, const DeviceOptions&,
            const std::function<void(const std::string&, std::size_t, std::size_t)>& progress = {});
 
-/// The written files, for the terminal; many pictures are one line.
+/// List of the written files for the terminal; many images become one line.
 std::string taken_text(const Taken&);
 
-/// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an
-/// empty end is the first or the last frame). Throws Error naming --frames and the expected form.
+/// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an empty
+/// end is the first or the last frame). Throws Error with --frames and the expected form.
 std::vector<std::size_t> frames_from(const std::string& text, std::size_t count);
 
 /// Writes under a temporary name, then renames. Throws Error naming the file.

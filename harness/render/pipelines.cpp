@@ -20,7 +20,7 @@ const std::uint32_t kSurfaceFrag[] = {
 #include "surface.frag.inc"
 };
 
-/// Destroyed once the pipeline is made.
+/// A shader module, destroyed once the pipeline exists.
 struct Module : Owned<VkShaderModule, vkDestroyShaderModule> {
   Module(VkDevice device, const std::uint32_t* words, std::size_t bytes) {
     auto info = blank<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
@@ -30,7 +30,7 @@ struct Module : Owned<VkShaderModule, vkDestroyShaderModule> {
   }
 };
 
-/// A view of a colour image, or of its depth.
+/// Creates a view of a colour or a depth image.
 void create_view(VkDevice device, VkImage image, VkFormat format, Owned<VkImageView, vkDestroyImageView>& view) {
   auto info = blank<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
   info.image = image;
@@ -67,7 +67,7 @@ Pipelines::Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, Vk
   create(false, samples, collider_);
 }
 
-/// Samples and depth never leave the pass, so a tiled GPU keeps them on the chip.
+/// Samples and depth are not stored after the pass, so a tiled GPU keeps them on chip.
 void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
   std::array<VkAttachmentDescription, 3> a{};
   for (VkAttachmentDescription& one : a) {
@@ -93,8 +93,8 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
   subpass.pColorAttachments = &drawn;
   subpass.pResolveAttachments = &resolved;
   subpass.pDepthStencilAttachment = &depth;
-  // Orders an earlier picture's use of the same samples, depth and image before this one's, and this one's result
-  // before whatever comes next.
+  // Orders an earlier image's use of these attachments before this one's, and this one's result before all later
+  // commands.
   constexpr VkPipelineStageFlags kDrawing = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                             VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -140,7 +140,7 @@ void Pipelines::create(bool cloth, VkSampleCountFlagBits samples, Pipeline& to) 
   stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
   stages[1].module = fragment;
   stages[1].pSpecializationInfo = &constants;
-  // Triangles, both sides, nearest first, opaque; the picture's size is set as it is recorded.
+  // Triangles, no culling, depth test, opaque; the viewport is dynamic.
   const auto input =
       blank<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   auto assembly =
@@ -224,7 +224,7 @@ Image::Image(std::shared_ptr<vulkan::Device> device, VkFormat format, VkExtent2D
   auto memory = blank<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   memory.allocationSize = needs.size;
   memory.memoryTypeIndex = vulkan::Device::kNoMemory;
-  // A tiled GPU needs no memory for an attachment that never leaves the chip.
+  // A tiled GPU needs no memory for an attachment that stays on chip.
   if ((usage & VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) != 0)
     memory.memoryTypeIndex = device_->memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT);
   if (memory.memoryTypeIndex == vulkan::Device::kNoMemory)

@@ -9,7 +9,7 @@
 
 namespace clothbench::render {
 
-/// A structure of this type, all else 0.
+/// A structure with its type set and all other members 0.
 template <class T>
 T blank(VkStructureType type) {
   T t{};
@@ -17,7 +17,7 @@ T blank(VkStructureType type) {
   return t;
 }
 
-/// Owns an object of a device, which it must not outlive.
+/// Owns an object of a device; the device must outlive it.
 template <class Handle, void(VKAPI_PTR* kDestroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
 class Owned {
  public:
@@ -27,7 +27,7 @@ class Owned {
   ~Owned() {
     if (handle_ != VK_NULL_HANDLE) kDestroy(device_, handle_, nullptr);
   }
-  /// Where to create it, once.
+  /// Address at which to create the object, once.
   Handle* create(VkDevice device) {
     device_ = device;
     return &handle_;
@@ -40,7 +40,7 @@ class Owned {
 };
 
 /// The render pass (multisampled colour and depth, resolved to one sample) and its two pipelines, for cloth and for
-/// colliders, which share a set of buffers.
+/// colliders, which use the same buffers.
 class Pipelines {
  public:
   static constexpr std::uint32_t kBindings = 4;  ///< as in the shaders
@@ -49,7 +49,7 @@ class Pipelines {
   Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);
 
   VkRenderPass pass() const { return pass_; }
-  /// Binds buffers[k] to binding k. Commands recorded earlier must have finished.
+  /// Binds buffers[k] to binding k. Commands recorded before must have finished.
   void bind(const std::array<const vulkan::Buffer*, kBindings>& buffers);
   void use(VkCommandBuffer, bool cloth, const void* constants, std::uint32_t bytes) const;
 
@@ -82,7 +82,7 @@ class Image {
   Owned<VkImageView, vkDestroyImageView> view_;
 };
 
-/// Render targets for pictures of one size: multisampled colour and depth, and a framebuffer for each target image.
+/// Render targets for images of one size: multisampled colour and depth, and a framebuffer per target image.
 class Targets {
  public:
   Targets(std::shared_ptr<vulkan::Device> device, VkRenderPass pass, VkFormat colour, VkSampleCountFlagBits samples,

@@ -15,21 +15,21 @@ namespace {
 constexpr auto kSampleBit = VK_SAMPLE_COUNT_4_BIT;
 static_assert(static_cast<int>(kSampleBit) == SceneRenderer::kSamples);
 
-/// The device's queue computes; on every GPU we know of it draws too.
+/// Requires graphics on the device's compute queue; on every GPU that we know of, that queue supports both.
 std::shared_ptr<vulkan::Device> drawing(std::shared_ptr<vulkan::Device> device) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device->physical(), &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device->physical(), &count, families.data());
   if ((families.at(device->queue_family()).queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return device;
-  throw Error(device->info().name + ": its first queue that computes does not draw", ExitCode::NoDevice);
+  throw Error(device->info().name + ": its first compute queue does not support graphics", ExitCode::NoDevice);
 }
 
 vec4 as_vec4(const Vec3& v, double w) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(w)};
 }
 
-/// Where the viewer is, of a rigid view matrix.
+/// Position of the viewer from a rigid view matrix.
 Vec3 eye_of(const Mat4& view) {
   Vec3 eye{};
   for (std::size_t k = 0; k < 3; ++k)
@@ -37,7 +37,7 @@ Vec3 eye_of(const Mat4& view) {
   return eye;
 }
 
-/// The two axes along which a mesh extends most; the checker lies in their plane where there is no pattern.
+/// The two axes along which a mesh is longest; without a pattern, the checker lies in their plane.
 std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
   Bounds box = Bounds::none();
   for (const Vec3& x : m.vertices) box.add(x);
@@ -46,9 +46,9 @@ std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
   return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
 }
 
-constexpr double kSquares = 8, kMostSquares = 64;  // of the checker, along the shorter side and along the longer
+constexpr double kSquares = 8, kMostSquares = 64;  // number of checker squares: shorter side; maximum for longer side
 
-/// Place of a corner on the checker, in squares.
+/// Computes a corner's position on the checker, in squares.
 class Checker {
  public:
   explicit Checker(const Cloth& cloth) : cloth_(cloth), axes_{0, 1} {
@@ -79,7 +79,7 @@ class Checker {
   double shorter_m_;
 };
 
-/// Triangles, checker and fans of the vertices as cloth.vert reads them.
+/// Triangles, checker and vertex-triangle adjacency in the layout that cloth.vert reads.
 std::vector<std::uint32_t> mesh_words(const Cloth& cloth) {
   const auto triangles = clothbench::triangles(cloth);
   const Checker checker(cloth);
@@ -108,7 +108,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<vulkan::Device> device, VkFormat co
 }
 
 std::unique_ptr<vulkan::Buffer> SceneRenderer::filled(const char* name, const void* data, std::size_t bytes) const {
-  // Vulkan forbids empty buffers. One that only fills a binding has bytes that no shader reads.
+  // Vulkan forbids empty buffers, so a buffer that only fills a binding has bytes that no shader reads.
   auto buffer =
       std::make_unique<vulkan::Buffer>(device_, name, std::max<std::size_t>(bytes, 16), vulkan::Buffer::Place::Host);
   if (data != nullptr && bytes > 0) std::memcpy(buffer->mapped(), data, bytes);
@@ -163,7 +163,7 @@ void SceneRenderer::set_surfaces(const Surfaces& s) {
   }
   const std::size_t bytes = vertices.size() * sizeof(vec4),
                     corner_bytes = s.triangles.size() * 3 * sizeof(std::uint32_t);
-  if (vertices_ && bytes > 0 && vertices_->bytes() == bytes && corners_->bytes() == corner_bytes) {  // only moved
+  if (vertices_ && bytes > 0 && vertices_->bytes() == bytes && corners_->bytes() == corner_bytes) {  // poses only
     std::memcpy(vertices_->mapped(), vertices.data(), bytes);
     std::memcpy(corners_->mapped(), s.triangles.data(), corner_bytes);
     return;
@@ -189,7 +189,7 @@ void SceneRenderer::record(VkCommandBuffer commands, std::span<const Drawing> dr
   if (positions_ == nullptr) throw Error("SceneRenderer::record: there are no positions to draw");
   if (!bound_) pipelines_.bind({positions_, vertices_.get(), corners_.get(), mesh_.get()});
   bound_ = true;
-  // The positions a solver's kernels or copies wrote, before a vertex shader reads them.
+  // Wait for positions from a solver's kernels or copies before the vertex shader reads them.
   auto memory = blank<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
   memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
   memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;

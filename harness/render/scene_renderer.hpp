@@ -11,9 +11,9 @@
 
 namespace clothbench::render {
 
-/// One picture to draw: the target image and the camera. The image has the renderer's colour format, one sample a pixel
-/// and the usage COLOR_ATTACHMENT. Its content is overwritten, and its layout is COLOR_ATTACHMENT_OPTIMAL afterwards,
-/// as OpenXR requires for images of a swapchain.
+/// One view to render: the target image and the camera. The image has the renderer's colour format, one sample per
+/// pixel and the usage COLOR_ATTACHMENT. Its content is overwritten, and afterwards its layout is
+/// COLOR_ATTACHMENT_OPTIMAL, as OpenXR requires for swapchain images.
 struct Drawing {
   VkImage image = VK_NULL_HANDLE;
   VkExtent2D extent{};
@@ -21,12 +21,11 @@ struct Drawing {
       projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
 };
 
-/// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the owner of the images (a
-/// picture file, an eye of a headset) passes a command buffer to record into, for the queue of the same device.
+/// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the owner of the images
+/// (an image file, an eye of a headset) passes a command buffer for the queue of the same device.
 ///
-/// Its memory grows with the scene only. set_cloth, set_surfaces and a picture of a new size replace
-/// objects that commands recorded earlier use, so none of these commands may be in flight then; write_positions
-/// overwrites the positions in place.
+/// Its memory depends only on the scene. set_cloth, set_surfaces and a new image size replace objects that recorded
+/// commands use, so no such command may be in flight then; write_positions overwrites the positions in place.
 class SceneRenderer {
  public:
   static constexpr int kSamples = 4;  ///< supported by every graphics device (Vulkan 1.1, framebufferColorSampleCounts)
@@ -40,18 +39,18 @@ class SceneRenderer {
   void set_cloth(const Cloth& cloth, const Vec3& origin_m);
   const Vec3& origin() const { return origin_m_; }
 
-  /// Draws positions from a buffer of the same device: a vec4 for each vertex, in order, relative to `buffer_origin_m`.
-  /// The buffer must outlive its use here; each picture shows its content at that time.
+  /// Draws positions from a buffer of the same device: one vec4 per vertex, in order, relative to `buffer_origin_m`.
+  /// The buffer must outlive its use here; pictures show its content when drawn.
   void use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m);
-  /// Draws these positions, xyz interleaved [m], one per vertex (otherwise Error). Any may be NaN: its triangles are
-  /// left out.
+  /// Draws these positions, xyz interleaved [m], one per vertex (otherwise Error). NaN is allowed; triangles with NaN
+  /// are not drawn.
   void write_positions(std::span<const double> position_m);
 
   void set_surfaces(const Surfaces&);
 
-  /// Records the pictures in order, after a barrier for data that earlier commands on the queue write.
+  /// Records the views in order, after a barrier for data that earlier commands on the queue write.
   void record(VkCommandBuffer, std::span<const Drawing>);
-  /// To be called before an image that was drawn into is destroyed.
+  /// Call before destroying an image that was a target.
   void forget(VkImage image);
 
  private:
@@ -62,7 +61,7 @@ class SceneRenderer {
   std::shared_ptr<vulkan::Device> device_;
   VkFormat format_;
   Pipelines pipelines_;
-  std::unique_ptr<Targets> targets_;  ///< of the last picture's size
+  std::unique_ptr<Targets> targets_;  ///< for the last image's size
   std::size_t vertices_of_cloth_ = 0, triangles_of_cloth_ = 0;
   Vec3 origin_m_{}, buffer_origin_m_{};
   bool bound_ = false;

@@ -1,4 +1,4 @@
-// CSV and JSON: runs, series, trials.
+// CSV and JSON files: runs, series, trials.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,9 +18,9 @@ json at_least(int least, int n) { return n >= least ? json(n) : json(); }
 
 std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
-/// The names and values of a line; null or NaN: missing.
+/// Names and values of one line; null or NaN: missing.
 using Fields = std::vector<std::pair<std::string, json>>;
-/// A run, or a frame or trial of it.
+/// A run, or one of its frames or trials.
 using Item = std::pair<const Row*, std::size_t>;
 
 /// Numbers in full precision, missing values empty; text with a comma, quote or line break is quoted as in RFC 4180.
@@ -34,7 +34,7 @@ std::string csv_field(const json& v) {
 }
 
 std::string csv(const std::vector<Item>& items, const std::function<Fields(const Row&, std::size_t)>& fields_of) {
-  RunRecord none;  // for the names
+  RunRecord none;  // only for the column names
   none.accuracy.time_s = {0};
   none.trials.resize(1);
   std::string out = joined(fields_of(Row{&none}, 0), ",", [](const auto& f) { return csv_field(f.first); });
@@ -53,13 +53,13 @@ Fields run_fields(const Row& r) {
 }  // namespace
 
 std::string runs_csv(const RunTable& table) {
-  std::set<std::string> names;  // every summary value that a run has
+  std::set<std::string> names;  // every summary value of any run
   for (const RunRecord& c : table.runs())
     for (const auto& [name, unused] : c.summary) names.insert(name);
   std::vector<Item> rows;
   for (const Row& r : table.rows())
     if (r.published < 0) rows.emplace_back(&r, 0);
-  // In the order of the folders.
+  // In the order of the result folders.
   std::sort(rows.begin(), rows.end(), [](const Item& a, const Item& b) { return a.first->run < b.first->run; });
   return csv(rows, [&](const Row& r, std::size_t) {
     const Outcome& outcome = r.run->outcome;

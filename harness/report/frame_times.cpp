@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kResamples = 400, kBlock = 16, kMinBlocks = 8, kMinFrames = 6;
 constexpr double kWide = 0.2;
-constexpr double kMeasurable_s = 2e-5;  // in shorter frames, reading the clock takes most of the CPU time
+constexpr double kMeasurable_s = 2e-5;  // in shorter frames, reading the clock dominates the CPU time
 
 using Series = std::vector<double>;
 
@@ -22,7 +22,7 @@ Interval percentiles(Series estimates) {
   return {nearest_rank(estimates, 0.025), nearest_rank(estimates, 0.975)};
 }
 
-/// The frames of a trial in blocks of consecutive ones; the rest joins the last block.
+/// Blocks of consecutive frames of a trial; the last block also gets the remainder.
 std::vector<Series> blocks_of(const Series& trial) {
   const std::size_t length = std::clamp<std::size_t>(trial.size() / kMinBlocks, 1, kBlock);
   std::vector<Series> out(trial.size() / length);
@@ -30,12 +30,12 @@ std::vector<Series> blocks_of(const Series& trial) {
   return out;
 }
 
-/// 95 % intervals of the median time and of the median over trials of the rate [1/s], by a bootstrap over trials and
-/// blocks of their frames. No trial is empty.
+/// 95 % intervals of the median frame time and of the median over trials of the frame rate [1/s], by a bootstrap over
+/// trials and blocks of their frames. No trial is empty.
 std::pair<Interval, Interval> intervals(const std::vector<Series>& trials) {
   std::vector<std::vector<Series>> blocks;
   for (const Series& t : trials) blocks.push_back(blocks_of(t));
-  std::mt19937_64 random;  // the same numbers on every machine
+  std::mt19937_64 random;  // default seed: equal numbers on every machine
   Series medians, rates;
   for (std::size_t n = 0; n < kResamples; ++n) {
     Series drawn, rates_drawn;
@@ -58,7 +58,7 @@ std::pair<Interval, Interval> intervals(const std::vector<Series>& trials) {
   return {percentiles(std::move(medians)), percentiles(std::move(rates))};
 }
 
-/// Whether the cloth touches something in each frame of the scene, frame 0 included; empty if no metric states it.
+/// For each frame of the scene, frame 0 included, whether the cloth touches something; empty if no metric measured it.
 std::vector<bool> frames_with_contact(const RunRecord& c) {
   constexpr std::array kTold = {"touching_fraction", "contact_length_m", "depth_m", "self_contact_length_m"};
   std::vector<bool> out;
@@ -70,7 +70,7 @@ std::vector<bool> frames_with_contact(const RunRecord& c) {
   return out;
 }
 
-/// The finite times of all trials. If `contact` is not empty, frames without contact are left out.
+/// The finite times of all trials. If `contact` is not empty, only of frames with contact.
 FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::vector<bool>& contact = {}) {
   FrameTimes out;
   std::vector<Series> trials;

@@ -1,4 +1,4 @@
-// The first screen: title, facts, warnings and notes of all runs, four tiles, and Table 3 with errors.
+// First part of a report: title, facts, warnings and notes on all runs, four tiles, and Table 3 with errors.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,24 +14,25 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFallLimit = 0.01;  // a greater error of free fall makes a rate meaningless
-constexpr double kBudget_ms = 1;     // of wall time per frame
+constexpr double kFallLimit = 0.01;  // with a larger free-fall error, a frame rate means nothing
+constexpr double kBudget_ms = 1;     // budget of wall time per frame
 constexpr double kUneven = 1.5;      // mean over median frame time
-constexpr double kFastest = 1e9;     // frames per second: more than any rate
+constexpr double kFastest = 1e9;     // frames per second: above any real rate
 
 constexpr const char* kRateNote =
     "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
     "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). The columns after the "
-    "resolutions are for the largest mesh. × bullet-soft: ratio of the rates, the two intervals combined. Rank: among "
+    "resolutions are for the largest mesh. × bullet-soft: ratio of the rates, with the extreme ratios of both "
+    "intervals. Rank: among "
     "rows with the same sides, on which the cloth would have contact. ";
-/// Frames per second in at most four digits; larger values in thousands or millions.
+/// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
   if (v >= 999500) return significant(1e-6 * v, 3) + "M";
   return v >= 9999.5 ? significant(1e-3 * v, 3) + "k" : fmt::format("{:.{}f}", v, v >= 1000 ? 0 : 1);
 }
 
-/// A solver's run with the largest mesh; null if it did not end well.
+/// A solver's run with the largest mesh; null if its outcome is not ok.
 const Row* largest(const Group& g) {
   const auto at = std::find_if(g.begin(), g.end(),
                                [](const Row* r) { return r->largest && r->status() == "ok" && r->published < 0; });
@@ -48,7 +49,7 @@ std::string rate_interval(const Row& r) {
                               : std::string();
 }
 
-/// A rate, marked where it tells little of a frame.
+/// A frame rate, marked if it is no measure of a frame's cost.
 Cell rate_cell(const Row& r) {
   const double fps = r.value(r.published >= 0 ? "fps_at_72" : "fps_median");
   if (r.published >= 0) return {fmt::format("{:g}", fps), fps};
@@ -63,17 +64,17 @@ Cell rate_ratio_cell(const Row& r) {
   return ratio_cell(fps, r.times->wall.rate, r.baseline->value("fps_median"), r.baseline->times->wall.rate);
 }
 
-/// The errors of these runs, the origin of the published rows, and solvers that wrap the engine of one.
+/// Notes: the errors of these runs, the source of the published rows, and solvers that wrap a published engine.
 std::string about_rates(const Group& runs) {
   const auto any = [&](const char* name) {
     return std::any_of(runs.begin(), runs.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
   };
   Texts out;
-  if (any("free_fall_error")) out.push_back("An error of free fall above 1 % (!) makes a rate meaningless.");
+  if (any("free_fall_error")) out.push_back("A free-fall error above 1 % (!) makes a rate meaningless.");
   if (any("stretch_max_last_second"))
-    out.push_back(
-        "Stretch: of structural edges in the last second; edges shorter than at rest count as 0 in the mean.");
-  if (out.empty()) out.push_back("These runs have no error to compare: `clothbench study work-precision` has.");
+    out.push_back("Stretch: structural edges, last second; edges shorter than at rest count as 0 in the mean.");
+  if (out.empty())
+    out.push_back("These runs have no comparable error; runs of `clothbench study work-precision` have one.");
   if (runs.front()->paper_table != 3) return joined(out, " ");
   const json published = published_table3();
   out.push_back(
@@ -133,14 +134,14 @@ View speed_and_error(bool paper) {
   return v;
 }
 
-/// A solver's value in a tile; the value with the highest merit is shown large, others beside it.
+/// A solver's value in a tile. The value with the highest merit is shown large, the others next to it.
 struct Entry {
   std::string solver;
   double merit;
   std::string title, value, interval;
 };
 
-/// The largest mesh of the paper's Table 3; without it, of the first family that was timed.
+/// Rates on the largest mesh of the paper's Table 3; without it, on that of the first family with times.
 std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
   std::string family;
@@ -180,7 +181,7 @@ std::vector<Entry> errors(const std::vector<const Row*>& rows) {
   return out;
 }
 
-/// Runs that passed, or were stable, among those that are judged.
+/// For each solver, passed or stable runs as a fraction of the runs with a verdict.
 std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const char* title) {
   std::map<std::string, std::pair<std::size_t, Group>> solvers;
   for (const Row* r : rows) {
@@ -196,7 +197,7 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
   for (const auto& [solver, share] : solvers) {
     const auto& [good, runs] = share;
     const Interval i = wilson_95(good, runs.size());
-    const auto all = static_cast<double>(runs.size());  // of equal shares, the one of more runs leads
+    const auto all = static_cast<double>(runs.size());  // of equal fractions, the one of more runs comes first
     const std::string offset = part == Part::Stability ? "" : offset_of(runs);
     out.push_back({solver, static_cast<double>(good) / all + 1e-9 * all, title, fmt::format("{}/{}", good, runs.size()),
                    fmt::format("{:.0f}–{:.0f} %{}", 100 * i.low, 100 * i.high,
@@ -207,7 +208,7 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
 
 bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) == json(true); }
 
-/// The value of a run's environment as the heading shows it.
+/// The value of a run's environment as shown in the heading.
 std::string fact(const RunRecord& c, const std::string& key) {
   const std::string value = environment_text(c, key.c_str());
   if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
@@ -283,15 +284,15 @@ std::vector<std::string> warnings_of(const RunTable& table) {
   }
   std::vector<std::string> out;
   for (const std::string& device : software)
-    out.push_back(
-        fmt::format("Software Vulkan device ({}): it shows correctness; its times say nothing of a GPU.", device));
+    out.push_back(fmt::format(
+        "Software Vulkan device ({}): its results are valid, but its times tell nothing about a GPU.", device));
   for (const std::string& reason : invalid) out.push_back(fmt::format("Not a valid measurement: {}.", reason));
   if (const std::string withheld = withheld_note(all); !withheld.empty()) out.push_back(withheld);
   return out;
 }
 
 std::vector<std::string> notes_of(const RunTable& table) {
-  std::set<std::string> plugins;  // a line for each build of one; two builds differ by the hash
+  std::set<std::string> plugins;  // one line per build of a plugin; the hash distinguishes builds
   for (const RunRecord& c : table.runs()) {
     const json p = environment_of(c, "plugin");
     if (!p.is_object()) continue;

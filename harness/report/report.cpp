@@ -22,7 +22,7 @@ constexpr std::pair<const char*, const char*> kSections[] = {
     {"failed", "Failures"},        {"features", "Features"},
     {"environment", "Environment"}};
 
-/// The sections that have tables.
+/// The sections with tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
   for (const auto& [id, title] : kSections) {
@@ -35,7 +35,7 @@ std::vector<PageSection> filled_sections(const RunTable& table) {
   return out;
 }
 
-/// Names of the studies among the results, each once.
+/// Names of the studies of the results, without repetition.
 std::vector<std::string> names_of(const std::vector<fs::path>& results) {
   std::vector<std::string> out;
   for (const fs::path& result : results)
@@ -54,7 +54,7 @@ std::string facts_of(const Heading& h) {
   return joined(h.facts, " · ", [](const auto& f) { return f.first + " " + f.second; });
 }
 
-/// The part of report.md above the tables.
+/// The part of report.md above its tables.
 std::string head_markdown(const Page& page) {
   std::string out = "# " + page.heading.title + "\n\n";
   for (const std::string& w : page.warnings) out += "**" + w + "**\n\n";
@@ -125,8 +125,8 @@ void print_console_report(const std::vector<fs::path>& results) {
     if (const Table t = in_short_table(table); !t.rows.empty() && ++shown > 0) fmt::print("{}", t.console());
   for (const PageSection& s : page.sections)
     for (const ViewTable& t : s.tables) {
-      if (few && s.id == "overview") continue;  // its runs stand in the table above
-      // Messages are sentences and are printed as lines, not columns; a failed run is never left out.
+      if (few && s.id == "overview") continue;  // its runs are in the table above
+      // Messages are sentences: they are printed as lines, not columns. A failed run is always listed.
       if (s.id == "failed" && !t.in_full) {
         fmt::print("\n{}\n", t.title);
         for (std::size_t r = 1; r < t.rows.size(); ++r)

@@ -9,31 +9,31 @@
 
 namespace clothbench {
 
-/// A sentence for the note of a table of times: why some of the runs show "–". Empty if no time is withheld.
+/// A sentence for the note of a table of times: why some runs show "–". Empty if no time is withheld.
 std::string withheld_note(const std::vector<const Row*>&);
 
-/// A number of the first screen, of the best solver present, with its interval; `others`: the solvers that follow.
+/// A number on the first screen: the best solver's value with its interval. `others`: the next solvers.
 struct Tile {
   std::string title, value, interval, others;
 };
 
-/// At most four tiles: generated contact, contact, error, rate, stability, as far as the runs have them.
+/// At most four tiles, in this order, as far as there are runs: generated contact, contact, error, rate, stability.
 std::vector<Tile> tiles_of(const RunTable&);
 
-/// Title of a report and what its runs state of device, commit, date and trials.
+/// Title of a report, and device, commit, date and trials as its runs state them.
 struct Heading {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;
 };
 Heading heading_of(const RunTable&, const std::vector<std::string>& studies);
 
-/// Sentences about the whole report: a software device, measurements that are not valid, withheld times.
+/// Sentences on the whole report: a software device, invalid measurements, withheld times.
 std::vector<std::string> warnings_of(const RunTable&);
 
 /// Sentences about the plugins and the number of runs that passed.
 std::vector<std::string> notes_of(const RunTable&);
 
-/// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank. No rows without runs.
+/// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank. No rows if there are no runs.
 Table in_short_table(const RunTable&);
 
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
@@ -45,13 +45,13 @@ std::string series_csv(const RunTable&);
 /// One row per timed trial: frames, mean, percentiles and maximum of the frame times.
 std::string trials_csv(const RunTable&);
 
-/// Writes report.md, tables.tex, runs.csv, runs.json, series.csv and trials.csv into `out`; also the page index.html if
-/// this was built with Node, and its figures as pictures (draw_pictures) if Node is installed; otherwise a line that
-/// states the reason. Throws Error if a file cannot be read or written.
+/// Writes report.md, tables.tex, runs.csv, runs.json, series.csv and trials.csv into `out`. Writes the page index.html
+/// if this program was built with Node, and its figures as images (draw_pictures) if Node is installed; otherwise
+/// prints the reason. Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
 
-/// Head, failures and two tables on the terminal, and where the rest is. With few runs, the first table has a row for
-/// each.
+/// Prints head, failures, two tables and the location of the rest on the terminal. With few runs, the first table has
+/// one row per run.
 void print_console_report(const std::vector<std::filesystem::path>& results);
 
 }  // namespace clothbench

@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kThrottled = 0.95;  // of the GPU's clock at the start
-constexpr double kTornApart = 1;     // strain of edges of twice their length
+constexpr double kThrottled = 0.95;  // fraction of the GPU's clock at the start
+constexpr double kTornApart = 1;     // strain at which an edge has twice its rest length
 
 json at(const json& j, const char* pointer) {
   return j.is_object() ? j.value(json::json_pointer(pointer), json()) : json();
@@ -35,7 +35,7 @@ Part part_of(const RunRecord& c, const json& scenario) {
   return touches(scenario) ? Part::Contact : Part::Rates;
 }
 
-/// Fills columns that come from the scenario; returns the text that scenes of one family share.
+/// Fills columns from the scenario; returns the text that scenes of one family have in common.
 std::string read_scenario(Row& row) {
   const RunRecord& c = *row.run;
   row.scene = row.name = c.header.scene;
@@ -62,7 +62,7 @@ std::string read_scenario(Row& row) {
   return family.dump();
 }
 
-/// Adds what one run knows of its scene's exact solution.
+/// Adds what a run states about its scene's exact solution.
 void add_facts(TruthFacts& t, const Row& r) {
   t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
   if (!std::isfinite(t.space_error)) t.space_error = r.value("truth_space_error");
@@ -83,8 +83,8 @@ void choose_leading(std::vector<Row>& rows) {
     for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
 }
 
-/// Ranks are no finer than the intervals: a run's rank is one more than the number of runs whose whole interval is
-/// below its own.
+/// A run's rank is one more than the number of runs whose whole interval is below its own, so that ranks are no finer
+/// than the intervals.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)
@@ -171,9 +171,9 @@ std::string Resolution::label() const {
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
-  // The truth is exact where the reference confirms it, so only the uncertainty of the reference counts here. No solver
-  // is ranked below the error of the mesh, so the reference need not be more certain than that.
-  if (!std::isfinite(best_error)) return "no solver ranked on it has an error";
+  // Where the reference solution confirms it, the exact solution has no error, so only the reference's uncertainty
+  // counts. Errors below the mesh's are not ranked, so the reference may be as uncertain as the mesh's error.
+  if (!std::isfinite(best_error)) return "no ranked solver has an error";
   const double least = std::fmax(best_error, space_error);
   if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
   return "";
@@ -223,7 +223,7 @@ std::pair<double, double> Row::offset_m() const {
     names.insert(m.value("collider", ""));
     add(m);
   }
-  // A solver names colliders by their types, or by what they stand for; a list as long as the scene's covers all.
+  // A solver names colliders by type or by role; a list as long as the scene's list covers all of them.
   for (const json& c : colliders)
     if (stated.size() < colliders.size() && c.contains("margin_m") && !names.contains(c.value("type", ""))) add(c);
   return out;
@@ -274,7 +274,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
-    // A pulled strip that no solver was timed on is listed with the scenes with contact.
+    // If no solver was timed on a pulled strip, it is listed with the scenes with contact.
     if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

@@ -15,32 +15,32 @@
 
 namespace clothbench {
 
-/// The scenario of a run; an empty object for a planned run whose scene is not known.
+/// The scenario of a run; an empty object for a planned run whose scene is unknown.
 nlohmann::json scenario_of(const RunRecord&);
-/// The environment's value of `key`; null if there is none.
+/// The environment's value for `key`; null if missing.
 nlohmann::json environment_of(const RunRecord&, const char* key);
-/// The environment's text of `key`; empty if there is none.
+/// The environment's text for `key`; empty if missing.
 std::string environment_text(const RunRecord&, const char* key);
 
-/// Engine that the run's plugin wraps, as the plugin states it: "NvCloth"; empty if it states none, or is no plugin.
+/// Engine that the run's plugin wraps, as the plugin declares: "NvCloth"; empty if it declares none, or for no plugin.
 std::string engine_of(const RunRecord&);
 
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
 extern const char* const kSolverRoles;      ///< solvers.json
 
-/// Roles of solvers in comparisons and colours of figures by label, from solvers.json.
+/// Roles of solvers in comparisons, and their colours in figures, by label; from solvers.json.
 const nlohmann::json& solver_roles();
-/// The harness without a cloth model: its times are the harness's cost, and its motion proves nothing.
+/// Whether the solver has no cloth model: its times are the harness's own cost, and its motion proves nothing.
 inline bool is_floor(const std::string& solver) { return contains(solver_roles().at("floor"), solver); }
-/// The model that errors are compared with; it is not ranked.
+/// Whether errors are compared with this solver; it is not ranked.
 inline bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
-/// The solver that times are relative to, whoever else is present.
+/// The solver to which times are relative, whichever solvers are present.
 inline std::string time_baseline() { return solver_roles().at("times_relative_to"); }
-/// Parts of the names of scenes that lead a report, the first one first, and the place of a scene's name among them.
+/// Parts of scene names that come first in a report, in order; the index of the part that a scene's name contains.
 inline const nlohmann::json& leading_scenes() { return solver_roles().at("leading_scenes"); }
 std::size_t place_of_scene(const std::string& scene);
 
-/// NaN without values.
+/// NaN if there are no values.
 double median(std::vector<double>);
 
 /// Quantile of a sorted list by the nearest rank; NaN if it is empty.
@@ -48,7 +48,7 @@ double nearest_rank(const std::vector<double>& sorted, double q);
 
 /// "diverged at 12" (the failed frame), or only the status if no frame failed.
 std::string ending(const Outcome&);
-/// "diverged (F1)"; only the status if it has no class.
+/// "diverged (F1)"; only the status if there is no class.
 std::string status_with_class(const Outcome&);
 /// "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)".
 inline std::string short_name(const std::string& device) { return device.substr(0, device.find(" (")); }
@@ -59,42 +59,42 @@ inline std::string or_dash(const std::string& text) { return text.empty() ? "–
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
 
-/// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as it should.
+/// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as expected.
 std::vector<std::string> violated_bounds(const RunRecord&);
 
 inline constexpr const char* kNoVerdict = "–";
 
-/// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds hold
-/// but the scene has contact and the solver ignores all of it, which proves nothing; its ending if it did not end well.
+/// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds are met
+/// but the solver ignores all of the scene's contact, so that the result proves nothing; its ending if it is not ok.
 std::string verdict(const RunRecord&);
 
-/// Bounds that the run's scene sets on a value, and the check of its motion; only `"outcome": "ok"` is none.
+/// Number of bounds on a run: those of its scene, and the motion check. A sole `"outcome": "ok"` counts as none.
 std::size_t bounds_of(const RunRecord&);
 
-/// Counted by `verdict`, of the runs whose scene has a bound. Missing runs are not counted.
+/// Counts by `verdict` of the runs whose scenes have bounds. Missing runs are not counted.
 struct VerdictCounts {
   std::size_t runs = 0, passed = 0, ignored = 0, unsupported = 0, not_measured = 0;
-  /// Failed a bound, or did not end well.
+  /// Violated a bound, or ended with an error.
   std::size_t failed() const { return runs - passed - ignored - unsupported - not_measured; }
-  /// "3 of 5 runs passed, 1 failed, 1 unsupported"; what there is none of is left out.
+  /// "3 of 5 runs passed, 1 failed, 1 unsupported"; zero counts are omitted.
   std::string text() const;
   void add(const RunRecord&);
 };
 
-/// The one count of passed runs: consoles, tables and JSON take it from here.
+/// The only count of passed runs: terminal, tables and JSON all use it.
 VerdictCounts count_verdicts(const std::vector<RunRecord>&);
 
-/// The first item for which `is` holds; if there is none, appends `fresh` and returns it.
+/// The first item for which `is` is true; if there is none, appends `fresh` and returns it.
 template <class Item, class Is>
 Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
   const auto at = std::find_if(items.begin(), items.end(), is);
   return at == items.end() ? items.emplace_back(std::move(fresh)) : *at;
 }
 
-/// Cloth resolution. `grid` is {0, 0} for a cloth that is not a grid.
+/// Cloth resolution. `grid` is {0, 0} for a mesh.
 struct Resolution {
   int grid[2] = {0, 0};
-  std::uint32_t vertices = 0;  ///< number of vertices of a cloth that is not a grid; 0 otherwise
+  std::uint32_t vertices = 0;  ///< of a mesh; 0 for a grid
   std::string label() const;   ///< "32²", "9×7", "1234 vertices", "–"
   double size() const { return static_cast<double>(grid[0]) * grid[1] + vertices; }
 };
@@ -103,106 +103,105 @@ struct Resolution {
 struct FrameTimes {
   std::vector<double> sorted;  ///< ascending
   Interval median;
-  Interval rate;  ///< of the median over trials of the frames per second
+  Interval rate;  ///< of the median over trials of the frame rate
   /// Nearest-rank quantile; NaN without frames.
   double at(double q) const;
-  /// Share of the frames that are longer than one refresh of a display.
+  /// Fraction of the frames that are longer than one refresh period of a display.
   double missed(double rate_hz) const;
-  /// True if the interval of the median is wider than 20 % of it: the run is marked and, by its wall time, not ranked.
+  /// True if the median's interval is wider than 20 % of it: the run is marked and, if for wall time, not ranked.
   bool uncertain() const;
 };
 
-/// All times of a run; `contact_…`: of the frames in which something touches the cloth.
+/// All times of a run; `contact_…`: only frames in which something touches the cloth.
 struct RunTimes {
   FrameTimes wall, device, contact_wall, contact_device, cpu, rendered;
-  double threads = kMissing;  ///< CPU time over wall time of the median frame of a CPU solver, rounded
+  double threads = kMissing;  ///< CPU time over wall time of a CPU solver's median frame, rounded
 };
 
-/// Intervals by kIntervalMethod, with a fixed seed; fewer than 6 frames have none. Frames of one block depend on each
-/// other, so they are drawn together.
+/// Intervals use kIntervalMethod with a fixed seed; fewer than 6 frames give none. Frames in one block depend on each
+/// other, so a block is resampled as a whole.
 RunTimes times_of(const RunRecord&);
 
-/// The method of the intervals, as a sentence for notes of tables.
+/// The method of the intervals, as a sentence for the notes of tables.
 extern const char* const kIntervalMethod;
 
-/// The section of the report that a run belongs to. None: a planned run whose scene is not known.
+/// The section of the report to which a run belongs. None: a planned run whose scene is unknown.
 enum class Part { Rates, Contact, Generated, Claims, Truth, Stability, None };
 
-/// Properties of a scene with an exact solution that all of its runs share.
+/// Properties of a scene with an exact solution that are the same for all of its runs.
 struct TruthFacts {
   std::string ranking;            ///< definition of the error that ranks solvers
   double space_error = kMissing;  ///< error of this mesh's exact solution against the continuum
-  double uncertainty = kMissing;  ///< U_ref over the quantity's scale
-  double best_error = kMissing;   ///< smallest error of all ranked solvers that ended well; NaN if none did
+  double uncertainty = kMissing;  ///< reference uncertainty over the quantity's scale
+  double best_error = kMissing;   ///< smallest error of the ranked solvers' ok runs; NaN if there are none
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor; NaN if unknown
-  /// Errors below it are not distinguished: the larger of floor() and space_error, where known; 0 if neither is.
+  /// Errors below this are not distinguished: the larger of floor() and space_error, if known; 0 if neither is.
   double rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
-  /// Why no solver is ranked: there is no reference, or 3 U_ref is not below the best error. Empty if solvers are.
+  /// Why the scene ranks no solver: no reference, or 3 U_ref is not below the best error. Empty if it ranks them.
   std::string refused() const;
 };
 
-/// A run as tables and figures see it.
+/// A run as tables and figures use it.
 struct Row {
   const RunRecord* run = nullptr;
   nlohmann::json scenario = {};
   Part part = Part::Rates;
   std::string scene = {};   ///< with the labels of axes
-  std::string name = {};    ///< in the scene's file, without the labels of axes
-  std::string family = {};  ///< name shared by runs whose scenes differ only in resolution and sides; "x (2)" if taken
+  std::string name = {};    ///< from the scene's file, without the labels of axes
+  std::string family = {};  ///< common name of runs whose scenes differ only in resolution and sides; "x (2)" if taken
   std::string solver = {}, setting = {}, sides = {};
   bool contact = false;  ///< the scene has colliders or hands that grip the cloth
-  bool leads = false;    ///< its scene with contact stands on the first screen
+  bool leads = false;    ///< this scene with contact is on the first screen
   Resolution resolution = {};
-  int repeat = 1;        ///< 2, 3, … where several files hold the same run
+  int repeat = 1;        ///< 2, 3, … if several files hold this run
   int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
-  int published = -1;    ///< column of the paper's table, for a published value; -1 for a measured run
+  int published = -1;    ///< column of the paper's table; -1 for a measured run
   bool largest = false;  ///< finest resolution of its family
-  bool scaled = false;   ///< a figure may show it against the resolutions of its family
-  int most_frames = 0;   ///< maximum number of timed frames of a run of the scene
+  bool scaled = false;   ///< figures may plot it over the resolutions of its family
+  int most_frames = 0;   ///< maximum number of timed frames over the runs of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
   const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene
-  /// One of many settings of a sweep, whose errors and times are under "Error against run time".
+  /// One of many settings of a sweep, which are listed under "Error against run time" only.
   bool in_sweep() const { return part == Part::Truth && setting.find('=') != std::string::npos; }
-  bool is_best = false;  ///< settings of the cheapest point of `reproduction` where most claims hold
+  bool is_best = false;  ///< has the settings of the cheapest point of `reproduction` at which most claims hold
   int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
-  /// "first 36 frames" where the run timed fewer frames than another run of its scene; otherwise empty.
+  /// "first 36 frames" if another run of the scene timed more frames; otherwise empty.
   std::string frames_mark() const;
   double value(const std::string& scalar) const { return summary_value(*run, scalar); }
   std::string status() const { return run->outcome.status; }
   double frame_rate_hz() const;
-  /// Wall time [ms] per simulated second; pipelined where the solver supports it.
+  /// Wall time [ms] per simulated second; pipelined if the solver supports it.
   double wall_ms_per_s() const;
-  /// The same, from submission to fence, waiting for each frame; and by the device's clock, NaN on a CPU.
+  /// Wall time [ms] per simulated second from submission to fence, waiting for each frame; then by the device's clock.
   double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }
-  /// The run ended well and has an error and a time.
+  /// The run is ok and has an error and a time.
   bool counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
-  /// Why this run is shown but not ranked: the scene depends on a stiffness that the solver leaves out. Empty if
-  /// ranked.
+  /// Why this run is not ranked: the scene depends on a stiffness that the solver does not control. Empty if ranked.
   std::string not_ranked() const;
   /// Minimum and maximum contact offset [m]: the solver's own, otherwise the scene's margin; NaN without colliders.
   std::pair<double, double> offset_m() const;
   /// Conditions of the timed trials, as the file states them: "alone", "alone, throttled (1980 to 1400 MHz)", …
   std::string trust() const;
-  /// Parameters of a randomly generated scene; null for any other.
+  /// Sampled parameters of a randomly generated scene; null for any other scene.
   nlohmann::json drawn() const;
 };
 
-/// Sets Row::is_best. Rows must not move any more.
+/// Sets Row::is_best. Rows must not move after this.
 void mark_best_points(std::vector<Row>&);
 
 /// True if the run's scene has colliders or hands that grip the cloth.
 bool has_contact(const RunRecord&);
 
-/// results/paper-table3.json, as it was at build time.
+/// results/paper-table3.json as of build time.
 inline nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
-/// All runs of a report as typed rows. Rows point into the table, so it must not be copied or moved.
+/// All runs of a report as typed rows. Rows hold pointers into the table, so do not copy or move it.
 class RunTable {
  public:
   explicit RunTable(std::vector<RunRecord> runs);
@@ -210,8 +209,8 @@ class RunTable {
   RunTable& operator=(const RunTable&) = delete;
 
   const std::vector<RunRecord>& runs() const { return runs_; }
-  /// In the order of tables: scenes in the order of first appearance; then by solver, setting and sides, by ascending
-  /// resolution. Includes the published values if a run has paper_table 3, after its scene's runs.
+  /// In the order of tables: scenes by first appearance; then by solver, setting and sides, and by ascending
+  /// resolution. If a run has paper_table 3, the published values follow its scene's runs.
   const std::vector<Row>& rows() const { return rows_; }
 
  private:

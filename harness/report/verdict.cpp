@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// True if the solver declares to ignore all contact and grips: a bound that holds then proves nothing.
+/// True if the solver declares to ignore all contact and grips of the scene: met bounds then prove nothing.
 bool touches_nothing(const RunRecord& c) {
   const json features = environment_of(c, "solver_features");
   if (!features.is_object() || !features.contains("ignores")) return false;
@@ -56,7 +56,7 @@ std::size_t bounds_of(const RunRecord& c) {
   const json scenario = scenario_of(c);
   if (const json expect = scenario.value("expect", json()); expect.is_object())
     found = std::max(found, expect.size() - expect.count("outcome"));
-  // The motion of every cloth is checked, and a run that did not end well has none that passes.
+  // The motion of every cloth is checked, and a run that is not ok has no motion that passes.
   return found == 0 && c.outcome.status != "ok" && scenario.contains("cloth") ? 1 : found;
 }
 

@@ -11,9 +11,9 @@
 namespace clothbench {
 namespace {
 
-constexpr std::size_t kMostAgain = 32;  // runs of a row that one command makes again
+constexpr std::size_t kMostAgain = 32;  // maximum number of runs that a row's command repeats
 
-/// A row of a table before its cells are known.
+/// A row of a table before its cells are computed.
 struct TableRow {
   Keys keys;
   Group runs;
@@ -53,7 +53,7 @@ std::vector<TableRow> rows_of(const View& v, const Group& runs) {
   return out;
 }
 
-/// Values of the columns that the runs give, in order.
+/// Values of the columns that depend on the runs, in order.
 Texts values_across(const Across& a, const Group& runs) {
   Texts out;
   std::map<std::string, double> order;
@@ -66,7 +66,7 @@ Texts values_across(const Across& a, const Group& runs) {
   return out;
 }
 
-/// Adds a column if a row has a value in it. Returns whether it was added.
+/// Adds a column if a row has a value for it. Returns whether it was added.
 bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& cells, bool always,
                 const std::string& solver = "") {
   if (!always && std::all_of(cells.begin(), cells.end(), std::mem_fn(&Cell::is_missing))) return false;
@@ -86,7 +86,7 @@ std::string note_of(const View& v, const Group& runs) {
   return joined(parts, " ");
 }
 
-/// No rows if no cell has a value and no time is withheld.
+/// Has no rows if no cell has a value and no time is withheld.
 ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   ViewTable t{{title, note_of(v, runs), {}, v.in_full}};
   const std::vector<TableRow> rows = rows_of(v, runs);

@@ -14,14 +14,13 @@ namespace {
 
 using nlohmann::json;
 
-// Wall time per frame: from the cost of one dispatch with its submission to the display time of a headset's frame.
+// Wall time per frame: about the cost of one dispatch with its submission, 1 ms, and the frame of a 72 Hz display.
 constexpr std::array kBudgets_ms = {0.1, 1.0, 13.9};
 
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
 using Measure = double (Row::*)() const;
 
-/// The row with the smallest `by` among those that count with at most this error and wall time of a frame; null without
-/// any.
+/// Of the rows with at most this error and wall time per frame, the one with the smallest `by`; null if there is none.
 const Row* best(const Group& g, Measure by, double error, double frame_ms = INFINITY) {
   const Row* out = nullptr;
   for (const Row* r : g)
@@ -31,7 +30,7 @@ const Row* best(const Group& g, Measure by, double error, double frame_ms = INFI
   return out;
 }
 
-/// Shortest time to an error of at most `most`, by a clock.
+/// Shortest time to an error of at most `most`, measured by `clock`.
 ViewColumn time_to(const char* head, double most, Measure clock) {
   const auto text = [=](const Row& r) {
     return Cell(fmt::format("{:.3g} ({})", (r.*clock)(), r.setting), (r.*clock)());
@@ -39,7 +38,7 @@ ViewColumn time_to(const char* head, double most, Measure clock) {
   return column(head, text, false, [=](const Group& g) { return best(g, clock, most); });
 }
 
-/// Smallest error of a setting whose frame takes at most `most_ms` of wall time. Below the floor errors are not
+/// Smallest error of the settings whose frames take at most `most_ms` of wall time. Errors below the floor are not
 /// distinguished.
 ViewColumn best_error(std::string head, double most_ms) {
   const auto text = [](const Row& r) {
@@ -50,7 +49,7 @@ ViewColumn best_error(std::string head, double most_ms) {
   return column(std::move(head), text, false, [=](const Group& g) { return best(g, &Row::error, INFINITY, most_ms); });
 }
 
-/// The fastest setting with an error of at most 1 %; without one, the most accurate.
+/// The fastest setting with an error of at most 1 %; if there is none, the most accurate setting.
 const Row* representative(const Group& g) {
   const Row* r = best(g, &Row::wall_ms_per_s, 1e-2);
   return r != nullptr ? r : best(g, &Row::error, INFINITY);
@@ -90,15 +89,15 @@ std::string ranked_text(const Group& g) {
 
 View work() {
   View v{"accuracy", "Error against run time",
-         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) where the solver can; in "
-         "brackets the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; "
-         "for triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at "
-         "most that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with "
-         "an error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
+         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) if supported; in brackets "
+         "the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; for "
+         "triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at most "
+         "that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with an "
+         "error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
          "distinguished, which is three times the reference's uncertainty or the error of the mesh. Failed: runs "
-         "without a finite error. Not run: settings that need more work than the solver's time on the scene allowed. A "
-         "refused scene ranks no solver; the table of reference cases has the reason. Ranked: the solver has every "
-         "stiffness that the scene depends on, as its plan states; effective stiffness is not measured here.",
+         "without a finite error. Not run: settings with more work than one that ran into the time limit. In a refused "
+         "scene no solver is ranked; see the table of reference cases. Ranked: the solver controls every stiffness on "
+         "which the scene depends, as its plan states; effective stiffness is not measured here.",
          in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key("solver", &Row::solver, true)};
@@ -116,7 +115,7 @@ View work() {
   return v;
 }
 
-/// The value of the first run of the scene that has it.
+/// The value of the scene's first run that has it.
 ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}") {
   return {head, [=](const Group& g, const Keys&) {
             const auto at = std::find_if(g.begin(), g.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
@@ -126,13 +125,13 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 }
 
 View reference_cases() {
-  View v{
-      "accuracy", "Reference cases and their reference solutions",
-      "Space: distance of the same grid's exact solution, or of the same triangle mesh's reference solution, from the "
-      "continuum's. U_ref: uncertainty of the reference solution (two integrators, three time steps) in the reference "
-      "case's quantity, over its scale. On a grid, the distance of the reference solution from the exact one must be "
-      "below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is declared. –: all time steps agree.",
-      in_truth};
+  View v{"accuracy", "Reference cases and their reference solutions",
+         "Space: distance from the continuum's solution, of the exact solution on this grid or of the reference "
+         "solution on this triangle mesh. U_ref: uncertainty of the reference solution (two integrators, three time "
+         "steps) in the reference case's quantity, over its scale. On a grid, the distance of the reference solution "
+         "from the exact one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is "
+         "declared. –: all time steps agree.",
+         in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
@@ -152,7 +151,7 @@ bool in_stability(const Row& r) { return r.part == Part::Stability; }
 
 /// "5/7 stable, 2 failed (F1), 1 unsupported".
 Cell tally(const Group& g, const Keys& /*keys*/) {
-  std::map<std::pair<int, std::string>, int> others;  // by grade and class
+  std::map<std::pair<int, std::string>, int> others;  // number of runs by grade and class
   int all = 0, stable = 0, unsupported = 0;
   for (const Row* r : g) {
     const int grade = grade_of(*r);
@@ -182,7 +181,7 @@ View robustness() {
   return v;
 }
 
-/// A run that reached its end can have failed for its motion.
+/// Status, or "failed" for a complete run whose motion failed.
 std::string status_of(const Row& r) {
   const Outcome& o = r.run->outcome;
   return o.status == "ok" ? fmt::format("ended, but {} ({})", kGrades[grade_of(r)], o.klass) : status_with_class(o);
@@ -204,13 +203,13 @@ View failed() {
   return v;
 }
 
-/// " m"; nothing of a value without a unit.
+/// " m"; empty for a value without a unit.
 std::string unit_of(const std::string& name) {
   const Scalar* s = find_scalar(name);
   return s == nullptr || s->units == "1" ? "" : " " + s->units;
 }
 
-/// A row per violated criterion. A verdict that no criterion explains stands as it is.
+/// One row per violated criterion. A failed verdict without a violated criterion is a row with its own text.
 View violated() {
   const auto broken = [](const Row& r) {
     Keys out;
@@ -272,7 +271,7 @@ std::string words(std::string_view text) {
   return name;
 }
 
-/// The first declaration among the runs.
+/// The first run's declaration that exists.
 Cell declared(const Group& g, const Keys& keys) {
   json features;
   for (const Row* r : g)
@@ -308,7 +307,7 @@ std::string expected_of(const Row& r, const std::string& name) {
 
 Cell found_of(const Row& r, const std::string& name) {
   if (name == "outcome") return ending_cell(*r.run);
-  if (name == "motion") return Cell(r.run->outcome.expect);  // which of its laws
+  if (name == "motion") return Cell(r.run->outcome.expect);  // names the violated law
   const double found = r.value(name);
   return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(name)), found) : Cell();
 }
@@ -326,7 +325,7 @@ int grade_of(const Row& r) {
 
 View feature_view() {
   View v{"features", "Table 4: features",
-         "As solvers declare them. Ignored: the solver runs the scene and leaves the feature out.",
+         "As declared by the solvers. Ignored: the solver runs the scene without the feature.",
          [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {{"feature", [](const Row&) {
                Keys out;

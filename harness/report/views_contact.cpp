@@ -28,7 +28,7 @@ ViewColumn values(const char* head, std::vector<const char*> names, double per_s
   });
 }
 
-/// "53/58 (81–96 %)" of the runs that pass, with Wilson's interval; empty without runs.
+/// Passed runs with Wilson's interval, "53/58 (81–96 %)"; empty without runs.
 Cell pass_rate(const Group& g, const Keys& /*keys*/) {
   VerdictCounts n;
   for (const Row* r : g) n.add(*r->run);
@@ -38,7 +38,7 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
 View verdicts() {
   View v{"contact", "Verdict on the acceptance criteria of each scene",
          "Pass: the run meets every criterion of the scene's `expect`. Ignored: the criteria are met, but the solver "
-         "handles no contact. –: not run, or the scene has no criteria. All: passed scenes of those that were run, "
+         "handles no contact. –: not run, or the scene has no criteria. All: number of passed scenes of those run, "
          "with the 95 % interval of the probability (Wilson); unsupported counts as not passed. A scene of several "
          "studies counts once, by its first run. Contact offsets differ between solvers: see the next table.",
          [](const Row& r) { return in_contact(r) && r.repeat == 1; }};
@@ -55,9 +55,11 @@ View contact() {
          "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
          "offsets. Crossings: how often cloth and colliders pass through each other between two frames, the maximum of "
          "all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in "
-         "the last 0.5 s. Depth: how far the cloth is inside a collider, without the margin. Popping: maximum "
+         "the last 0.5 s. Depth: maximum depth of the cloth in a collider, not counting the contact offset. Popping: "
+         "maximum "
          "displacement of a vertex within 1/36 s that its neighbours, colliders and grips do not explain. Strain: of "
-         "structural edges. Times: section Frame times. Paper, best: scenes of study `reproduction` at the cheapest "
+         "structural edges. Times are in the section Frame times. Paper, best: scenes of study `reproduction` at the "
+         "cheapest "
          "point at which most claims hold.",
          [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
@@ -76,17 +78,17 @@ View contact() {
   return v;
 }
 
-/// Procedural assets replace scans, so their scenes are another kind.
+/// Scenes with procedural assets differ from those with scans, so they are a separate kind.
 std::string with_assets(const std::string& kind, const Row& r) {
   return r.drawn().value("assets", "") == "procedural" ? kind + " (procedural)" : kind;
 }
 
 View pass_rates() {
   View v{"contact", "Random scenes: pass rate by speed [m/s]",
-         "Each seed draws a scene of one kind from the ranges in the study's file (scenarios/studies). Fast, default, "
-         "accurate: substeps of `xpbd`. Passed of generated, by the speed of the hand, or of the cloth where it first "
-         "touches; in brackets the 95 % interval of the probability (Wilson). Unsupported and timed out count as not "
-         "passed. Contact offset: distance at which the solver keeps the cloth from colliders.",
+         "Each seed generates a scene of one kind from the ranges in the study's file (scenarios/studies). Fast, "
+         "default, accurate: substeps of `xpbd`. Passed / generated scenes, by the speed of the hand, or of the cloth "
+         "at first contact; in brackets the 95 % interval of the probability (Wilson). Unsupported and timed out count "
+         "as not passed. Contact offset: distance at which the solver keeps the cloth from colliders.",
          [](const Row& r) { return r.part == Part::Generated; }};
   v.keys = {{"solver",
              [](const Row& r) {
@@ -106,7 +108,7 @@ View pass_rates() {
     const auto missing = std::count_if(g.begin(), g.end(), [](const Row* r) { return r->status() == "missing"; });
     return missing == 0 ? std::string()
                         : fmt::format(
-                              "{} of {} runs are missing. The longest run first, so rates of an unfinished study are "
+                              "{} of {} runs are missing. Long runs start first, so rates of an unfinished study are "
                               "biased; --resume completes it.",
                               missing, g.size());
   };

@@ -7,12 +7,12 @@
 namespace clothbench {
 namespace {
 
-/// "12.3 / 4.50" of the bytes read and written, times `scale`.
+/// "12.3 / 4.50": bytes read and written, times `scale`.
 Cell bytes(const Row& r, const char* read, const char* written, double scale) {
   return paired_cell(scale * r.value(read), scale * r.value(written), 3);
 }
 
-/// Rows of a run's frame times: by clock, of all frames and of those with contact.
+/// Rows for a run's frame times: per clock, over all frames and over frames with contact.
 constexpr std::pair<const char*, FrameTimes RunTimes::*> kClocks[] = {
     {"wall", &RunTimes::wall},  {"wall, with contact", &RunTimes::contact_wall},
     {"GPU", &RunTimes::device}, {"GPU, with contact", &RunTimes::contact_device},
@@ -40,7 +40,7 @@ Cell tails_cell(const FrameTimes& t) {
   return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
-/// Times that a row is about, and their run; null without any.
+/// A run and the times that a row shows; null if there are none.
 using Timed = std::pair<const Row*, const FrameTimes*>;
 
 void add_time_columns(View& v, const std::function<Timed(const Group&, const Keys&)>& of) {
@@ -65,7 +65,7 @@ ViewColumn quantiles(const char* head, FrameTimes RunTimes::*times, const Pick& 
   return column(head, text, false, pick);
 }
 
-/// Adds the conditions in which solvers of one table can differ.
+/// Adds columns for conditions in which the solvers of a table can differ.
 void add_conditions(View& v, const Pick& pick) {
   const auto add = [&](const char* head, std::function<Cell(const Row&)> cell) {
     v.columns.push_back(column(head, std::move(cell), true, pick));
@@ -81,12 +81,12 @@ View frame_times() {
       std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
                   "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
                   "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
-                  "Missed: frames longer than one refresh of the display. Real-time factor: simulated time over the "
-                  "median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for each "
-                  "frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, the two "
-                  "intervals combined. Rank 1: no ranked run of the scene is certainly faster (has its whole interval "
-                  "below the run's); runs that failed, and cloths with an edge of more than twice its length, are not "
-                  "ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
+                  "Missed: frames longer than one refresh period of the display. Real-time factor: simulated time over "
+                  "the median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for "
+                  "each frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, with the "
+                  "extreme ratios of both intervals. Rank 1: no ranked run of the scene is certainly faster (has its "
+                  "whole interval below the run's); runs that failed, and cloths with an edge longer than twice its "
+                  "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
           kIntervalMethod,
       [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
@@ -118,9 +118,9 @@ View frame_times() {
 
 View memory() {
   View v{"time", "Bytes and device memory per frame",
-         "Bytes: loads and stores of the shaders, counted by instrumented kernels in a run of the same frames that is "
-         "not timed; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or "
-         "of the whole trial where it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
+         "Bytes: loads and stores of the shaders, counted by instrumented kernels in an untimed run of the same "
+         "frames; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or of "
+         "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
                   std::isfinite(r.value("device_memory_B"));
@@ -142,13 +142,14 @@ View memory() {
 }
 
 View in_short(std::function<bool(const Row&)> where) {
-  View v{"overview", "In short",
-         "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
-         "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
-         "the 95 % interval of the median; with contact: of the frames in which something touches the cloth. Not "
-         "ranked: runs that failed, cloths with an edge of more than twice its length, and medians whose interval is "
-         "wider than 20 % (~).",
-         std::move(where)};
+  View v{
+      "overview", "In short",
+      "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
+      "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
+      "the 95 % interval of the median; with contact: of the frames in which something touches the cloth. Not "
+      "ranked: runs that failed, cloths with an edge longer than twice its rest length, and medians whose interval is "
+      "wider than 20 % (~).",
+      std::move(where)};
   v.keys = {scene_key(), solver_key()};
   v.columns = {column("outcome",
                       [](const Row& r) {

@@ -1,4 +1,4 @@
-// Tables of study `reproduction`: for which values of what the article leaves open its claims hold.
+// Tables of the study `reproduction`: for which settings left open by the article its claims hold.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -17,13 +17,13 @@ using nlohmann::json;
 
 constexpr const char* kPublished = "published: PBD";
 
-/// A point of the box, with the number of claims that were run and that hold there.
+/// A point of the box of settings, with the numbers of claims that were run and that hold there.
 struct Point {
   std::size_t claims = 0, held = 0;
   double dispatches = 0;
   Group runs = {};
 };
-/// The points of a row of the table. In the row of all claims these are points at which all were run.
+/// The points in a row of the table. The row for all claims has only points at which every claim was run.
 std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
   std::map<std::string, Point> out;
   const std::size_t wanted = keys.back().all ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
@@ -38,7 +38,7 @@ std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
   return out;
 }
 
-/// Points of the group at which all of its claims hold, of how many.
+/// Number of points at which all of the group's claims hold, and number of points.
 std::pair<std::size_t, std::size_t> held_of(const Group& g, const Keys& keys) {
   const auto points = points_of(g, keys);
   const auto held =
@@ -57,7 +57,7 @@ std::string reading(const Group& g, const Keys& keys) {
   return held == all ? "reproduced" : held > 0 ? "reproducible" : "not reproduced in the box";
 }
 
-/// The cheapest point at which most claims of the group hold; null if none holds anywhere.
+/// The cheapest point at which most of the group's claims hold; null if none holds anywhere.
 std::optional<Point> best_of(const Group& g, const Keys& keys) {
   std::optional<Point> out;
   for (const auto& [settings, p] : points_of(g, keys))
@@ -67,7 +67,7 @@ std::optional<Point> best_of(const Group& g, const Keys& keys) {
   return out;
 }
 
-/// A column on best_of the row.
+/// A column about the row's best_of.
 ViewColumn at_best(const char* head, std::function<Cell(const Point&)> cell) {
   return {head, [cell](const Group& g, const Keys& keys) {
             const std::optional<Point> p = best_of(g, keys);
@@ -75,7 +75,7 @@ ViewColumn at_best(const char* head, std::function<Cell(const Point&)> cell) {
           }};
 }
 
-/// Generates the scenes of the point and runs them; states how many claims hold if not all do.
+/// Command that generates and runs the scenes of the point; states how many claims hold if not all do.
 Cell command_of(const Point& p) {
   const auto seed = [](const Row* r) { return r->scenario.value("seed", std::uint64_t{0}); };
   const Row& first =
@@ -87,7 +87,7 @@ Cell command_of(const Point& p) {
                      first.drawn().value("assets", "") == "procedural" ? " --procedural" : "");
 }
 
-/// Values of the point as options of `clothbench run`; of all claims, the ones that their scenes share.
+/// Values of the point as options of `clothbench run`; for all claims, only values that their scenes share.
 Cell options_of(const Point& p) {
   const std::string& solver = p.runs.front()->solver;
   std::vector<std::string> out;
@@ -99,7 +99,7 @@ Cell options_of(const Point& p) {
     if (!std::all_of(p.runs.begin(), p.runs.end(), has_it)) continue;
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (name == "cloth.size_m")
-      out.push_back(fmt::format("--set {0}=[{1},{1}]", name, text));  // the side of a square
+      out.push_back(fmt::format("--set {0}=[{1},{1}]", name, text));  // side of a square
     else
       out.push_back(fmt::format("--set {}={}",
                                 name.starts_with(solver + ".") ? "solver" + name.substr(solver.size()) : name, text));
@@ -109,8 +109,8 @@ Cell options_of(const Point& p) {
 
 View claims() {
   View v{"contact", "Claims of the article, over what it leaves open",
-         "Share of the points of the box at which a claim holds, with Wilson's 95 % interval, also by iterations × "
-         "substeps of a frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
+         "Fraction of the box's points at which a claim holds, with Wilson's 95 % interval, also by iterations × "
+         "substeps per frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
          "point. Fewest dispatches: the cheapest point, in dispatches per frame of its most expensive claim. Paper, "
          "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
          "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
@@ -124,14 +124,14 @@ View claims() {
                        [](const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }),
                at_best("paper, best", command_of),
                at_best("values of paper, best", options_of)};
-  // Iterations of a frame, over all substeps. All claims of a point have the same, because they share the settings.
+  // Iterations per frame, over all substeps. Equal for all claims of a point, because they share the settings.
   const auto iterations = [](const Row& r) { return claim_point(r).iterations * claim_point(r).substeps; };
   v.across = by_bands({1, 10, 30, 100, 300}, iterations, share, 1, " iterations");
   v.by_key = true;
   return v;
 }
 
-/// Least squares of time = fixed + slope · particles.
+/// Least-squares fit of time = fixed + slope · particles.
 struct WorkFit {
   double fixed_s = kMissing, slope_s = kMissing, slope_error_s = kMissing, residual = kMissing;
 };
@@ -158,7 +158,7 @@ WorkFit fit_of(const Samples& samples) {
           off.cwiseQuotient(time_s).cwiseAbs().maxCoeff()};
 }
 
-/// Published rates of PBD below the display's cap; the others bound a time only from above.
+/// Frame times from published rates of PBD below the display's cap; a rate at the cap is only an upper bound on time.
 const Samples& published_samples() {
   static const Samples all = [] {
     Samples out;
@@ -172,8 +172,7 @@ const Samples& published_samples() {
   return all;
 }
 
-/// The times that a row is about: the published ones, or the group's at the same resolutions and sides; empty if one is
-/// missing.
+/// The times of a row: the published ones, or the group's at the same resolutions and sides; empty if one is missing.
 Samples samples_of(const Group& g, const Keys& keys) {
   if (keys.front().text == kPublished) return published_samples();
   Samples out;
@@ -187,7 +186,7 @@ double iterations_of(const Row& r) {
   return own.value("iterations", kMissing) * own.value("substeps", 1.0);
 }
 
-/// Iterations of a frame that would take the published time per particle on the run's device.
+/// Iterations per frame that would take the published time per particle on the run's device.
 Cell allowed_iterations(const Group& g, const Keys& keys) {
   const WorkFit fit = fit_of(samples_of(g, keys)), published = fit_of(published_samples());
   const double scale = iterations_of(*g.front()) / fit.slope_s;
@@ -202,8 +201,8 @@ View work_model() {
   View v{"rates", "Table 3: work per frame",
          "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
          "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
-         "error. C2, C3: ratios of times. Iterations: constraint iterations of a frame, and how many would take the "
-         "published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
+         "error. C2, C3: ratios of times. Iterations: constraint iterations per frame, and the number that would take "
+         "the published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
          "allows fewer. The published times include rendering.",
          [](const Row& r) {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&

@@ -12,15 +12,15 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMargin_s = 5;
-constexpr double kLogged = 0.8;  // fraction of a trial whose state must be logged
-constexpr int kMinSamples = 5;   // fewer samples do not give a mean bandwidth
+constexpr double kLogged = 0.8;  // required fraction of a trial in which the device's state was logged
+constexpr int kMinSamples = 5;   // minimum number of samples for a mean bandwidth
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 30;
 
 constexpr char kSchema[] =
 #include "device_samples.schema.inc"
     ;
 
-/// Conditions on a group that the schema cannot state.
+/// Checks conditions on a group that the schema cannot express.
 void check_group(const std::string& file, const std::string& at, const json& g) {
   const json& times = g["time_unix_s"];
   for (std::size_t k = 1; k < times.size(); ++k)
@@ -34,13 +34,13 @@ void check_group(const std::string& file, const std::string& at, const json& g) 
              fmt::format("expected {} numbers or nulls, one per time", times.size()));
 }
 
-/// The samples of one source that belong to a run, and the index of the trial that contains each; -1: in none.
+/// The samples of a source that belong to a run, and for each the index of the trial that contains it (-1: none).
 struct Taken {
   std::vector<std::size_t> index;
   std::vector<double> time_unix_s, trial;
 };
 
-/// The device's log of its state during a trial: the time it covers, and reasons not to trust the trial's times.
+/// The device's state log during a trial: time that it covers, and reasons against the trial's times.
 struct StateLog {
   double logged_s = 0;
   std::set<std::string> reasons;
@@ -62,7 +62,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
     out.index.push_back(k);
     out.time_unix_s.push_back(t);
     out.trial.push_back(-1);
-    // A sample covers the period before it. A line of state that comes late speaks for up to two periods.
+    // A sample covers the period before it. A late state line covers up to two periods.
     const double since = k > 0 ? std::max(t - 2 * period, group["time_unix_s"][k - 1].get<double>()) : t - period;
     for (const TimedTrial& trial : r.trials) {
       if (t - period >= trial.start_unix_s && t <= trial.end_unix_s) out.trial.back() = trial.index;
@@ -75,7 +75,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
   return out;
 }
 
-/// Adds the scalar of a series with a role: mean in trials (bandwidths: kMinSamples or more), or maximum.
+/// Adds the scalar of a series with a role: mean over trials (bandwidths: at least kMinSamples samples), or maximum.
 void summarise(const std::string& role, double scale, const Taken& taken, const std::vector<double>& values,
                std::map<std::string, double>& summary) {
   std::map<double, int> samples;

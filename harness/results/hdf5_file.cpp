@@ -17,7 +17,7 @@ namespace {
 using h5::Dims;
 using h5::Id;
 
-/// Creation properties without time stamps: the same run gives the same bytes.
+/// Creation properties without time stamps, so that equal runs give equal bytes.
 Id creation(hid_t cls) {
   Id p(H5Pcreate(cls), H5Pclose, "H5Pcreate");
   h5::check(H5Pset_obj_track_times(p, false), "H5Pset_obj_track_times");
@@ -54,7 +54,7 @@ void number_attribute(hid_t at, const std::string& name, const std::vector<T>& v
   h5::check(H5Awrite(a, type_of<T>(), values.data()), "attribute " + name);
 }
 
-/// A number, a text, a list of numbers: what StoredGroup's attributes may be.
+/// A number, a text or a list of numbers: the types of StoredGroup's attributes.
 void json_attribute(hid_t at, const std::string& name, const nlohmann::json& value) {
   if (value.is_string())
     text_attribute(at, name, value.get<std::string>());
@@ -80,7 +80,7 @@ template <class T>
 Id write_numbers(hid_t at, const std::string& name, const Dims& dims, const std::vector<T>& values, const Label& label,
                  const Dims& chunk = {}) {
   const Id properties = creation(H5P_DATASET_CREATE);
-  // HDF5 has no empty chunks; a dataset without values needs none.
+  // HDF5 has no empty chunks; a dataset without values needs no chunks.
   if (!chunk.empty() && !values.empty()) {
     h5::check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
     h5::check(H5Pset_shuffle(properties), "H5Pset_shuffle");
@@ -101,7 +101,7 @@ Id write_strings(hid_t at, const std::string& name, const std::vector<std::strin
   return d;
 }
 
-/// A dimension: a one-dimensional dataset of its own name that others attach to.
+/// Makes a dimension scale: a named one-dimensional dataset to which others attach.
 Id scale(Id d, const std::string& name) {
   h5::check(H5DSset_scale(d, name.c_str()), "scale " + name);
   return d;
@@ -119,7 +119,7 @@ void attach(hid_t d, std::initializer_list<hid_t> scales) {
   for (hid_t s : scales) h5::check(H5DSattach_scale(d, s, k++), "attaching a dimension");
 }
 
-/// Trials x frames (x stages) from series that may be shorter; missing = NaN.
+/// Trials x frames (x stages), filled with NaN where a trial's series is shorter.
 std::vector<double> padded(const RunRecord& r, std::size_t frames, std::size_t stages,
                            std::vector<double> TimedTrial::*series) {
   std::vector<double> out(r.trials.size() * frames * stages, kMissing);
@@ -200,7 +200,7 @@ class Writer {
     }
   }
 
-  /// Arrays as they come, each with its dimensions; arrays of one group share dimensions by name.
+  /// Writes arrays unchanged, each with its dimensions; arrays of a group share dimensions by name.
   void stored(const StoredGroup& group) {
     const Id g = make_group(file_, group.path);
     for (const auto& [name, value] : group.attributes.items()) json_attribute(g, name, value);
@@ -229,12 +229,12 @@ class Writer {
     }
   }
 
-  /// The positions, and a view of them a frame for the .xdmf file.
+  /// Writes the positions, and a view of each frame for the .xdmf file.
   void trajectory() {
     const Id g = make_group(file_, "trajectory"), frames = make_group(file_, "frames");
     const std::uint64_t steps = r_.accuracy.time_s.size(), points = r_.header.vertices;
     const Id time = scale(write_numbers(g, "time_s", {steps}, r_.accuracy.time_s, {"s", "time"}), "time_s");
-    const Id vertex = index_scale(g, "vertex", points, "vertex, row after row of the grid");
+    const Id vertex = index_scale(g, "vertex", points, "vertex, row by row of the grid");
     const Id xyz = scale(write_strings(g, "xyz", {"x", "y", "z"}, {"1", "axis; y is up"}), "xyz");
     attach(write_numbers(g, "position", {steps, points, 3}, r_.accuracy.position, {"m", "vertex positions"},
                          {1, points, 3}),
@@ -272,7 +272,7 @@ std::string mesh(const std::string& name, const std::string& h5, const std::stri
       name, triangles, h5, triangles_at, vertices, bytes, positions_at, time);
 }
 
-/// Static meshes, such as the desk under the cloth. Dynamic objects are stored as motion, not as meshes.
+/// Static meshes, such as the desk under the cloth. Moving objects are stored as motion, not as meshes.
 std::string still_meshes(const RunRecord& record, const std::string& h5) {
   std::string out;
   for (const StoredGroup& g : record.replay) {
@@ -316,7 +316,7 @@ void write_xdmf(const std::filesystem::path& path, const std::string& h5_name, c
   for (std::size_t k = 0; k < record.accuracy.time_s.size(); ++k) {
     const std::string time = fmt::format("    <Time Value=\"{:.9g}\"/>\n", record.accuracy.time_s[k]);
     const std::string positions = fmt::format("/frames/{:06}", k);
-    // Every reader of ParaView finds the desk only if each frame has it.
+    // All of ParaView's readers find the static meshes only if every frame has them.
     if (still.empty())
       out += mesh(fmt::format("frame {}", k), h5_name, "/triangles", triangles, positions, record.header.vertices, 4,
                   time);

@@ -1,5 +1,5 @@
 #pragma once
-// Included only by the HDF5 writer and reader: owner class for every kind of identifier of the C API.
+// Included only by the HDF5 writer and reader: owner class for all identifiers of the C API.
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
@@ -11,7 +11,7 @@
 
 namespace clothbench::h5 {
 
-/// Owns an HDF5 identifier. Throws Error naming `what` if the call that gave it failed.
+/// Owns an HDF5 identifier. Throws Error naming `what` if the call that returned it failed.
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {

@@ -56,7 +56,7 @@ void require_text(hid_t type) {
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) <= 0) throw Error("expected variable-length text");
 }
 
-/// A text, a number or a list of numbers: what write_hdf5 makes of attributes.
+/// A text, a number or a list of numbers: the types that write_hdf5 gives attributes.
 json attribute(hid_t at, const std::string& name) {
   const std::string what = "attribute " + name;
   const Id a(H5Aopen(at, name.c_str(), H5P_DEFAULT), H5Aclose, what), stored(H5Aget_type(a), H5Tclose, "H5Aget_type"),
@@ -109,7 +109,7 @@ Id open_group(hid_t file, const char* name) {
   return Id(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, std::string("group ") + name);
 }
 
-/// A stored count. Throws Error if no int can hold it.
+/// A stored count as int. Throws Error if it does not fit.
 int whole(const json& stored, const char* name) {
   const auto v = stored.get<double>();
   if (!(std::abs(v) <= 2e9)) throw Error(std::string("attribute ") + name + ": expected a whole number");
@@ -131,7 +131,7 @@ void read_trials(hid_t file, RunRecord& r) {
   if (dims.size() != 2 || index.size() != dims[0]) throw Error("/timing/frame_wall_s: expected a row for each trial");
   const std::size_t trials = dims[0], frames = dims[1];
   r.trials.resize(trials);
-  std::vector<std::size_t> length(trials, 0);  // without the padding of a shorter trial
+  std::vector<std::size_t> length(trials, 0);  // frames of each trial without padding
   for (std::size_t t = 0; t < trials; ++t) {
     r.trials[t].index = static_cast<int>(index[t]);
     while (length[t] < frames && !std::isnan(wall[t * frames + length[t]])) ++length[t];
@@ -147,7 +147,7 @@ void read_trials(hid_t file, RunRecord& r) {
     const auto values = numbers<double>(group, s.name, H5T_NATIVE_DOUBLE);
     const std::size_t width = s.by_stage ? r.header.stages.size() : 1;
     if (values.size() != trials * frames * width)
-      throw Error(std::string("/") + s.group + "/" + s.name + " has another length than /timing/frame_wall_s");
+      throw Error(std::string("/") + s.group + "/" + s.name + " differs in length from /timing/frame_wall_s");
     for (std::size_t t = 0; t < trials; ++t) {
       const auto from = values.begin() + static_cast<std::ptrdiff_t>(t * frames * width);
       std::vector<double>& out = r.trials[t].*s.values;
@@ -157,12 +157,12 @@ void read_trials(hid_t file, RunRecord& r) {
   }
 }
 
-/// Positions of some frames of the dataset (frame, vertex, xyz).
+/// Positions of these frames from the dataset (frame, vertex, xyz).
 std::vector<float> positions_of(hid_t file, const std::vector<std::size_t>& frames, std::size_t vertices) {
   const Id d(H5Dopen2(file, "trajectory/position", H5P_DEFAULT), H5Dclose, "opening trajectory/position"),
       space(H5Dget_space(d), H5Sclose, "H5Dget_space");
   if (const Dims dims = dims_of(d); dims.size() != 3 || dims[0] <= frames.back() || dims[1] != vertices || dims[2] != 3)
-    throw Error("trajectory/position: expected positions of as many frames and vertices as there are");
+    throw Error("trajectory/position: expected positions of all frames and vertices");
   std::vector<float> out(frames.size() * vertices * 3);
   const hsize_t count[3] = {1, vertices, 3};
   const Id memory = h5::space({1, vertices, 3});
@@ -204,7 +204,7 @@ StoredGroup read_group(hid_t file, const std::string& path) {
   StoredGroup g{path, attributes(group), {}};
   for (const std::string& name : link_names(group)) {
     const Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose, "opening " + name);
-    // Only scales have a CLASS. H5DSis_scale frees memory twice where that attribute is damaged (HDF5 1.10.8).
+    // Only scales have a CLASS. H5DSis_scale frees memory twice if that attribute is damaged (HDF5 1.10.8).
     if (H5Iget_type(object) != H5I_DATASET || H5Aexists(object, "CLASS") > 0) continue;
     const Id type(H5Dget_type(object), H5Tclose, "H5Dget_type");
     StoredArray& a = g.arrays.emplace_back();
@@ -217,7 +217,7 @@ StoredGroup read_group(hid_t file, const std::string& path) {
   return g;
 }
 
-/// The group `path`, if the file has it, and those in it that it counts.
+/// Reads the group `path`, if the file has it, and its subgroups 0 to `count` - 1.
 void read_groups(hid_t file, const std::string& path, std::vector<StoredGroup>& out) {
   if (!exists(file, path.c_str())) return;
   out.push_back(read_group(file, path));

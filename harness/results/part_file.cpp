@@ -37,7 +37,7 @@ void unpack(const json& j, std::vector<T>& out) {
   if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
 }
 
-/// Calls `with(key, member)` for each member of a header that is stored as it is. Header: RunHeader, const or not.
+/// Calls `with(key, member)` for each header member that is stored unchanged. Header: RunHeader, const or not.
 template <class Header, class With>
 void each_member(Header& h, With with) {
   with("scene", h.scene);
@@ -56,7 +56,7 @@ void expect(bool holds, const char* what) {
   if (!holds) throw Error(what);
 }
 
-/// A whole number, or a list of them. Throws Error unless each fits in T: the library would cast any number.
+/// An integer, or a list of them. Throws Error unless each fits in T, because the library would cast any number.
 template <class T>
 void get_whole(const json& j, T& to) {
   bool fits = j.is_number_unsigned() && std::in_range<T>(j.get<std::uint64_t>());
@@ -104,7 +104,7 @@ std::vector<MetricSeries> metrics_from_json(const json& j, std::size_t frames) {
   for (const json& m : j) {
     metrics.push_back({m.at("name"), m.at("units"), m.at("long_name"), {}});
     unpack(m.at("values"), metrics.back().values);
-    expect(metrics.back().values.size() == frames, "a metric has another number of frames");
+    expect(metrics.back().values.size() == frames, "a metric has a different number of frames");
   }
   return metrics;
 }
@@ -118,7 +118,7 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
       array = {a.at("name"), a.at("units"), a.at("long_name"), a.at("dims"), {}, a.at("integer")};
       get_whole(a.at("shape"), array.shape);
       unpack(a.at("values"), array.values);
-      std::size_t left = array.values.size();  // divided, so that no product can overflow
+      std::size_t left = array.values.size();  // divide, because a product could overflow
       for (const std::uint64_t n : array.shape) {
         expect(n == 0 ? left == 0 : left % n == 0, "an array has another number of values than its shape");
         left = n == 0 ? 0 : left / n;
@@ -133,7 +133,7 @@ std::vector<StoredGroup> groups_from_json(const json& j) {
 void take(const std::string& kind, const json& body, RunRecord& r) {
   if (kind == "header") {
     RunHeader h = header_from_json(body);
-    expect(r.accuracy.time_s.empty() || h.vertices == r.header.vertices, "its headers are of different cloths");
+    expect(r.accuracy.time_s.empty() || h.vertices == r.header.vertices, "its headers describe different cloths");
     expect(r.trials.empty() || h.stages.size() == r.header.stages.size(), "its headers differ in stages");
     r.header = std::move(h);
   }
@@ -153,11 +153,11 @@ Bytes item(const char* kind, json body) {
   return json::to_cbor(j);
 }
 
-/// Where the CBOR item at `at` ends; `bytes.size() + 1` if it is incomplete or of a kind that is not written here
-/// (tags, lengths that come later, nesting beyond 64): the library decodes by recursion.
+/// End of the CBOR item at `at`; `bytes.size() + 1` if it is incomplete or of a kind not written here (tags, indefinite
+/// lengths, nesting beyond 64), because the library decodes by recursion.
 std::size_t end_of_item(const std::string& bytes, std::size_t at) {
   const std::size_t size = bytes.size(), none = size + 1;
-  std::vector<std::uint64_t> left = {1};  // items to come, by depth
+  std::vector<std::uint64_t> left = {1};  // items that remain, by depth
   while (!left.empty()) {
     if (left.back()-- == 0) {
       left.pop_back();
@@ -275,7 +275,7 @@ void append_to_part(const fs::path& path, const char* kind, json body, bool sync
   }
   written = written && (!sync || fsync(file) == 0);
   const int why = errno;
-  // If this fails, too, the reader ignores the incomplete item.
+  // If this fails too, the reader ignores the incomplete item.
   const bool restored = written || file < 0 || ftruncate(file, before) == 0;
   if (file >= 0) close(file);
   if (!written)

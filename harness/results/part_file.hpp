@@ -10,11 +10,11 @@ namespace clothbench {
 nlohmann::json header_to_json(const RunHeader&);
 RunHeader header_from_json(const nlohmann::json&);
 
-/// How a run ended and its summary: what a child process answers, too.
+/// Outcome and summary of a run; also part of a child process's answer.
 nlohmann::json outcome_to_json(const Outcome&, const std::map<std::string, double>& summary);
 void outcome_from_json(const nlohmann::json&, RunRecord&);
 
-/// A series of a trial: one value per frame, or per frame and stage. An optional one is empty unless it was measured.
+/// A series of a trial: one value per frame, or per frame and stage. An optional series is empty unless measured.
 struct TrialSeries {
   const char *group, *name, *units, *long_name;  ///< group: of the HDF5 file
   std::vector<double> TimedTrial::*values;
@@ -23,15 +23,14 @@ struct TrialSeries {
 inline constexpr TrialSeries kTrialSeries[] = {
     {"timing", "frame_wall_s", "s", "wall time of a frame", &TimedTrial::frame_wall_s},
     {"timing", "frame_device_s", "s", "device time of a frame, first to last timestamp", &TimedTrial::frame_device_s},
-    {"timing", "frame_rendered_s", "s", "wall time of a frame and its picture", &TimedTrial::frame_rendered_s, false,
+    {"timing", "frame_rendered_s", "s", "wall time of a frame with its rendering", &TimedTrial::frame_rendered_s, false,
      true},
     {"timing", "frame_cpu_s", "s", "CPU time of a frame, of all threads of the process", &TimedTrial::frame_cpu_s,
      false, true},
     {"timing", "stage_device_s", "s", "device time of a stage, from the profiled twin", &TimedTrial::stage_device_s,
      true},
-    {"bandwidth", "read_B", "B", "bytes loaded by shaders, counted in a run of its own", &TimedTrial::stage_read_B,
-     true},
-    {"bandwidth", "write_B", "B", "bytes stored by shaders, counted in a run of its own", &TimedTrial::stage_write_B,
+    {"bandwidth", "read_B", "B", "bytes loaded by shaders, counted in a separate run", &TimedTrial::stage_read_B, true},
+    {"bandwidth", "write_B", "B", "bytes stored by shaders, counted in a separate run", &TimedTrial::stage_write_B,
      true},
 };
 
@@ -53,19 +52,19 @@ nlohmann::json frame_to_json(const AccuracyPass&, std::size_t k);
 nlohmann::json to_json(const std::vector<StoredGroup>&);
 
 /// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
-/// device without HDF5 it stays the final form. First "header", then as they come "replay", "frame" (one item per frame
-/// of the untimed pass, whose metrics and end follow as "accuracy" and "outcome"), "trial" (one item per trial), at
-/// last "outcome". A later item replaces an earlier one of the same kind (for trials: of the same index); frame 0
-/// begins the pass anew. Series of numbers are byte strings as memory holds them, little-endian.
+/// device without HDF5 this is the final form. The first item is "header"; "replay", "frame" (one per frame of the
+/// untimed pass, whose metrics and end follow as "accuracy" and "outcome") and "trial" (one per trial) follow as they
+/// are made; the last is "outcome". A later item replaces an earlier one of its kind (a trial: of its index); frame 0
+/// restarts the pass. Numeric series are little-endian byte strings, as in memory.
 
-/// Creates the file with its header, whole or not at all.
+/// Creates the file with its header, completely or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);
 
-/// Appends an item and, if `sync`, calls fsync. Throws Error naming the file, which then is as it was before.
+/// Appends an item and, if `sync`, calls fsync. Throws Error naming the file; the file is then unchanged.
 void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
-/// Reads all complete items and ignores what follows them: a killed process leaves an incomplete item at the end.
-/// `complete_B`: receives their length. Throws Error naming the file without a header or with a wrong item.
+/// Reads all complete items and ignores the rest: a killed process leaves an incomplete item at the end. `complete_B`:
+/// set to their length. Throws Error naming the file if it has no header or an invalid item.
 RunRecord read_part(const std::filesystem::path&, std::uintmax_t* complete_B = nullptr);
 
 #ifdef CLOTHBENCH_HAS_HDF5
@@ -74,10 +73,10 @@ inline constexpr bool kWithHdf5 = true;
 /// Writes one result file (layout in results/README.md) by tmp + fsync + rename. Throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const RunRecord&);
 
-/// Reads a file, with positions of every `stride`-th frame and the last; 0: no positions, `replay` and grid triangles.
+/// Reads a file with positions of every `stride`-th and the last frame; 0: no positions, `replay` and grid triangles.
 RunRecord read_hdf5(const std::filesystem::path&, std::size_t stride);
 
-/// Writes a sidecar with which ParaView opens the trajectory and the static meshes: per frame one grid over
+/// Writes a sidecar file for opening the trajectory and the static meshes in ParaView: per frame a grid over
 /// /frames/NNNNNN of `h5_name`, or a collection of the cloth and the static meshes if there are any.
 void write_xdmf(const std::filesystem::path&, const std::string& h5_name, const RunRecord&);
 #else

@@ -48,7 +48,7 @@ void add_triangles(std::vector<double> positions, std::span<const std::array<std
   out.push_back(std::move(triangles));
 }
 
-/// The mesh once; where it is skinned also its weights, and the joints at every frame.
+/// Adds the mesh once; if it is skinned, also its weights, and its joints at every frame.
 void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) {
   const ColliderMesh& mesh = *scene.colliders[k].mesh;
   const std::uint64_t vertices = mesh.vertex_count();
@@ -56,7 +56,7 @@ void add_mesh(const Scene& scene, std::size_t k, std::vector<StoredArray>& out) 
   if (!mesh.skinned()) return;
   out[out.size() - 2].long_name = "vertices before skinning";
   StoredArray joint{"joint_index", "1", "joints that a vertex follows", {"vertex", "slot"}, {vertices, 4}, true};
-  StoredArray weight{"joint_weight", "1", "share of each of them", {"vertex", "slot"}, {vertices, 4}};
+  StoredArray weight{"joint_weight", "1", "weight of each of them", {"vertex", "slot"}, {vertices, 4}};
   for (std::size_t v = 0; v < vertices; ++v) {
     joint.values.insert(joint.values.end(), mesh.joints[v].begin(), mesh.joints[v].end());
     weight.values.insert(weight.values.end(), mesh.weights[v].begin(), mesh.weights[v].end());
@@ -76,8 +76,8 @@ StoredGroup grips_of(const Scene& scene) {
   const std::uint64_t grips = scene.grips.vertices.size(), frames = scene.motion.size();
   StoredArray vertex{"held_vertex", "1", "cloth vertex that a hand holds", {"grip"}, {grips}, true};
   vertex.values.assign(scene.grips.vertices.begin(), scene.grips.vertices.end());
-  StoredArray target{"target_m", "m", "where it is while held", {"frame", "grip", "xyz"}, {frames, grips, 3}};
-  StoredArray held{"held", "1", "1 while held, 0 once let go", {"frame", "grip"}, {frames, grips}, true};
+  StoredArray target{"target_m", "m", "position while attached", {"frame", "grip", "xyz"}, {frames, grips, 3}};
+  StoredArray held{"held", "1", "1 while attached, 0 once released", {"frame", "grip"}, {frames, grips}, true};
   for (const FrameMotion& m : scene.motion) {
     for (const Vec3& p : m.grip_position_m) target.values.insert(target.values.end(), p.begin(), p.end());
     held.values.insert(held.values.end(), m.grip_held.begin(), m.grip_held.end());
@@ -96,7 +96,7 @@ void add_jumps(const Scene& scene, std::vector<StoredArray>& out) {
   out.insert(out.end(), {frame, distance});
 }
 
-/// The mesh without its triangles, which every file has, and its groups: what pins, masses and regions name.
+/// Adds the mesh without its triangles, which every file has, and its groups, to which pins, masses and regions refer.
 void add_cloth(const ClothMesh& mesh, std::vector<StoredGroup>& out) {
   StoredGroup& cloth = out.emplace_back();
   cloth.path = "cloth";
@@ -125,7 +125,7 @@ const StoredArray* array_of(const StoredGroup& g, const std::string& name) {
   return nullptr;
 }
 
-/// Throws unless its shape is `shape`, 0 standing for any length.
+/// Returns the array; throws unless its shape is `shape`, in which 0 stands for any length.
 const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
                                 const std::vector<std::uint64_t>& shape) {
   const StoredArray* a = array_of(g, name);
@@ -136,14 +136,13 @@ const StoredArray& expect_shape(const StoredGroup& g, const std::string& name,
     count *= a->shape[k];
   }
   if (!fits || a->values.size() != count)
-    throw Error("/" + g.path + "/" + name + " is missing or of another shape than expected");
+    throw Error("/" + g.path + "/" + name + " is missing or does not have the expected shape");
   return *a;
 }
 
-/// The number of a vertex. Throws unless it is one of `vertices`.
+/// A vertex index. Throws unless it is below `vertices`.
 std::uint32_t vertex_of(double stored, std::size_t vertices, const std::string& path) {
-  if (!(stored >= 0 && stored < static_cast<double>(vertices)))
-    throw Error("/" + path + ": expected numbers of vertices");
+  if (!(stored >= 0 && stored < static_cast<double>(vertices))) throw Error("/" + path + ": expected vertex indices");
   return static_cast<std::uint32_t>(stored);
 }
 
@@ -174,7 +173,7 @@ void read_joints(const StoredGroup& g, ColliderMesh& mesh, Scene& scene, std::si
     auto& weights = mesh.weights.emplace_back();
     for (std::size_t s = 0; s < 4; ++s) {
       if (!(index.values[4 * v + s] >= 0 && index.values[4 * v + s] < static_cast<double>(mesh.joint_count)))
-        throw Error("/" + g.path + "/joint_index: expected numbers of joints");
+        throw Error("/" + g.path + "/joint_index: expected joint indices");
       joints[s] = static_cast<std::uint8_t>(index.values[4 * v + s]);
       weights[s] = static_cast<float>(weight.values[4 * v + s]);
     }
@@ -267,7 +266,7 @@ void each_numbered(const std::map<std::string, const StoredGroup*>& groups, cons
   }
 }
 
-/// Sets colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; changes nothing else.
+/// Sets colliders, grips, their motion, `jumps` and `assets` from the output of `replay_of`; nothing else.
 void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
   const auto named = by_path(groups);
   if (!named.contains("colliders")) return;
@@ -281,11 +280,11 @@ void restore_replay(const std::vector<StoredGroup>& groups, Scene& scene) {
   if (named.contains("colliders/grips")) read_grips(*named.at("colliders/grips"), scene);
 }
 
-/// The cloth's mesh. `triangles`: the corners of its triangles, 3 per triangle, which files store apart.
+/// The cloth's mesh. `triangles`: 3 vertex indices per triangle, which files store elsewhere.
 std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& groups,
                                               const std::vector<std::uint32_t>& triangles) {
   const auto named = by_path(groups);
-  if (!named.contains("cloth")) throw Error("/cloth is missing: the mesh of the cloth");
+  if (!named.contains("cloth")) throw Error("/cloth, the cloth's mesh, is missing");
   const StoredGroup& cloth = *named.at("cloth");
   const StoredArray& position = expect_shape(cloth, "position_m", {0, 3});
   assets::MeshFile file;
@@ -312,7 +311,7 @@ Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& grou
   Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
                                  {[&](json&) { return restore_mesh(groups, header.triangles); },
                                   [&](json&, Scene& s) { restore_replay(groups, s); }});
-  // A study renames scenes; the scenario keeps the name of its file.
+  // A study renames scenes, but the scenario keeps the name in its file.
   scene.name = header.scene;
   scene.json = header.scenario_json;
   scene.sha256 = header.scenario_sha256;

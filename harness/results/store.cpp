@@ -41,30 +41,30 @@ void append(std::string& bytes, const std::vector<T>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/// The first frame and vertex whose position is not finite, or nothing.
+/// A message about the first frame and vertex whose position is not finite; empty if all are.
 std::string fault_of_values(const AccuracyPass& pass, std::size_t vertices) {
   for (std::size_t k = 0; k < pass.position.size(); ++k)
     if (!std::isfinite(pass.position[k]))
       return fmt::format("the position of vertex {} in frame {} is not finite", k / 3 % vertices, k / 3 / vertices);
   for (std::size_t f = 0; f < pass.time_s.size(); ++f)
     if (!std::isfinite(pass.time_s[f]) || (f > 0 && !(pass.time_s[f] > pass.time_s[f - 1])))
-      return fmt::format("the time of frame {} is not after the frame before", f);
+      return fmt::format("the time of frame {} is not after the previous one's", f);
   return "";
 }
 
-/// Live sessions store only their end.
+/// Whether the run's file must have a motion; live sessions store only their last state.
 bool needs_motion(const RunRecord& r) {
   const nlohmann::json& e = r.header.environment;
   return r.outcome.status == "ok" && r.header.vertices > 0 && !(e.is_object() && e.value("protocol", "") == "xr");
 }
 
-constexpr std::size_t kShown = 200;  // bytes of a path or a command in a message
+constexpr std::size_t kShown = 200;  // bytes of a path or a command that a message shows
 
 [[noreturn]] void refuse_folder(const fs::path& folder, const std::string& why) {
   throw Error(fmt::format("{}: {}; give another --out", shortened(folder.string(), kShown), why));
 }
 
-/// Whether `path` still names the open file: a process that ends removes it.
+/// Whether `path` still names the open file, which a process removes when it ends.
 bool is_named(int file, const fs::path& path) {
   struct stat open_file {
   }, named{};
@@ -72,7 +72,7 @@ bool is_named(int file, const fs::path& path) {
          open_file.st_dev == named.st_dev;
 }
 
-/// Locks one byte, or all with `count` 0; record locks also work over NFS. False if another process has one of them.
+/// Locks one byte, or all if `count` is 0. Record locks also work over NFS. False if another process holds one of them.
 bool lock(int file, std::size_t first, int count) {
   struct flock range {};
   range.l_type = F_WRLCK;
@@ -81,7 +81,7 @@ bool lock(int file, std::size_t first, int count) {
   return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // a file system without locks
 }
 
-/// Record of a planned run without a result, from its name "<scene>__<solver>__<setting>".
+/// Record of a planned run without a result; its name is "<scene>__<solver>__<setting>".
 RunRecord missing_run(const std::string& name, bool started) {
   RunRecord c;
   const std::size_t first = name.find("__"), last = name.rfind("__");
@@ -101,14 +101,14 @@ void collect_folder(const fs::path& dir, std::vector<RunRecord>& runs) {
     const fs::path file = finished_file(dir, name);
     runs.push_back(file.empty() ? missing_run(name, fs::exists(dir / (name + ".part"))) : read_run_summary(file));
   }
-  // A missing run gets the scenario of its scene from a run of another solver, so that tables can place it.
+  // A missing run gets its scene's scenario from a run of another solver, so that tables can place it.
   for (std::size_t k = first; k < runs.size(); ++k)
     for (std::size_t j = first; j < runs.size() && runs[k].header.scenario_json.empty(); ++j)
       if (run_name(runs[j].header).starts_with(runs[k].header.scene + "__"))
         runs[k].header.scenario_json = runs[j].header.scenario_json;
 }
 
-/// Whether a summary value is a time, or a rate computed from a time.
+/// Whether a summary value is a time or computed from one.
 bool is_time(const std::string& name) {
   if (name == "load_s" || name == "untimed_s") return true;
   for (const char* start : {"fps_", "frame_", "bandwidth_", "stage_device_"})
@@ -143,12 +143,12 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
   const RunHeader& h = before.header;
   if (h.scenario_sha256 != header.scenario_sha256 || h.settings != header.settings)
     throw Error(fmt::format(
-        "{}: holds trials of another run (scene {} settings {}; now scene {} settings {}); give another --out",
+        "{}: holds trials of a different run (scene {} settings {}; now scene {} settings {}); give another --out",
         part_.string(), h.scenario_sha256.substr(0, 12), h.settings.dump(), header.scenario_sha256.substr(0, 12),
         header.settings.dump()));
   has_replay_ = !before.replay.empty();
-  fs::resize_file(part_, complete_B);  // what a kill cut short
-  // The machine's state belongs to the load before the trials.
+  fs::resize_file(part_, complete_B);  // removes an incomplete item
+  // The header states the machine's condition at the load before the trials.
   if (before.trials.empty()) append_to_part(part_, "header", header_to_json(header));
 }
 
@@ -265,8 +265,8 @@ std::string trajectory_fault(const std::filesystem::path& path) {
     if (std::string fault = fault_of_values(pass, r.header.vertices); !fault.empty()) return fault;
   const std::string &stored = r.outcome.trajectory_sha256, found = trajectory_sha256(pass);
   if (stored == found) return "";
-  return fmt::format("its positions are not the motion that its outcome is of (SHA-256 {}, stored {})",
-                     found.substr(0, 12), stored.empty() ? "none" : stored.substr(0, 12));
+  return fmt::format("its positions are not its outcome's motion (SHA-256 {}, stored {})", found.substr(0, 12),
+                     stored.empty() ? "none" : stored.substr(0, 12));
 }
 
 std::vector<fs::path> import_runs(const fs::path& file_or_folder, DeviceSamples* samples) {
@@ -339,7 +339,7 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::vector<std::size_t
 }
 
 ResultFolder::~ResultFolder() {
-  // The last one removes the file; one that waits for the same name opens it anew.
+  // The last process removes the file; a process that waits for the name opens a new one.
   if (lock(lock_, 0, 0) && is_named(lock_, file_)) unlink(file_.c_str());
   close(lock_);
 }

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr int kFrames = 6;
 constexpr double kStill = 1e-6;   // of the width
-constexpr double kHeld_m = 1e-3;  // single precision and a soft hold; a wrong grip is off by centimetres
+constexpr double kHeld_m = 1e-3;  // float32 and compliant attachments; a wrong attachment is off by centimetres
 constexpr std::size_t kFaultsKept = 8;
 
 /// One case while it runs.
@@ -63,7 +63,7 @@ class Conformer {
     double off = 0;
     for (std::size_t k = 0; k < rest_.size(); ++k) off = max_or_nan(off, std::abs(start_.position[k] - rest_[k]));
     if (!(off <= kStill * scene_.cloth.width_m))
-      fault(fmt::format("start: a vertex is {:.3g} m from where the scene puts it", off));
+      fault(fmt::format("start: a vertex is {:.3g} m from its initial position in the scene", off));
   }
 
   void check_profile(const std::string& profile) {
@@ -85,7 +85,7 @@ class Conformer {
     if (loop.failed()) fault(fmt::format("frame {}: step failed", loop.index()));
   }
 
-  /// False where what follows would repeat the same fault.
+  /// False if later frames would repeat the same fault.
   bool check_frame(int frame) {
     double pins = 0, grips = 0;
     for (std::size_t k = 0; k < now_.position.size(); ++k)
@@ -106,7 +106,7 @@ class Conformer {
         if (motion->grip_held[g] != 0) grips = max_or_nan(grips, length(minus(x, motion->grip_position_m[g])));
       }
     if (info_.ignores.has(Feature::MovingPins) || grips <= kHeld_m) return true;
-    fault(fmt::format("frame {}: a held vertex is {:.3g} m from its hand", frame, grips));
+    fault(fmt::format("frame {}: an attached vertex is {:.3g} m from its hand", frame, grips));
     return false;
   }
 
@@ -115,7 +115,7 @@ class Conformer {
     const std::size_t stages = plan_.stages.size();
     if (cost.stage_device_s.size() != stages || cost.stage_read_B.size() != stages ||
         cost.stage_write_B.size() != stages)
-      fault(fmt::format("costs of a frame: expected one a stage, {}", stages));
+      fault(fmt::format("costs of a frame: expected one per stage, {}", stages));
     if (std::isfinite(cost.device_s) != info_.on_gpu)
       fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
                          : "device time: given, though the solver runs on the CPU");
@@ -126,7 +126,7 @@ class Conformer {
     ClothState again;
     solver_.read_state(again);
     if (again.position != start_.position || again.velocity != start_.velocity)
-      fault("reset: expected the start bit for bit");
+      fault("reset: expected a bit-identical start");
   }
 
   const SolverInfo& info_;
@@ -151,7 +151,7 @@ json row_of(const std::string& scene, const std::string& status, const std::vect
 
 void count(json& row, const char* what) { row[what] = row[what].get<int>() + 1; }
 
-/// One case's part of its row.
+/// Adds one case's results to its scene's row.
 void add_case(const SolverEntry& entry, const json& settings, const DeviceOptions& device, const ConformanceCase& c,
               double limit_s, json& row) {
   count(row, "cases");
@@ -183,7 +183,7 @@ void add_case(const SolverEntry& entry, const json& settings, const DeviceOption
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles) {
   std::vector<ConformanceCase> out;
   for (const char* sides : {"single", "double-duplicated", "double"})
-    for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"}) {  // not multiples of any workgroup
+    for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"}) {  // not multiples of a workgroup's size
       out.push_back({scene, sides, grid, "", false});
       if (profiles && std::string(grid) == "[17,33]") out.push_back({scene, sides, grid, "adreno-like", false});
     }
@@ -199,10 +199,10 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (!c.relation.empty()) return load_scene(c.scene, relation_overrides(c.relation));
   std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
   const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
-  // Four vertices have none near a hand.
+  // On a grid of four vertices none is near a hand.
   if (c.grid == "[2,2]" && is("stretch"))
     for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
-  // A strip that starts over a cylinder needs runs shorter than it is thick.
+  // A strip that starts over a cylinder needs edges shorter than the cylinder's diameter.
   if (c.grid != "[17,33]" && (is("capstan") || is("self-fold")))
     overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
   if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size,
@@ -213,12 +213,12 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
 }
 
 std::string conformance_skip(const SolverInfo& info, const Scene& s) {
-  // Its constraints are exact: a sheet with inextensible diagonals too has more of them than ways to move.
+  // Its constraints are exact: inextensible diagonals on top would mean more constraints than degrees of freedom.
   if (info.name == "reference" && !s.material.membrane_stiffness_N_per_m &&
       (s.needs.has(Feature::Shear) || s.cloth.mesh))
     return "reference diverges: over-determined";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
-    return "xpbd has self_collision only for grids";
+    return "xpbd: self_collision is for grids only";
   if (s.cloth.mesh && s.needs.has(Feature::Bend) && (info.name == "paper" || info.name.starts_with("bullet-")))
     return info.name + " has no resistance to bending for triangle meshes";
   return missing_features(info, s.needs);

@@ -62,7 +62,7 @@ void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
   environment["solver_version"] = info.version;
   environment["precision"] = info.precision;
   if (!is_external(info)) return;
-  static std::map<std::string, std::string> hashes;  // by path; a loaded library stays the one that it was
+  static std::map<std::string, std::string> hashes;  // by path; a loaded library keeps its first hash
   const std::string path = info.folder.substr(std::string(kPluginPrefix).size());
   const auto [at, is_new] = hashes.try_emplace(path);
   if (is_new) at->second = sha256(read_text(path));
@@ -156,7 +156,7 @@ json read_sensors(const fs::path& root) {
   put_number(all["gpu"], "temperature_C", adreno / "temp", kMilliDegree);
   for (const auto& [unused, folder] : numbered(root / "sys/class/thermal", "thermal_zone")) {
     json zone;
-    // A zone that is switched off answers with an error, or with a value below absolute zero.
+    // A zone that is switched off gives an error or a value below absolute zero.
     put_number(zone, "temperature_C", folder / "temp", kMilliDegree);
     if (zone.is_null() || !(zone["temperature_C"].get<double>() > -273.15)) continue;
     put_text(zone, "type", folder / "type");
@@ -194,8 +194,8 @@ struct Process {
   bool is_job = false;
 };
 
-/// Reads /proc/<pid>/stat: "pid (name) state parent …"; the name may be any text, so the rest is found from its last
-/// ')'.
+/// Parses /proc/<pid>/stat: "pid (name) state parent …". The name may contain any text, so later fields are searched
+/// from the last ')'.
 Process process_of(const fs::path& stat) {
   std::ifstream in(stat);
   std::string text;
@@ -203,11 +203,11 @@ Process process_of(const fs::path& stat) {
   const std::size_t open = text.find('('), close = text.rfind(')');
   if (open == std::string::npos || close == std::string::npos || close + 4 >= text.size()) return {};
   const char state = text[close + 2];
-  const bool alive = state != 'Z' && state != 'X' && state != 'T';  // dead, or stopped
+  const bool alive = state != 'Z' && state != 'X' && state != 'T';  // not dead and not stopped
   return {std::atoi(text.c_str() + close + 4), alive && text.substr(open + 1, close - open - 1) == kProgram};
 }
 
-/// Whether `who` descends from `of`.
+/// Whether process `who` is a descendant of process `of`.
 bool descends(const std::map<int, Process>& all, int who, int of) {
   for (std::size_t steps = 0; steps <= all.size(); ++steps) {
     if (who == of) return true;

@@ -44,7 +44,7 @@ std::unique_ptr<ClothSolver> load_solver(const SolverEntry& entry, const nlohman
   return solver;
 }
 
-/// Off the clock: whether there is a next frame, and the scene from its beginning where a drop ends.
+/// Outside the clock: finds out whether there is a next frame, and restarts the scene at the end of a drop.
 bool FrameLoop::begin() {
   const int next = index_ + 1 + behind_;
   if (failed() || next >= rules_.frames) return false;

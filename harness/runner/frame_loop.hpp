@@ -9,33 +9,33 @@
 
 namespace clothbench {
 
-/// Input of frame `index` of the scene (0 = the first). It contains hitch and jitter of the scene's clock,
-/// so every user of the scene gets them. After the scene's end, where timed trials may continue, frames are even and
-/// everything is static.
+/// Input of frame `index` of the scene (0 = the first). It includes hitch and jitter of the scene's clock, so that
+/// every user of the scene has them. After the scene's end, where timed trials may continue, frames have equal length
+/// and everything is static.
 FrameInput frame_input(const Scene& scene, int index);
 
 /// A solver with the scene loaded; the scene must outlive it.
 std::unique_ptr<ClothSolver> load_solver(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                          const Scene&);
 
-/// Which frames are stepped.
+/// Selects the frames to step.
 struct FrameRules {
-  int first = 0;                            ///< index of the first frame; > 0 for a solver that has already reached it
-  int frames = 0;                           ///< one past the last
-  int drop_frames = 0;                      ///< the scene restarts, untimed, after this many frames; 0 = never
+  int first = 0;                            ///< index of the first frame; > 0 if the solver has already reached it
+  int frames = 0;                           ///< index after the last frame
+  int drop_frames = 0;                      ///< the scene restarts, untimed, after this number of frames; 0 = never
   double max_wall_s = 0;                    ///< no frame begins after this much timed wall time; 0 = no limit
-  int min_frames = 0;                       ///< at least this many frames, even beyond `max_wall_s`
-  const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: not interrupted
-  bool cpu_clock = false;                   ///< also read the CPU clock, outside of the wall clock
+  int min_frames = 0;                       ///< minimum number of frames, even beyond `max_wall_s`
+  const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: ignore Ctrl-C
+  bool cpu_clock = false;                   ///< also read the CPU clock, outside the wall-clock interval
 };
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
 
-/// The one loop that steps a solver through a scene. Accuracy passes, trials, references and conformance
-/// read the data they need after each frame:
+/// The only loop that steps a solver through a scene. Accuracy passes, trials, references and conformance read what
+/// they need after each frame:
 ///   for (FrameLoop loop(solver, scene, rules); loop.next();) …
-/// The solver must already be in the state to start from: loaded, reset or restarted. The clock covers only the step: a
-/// frame's input is made before the clock starts, and the step called is known at compile time.
+/// The solver must already be in its start state: loaded, reset or restarted. The clock covers only the step: the
+/// frame's input is prepared before it starts, and the step function is known at compile time.
 class FrameLoop {
  public:
   FrameLoop(ClothSolver& solver, const Scene& scene, const FrameRules& rules)
@@ -45,7 +45,7 @@ class FrameLoop {
   bool next() {
     return next([this](const FrameInput& input) { return solver_.step(input); });
   }
-  /// Steps and times `step`, FrameInput -> StepStatus, instead of the solver's own step.
+  /// Steps and times `step`, a function FrameInput -> StepStatus, instead of the solver's step().
   template <class Step>
   bool next(Step&& step) {
     if (!begin()) return false;
@@ -57,16 +57,16 @@ class FrameLoop {
     cpu_s_ = rules_.cpu_clock ? process_cpu_s() - cpu_start_s : 0;
     return stepped;
   }
-  /// Steps all frames of the next drop with one time measurement, without waiting for each (ClothSolver::run_frames).
+  /// Times all frames of the next drop as one interval, without waiting after each frame (ClothSolver::run_frames).
   bool next_drop();
 
-  int index() const { return index_; }  ///< of the last frame begun, or a drop's first frame; `first` - 1 before any
-  int in_drop() const { return in_drop(index_); }  ///< ... counted from the scene's beginning
+  int index() const { return index_; }  ///< of the last frame begun, or a drop's first frame; initially `first` - 1
+  int in_drop() const { return in_drop(index_); }  ///< index within the drop
   StepStatus status() const { return status_; }    ///< of the last frame
   bool failed() const { return status_ != StepStatus::Ok; }
   double wall_s() const { return wall_s_; }        ///< timed wall time of the last frame
   double cpu_s() const { return cpu_s_; }          ///< CPU time of the last frame, of all threads; 0 without the clock
-  double elapsed_s() const { return elapsed_s_; }  ///< ... of all frames
+  double elapsed_s() const { return elapsed_s_; }  ///< timed wall time of all frames
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -88,7 +88,7 @@ class FrameLoop {
   ClothSolver& solver_;
   const Scene& scene_;
   const FrameRules rules_;
-  int index_, behind_ = 0;  ///< behind_: frames of the last drop after its first
+  int index_, behind_ = 0;  ///< behind_: number of frames of the last drop after its first one
   StepStatus status_ = StepStatus::Ok;
   double wall_s_ = 0, elapsed_s_ = 0, cpu_s_ = 0;
 };

@@ -1,4 +1,4 @@
-// Runs in processes of their own: a plan that is sent to a worker, and what is stored of runs that end their process.
+// Runs in separate processes: sending a plan to a worker, and storing results of runs that end their process.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ json to_json(const RunPlan& plan) {
   return j;
 }
 
-/// A plan with its scenes.
+/// A plan that owns its scenes.
 struct OwnPlan {
   RunPlan plan;
   std::deque<Scene> scenes;
@@ -101,7 +101,7 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   }
 }
 
-/// "<run>: trial 2 of 5" -> that run; null if it is not the plan's.
+/// The run that "<run>: trial 2 of 5" names; null if it is not in the plan.
 const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
   const std::string name = doing.substr(0, doing.find(": "));
   for (const auto& group : plan.groups)
@@ -110,21 +110,21 @@ const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
   return nullptr;
 }
 
-std::mutex hdf5;  // the library is not for several threads
+std::mutex hdf5;  // the library is not thread-safe
 
-/// Writes the file of a run whose process could not write it, with the frames of the untimed pass that it had finished.
+/// Writes the result file of a run whose process ended without it, with the frames that its untimed pass had finished.
 void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
   const std::lock_guard lock(hdf5);
   RunWriter writer(out, header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol));
   RunRecord r = writer.recovered();
-  r.trials.clear();  // no figures of time for a run that did not end
+  r.trials.clear();  // no times for a run that did not end
   r.outcome = outcome;
   writer.finish(outcome, summarise(c, {}, r));
 }
 
-/// Gives the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored as
-/// such and a new process continues with the rest. If the process had executed other plans
-/// before, a crash counts only if it recurs in a new process.
+/// Sends the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored with
+/// this outcome and a new process continues with the rest. If the process had executed other plans before, a crash
+/// counts only if it recurs in a new process.
 RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, const std::string& eye, double limit_s,
               const char* interrupted) {
   json request = {{"plan", to_json(plan)},
@@ -133,7 +133,7 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
                   {"eye", eye},
                   {"resume", options.resume},
                   {"reference_cache", options.reference_cache.string()}};
-  for (std::size_t process = 0; process <= 2 * plan.size(); ++process) {  // at most two per row
+  for (std::size_t process = 0; process <= 2 * plan.size(); ++process) {  // at most two per run
     std::string doing = "before the first run";
     const WorkerAnswer answer =
         worker.call("plan", request, 0, interrupted, [&](const std::string& what, std::size_t done, std::size_t total) {
@@ -152,14 +152,14 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
                                             answer.last_words.empty() ? "" : "; last output: " + answer.last_words);
     if (!plan.apart) fmt::print(stderr, "{}\n", message);
     write_row(*at, plan, options.out, {hung ? "timed_out" : "crashed", "F3", -1, message});
-    if (plan.apart) return {};  // its only run
+    if (plan.apart) return {};  // the plan's only run
   }
   throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
 }
 
 using Task = std::function<void(Worker&)>;
 
-/// Runs the tasks on `jobs` threads, each with its own worker (scratch/<k>), in their order as threads become free.
+/// Runs the tasks on `jobs` threads, in order as threads become free; each thread has its own worker (scratch/<k>).
 /// After an exception no further task begins, and the first exception is thrown once all threads have ended.
 void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program, const fs::path& scratch) {
   std::atomic<std::size_t> next{0};
@@ -184,15 +184,15 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program
 
 /// Runs the tasks on options.jobs workers.
 void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
-  // Processes of one study (--job) share its folder, so scratch files lie elsewhere.
+  // Processes of one study (--job) share its folder, so scratch files are not in it.
   const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
   if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
 }
 
-/// The untimed passes of all runs. Those of one solver in one group are one task and keep their order, because a ladder
-/// of settings ends at its first timeout.
+/// The untimed passes of all runs. Passes of one solver in one group form one task and keep their order, because a
+/// settings sweep ends at its first timeout.
 void execute_untimed(const RunPlan& plan, const RunOptions& given) {
   std::mutex mutex;
   RunOptions options = given;
@@ -218,7 +218,7 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
   run_tasks(tasks, options);
 }
 
-/// Gives each run to a worker of its own, `jobs` at a time.
+/// Runs each run in its own worker process, `jobs` at a time.
 RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
   std::size_t done = 0;
   const auto ended = [&](const RunSpec& spec) {
@@ -234,7 +234,7 @@ RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
   const auto work = [](const RunSpec* s) {
     return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
   };
-  // The longest first: otherwise the other workers would wait for the last run.
+  // The longest first, so that the other workers do not wait for one long run at the end.
   std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
   std::mutex mutex;
   std::vector<Task> tasks;
@@ -293,14 +293,14 @@ json execute_plan(const json& request, const WorkerProgress& progress, const Sol
     progress(what, done, total);
     repeat = [=, &progress] { progress(what, done, total); };
   };
-  // The parent ends a process that says nothing for too long: a solver that makes frames is not taken for one that
-  // hangs.
+  // The parent ends a process that reports nothing for too long; reports keep a solver that makes frames from looking
+  // hung.
   const FrameReports reports([&] {
     if (repeat) repeat();
   });
   try {
     return execute_runs(own.plan, options).faults;
-  } catch (const std::exception& e) {  // what a solver throws is a row of the table
+  } catch (const std::exception& e) {  // an exception of a solver becomes a row of the table
     if (!own.plan.apart) throw;
     write_row(own.plan.groups[0][0], own.plan, options.out, {"error", "F3", -1, e.what()});
     return json::array();

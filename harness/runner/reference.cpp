@@ -32,10 +32,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kOrder = 2;         // of both integrators
-constexpr double kRounding = 1e-10;  // of the scale: differences below it have no order
+constexpr double kOrder = 2;         // of accuracy, of both integrators
+constexpr double kRounding = 1e-10;  // fraction of the scale; smaller differences show no order
 
-/// The scene with two rows if all its rows move alike; a sheet that shears and a mesh stay as they are.
+/// The scene with two rows if all its rows move alike; a sheet with shear and a mesh are returned unchanged.
 Scene two_rows(const Scene& s) {
   if (s.cloth.mesh || s.needs.has(Feature::Shear)) return s;
   Scene out = scene_from_json(json::parse(s.json), s.source, {fmt::format("cloth.grid=[{},2]", s.cloth.columns)});
@@ -45,8 +45,8 @@ Scene two_rows(const Scene& s) {
 
 struct Run {
   double value = kMissing;   ///< at the end
-  double unrest = kMissing;  ///< change over the last tenth
-  double error = kMissing;   ///< of a mesh, in the ranking error: the continuum's distance
+  double unrest = kMissing;  ///< change over the last tenth of the run
+  double error = kMissing;   ///< only for a mesh: distance from the continuum in the ranking error
 };
 
 Run run_quantity(const Scene& scene, const TruthJudge& judge, const char* integrator, int substeps, double tolerance) {
@@ -88,7 +88,7 @@ struct Extrapolated {
   double value, uncertainty, order;
 };
 
-/// Finest first.
+/// Richardson extrapolation; f1 is from the finest steps.
 Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
   const double near = f1 - f2, far = f2 - f3;
   if (std::abs(near) <= kRounding * scale) return {f1, std::abs(near), kMissing};
@@ -124,7 +124,7 @@ std::map<std::string, double> ReferenceResult::scalars() const {
   return out;
 }
 
-/// The result for a scene beyond the reference solver's scope: its truth is a closed form and needs none.
+/// Result for a scene that the reference solver cannot run: its exact solution has a closed form.
 ReferenceResult closed_form(const Scene& scene) {
   const TruthJudge judge(scene);
   const truth::ReferenceCase& known = judge.reference_case();
@@ -217,8 +217,7 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
 
 namespace {
 
-/// The scene first, so that a person finds its file; then what else the key says, shortened. The file has the whole
-/// key.
+/// Name: the scene (for people), then a short form of the rest of the key. The file contains the complete key.
 fs::path cache_file(const fs::path& folder, const json& key) {
   return folder /
          fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(key.dump()).substr(0, 16));
@@ -232,7 +231,7 @@ json reference_key(const Scene& scene, const ReferenceRules& rules) {
   json settings = json::array();
   for (const char* integrator : {"bdf2", "conservative"})
     settings.push_back(complete_settings(info, {{"integrator", integrator}, {"tolerance", rules.tolerance}}));
-  // The substeps of the runs follow from the rules and the scene.
+  // The substeps of the runs follow from the rules and the scene, so they are not part of the key.
   for (json& s : settings) s.erase("substeps");
   return {{"scenario_sha256", scene.sha256},
           {"solver_version", info.version},
@@ -250,7 +249,7 @@ std::optional<ReferenceResult> read_reference(const fs::path& folder, const json
   try {
     const std::map<std::string, double> values = numbers_from_json(j.at("values"));
     for (const auto& [name, member] : kScalars) r.*member = values.at(name);
-  } catch (const std::exception&) {  // not whole: it is computed again
+  } catch (const std::exception&) {  // unreadable or incomplete: it is computed again
     return std::nullopt;
   }
   return r;

@@ -1,4 +1,4 @@
-// Relations of two runs that must hold for every solver: cases of conformance that need no exact solution.
+// Relations of two runs that must hold for every solver: conformance cases that need no exact solution.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-/// The state before the first frame and after each.
+/// States before the first frame and after every frame.
 using Motion = std::vector<ClothState>;
 
-/// `so_far` and what the solver adds to it. Throws SolverError if a frame fails.
+/// `so_far`, continued by the solver to the scene's end. Throws SolverError if a frame fails.
 Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
   FrameLoop loop(solver, scene, {.first = static_cast<int>(so_far.size()), .frames = scene.time.frames()});
   solver.read_state(so_far.emplace_back());
@@ -28,8 +28,8 @@ Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
   return so_far;
 }
 
-/// Overrides of scenarios/conformance/sheet.json, whose pins lie at the ends of one side, and how its motion then
-/// changes.
+/// Overrides of scenarios/conformance/sheet.json, which has its pins at the ends of one side, and their effect on its
+/// motion.
 struct Relation {
   const char* name;
   std::vector<std::string> overrides;
@@ -103,11 +103,11 @@ class RelationCheck {
     if (bits && !(distance <= at_most) && by_.own_error) at_most = std::max(at_most, own_error(base, scene));
     if (!bits || !(distance <= at_most))
       out.faults.push_back(
-          fmt::format("a vertex is {:.4g} of the longer side from where it must be, more than {:.4g}{}", distance,
-                      at_most, at_most > 0 ? "" : ", or the bits differ"));
+          fmt::format("a vertex is {:.4g} of the longer side from its expected position, more than {:.4g}{}", distance,
+                      at_most, at_most > 0 ? "" : ", or not bit-identical"));
   }
 
-  /// Largest over vertices and frames, divided by the longer side of the cloth; NaN if any position is.
+  /// Largest distance over vertices and frames, divided by the longer side of the cloth; NaN if any position is NaN.
   static double distance_of(const Motion& base, const Motion& found, const Scene& scene, bool mirrored = false,
                             bool transposed = false) {
     const std::size_t columns = static_cast<std::size_t>(scene.cloth.columns);
@@ -124,7 +124,7 @@ class RelationCheck {
     return worst / std::max(scene.cloth.width_m, scene.cloth.height_m);
   }
 
-  /// Effect of frames half as long.
+  /// Change of the motion if frames are half as long.
   double own_error(const Motion& base, const Scene& scene) const {
     const Scene finer = load_scene(case_.scene, {fmt::format("time.frame_rate_hz={}", 2 * scene.time.frame_rate_hz)});
     const Motion all = fresh_motion(finer);

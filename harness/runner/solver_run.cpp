@@ -21,7 +21,7 @@ double unix_now() { return std::chrono::duration<double>(std::chrono::system_clo
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Rules for a trial's frames, which restart the scene with every drop.
+/// Rules for the frames of a trial, which restarts the scene with every drop.
 FrameRules frame_rules(const TrialRules& rules, int frames, double max_wall_s = 0) {
   return {0, frames, rules.drop_frames, max_wall_s, rules.min_frames, kTrialsKept};
 }
@@ -35,7 +35,7 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
     if (!l.no_parameter.empty()) j["left_out"].back()["no_parameter"] = l.no_parameter;
   }
   if (plan.substeps > 0) j["substeps"] = plan.substeps;
-  // One per collider, so that a reader need not match names, which need not differ.
+  // One per collider, so that readers need no names, which may repeat.
   for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k) {
     const Collider& c = scene.colliders[k];
     const double stated = plan.contact_margins_m[k];
@@ -44,7 +44,7 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
   return j;
 }
 
-/// Adds what the solver has counted after a frame, one series per count. Returns the reason if the run is an error.
+/// Appends the solver's counts after a frame, one series per count. Returns the reason if a count is an error.
 std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vector<MetricSeries>& series) {
   std::string fault;
   const std::vector<SolverCount> counts = solver.counts();
@@ -57,7 +57,7 @@ std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vecto
   return fault;
 }
 
-/// The solver again, loaded with a setting on that makes it slower; null if it has no such setting or is not on a GPU.
+/// A twin of the solver, loaded with a setting that slows it; null if it lacks that setting or is not on a GPU.
 std::unique_ptr<ClothSolver> twin_with(const char* setting, const RunSpec& spec, const DeviceOptions& device) {
   nlohmann::json settings = spec.settings;
   if (!settings.contains(setting) || !spec.entry->info.on_gpu) return nullptr;
@@ -161,7 +161,7 @@ bool SolverRun::take_over(const RunRecord& before, double duration_s) {
   if (!before.summary.contains(kUntimed)) return false;
   const bool whole = before.accuracy.time_s.size() == static_cast<std::size_t>(accuracy_frames(duration_s)) + 1;
   if (before.outcome.status == "ok" && !whole) return false;
-  // Passes side by side share a GPU, but not a core: only there could this one end in time by itself.
+  // Concurrent passes share a GPU, but no core: on a GPU this pass may have timed out only because of the others.
   if (before.outcome.status == "timed_out" && spec_.entry->info.on_gpu) return false;
   outcome_ = before.outcome;
   return true;
@@ -183,7 +183,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
     fail(status, frame);
     try {
       solver_->read_state(state);
-    } catch (const Error& e) {  // there is none: the device is gone
+    } catch (const Error& e) {  // the device is lost and gives none
       if (outcome_.status == "ok") outcome_ = {"device_lost", "F3", frame, e.what()};
       return;
     }
@@ -197,7 +197,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
     if (outcome_.status == "ok" && !fault.empty()) outcome_ = {"error", "ok", frame, fault};
     if (outcome_.status == "ok" && metrics.lost())
       outcome_ = {"diverged", "F0", frame, "speed or energy exceeds every bound"};
-    // A pass that was held may take any time.
+    // A pass with pauses may take any time.
     if (outcome_.status == "ok" && rules.run_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.run_limit_s && frame < frames)
       outcome_ = {"timed_out", "F3", frame,
@@ -226,7 +226,7 @@ void SolverRun::warm_up(const TrialRules& rules) {
   while (loop.next()) {
     const double since_s = seconds_since(start);
     if (loop.index() + 1 >= kLeastFrames && since_s >= rules.warmup_s) return;
-    // One frame as long as a whole trial should be is warm-up enough.
+    // One frame that lasts as long as a whole trial is enough warm-up.
     if (rules.max_wall_s > 0 && since_s >= std::max(rules.max_wall_s, rules.warmup_s)) return;
   }
 }
@@ -236,7 +236,7 @@ TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) 
   trial.index = index;
   try {
     measure(trial, rules, frames);
-  } catch (const SolverError& e) {  // its costs make no sense, or its twin could not be loaded
+  } catch (const SolverError& e) {  // its costs are inconsistent, or its twin could not be loaded
     outcome_ = {"error", "F3", -1, e.what()};
   }
   return trial;
@@ -266,8 +266,8 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   }
 }
 
-/// The frames of the trial again, drop by drop; what a drop's first frame waits for and its last one drains is in the
-/// clock.
+/// The trial's frames again, pipelined within each drop; the clock includes filling and draining the pipeline at the
+/// start and end of a drop.
 void SolverRun::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames()));
@@ -281,12 +281,12 @@ void SolverRun::describe(const Rendering& rendering) {
   if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
 }
 
-/// The frames of the trial again, each drawn before the next begins; fewer where pictures take longer than the trial
-/// may. The drawer is made anew for each trial: images of every run of a group at once would fill a device.
+/// The trial's frames again, each drawn before the next begins; fewer if drawing exceeds the trial's time limit. Each
+/// trial makes its own drawer: the images of all runs of a group would exhaust device memory.
 void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);
-  drawer->draw(0);  // a driver's first picture takes longer
+  drawer->draw(0);  // a driver's first image takes longer
   solver_->reset();
   FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames(), rules.max_wall_s));
   const auto step_and_draw = [&](const FrameInput& input) {
@@ -298,8 +298,8 @@ void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   fail(loop.status(), loop.index());
 }
 
-/// Per-stage device times come from a twin with timestamps around every stage, run right after the timed frames: the
-/// timestamps themselves would slow the frames that are timed. Frames without a profiled twin stay NaN.
+/// Per-stage device times come from a twin with timestamps around every stage, which runs right after the timed frames,
+/// because timestamps would slow the timed frames. Frames that the twin does not run stay NaN.
 void SolverRun::profile_stages(TimedTrial& trial, int frames) {
   if (!profiled_) profiled_ = twin_with("stage_times", spec_, device_);
   if (!profiled_) return;
@@ -313,8 +313,7 @@ void SolverRun::profile_stages(TimedTrial& trial, int frames) {
   }
 }
 
-/// Bytes come from a twin whose kernels count them, on the frames of the first trial; the other trials have the same
-/// bytes.
+/// Bytes come from a twin whose kernels count them on the frames of the first trial; they are the same in all trials.
 void SolverRun::count_bytes(TimedTrial& trial, const TrialRules& rules) {
   if (counted_.frames() != trial.frames()) {
     const std::unique_ptr<ClothSolver> twin = twin_with("count_bytes", spec_, device_);

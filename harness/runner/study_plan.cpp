@@ -21,8 +21,9 @@ namespace {
 [[noreturn]] void refuse_name(const std::string& name) {
   std::vector<std::string> known = solver_names_of_tree();
   for (const SolverEntry* e : all_solvers()) known.push_back(e->info.name);
-  throw Error("the study names a solver " + in_quotes(name) + ", which is neither of clothbench nor a plugin in $" +
-              kPluginsVariable + nearest_known(name, known));
+  throw Error("the study names a solver " + in_quotes(name) +
+              ", which is neither a solver of clothbench nor a plugin in $" + kPluginsVariable +
+              nearest_known(name, known));
 }
 
 namespace fs = std::filesystem;
@@ -30,7 +31,7 @@ using nlohmann::json;
 
 constexpr const char* kWhatToDo = "results of both would be mixed; give another --out, or undo the change";
 
-/// Where a solver is known both are completed: a process that crashed has stored settings as they were given.
+/// If the solver is known, both settings are completed first: a crashed process leaves them as they were given.
 bool same_settings(const RunSpec& run, const json& stored) {
   if (!run.entry->make) {
     json both = stored;
@@ -40,7 +41,7 @@ bool same_settings(const RunSpec& run, const json& stored) {
   try {
     return complete_settings(run.entry->info, run.settings) == complete_settings(run.entry->info, stored);
   } catch (const Error&) {
-    return false;  // a setting that this version of the solver does not have
+    return false;  // a setting that this version of the solver lacks
   }
 }
 
@@ -49,14 +50,14 @@ std::string short_hash(const std::string& sha256) {
   return sha256.empty() ? "none" : sha256.substr(0, kShown);
 }
 
-/// The file of a finished run, else of a run that was begun, else an empty path.
+/// The file of a finished run, otherwise of an unfinished run, otherwise an empty path.
 fs::path stored_run(const fs::path& folder, const std::string& run) {
   if (fs::path file = finished_file(folder, run); !file.empty()) return file;
   const fs::path part = folder / (run + ".part");
   return fs::exists(part) ? part : fs::path();
 }
 
-/// Null if there is none. Another process of a sharded study may be finishing the run: its part file then disappears.
+/// Null if there is none. Another process of a sharded study may finish the run meanwhile, which removes its part file.
 std::optional<RunHeader> stored_header(const fs::path& folder, const std::string& run, fs::path& file) {
   for (int attempt = 0;; ++attempt) {
     file = stored_run(folder, run);
@@ -201,7 +202,7 @@ ChosenSolver chosen_solver(const std::string& name, const Overrides& overrides) 
 std::vector<const SolverEntry*> all_solvers() {
   std::vector<const SolverEntry*> out;
   for (const SolverEntry& e : solvers()) out.push_back(&e);
-  const char* plugins = std::getenv(kPluginsVariable);  // --solver adds to it
+  const char* plugins = std::getenv(kPluginsVariable);  // --solver appends to it
   std::istringstream paths(plugins != nullptr ? plugins : "");
   for (std::string path; std::getline(paths, path, ':');)
     if (!path.empty()) out.push_back(&find_solver(kPluginPrefix + path));
@@ -236,15 +237,15 @@ void require_same_run(const fs::path& folder, const RunSpec& run) {
   const std::optional<RunHeader> h = stored_header(folder, run_name(run), file);
   if (!h) return;
   if (h->scenario_sha256 != run.scene->sha256)
-    throw Error(fmt::format("{}: stored for another scene (SHA-256 of the completed scenario {}, now {}); {}",
+    throw Error(fmt::format("{}: stored for another scene (SHA-256 of the resolved scene {}, now {}); {}",
                             file.string(), short_hash(h->scenario_sha256), short_hash(run.scene->sha256), kWhatToDo));
   if (!same_settings(run, h->settings))
-    throw Error(fmt::format("{}: run with other settings ({}, now {}); {}", file.string(),
+    throw Error(fmt::format("{}: run with different settings ({}, now {}); {}", file.string(),
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";
   const SolverInfo& solver = run.entry->info;
-  if (run.entry->make && !version.empty() && version != solver.version)  // a crash before the start leaves none
+  if (run.entry->make && !version.empty() && version != solver.version)  // a crash before the start stores no version
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
                             solver.name, solver.version, kWhatToDo));
 }

@@ -24,15 +24,15 @@ struct Running {
   std::unique_ptr<SolverRun> run;
   std::unique_ptr<RunWriter> writer;
   RunRecord record;
-  double untimed_s = 0;    ///< wall time of its load and its pass
-  nlohmann::json sensors;  ///< after its last trial, before the device cools down
+  double untimed_s = 0;    ///< wall time of load and untimed pass
+  nlohmann::json sensors;  ///< read after its last trial, before the device cools down
 
   bool has_trial(int k) const {
     for (const TimedTrial& t : record.trials)
       if (t.index == k) return true;
     return false;
   }
-  /// Half the range of the trials' frame rates over their median, as in the summary.
+  /// Half-range of the trials' frame rates over their median, as in the summary.
   bool trials_agree(double to) const {
     std::vector<double> rates;
     for (const TimedTrial& t : record.trials) {
@@ -64,11 +64,11 @@ class GroupRun {
   }
 
  private:
-  /// One trial of every run: those on the GPU together, then those on the CPU, each part starting with another run
-  /// every time, so that none always follows the same neighbour. During CPU runs a GPU goes to sleep, and it takes
-  /// longer to wake than a small run's warm-up lasts: the first GPU run of a round warms up for all of them.
+  /// One trial of every run: first all GPU runs, then all CPU runs. Each round starts with a different run, so that no
+  /// run always follows the same neighbour. During CPU runs a GPU goes to sleep, and waking it takes longer than the
+  /// warm-up of a small run: the first GPU run of a round gets a longer warm-up for all of them.
   void round(int k) {
-    constexpr double kWakeUp = 5;  // warm-ups
+    constexpr double kWakeUp = 5;  // normal warm-ups
     for (const bool on_gpu : {true, false}) {
       std::vector<Running*> part;
       for (Running& r : running_)
@@ -87,7 +87,7 @@ class GroupRun {
     if (options_.progress) options_.progress(what, done_, plan_.size());
   }
 
-  /// Why a run of a ladder is left out: a setting of less work has timed out. Empty if it is not.
+  /// Reason to skip a run of a settings sweep: a setting with less work has timed out. Empty if none has.
   std::string over_budget(const RunSpec& spec) const {
     const auto at = timed_out_work_.find(spec.entry->info.name);
     if (at == timed_out_work_.end() || spec.work <= at->second) return "";
@@ -99,7 +99,7 @@ class GroupRun {
     work = std::min(work, spec.work);
   }
 
-  /// Load and untimed pass.
+  /// Loads the solver and runs the untimed pass.
   void begin(const RunSpec& given) {
     const Clock::time_point start = Clock::now();
     RunSpec spec = given;
@@ -126,7 +126,7 @@ class GroupRun {
     r.writer = std::make_unique<RunWriter>(options_.out, r.run->header());
     if (options_.resume) {
       const RunRecord before = r.writer->recovered();
-      for (const TimedTrial& t : before.trials)  // one without the pictures now asked for is run again
+      for (const TimedTrial& t : before.trials)  // a trial without the requested rendering is repeated
         if (!plan_.rules.rendering.make || !t.frame_rendered_s.empty()) r.record.trials.push_back(t);
       if (r.run->alive() && r.run->take_over(before, plan_.rules.accuracy_duration_s)) {
         r.record.accuracy = before.accuracy;
@@ -184,7 +184,7 @@ class GroupRun {
   const RunOptions& options_;
   RunResult& result_;
   std::size_t& done_;
-  std::map<std::string, int> timed_out_work_;  ///< least work that timed out, by solver
+  std::map<std::string, int> timed_out_work_;  ///< minimum work that timed out, by solver
   std::vector<Running> running_;
 };
 
@@ -199,8 +199,8 @@ double value_of(const std::map<std::string, double>& summary, const std::string&
   return at == summary.end() ? kMissing : at->second;
 }
 
-/// Bounds that the scene's file states and that follow from the scene itself: the bounds of its exact solution, and
-/// none of the outcome classes that its stability block judges.
+/// Bounds that the scene's file states, and those that follow from the scene: the bounds of its exact solution, and
+/// stability grade 0 (no judged outcome class).
 std::vector<Expectation> expectations(const Scene& scene, const std::map<std::string, double>& summary) {
   std::vector<Expectation> all = scene.expect;
   if (!scene.reference_case.empty())
@@ -214,7 +214,7 @@ std::string expected_outcome(const Scene& scene) {
   return scene.expected_outcome.empty() && implied ? "ok" : scene.expected_outcome;
 }
 
-/// The fault of a value, or nothing.
+/// How a value violates its bound; empty if it does not.
 std::string fault(const Expectation& e, double value) {
   if (!std::isfinite(value)) return e.name + " has no value";
   if (e.at_most && !(value <= *e.at_most)) return fmt::format("{} {:.4g} > {:.4g}", e.name, value, *e.at_most);
@@ -222,7 +222,7 @@ std::string fault(const Expectation& e, double value) {
   return "";
 }
 
-/// The checks that hold for every scene; a NaN fails.
+/// Violations of the motion check, which applies to every scene; a NaN is a violation.
 std::string fault_of_motion(const std::map<std::string, double>& summary) {
   std::string wrong;
   for (const motion_check::Statistic& s : motion_check::statistics()) {
@@ -251,7 +251,7 @@ const SolverEntry* RunPlan::add_not_built(const std::string& solver) {
 std::vector<std::string> solver_faults(const std::vector<RunRecord>& runs) {
   struct Ends {
     int finished = 0, failed = 0;
-    std::string last;  ///< how the last one failed
+    std::string last;  ///< failure of the solver's last such run
   };
   std::map<std::string, Ends> by_solver;
   for (const RunRecord& r : runs) {
@@ -310,7 +310,7 @@ Judgement judge(const Scene& scene, const Outcome& outcome, const AccuracyPass& 
   };
   if (!expected.empty())
     note("outcome", outcome.status == expected ? "" : "outcome " + outcome.status + ", expected " + expected);
-  // The motion is judged as far as it goes; the scene's own bounds need all of it.
+  // The motion is checked as far as it goes; the scene's own bounds need a complete run.
   const std::string wrong_motion = fault_of_motion(summary);
   if (checked) v.scalars[kExpect + "motion"] = wrong_motion.empty() ? 1 : 0;
   if (!wrong_motion.empty()) v.text += (v.text.empty() ? "fail: " : "; ") + wrong_motion;

@@ -15,85 +15,85 @@
 
 namespace clothbench {
 
-/// Planned runs, in groups. The trials of one group are interleaved, so that a change of the machine's speed affects
-/// all its runs equally.
+/// Planned runs, in groups. The trials of a group are interleaved, so that a change of the machine's speed affects all
+/// its runs alike.
 struct RunPlan {
   std::vector<std::vector<RunSpec>> groups;
   TrialRules rules;
   std::string protocol;  ///< "full" or "quick", stored with every run
-  /// Solvers named by a study but missing from this build: entries without `make`, whose runs become `unsupported`.
+  /// Solvers of the tree that this build lacks: entries without `make`, whose runs become `unsupported`.
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
-  bool apart = false;       ///< untimed runs of whole scenes, each in a process of its own
-  bool untimed = false;     ///< only loads and untimed passes, for the same plan with trials to go on from
-  bool references = false;  ///< store the reference solution of each scene's truth with its runs
+  bool apart = false;       ///< untimed runs of whole scenes, each in its own process
+  bool untimed = false;     ///< loads and untimed passes only; the same plan with trials continues from them
+  bool references = false;  ///< store with the runs of each scene its reference solution
 
   std::size_t size() const;
-  const SolverEntry* add_not_built(const std::string& solver);  ///< its new entry in `not_built`
+  const SolverEntry* add_not_built(const std::string& solver);  ///< the new entry in `not_built`
 };
 
 struct RunOptions {
   std::filesystem::path out;
   bool resume = false;
-  int jobs = 1;                        ///< worker processes at a time, for what is not timed
+  int jobs = 1;                        ///< concurrent worker processes for untimed work
   std::filesystem::path program = {};  ///< executable of the workers; empty: this one
   DeviceOptions device;
-  /// Called before each task with its description and the numbers of finished and of all tasks.
+  /// Called before each task with its description and the numbers of finished and all tasks.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
   std::filesystem::path reference_cache = "results/runs/reference-cache";  ///< for plans with references
 };
 
 struct RunResult {
-  std::vector<std::filesystem::path> files;  ///< of this session
-  std::vector<std::string> faults;           ///< runs that broke a rule of the harness: stages, counts, validation
+  std::vector<std::filesystem::path> files;  ///< written in this session
+  std::vector<std::string> faults;           ///< violated rules of the harness: stages, counts, validation
 };
 
-/// The rule of exit codes for every command that runs solvers: one sentence per solver that finished none of its runs,
-/// whether they crashed, hung, diverged, lost the device or could not be made. Runs that the solver does not support,
-/// or that were left out for time, do not count; a run that ends as its scene expects does.
+/// Decides the exit code of every command that runs solvers: one sentence per solver of which no run finished because
+/// all crashed, hung, diverged, lost the device or could not be created. Runs that the solver does not support, or that
+/// were skipped for time, do not count; a run that ends as its scene expects counts as finished.
 std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 
-/// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name, and Error
-/// naming the file, the difference and a remedy if a stored run of the plan, finished or begun, is of another scene,
-/// other settings or another solver version, or is finished and `resume` is off: continuing would mix results.
+/// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name. Throws
+/// Error with the file, the difference and a remedy if a stored run of the plan, finished or not, has a different
+/// scene, settings or solver version, or is finished and `resume` is off: continuing would mix results.
 void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool resume);
 
 /// Executes every run in this process and writes one file each. With `resume`, finished runs are skipped and finished
-/// trials reused, and a run stored for another scene, other settings or another version is an Error. Without it, a run
-/// that is already stored is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
+/// trials reused; a run stored for another scene, other settings or another version is an Error. Without `resume`, any
+/// stored run is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
 /// As execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above 1,
-/// their untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over
-/// the workers, the longest first. If a process crashes, or a run makes no frame for too long (solver_limit_s(), or
-/// (1.2 x its limit) + 5 s for a run that is apart), the current run is stored as `crashed` or `timed_out` and a new
-/// process continues with the rest. `eye`: size of the pictures that the plan renders, or empty.
+/// untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over the
+/// workers, the longest first. If a process crashes, or a run makes no frame for too long (solver_limit_s(); if
+/// `apart`, 1.2 x the run's limit + 5 s), the current run is stored as `crashed` or `timed_out` and a new process
+/// continues with the rest. `eye`: image size per eye if the plan renders, otherwise empty.
 RunResult execute_in_worker(const RunPlan&, const RunOptions&, const std::string& eye = {});
 
-/// One run of a plan by this worker, stored in the folder and read back without positions. An exception of a solver
-/// is the outcome `error`.
+/// Executes one run of a plan in this worker, stores it in the folder and reads it back without positions. An exception
+/// of a solver gives the outcome `error`.
 RunRecord run_apart(Worker&, const RunPlan&, const RunSpec&, const RunOptions&);
 
-/// The worker's side; `rendering_of` makes the plan's rendering from `eye`.
+/// Executes a plan in the worker; `rendering_of` makes the plan's rendering from `eye`.
 nlohmann::json execute_plan(const nlohmann::json& request, const WorkerProgress&, const SolverLookup&,
                             Rendering (*rendering_of)(const std::string& eye));
 
-/// The stored record of a finished run, without positions; nothing if it is not finished. Throws Error if it is
-/// finished without `resume`, or is another run.
+/// The stored record of a finished run, without positions; empty if it is not finished. Throws Error if it is finished
+/// and `resume` is off, or if it belongs to a different run.
 std::optional<RunRecord> finished_run(const RunSpec&, const RunOptions&);
 
-/// Result of checking a run against what its scene expects: the `expect` of its file, the bounds of its exact solution
-/// (metrics/exact_bound.hpp), and stability grade 0 if it has a stability block. The last two imply outcome "ok". The
-/// motion check applies to every run whose summary has its statistics.
+/// Result of checking a run against its scene's criteria: the `expect` of its file, the bounds of its exact solution
+/// (ExactBound), and stability grade 0 if it has a stability block. The last two imply outcome "ok". The motion check
+/// applies to every run whose summary has its statistics.
 struct Judgement {
-  /// "pass"; "fail: " and every broken expectation with its value and bound; "not measured" if the accuracy pass is
-  /// shorter than the scene without having failed, or if this build cannot measure the scene's contact; "" if the scene
-  /// expects nothing and the motion was not checked.
+  /// "pass"; "fail: " and every violated criterion with value and bound; "not measured" if the accuracy pass is shorter
+  /// than the scene and no failure, or if this build cannot measure the scene's contact; "" if the scene has no
+  /// criteria and the motion was not checked.
   std::string text;
   /// "expect.<name>" -> 1 pass, 0 fail, NaN not measured; for the summary.
   std::map<std::string, double> scalars;
 };
 
-/// A value that is NaN or missing breaks its expectation.
+/// A value that is NaN or missing violates its criterion.
 Judgement judge(const Scene&, const Outcome&, const AccuracyPass&, const std::map<std::string, double>& summary);
 
 }  // namespace clothbench

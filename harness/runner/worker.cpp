@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The last line that a child wrote past the first `from` bytes, shortened: mostly why it ended.
+/// The last line that a child wrote after the first `from` bytes, shortened; it mostly explains its end.
 std::string last_words(const fs::path& log, std::uintmax_t from) {
   std::ifstream in(log);
   in.seekg(static_cast<std::streamoff>(from));
@@ -38,7 +38,7 @@ void tell_parent(const std::string& line) {
   static_cast<void>(send(STDIN_FILENO, (line + "\n").data(), line.size() + 1, MSG_NOSIGNAL));
 }
 
-/// The function's answer or error; its progress on the way.
+/// The function's answer or error, after lines of progress.
 json answer_of(const WorkerFunctions& functions, const json& request) {
   const auto progress = [](const std::string& what, std::size_t done, std::size_t total) {
     tell_parent(fmt::format("{} {} {}", done, total, what));
@@ -54,7 +54,7 @@ json answer_of(const WorkerFunctions& functions, const json& request) {
 
 std::filesystem::path own_program() {
 #ifdef __ANDROID__
-  // An app's process is the system's program, not this one.
+  // In an app, the process's executable is the system's, not this program.
   throw Error("the app cannot start child processes, which this study needs; use the plain executable");
 #else
   return std::filesystem::read_symlink("/proc/self/exe");
@@ -62,7 +62,7 @@ std::filesystem::path own_program() {
 }
 
 int run_child_main(const WorkerFunctions& functions) {
-  // Ctrl-C is the parent's to act on; here it would make a row of a run that is to be repeated.
+  // The parent handles Ctrl-C; here it would end a run that is to be repeated with a result.
   signal(SIGINT, SIG_IGN);
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -73,7 +73,7 @@ int run_child_main(const WorkerFunctions& functions) {
       line += c;
       continue;
     }
-    // A parent that was killed before prctl sends no signal any more, but its end of the socket is closed.
+    // If the parent was killed before prctl, no signal follows, but its end of the socket is closed.
     pollfd parent{STDIN_FILENO, POLLIN, 0};
     if (poll(&parent, 1, 0) > 0 && (parent.revents & POLLHUP) != 0) return 0;
     tell_parent(answer_of(functions, json::parse(line)).dump());
@@ -140,7 +140,7 @@ std::optional<ChildEnd> Worker::ask(const std::string& line, double limit_s, con
 
 WorkerAnswer Worker::call(const std::string& function, const json& request, double limit_s, const char* interrupted,
                           const std::function<double(const std::string&, std::size_t, std::size_t)>& heard) {
-  constexpr int kCallsAChild = 100;  // what drivers leak is theirs to keep for so long
+  constexpr int kCallsAChild = 100;  // bounds the memory that drivers leak
   const fs::path log = scratch_.empty() ? fs::path() : scratch_ / "output.txt";
   if (calls_ == kCallsAChild) child_.reset();
   if (!child_) {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 256u << 20;
-// Least area of a triangle over the square of its longest side. Below it rounding errors dominate the normal.
+// Minimum area of a triangle over the square of its longest side. Below it rounding errors dominate the normal.
 constexpr double kLeastArea = 1e-9;
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -39,7 +39,7 @@ bool has_area(const std::array<Vec3, 3>& x) {
   return area_of(x) > kLeastArea * longest * longest;
 }
 
-/// "<source>: line 7": where a file has a vertex or a triangle; only the source if it has no lines.
+/// "<source>: line 7": place of a vertex or triangle in a file; only the source if the file has no lines.
 std::string place(const std::string& source, const std::vector<std::uint32_t>& lines, std::size_t k) {
   return lines.empty() ? source : fmt::format("{}: line {}", source, lines[k]);
 }
@@ -78,10 +78,10 @@ void check_triangles(const ClothMesh& m, const assets::MeshFile& file, const std
                               place(source, file.vertex_lines, v), v));
 }
 
-/// A side of a triangle, its ends in ascending order.
+/// An edge of one triangle, its ends in ascending order.
 struct Side {
   std::uint32_t a, b, triangle, corner;
-  bool forward;  ///< the triangle runs from a to b
+  bool forward;  ///< the triangle's winding runs from a to b
 };
 
 std::vector<Side> sides_of(const ClothMesh& m) {
@@ -120,7 +120,7 @@ void add_edges(ClothMesh& m, const assets::MeshFile& file, const std::string& so
                       "triangles of a cloth to be wound alike",
                       place(source, file.triangle_lines, sides[k + 1].triangle), s.triangle, sides[k + 1].triangle,
                       s.forward ? s.a : s.b, s.forward ? s.b : s.a));
-    // The two sides of a seam may differ in length; the sewn edge has their mean.
+    // The two edges of a seam may differ in length; the sewn edge has their mean.
     m.edges.push_back({s.a, s.b, rest / static_cast<double>(count), EdgeKind::Structural});
     m.areas_m2.push_back(area);
     k += count;
@@ -129,7 +129,7 @@ void add_edges(ClothMesh& m, const assets::MeshFile& file, const std::string& so
   m.edge_m = all;
 }
 
-/// Replaces every vertex in the place of an earlier one by that one; the others keep their order. Returns the number of
+/// Merges every vertex into the first one at the same position; the others keep their order. Returns the number of
 /// vertices removed.
 std::size_t weld(assets::MeshFile& file) {
   std::map<Vec3, std::uint32_t> places;
@@ -138,7 +138,7 @@ std::size_t weld(assets::MeshFile& file) {
   for (std::size_t v = 0; v < file.vertices.size(); ++v) {
     const Vec3& x = file.vertices[v];
     const auto next = static_cast<std::uint32_t>(kept.size());
-    // A vertex that is not finite is in no place; the checks of the cloth name it.
+    // A vertex that is not finite equals no other; the checks of the cloth report it.
     to.push_back(std::isfinite(edge_length(x)) ? places.emplace(x, next).first->second : next);
     if (to.back() != next) continue;
     kept.push_back(x);
@@ -153,7 +153,7 @@ std::size_t weld(assets::MeshFile& file) {
   return removed;
 }
 
-/// Vertices of the triangles of every group, ascending.
+/// Fills the groups: for each, the vertices of its triangles, ascending.
 void add_groups(ClothMesh& m, const assets::MeshFile& file) {
   for (const auto& [name, members] : file.groups) {
     std::set<std::uint32_t> vertices;
@@ -167,11 +167,11 @@ void notice_welded(const ClothMesh& m, const std::string& file) {
   static std::set<std::string> noticed;
   const std::lock_guard lock(mutex);
   if (m.welded_vertices == 0 || !noticed.insert(file).second) return;
-  fmt::print(stderr, "notice: {}: {} vertices lie where an earlier one does and were welded to it\n", file,
+  fmt::print(stderr, "notice: {}: {} vertices coincide with an earlier one and were welded to it\n", file,
              m.welded_vertices);
 }
 
-/// The vertex of "u0v1" and the like.
+/// The vertex that "u0v1" etc. names.
 std::uint32_t corner(const Cloth& c, const std::string& name) {
   const int i = name[1] == '1' ? c.columns - 1 : 0, j = name[3] == '1' ? c.rows - 1 : 0;
   return static_cast<std::uint32_t>(j * c.columns + i);
@@ -184,7 +184,7 @@ std::uint32_t nearest_vertex(const ClothMesh& m, const Vec3& point) {
   return static_cast<std::uint32_t>(best);
 }
 
-/// Whether the cell in column i and row j is cut along its other diagonal: scattered, but the same in every run.
+/// Whether the cell in column i and row j is cut along its other diagonal: irregular, but reproducible.
 bool turned(int i, int j) { return (7 * i + 5 * j + i * j) % 3 == 0; }
 
 }  // namespace
@@ -204,7 +204,7 @@ ClothMesh cloth_mesh(assets::MeshFile file, const std::string& source, std::vect
 std::shared_ptr<const ClothMesh> read_cloth_mesh(nlohmann::json& j, const std::string& source) {
   if (j.contains("drawn") == j.contains("file")) refuse(source, "/cloth/mesh", "expected either \"file\" or \"drawn\"");
   if (j.contains("drawn")) {
-    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh of a file, not one that is drawn");
+    if (j.contains("sha256")) refuse(source, "/cloth/mesh/sha256", "expected a mesh from a file, not a drawn one");
     return std::make_shared<const ClothMesh>(read_drawn_mesh(j["drawn"], source));
   }
   const fs::path file = needed_file(j["file"].get<std::string>(), source, "/cloth/mesh/file");

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// The half-space behind a point.
+// Plane: the half-space behind a point.
 
 void read_plane(const json& j, ColliderReader& reader, Collider& c) {
   c.shape = Collider::Shape::Plane;
@@ -109,7 +109,7 @@ SurfacePlace nearest_on_box(const Collider& box, const Vec3& p) {
 }
 
 ColliderSurface faces_of_box(const Collider& box, const ColliderPose&, const Extent&) {
-  // The bits of a corner's index are x, y, z. Each face is two triangles that share its diagonal.
+  // The three bits of a corner's index are x, y, z. A face consists of two triangles that share its diagonal.
   static const std::vector<std::array<std::uint32_t, 3>> kTriangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
                                                                        {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
                                                                        {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
@@ -137,9 +137,9 @@ ColliderKind box_kind() {
   return k;
 }
 
-// Dynamic capsules: one on a path, or the capsules of a hand.
+// Dynamic capsules: one capsule that follows a path, or the capsules of a hand.
 
-/// A capsule about `center` at a time: `length_m` along `axis` (a unit vector), turned by `spin` [rad/s] x time.
+/// A capsule of length `length_m` about `center` at a time, its unit `axis` rotated by `spin` [rad/s] x time.
 Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
                       const Vec3& spin, double time_s) {
   // Rodrigues' formula.
@@ -176,7 +176,7 @@ ColliderKind capsules_kind() {
   return k;
 }
 
-// Meshes: static triangles (from the scene, a prism or a room) and the skin of a hand.
+// Meshes: static triangles (in the scene, a prism or a room) and the skin of a hand.
 
 void read_cylinder(const json& j, ColliderReader& reader, Collider& c) {
   c.shape = Collider::Shape::Mesh;
@@ -201,7 +201,7 @@ void read_mesh(const json& j, ColliderReader& reader, Collider& c) {
   c.mesh = collider_mesh(m);
 }
 
-/// A user's capture is read as a file: it is not an asset, and no stand-in may replace it.
+/// A user's capture is read from its file: it is no asset, so no procedural stand-in may replace it.
 assets::Room room_of(const std::string& name, ColliderReader& reader) {
   if (!name.ends_with(".json")) return assets::open_room(reader.assets(), name);
   return assets::load_room(file_of_scene(name, reader.source()).value_or(name));
@@ -221,10 +221,10 @@ void read_room(const json& j, ColliderReader& reader, Collider& c) {
     round_table = assets::cut(room.mesh, box);
     if (round_table.triangles.empty()) reader.refuse("", "expected at least one triangle of the room in the box");
   } else if (cut != "none") {
-    reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" goes round one", cut));
+    reader.refuse("", fmt::format("\"table\" is missing; cut \"{}\" needs one", cut));
   }
   c.mesh = collider_mesh(cut == "none" ? room.mesh : round_table);
-  // The cloth is placed over the cut mesh even if the collider is the whole room, whose ceiling is above the cloth.
+  // Even if the collider is the whole room, the cloth is placed over the cut-out mesh, because the room has a ceiling.
   if (table) reader.table = {*table, *collider_mesh(round_table)};
 }
 

@@ -33,7 +33,7 @@ void ColliderReader::refuse(const std::string& key, const std::string& expected)
 }
 
 Vec3 ColliderReader::unit(const nlohmann::json& j, const std::string& key) const {
-  constexpr double kUnit = 1e-9;  // tolerance of the squared length
+  constexpr double kUnit = 1e-9;  // tolerance for the squared length
   const Vec3 v = vec3(j[key]);
   if (!(std::abs(dot(v, v) - 1) <= kUnit)) refuse("/" + key, "expected a vector of length 1");
   return v;
@@ -66,7 +66,7 @@ const assets::AssetSource& ColliderReader::assets() {
 
 namespace {
 
-/// Time [s] at full speed that gives the same displacement.
+/// Time [s] that gives the same displacement at full speed from the start.
 double ramped(double t, double ramp_s) {
   if (t >= ramp_s) return t - ramp_s / 2;
   return t / 2 - ramp_s / (2 * std::numbers::pi) * std::sin(std::numbers::pi * t / ramp_s);
@@ -83,7 +83,7 @@ ColliderPose pose_at(const MovingHand& m, bool as_mesh, double time_s) {
                  : capsules_pose(assets::capsules(now.pose), m.offset_m);
 }
 
-/// Refuses a radius of 0, which a runtime reports if it does not know it. The error points to the capsules or joints.
+/// Refuses a radius of 0, which a runtime reports for an unknown radius. The error points to the capsules or joints.
 void require_radii(const assets::HandRecording& recording, const std::string& file) {
   for (std::size_t f = 0; f < recording.frames.size(); ++f) {
     const auto capsules = assets::capsules(recording, recording.frames[f]);
@@ -96,7 +96,7 @@ void require_radii(const assets::HandRecording& recording, const std::string& fi
   }
 }
 
-/// A track or a recording in a file of its own.
+/// A track or a recording in its own file.
 MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const auto name = j["track"].get<std::string>();
   const std::filesystem::path file = needed_file(name, reader.source(), reader.pointer() + "/track");
@@ -162,14 +162,14 @@ std::optional<std::filesystem::path> file_of_scene(const std::string& name, cons
 std::filesystem::path needed_file(const std::string& name, const std::string& source, const std::string& pointer) {
   if (const auto found = file_of_scene(name, source)) return *found;
   refuse(source, pointer,
-         fmt::format("{}: no such file beside the scene or in {}", in_quotes(name), scenario_root().string()));
+         fmt::format("{}: no such file next to the scene or in {}", in_quotes(name), scenario_root().string()));
 }
 
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh& from) {
   auto mesh = std::make_shared<ColliderMesh>();
   mesh->positions = from.positions;
   mesh->triangles = from.triangles;
-  // The mesh of a room can be closed too, but its solid is outside: penetration depth has no meaning in it.
+  // A room's mesh can also be closed, but its solid is outside, so penetration depth is not defined.
   mesh->closed = assets::is_closed_manifold(from) && assets::signed_volume(from) > 0;
   return mesh;
 }

@@ -29,7 +29,7 @@ const ColliderType& type_of(const std::string& name) {
 
 using assets::Vector;
 
-/// The part of a polygon with f >= 0, f linear.
+/// Clips a polygon to f >= 0, f linear.
 template <class F>
 std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
   std::vector<Vector> out;
@@ -43,7 +43,7 @@ std::vector<Vector> clip(const std::vector<Vector>& polygon, F f) {
 }
 
 struct Edges {
-  Vector middle_of_long, along, across;  ///< a point [m]; two level unit vectors, `across` points off the table
+  Vector middle_of_long, along, across;  ///< a point [m]; two horizontal unit vectors, `across` away from the table
   Vector center;
 };
 
@@ -68,27 +68,27 @@ struct TablePose {
   Vec3 center_m{}, axis_u{}, axis_v{};
 };
 
-/// Level, centred on the table and aligned with its sides, `drop_m` above the highest point of `mesh` below the cloth.
-/// Throws Error if no part of the mesh is below the cloth.
+/// Horizontal, centred on the table, aligned with its sides, `drop_m` above the highest point of `mesh` below the
+/// cloth. Throws Error if no part of the mesh is below the cloth.
 TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m) {
   const Edges e = edges_of(table);
   const double highest =
       highest_below(mesh, {to_vec3(e.center), {to_vec3(e.along), to_vec3(e.across)}, {cloth.width_m, cloth.height_m}});
   if (!std::isfinite(highest))
     throw Error("/cloth/pose/over_table: expected a part of the table's mesh below the cloth");
-  // axis_u x axis_v points down, as for the sheet of the other scenes: u, v = x, z.
+  // axis_u x axis_v points down, as for the sheets of other scenes with (u, v) = (x, z).
   Vector v = e.along.cross(Vector::UnitY());
   return {{e.center.x(), highest + drop_m, e.center.z()}, to_vec3(e.along), to_vec3(v)};
 }
 
 /// Corner first: the lowest corner is `drop_m` above the table and `inset_m` inside the middle of a long edge. One
-/// diagonal rises at `tilt` [rad] along that edge; the other is level and across it, so that half the cloth is beyond
-/// the edge if `inset_m` is 0.
+/// diagonal rises at `tilt` [rad] along that edge. The other is horizontal and perpendicular to it, so that half of the
+/// cloth is beyond the edge if `inset_m` is 0.
 TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt,
                             double inset_m) {
   const Edges e = edges_of(table);
   const Vector rising = std::cos(tilt) * e.along + std::sin(tilt) * Vector::UnitY();
-  // The lowest corner is u0v0. The sheet's diagonal from it rises; u and v are at 45 degrees to that diagonal.
+  // The lowest corner is u0v0. The diagonal from it rises; u and v are at 45 degrees to it.
   const Vector u = (rising + e.across) / std::sqrt(2.0), v = (rising - e.across) / std::sqrt(2.0);
   const Vector lowest = e.middle_of_long - inset_m * e.across + drop_m * Vector::UnitY();
   return {to_vec3(Vector(lowest + cloth.width_m / 2 * u + cloth.height_m / 2 * v)), to_vec3(u), to_vec3(v)};
@@ -180,7 +180,7 @@ class StageReader {
   Grip hand_grip(const json& j) {
     Grip g;
     g.by = moving_hand(j, reader_, false);
-    if (g.by->recording) reader_.refuse("/track", "a recorded hand holds nothing; expected a hand track");
+    if (g.by->recording) reader_.refuse("/track", "a recorded hand cannot hold cloth; expected a hand track");
     const assets::HandSample start = assets::sample(g.by->track, *g.by->hand, 0);
     if (!start.grip)
       reader_.refuse("/track", "expected \"grip\": true in the first key; this hand holds nothing at time 0");
@@ -197,7 +197,7 @@ class StageReader {
     return g;
   }
 
-  /// Held vertices move rigidly with this frame: its origin is the pinch point, its rotation is the palm's.
+  /// Attached vertices move rigidly with this frame: origin at the pinch point, rotation of the palm.
   static assets::Frame pinch_frame(const assets::HandPose& pose) {
     assets::Frame f = assets::palm_frame(pose);
     f.translation() = assets::pinch_point(pose);

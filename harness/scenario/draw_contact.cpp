@@ -23,7 +23,7 @@ constexpr double kGravity_m_per_s2 = 9.81;
 
 double scaled_unit(double x) { return std::round(x * 1e12) / 1e12; }
 
-/// Axes of a cloth that lies level, turned by a yaw, and tilted about a level axis.
+/// Axes of a level cloth after a random yaw and a random tilt about a horizontal axis.
 std::array<Vec3, 2> draw_axes(DrawnValues& draw) {
   const double yaw = draw.between("yaw_deg") * pi / 180, tilt = draw.between("tilt_deg") * pi / 180,
                about = draw.between("yaw_deg", "tilt_about_deg") * pi / 180;
@@ -35,7 +35,7 @@ std::array<Vec3, 2> draw_axes(DrawnValues& draw) {
   return out;
 }
 
-/// Places the cloth with its lowest point `height_m` above `below_m`, over (x, z).
+/// Places the cloth over (x, z) with its lowest point at height `lowest_m`.
 void place(json& scene, const std::array<Vec3, 2>& axes, double x, double z, double lowest_m) {
   json& cloth = scene["cloth"];
   const double reach = (cloth["size_m"][0].get<double>() * std::abs(axes[0][1]) +
@@ -44,7 +44,7 @@ void place(json& scene, const std::array<Vec3, 2>& axes, double x, double z, dou
   cloth["pose"] = {{"center_m", rounded(Vec3{x, lowest_m + reach, z})}, {"axis_u", axes[0]}, {"axis_v", axes[1]}};
 }
 
-/// A throw in any direction that does not go up. Returns its speed.
+/// A random initial velocity that does not point upwards. Returns the speed.
 double draw_throw(json& scene, DrawnValues& draw) {
   const double speed = draw.between("throw_m_per_s"), round = draw.dice().between(0, 2 * pi),
                down = std::asin(draw.dice().unit());
@@ -59,7 +59,7 @@ double after_fall(double speed, double height_m) {
   return std::hypot(speed, std::sqrt(2 * kGravity_m_per_s2 * height_m));
 }
 
-/// A box, since some solvers do not know planes.
+/// Adds a box, because some solvers do not support planes.
 void add_floor(json& scene, double x, double top_m, double z) {
   json floor = {{"type", "box"},
                 {"center_m", rounded(Vec3{x, top_m - kFloorDepth_m / 2, z})},
@@ -69,7 +69,7 @@ void add_floor(json& scene, double x, double top_m, double z) {
   scene["colliders"].push_back(std::move(floor));
 }
 
-/// How far a turned box reaches above its centre.
+/// Height of a rotated box above its centre.
 double reach_up(const std::array<Vec3, 3>& turn, const Vec3& size_m) {
   return (std::abs(turn[1][0]) * size_m[0] + std::abs(turn[1][1]) * size_m[1] + std::abs(turn[1][2]) * size_m[2]) / 2;
 }
@@ -98,7 +98,7 @@ double draw_shape(json& scene, DrawnValues& draw) {
 }
 
 void draw_start(json& scene, DrawnValues& draw) {
-  // More than this share of a link would stretch some at the start by more than the bound of the run allows.
+  // As a fraction of an edge. More noise would strain some edges at the start beyond the limit of `expect`.
   constexpr double kMostNoise = 0.05;
   const json& cloth = scene["cloth"];
   const double link = cloth["size_m"][0].get<double>() / (cloth["grid"][0].get<int>() - 1);
@@ -118,11 +118,11 @@ double draw_fold(json& scene, DrawnValues& draw) {
   return after_fall(0, height);
 }
 
-/// A range of positive numbers that spans a decade or more is sampled by its logarithm, because stiffness, density and
+/// A range of positive numbers that spans at least a decade is sampled logarithmically, because stiffness, density and
 /// size have no natural scale.
 bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
 
-/// Each range is a dotted key of the scene.
+/// Samples each range; its name is a dotted key of the scene.
 double draw_keys(json& scene, DrawnValues& draw) {
   for (const auto& [key, unused] : draw.ranges().items()) {
     const auto [low, high] = draw.bounds(key);
@@ -132,8 +132,8 @@ double draw_keys(json& scene, DrawnValues& draw) {
   return 0;
 }
 
-/// Point `index` of a sequence that fills the unit cube evenly in its first kBoxSides coordinates; one point of ten is
-/// moved to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
+/// Point `index` of a sequence that fills the unit cube evenly in its first kBoxSides coordinates; a random tenth of
+/// the points moves to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences.
 class BoxPoint {
  public:
   explicit BoxPoint(std::uint64_t index) : index_(index), corner_(Dice(index, "corner").unit() < kCorners) {
@@ -154,7 +154,7 @@ class BoxPoint {
   double root_ = 1, power_ = 1;
 };
 
-/// The value at the fraction `u` of a range or of a list of words; whole if both bounds are and `may_be_whole`.
+/// The value at the fraction `u` of a range or a list of words; an integer if both bounds are and `may_be_whole`.
 json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
   const auto words = static_cast<std::size_t>(
       std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));
@@ -169,7 +169,7 @@ json at_point(const json& range, double u, bool may_be_whole, const std::string&
                                                                                       : json(rounded(x));
 }
 
-/// Draws first what all kinds of the study share, so that the kinds of one round have the same values of it.
+/// Samples what all kinds of the study share first, so that the kinds of one round share these values.
 void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
   if (!kind.box.contains("settings") || kind.box["settings"].empty())
     throw Error(kind.at + "/how: \"box\" needs \"box\" of the study, with \"settings\" of a solver");
@@ -201,7 +201,7 @@ double draw_crumple(json& scene, DrawnValues& draw) {
   return after_fall(thrown, height);
 }
 
-/// Replaces ranges by the quick form's ranges of the same name.
+/// Replaces ranges by the ranges of the same name in the quick form.
 void narrow(json& ranges, const json& quick) {
   for (auto& [name, range] : ranges.items())
     if (quick.contains(name)) range = quick[name];
@@ -209,7 +209,7 @@ void narrow(json& ranges, const json& quick) {
 
 }  // namespace
 
-/// All tables of all rooms, with the meshes that a scene cuts out around them. Read once, because reading is slow.
+/// All tables of all rooms, with the meshes that a scene cuts out around them. Cached, because reading is slow.
 struct ContactDrawer::Tables {
   struct Place {
     std::string room;
@@ -219,7 +219,7 @@ struct ContactDrawer::Tables {
   std::vector<Place> places;
 
   Tables(const assets::AssetSource& source, double below_m, double above_m) {
-    // Procedurally, all names are one room.
+    // With procedural assets, all names give the same room.
     for (const std::string_view name : assets::kRoomNames) {
       const assets::Room room = assets::open_room(source, std::string(name));
       for (const assets::Table& t : room.tables) {
@@ -254,7 +254,7 @@ struct ContactDrawer::Tables {
 
 ContactKind contact_kind(const json& entry, const std::filesystem::path& base, const std::string& at, const json& quick,
                          const json& box) {
-  if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing, for protocol contact");
+  if (!entry.contains("draw")) throw Error(at + ": \"draw\" is missing; protocol contact needs it");
   const json& draw = entry["draw"];
   ContactKind kind{draw["kind"],   draw["how"],  parse_json(read_text(base), base.string()),
                    draw["ranges"], at + "/draw", box};
@@ -294,7 +294,7 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
         {"shape", draw_shape}, {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
         {"fold", draw_fold},   {"crumple", draw_crumple}, {"keys", draw_keys}};
     const auto how = std::find_if(std::begin(kHow), std::end(kHow), [&](const auto& h) { return kind.how == h.first; });
-    if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": nothing draws that");
+    if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": no generator has this name");
     speed = how->second(scene, draw);
   }
   if (kind.how != "box") draw.check_all_used();
@@ -305,7 +305,7 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
                          {"assets", source_.kind()},
                          {"speed_m_per_s", rounded(speed)},
                          {"values", draw.values()}});
-  // They describe the paper's scene, and a drawn scene is another one.
+  // These keys describe the paper's scene, not the generated one.
   for (const char* key : {"paper", "assumed"}) scene.erase(key);
   return scene;
 }
@@ -358,8 +358,8 @@ int DrawnValues::whole(const std::string& name) {
 void DrawnValues::check_all_used() const {
   for (const auto& [name, unused] : ranges_.items())
     if (!used_.contains(name))
-      throw Error(fmt::format("{}/{}: nothing is drawn from it{}", at_, name,
-                              nearest_known(name, {used_.begin(), used_.end()})));
+      throw Error(
+          fmt::format("{}/{}: this range is not used{}", at_, name, nearest_known(name, {used_.begin(), used_.end()})));
 }
 
 }  // namespace clothbench

@@ -1,4 +1,4 @@
-// Hands of drawn scenes: keys of a track, for a cloth of 1 m that hangs in z = 0 with its middle at the origin.
+// Hands of random scenes: keys of a track, for a cloth of 1 m that hangs in z = 0 with its middle at the origin.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,10 +13,10 @@ using nlohmann::json;
 using std::numbers::pi;
 
 constexpr double kSettle_s = 0.5, kApproach_s = 0.4, kAway_s = 1;
-constexpr double kAway_m = 0.35;  ///< palm to cloth: no finger touches it, however the hand is turned
+constexpr double kAway_m = 0.35;  ///< distance of palm and cloth at which no finger touches, in any orientation
 constexpr double kFrameRate_hz = 72, kSpeedOfLongestFrames_m_per_s = 5;
 
-/// Keys of a track, one after another.
+/// Builds the keys of a track one after another.
 class Track {
  public:
   Track(std::string side, std::string why) : j_{{"hand", side}, {"why", why}, {"keys", json::array()}} {}
@@ -38,7 +38,7 @@ void set_time(json& scene, double end_s, double speed_m_per_s) {
   scene["time"] = {{"frame_rate_hz", rate}, {"duration_s", rounded(std::ceil(end_s * rate - 1e-6) / rate)}};
 }
 
-/// Draws left or right, a blend of two poses, and any orientation.
+/// Samples left or right hand, a blend of two poses, and any orientation.
 void draw_pose(json& first_key, json& track, DrawnValues& draw) {
   const auto pose = [&] { return std::string(assets::kPoseNames[static_cast<std::size_t>(draw.dice().whole(0, 2))]); };
   track["hand"] = draw.dice().whole(0, 1) == 0 ? "left" : "right";
@@ -120,7 +120,7 @@ double draw_stretch(json& scene, DrawnValues& draw) {
     t.go(kHold_s, there);
     t.go(kOpen_s, there)["pose"] = "relaxed";
     t.go(kAway_s, there);
-    // With a radius above half a cell, the hand reaches a vertex of the edge anywhere.
+    // With a radius above half a cell, the hand grips at least one vertex anywhere along the edge.
     scene["grips"].push_back({{"track", t.object()}, {"radius_m", rounded(0.55 * 2 * kHalfWidth_m / cells)}});
     set_time(scene, t.end_s(), speed);
   }

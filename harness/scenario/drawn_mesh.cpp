@@ -20,11 +20,11 @@ double twice_area(const std::vector<Point>& p, const Triangle& t) {
   return (p[t[1]][0] - p[t[0]][0]) * (p[t[2]][1] - p[t[0]][1]) - (p[t[1]][1] - p[t[0]][1]) * (p[t[2]][0] - p[t[0]][0]);
 }
 
-/// Coordinates in whole units, so that the test below is exact: on a lattice four points often lie on one circle.
+/// Integer coordinates make the test below exact, because on a lattice four points often lie on one circle.
 using Exact = __int128;
 using Place = std::array<std::int64_t, 2>;
 
-/// Whether the circle round a triangle has point v inside. Places below 2^29 do not overflow.
+/// Whether the circumcircle of a triangle contains point v. Coordinates below 2^29 do not overflow.
 bool circle_holds(const std::vector<Place>& p, const Triangle& t, std::uint32_t v) {
   Exact m[3][3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -37,8 +37,8 @@ bool circle_holds(const std::vector<Place>& p, const Triangle& t, std::uint32_t 
          0;
 }
 
-/// Delaunay triangles of points that are not all on one line, wound alike. Triangles flatter than a thousandth of a
-/// square of side `cell` are left out: they lie along straight borders.
+/// Delaunay triangles of points that are not collinear, consistently wound. Omits triangles with less than a thousandth
+/// of the area of a square of side `cell`: slivers along straight borders.
 std::vector<Triangle> delaunay(const std::vector<Point>& p, double cell) {
   const auto n = static_cast<std::uint32_t>(p.size());
   constexpr std::int64_t kLongest = 1 << 22, kFar = 64 * kLongest;

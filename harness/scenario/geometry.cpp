@@ -10,7 +10,7 @@
 namespace clothbench {
 namespace {
 
-/// Width [cells] that belongs to grid line `i` of `n`: 1, or half a cell at the border.
+/// Width [cells] that grid line `i` of `n` stands for: 1, or 0.5 at the border.
 double share(int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; }
 
 /// Angle between neighbouring chords of an arc of n equal chords whose ends are `span` chords apart:
@@ -25,8 +25,8 @@ double chord_angle(int n, double span) {
   return high;
 }
 
-/// Position [m] of grid line `i` of an arc whose n cells are equal chords of a circle: along the chord between the
-/// ends, measured from its middle, and below that chord.
+/// Position [m] of grid line `i` on an arc whose cells are equal chords of a circle: along the chord between the arc's
+/// ends, from its middle, and below that chord.
 std::pair<double, double> on_arc(const Cloth& c, int i) {
   const int n = c.columns - 1;
   const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
@@ -49,7 +49,7 @@ std::vector<double> mesh_masses(const Cloth& c) {
   return mass;
 }
 
-/// The grid line `inwards` lines from an edge.
+/// The grid line `inwards` lines away from an edge.
 std::vector<std::uint32_t> grid_line(const Cloth& c, const std::string& edge, int inwards) {
   const bool along_v = edge[0] == 'u';
   const int last = (along_v ? c.columns : c.rows) - 1, fixed = edge[1] == '0' ? inwards : last - inwards;
@@ -146,8 +146,8 @@ std::array<Vec3, 3> rest_corners(const ClothMesh& m, std::size_t triangle) {
 double drape_turn_rad(const Cloth& c) { return 2 * std::asin(c.du() / (2 * c.drape_radius_m)); }
 
 Vec3 draped_row(const Cloth& c, int i, double offset_m) {
-  // Angles count from the horizontal on side u0. A row less than turn / 2 below the axis is as far from it if it hangs
-  // as if it touches, so both rules agree there.
+  // Angles count from the horizontal on side u0. Less than turn / 2 below the axis, a row has the same distance from it
+  // whether it hangs or touches, so both rules agree there.
   const double turn = drape_turn_rad(c), middle = (c.columns - 1) / 2.0 - offset_m / c.du();
   const auto angle_of = [&](double row) { return std::numbers::pi / 2 + (row - middle) * turn; };
   const double slack = 1e-9 * turn;
@@ -173,7 +173,7 @@ std::vector<double> vertex_masses(const Scene& scene) {
   const double cell = c.areal_density_kg_per_m2 * c.du() * c.dv();
   std::vector<double> mass;
   mass.reserve(c.vertex_count());
-  // Half the width of each neighbouring cell. Even cells use share(), so that rounding does not change them.
+  // Half the width of each neighbouring cell. Equal cells use share(), so that rounding does not change them.
   const auto width = [&](int i) {
     if (c.column_factors.empty()) return share(i, c.columns);
     return (c.line_u_m(std::min(i + 1, c.columns - 1)) - c.line_u_m(std::max(i - 1, 0))) / 2 / c.du();

@@ -42,7 +42,7 @@ class IrregularReader {
                    right = line < c.column_factors.size() ? c.column_factors[line] : 0;
       if (!(left + right > 0))
         refuse(source_, "/cloth/column_factors",
-               fmt::format("grid line {}: expected a cell of width above 0 beside it; its vertices would have no mass",
+               fmt::format("grid line {}: expected a cell of width above 0 next to it; its vertices would have no mass",
                            line));
     }
     if (c.span_m > 0)
@@ -116,7 +116,7 @@ class IrregularReader {
   const std::string& source_;
 };
 
-/// Element `n` of the van der Corput sequence in base 2, in [0, 1). A seed is an offset of `n`: no generator state.
+/// Element `n` of the van der Corput sequence in base 2, in [0, 1). Seeds are offsets of `n`, so no state is needed.
 double scattered(std::uint64_t n) {
   double out = 0, half = 0.5;
   for (; n > 0; n >>= 1, half /= 2)

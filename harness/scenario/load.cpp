@@ -24,7 +24,7 @@ using nlohmann::json;
 constexpr std::size_t kMostVertices = std::size_t{1} << 22;
 constexpr double kMostFrames = 1e7;
 constexpr std::size_t kMostName = 100;
-constexpr std::size_t kShown = 200;  // bytes of an argument in a message
+constexpr std::size_t kShown = 200;  // bytes of an argument that a message shows
 
 Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   std::set<std::uint32_t> pinned;
@@ -33,7 +33,7 @@ Pins read_pins(const json& list, const Cloth& c, const std::string& source) {
   return {{pinned.begin(), pinned.end()}};
 }
 
-/// Reads either a grid and its size or a mesh.
+/// Reads the cloth's shape: a grid with its size, or a mesh.
 void read_shape(json& j, Cloth& c, const std::string& source, const SceneParts& parts) {
   if (j.contains("mesh")) {
     for (const char* of_grids : {"grid", "size_m", "column_factors"})
@@ -93,11 +93,11 @@ Cloth read_cloth(json& j, const std::string& source, const SceneParts& parts) {
       refuse(source, std::string("/cloth/pose/") + name, "expected a vector of length 1");
   }
   if (!(std::abs(dot(c.axis_u, c.axis_v)) <= kOrthonormal))
-    refuse(source, "/cloth/pose/axis_v", "expected a vector at right angles to axis_u");
+    refuse(source, "/cloth/pose/axis_v", "expected a vector perpendicular to axis_u");
   return c;
 }
 
-/// Needs the cells of the cloth: a thickness above the smallest height of a triangle would make a flat cloth touch
+/// Call after the cells are known: a thickness above the smallest height of a triangle would let a flat cloth touch
 /// itself.
 void read_self_collision(const json& cloth, Cloth& c, const std::string& source) {
   if (!cloth.contains("self_collision")) return;
@@ -111,7 +111,7 @@ void read_self_collision(const json& cloth, Cloth& c, const std::string& source)
                        most, c.self_collision.thickness_m));
 }
 
-/// The schema checks the names; this checks that the lower bound is not above the upper one.
+/// The schema checks the names; this function checks that lower bounds are not above upper ones.
 void read_expect(const json& j, Scene& s, const std::string& source) {
   for (const auto& [name, bounds] : j.items()) {
     if (name == "outcome") {
@@ -144,7 +144,7 @@ void check_assumed(const json& scenario, const std::string& source) {
 
 bool is_json(const std::filesystem::path& file) { return lower_case(file.extension().string()) == ".json"; }
 
-/// All files but schemas and assets: "paper/gravity", "studies/table3".
+/// All scenario files except schemas and assets: "paper/gravity", "studies/table3".
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
   std::error_code ec;
@@ -166,7 +166,7 @@ bool rubs(const Scene& scene) {
          std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.friction > 0; });
 }
 
-/// Member `key` of an object, created if it is missing, or item number `key` of an array.
+/// Member `key` of an object, created if missing, or item `key` of an array.
 json& child(json& of, const std::string& key, const std::string& where) {
   if (of.is_object() || of.is_null()) return of[key];
   if (!of.is_array()) throw Error(where + ": expected a key of an object");
@@ -183,7 +183,7 @@ bool any_collider(const Scene& s) {
 
 bool touches(const Scene& s) { return !s.colliders.empty(); }
 bool always(const Scene&) { return true; }
-/// Cloth that a hand has stretched springs back when the hand releases it, and that is no fault.
+/// Stretched cloth may spring back when a hand releases it, which is no fault.
 bool lets_go_of_nothing(const Scene& s) { return s.grips.vertices.empty(); }
 bool meets_itself(const Scene& s) { return s.needs.has(Feature::SelfCollision); }
 
@@ -205,7 +205,7 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
     }
   if (std::filesystem::exists(name_or_path, ec)) return name_or_path;
   std::vector<std::string> names = scenario_names();
-  for (std::string& known : names) {  // tables show the name in the file
+  for (std::string& known : names) {  // tables show the "name" in the file
     const std::filesystem::path file = scenario_root() / (known + ".json");
     if (known.starts_with("studies/")) known.erase(0, 8);
     const json scene =

@@ -27,13 +27,13 @@ using Words = std::vector<std::string>;
   throw Error(fmt::format("{}: line {}: {}", source, line, what));
 }
 
-/// The statements of a file that define geometry and names, one per line, and the lines on which they began.
+/// A file's statements that define geometry and names, one per line, and their line numbers in the file.
 struct Statements {
   std::string text;
   std::vector<std::uint32_t> vertices, faces;
 };
 
-/// The OBJ library reads any other word as 0, so a NaN would count as a position; it reads hexadecimal digits as 0 too.
+/// Checks numbers, because the OBJ library reads any other word, NaN and hexadecimal digits included, as 0.
 void check_numbers(const Words& words, std::size_t least, std::size_t most, const std::string& source,
                    std::uint32_t line) {
   if (words.size() <= least)
@@ -46,10 +46,10 @@ void check_numbers(const Words& words, std::size_t least, std::size_t most, cons
   }
 }
 
-/// Corners are 1, 1/2, 1//3 or 1/2/3. The library would read the start of any other word, or overflow.
+/// Checks corners: 1, 1/2, 1//3 or 1/2/3. Of other words the library would read the start, or overflow.
 void check_corners(const Words& words, const std::string& source, std::uint32_t line) {
   constexpr std::size_t kMostDigits = 9;
-  if (words.size() < 4) refuse_line(source, line, "expected at least three corners of a face");
+  if (words.size() < 4) refuse_line(source, line, "expected at least three corners in a face");
   for (std::size_t k = 1; k < words.size(); ++k) {
     bool good = std::count(words[k].begin(), words[k].end(), '/') <= 2;
     std::size_t length = 0;
@@ -63,8 +63,8 @@ void check_corners(const Words& words, const std::string& source, std::uint32_t 
   }
 }
 
-/// Joins continued lines and drops the mark of UTF-8, comments, and all content that is no geometry (materials, skin
-/// weights, curves): it is untrusted and stays unread. A lone carriage return ends a line too, as in the OBJ library.
+/// Joins continued lines and drops the UTF-8 mark, comments, and all statements other than geometry (materials, skin
+/// weights, curves), because the input is untrusted. A lone carriage return also ends a line, as in the OBJ library.
 Statements statements_of(std::string_view text, const std::string& source) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::string lines;
@@ -94,18 +94,18 @@ Statements statements_of(std::string_view text, const std::string& source) {
     } else if (words[0] != "g" && words[0] != "o") {
       continue;
     }
-    out.text += fmt::format("{}{}\n", fmt::join(words, " "), words.size() == 1 ? " " : "");  // as the library needs it
+    out.text += fmt::format("{}{}\n", fmt::join(words, " "), words.size() == 1 ? " " : "");  // for the library
   }
   return out;
 }
 
 struct Face {
   std::vector<std::uint32_t> corners;  ///< vertices
-  Words names;                         ///< its groups, and its object
+  Words names;                         ///< its groups and its object
   std::uint32_t line;
 };
 
-/// Receives what the library reads. An index counts from 1, or backwards from the last item so far if it is negative.
+/// Receives the library's output. An index counts from 1, or if negative backwards from the last item so far.
 struct Reader {
   const std::string& source;
   const Statements& statements;
@@ -159,7 +159,7 @@ tinyobj::callback_t callbacks() {
 
 using Point = std::array<double, 2>;
 
-/// Twice the signed area of a triangle; 0 within the rounding error of the difference.
+/// Twice the signed area of a triangle; 0 if the difference is within its rounding error.
 double turn(const Point& a, const Point& b, const Point& c) {
   constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
   const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
@@ -168,7 +168,7 @@ double turn(const Point& a, const Point& b, const Point& c) {
 
 double square(const Point& a, const Point& b) { return std::pow(b[0] - a[0], 2) + std::pow(b[1] - a[1], 2); }
 
-/// Whether c, on the line of a and b, is between them or at one of them.
+/// Whether c, collinear with a and b, lies between them or on one of them.
 bool between(const Point& a, const Point& b, const Point& c) {
   return std::min(a[0], b[0]) <= c[0] && c[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= c[1] &&
          c[1] <= std::max(a[1], b[1]);
@@ -181,8 +181,8 @@ bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
          (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
 }
 
-/// The polygon as seen along the axis nearest to its normal, so that it runs counter-clockwise. Dropping a coordinate
-/// rounds nothing: corners on one line stay on one line.
+/// Projection of a polygon along the axis nearest to its normal, counter-clockwise. Dropping a coordinate does not
+/// round, so collinear corners stay collinear.
 std::vector<Point> seen_along_normal(const std::vector<Vec3>& corners) {
   Vec3 normal{};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k)
@@ -196,7 +196,7 @@ std::vector<Point> seen_along_normal(const std::vector<Vec3>& corners) {
   return out;
 }
 
-/// The first side that meets another one, where neighbours may share only their corner; the number of sides if none.
+/// The first side that meets another one (neighbours may share only their corner); the number of sides if none does.
 std::size_t crossing_side(const std::vector<Point>& p) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -208,7 +208,7 @@ std::size_t crossing_side(const std::vector<Point>& p) {
   return n;
 }
 
-/// Cuts ears off until a triangle is left.
+/// Cuts off ears until one triangle is left.
 class Clipping {
  public:
   Clipping(const std::vector<Point>& points, double flat) : p_(points), flat_(flat) {
@@ -236,7 +236,7 @@ class Clipping {
  private:
   std::uint32_t at(std::size_t k) const { return left_[k % left_.size()]; }
 
-  /// Twice the area of a corner's triangle over the square of its longest side; 0 where the corner is not convex.
+  /// Twice the area of a corner's triangle over the square of its longest side; 0 if the corner is not convex.
   double quality(std::size_t k) const {
     const Point &a = p_[at(k + left_.size() - 1)], &b = p_[at(k)], &c = p_[at(k + 1)];
     const double q = turn(a, b, c) / std::max({square(a, b), square(b, c), square(c, a)});
@@ -272,12 +272,12 @@ assets::MeshFile read_obj(const std::string& text, const std::string& source) {
   return out;
 }
 
-// Debian has no earcut, CGAL's triangulations are GPL, and the polygon code of tinyobjloader cuts outside concave
-// faces.
+// Written here because Debian has no earcut, CGAL's triangulations are GPL, and tinyobjloader's polygon code cuts
+// outside concave faces.
 std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& corners, const std::string& where) {
   if (corners.size() > kMostCorners)
     throw Error(fmt::format("{}: a face of {} corners; expected at most {}", where, corners.size(), kMostCorners));
-  std::vector<std::uint32_t> number;  // of each corner that is not at the one before it
+  std::vector<std::uint32_t> number;  // index of each corner that differs from the one before it
   std::vector<Vec3> kept;
   for (std::uint32_t k = 0; k < corners.size(); ++k)
     if (kept.empty() || (corners[k] != kept.back() && (k + 1 < corners.size() || corners[k] != kept.front()))) {
@@ -293,7 +293,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& 
         fmt::format("{}: the outline of the face crosses or touches itself at the side from corner {}; "
                     "expected a simple polygon",
                     where, number[side] + 1));
-  // Thinner triangles than the first limit are cut where nothing else is left.
+  // Triangles thinner than the first limit are cut only if there is no other ear.
   std::vector<std::array<std::uint32_t, 3>> out;
   if (!Clipping(points, 1e-6).cut(out) && !Clipping(points, 0).cut(out))
     throw Error(where + ": the face is too thin to be cut into triangles");

@@ -1,4 +1,4 @@
-// Initial positions and velocities of the vertices, and the starts of a scene other than a sheet at rest.
+// Initial positions and velocities of the vertices, for sheets at rest and all other starts.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-/// SplitMix64 (Steele, Lea & Flood 2014), one stream per vertex, so that pins elsewhere do not change its numbers.
+/// SplitMix64 (Steele, Lea & Flood 2014), one stream per vertex, so that pins do not change other vertices' numbers.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stream)
@@ -34,14 +34,14 @@ class Random {
   std::uint64_t state_;
 };
 
-/// The sheet, or the box round a mesh: lowest coordinate and extent [m] along u.
+/// Extent along u of the sheet, or of a mesh's bounding box: lowest coordinate and length [m].
 struct AlongU {
   double low, width;
 };
 
 AlongU along_u(const Cloth& c) {
   if (!c.mesh) return {-c.width_m / 2, c.width_m};
-  const auto [low, high] = std::ranges::minmax(c.mesh->vertices);  // by u first
+  const auto [low, high] = std::ranges::minmax(c.mesh->vertices);  // compares by u first
   return {low[0], high[0] - low[0]};
 }
 
@@ -69,7 +69,7 @@ Vec3 shaped(const Cloth& c, int i, Random& random) {
   return {};
 }
 
-/// Folded coordinate [m] along u, from the lowest: a triangular wave whose half period is one layer.
+/// Folded coordinate [m] along u, from the lowest: a triangle wave whose half period is one layer.
 double folded_u(double u, double width_m, int folds) {
   const double leaf = width_m / folds, in_pair = std::fmod(u, 2 * leaf);
   return in_pair <= leaf ? in_pair : 2 * leaf - in_pair;

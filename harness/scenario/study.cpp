@@ -19,44 +19,44 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr double kFpsAccuracy_s = 0.5;
-constexpr int kQuickRatio = 8;  ///< of the values on a ladder: every third of those in the full form
-constexpr std::uint64_t kGreatestSeed = std::uint64_t{1} << 53;  ///< what every reader of JSON keeps
+constexpr int kQuickRatio = 8;  ///< ratio of successive values in a settings sweep (full form: 2)
+constexpr std::uint64_t kGreatestSeed = std::uint64_t{1} << 53;  ///< largest integer that JSON readers keep exactly
 
 StudyRules read_rules(const json& j) {
   return {j["frames"].get<int>(), j["min_frames"].get<int>(), j["max_wall_s"].get<double>(),
           j["warmup_s"].get<double>(), j["agree"].get<double>()};
 }
 
-/// Converts {"cloth.sides": "double"} to the form of `--set`.
+/// Converts {"cloth.sides": "double"} to arguments as for `--set`.
 Words assignments(const json& set) {
   Words out;
   for (const auto& [key, value] : set.items()) out.push_back(key + "=" + value.dump());
   return out;
 }
 
-/// Whether the choice has one of the tags. An empty choice accepts all.
+/// Whether the choice contains one of the tags. An empty choice accepts all tags.
 bool chosen(const json& choice, const Words& tags) {
   return choice.empty() ||
          std::any_of(choice.begin(), choice.end(), [&](const json& c) { return contains(tags, c.get<std::string>()); });
 }
 
-/// One form of a scene of a study: a choice of a value on each axis.
+/// One combination of values on a scene's axes.
 struct Variant {
   std::string suffix;     ///< of the scene's name: "-32-single"
-  Words overrides, tags;  ///< overrides: as `--set` takes them; tags: labels of its values
+  Words overrides, tags;  ///< overrides: as for `--set`; tags: labels of its values
 };
 
 void check_lengths(const json& axis, std::size_t a, const std::string& pointer, const std::string& source) {
   if (axis["values"].size() != axis["labels"].size())
-    throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label a value, {}; found {}", source, pointer, a,
+    throw Error(fmt::format("{}: {}/axes/{}/labels: expected one label per value, {}; found {}", source, pointer, a,
                             axis["values"].size(), axis["labels"].size()));
   for (const auto& [key, values] : axis["with"].items())
     if (values.size() != axis["values"].size())
-      throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one value each of the axis, {}; found {}", source,
+      throw Error(fmt::format("{}: {}/axes/{}/with/{}: expected one per value of the axis, {}; found {}", source,
                               pointer, a, key, axis["values"].size(), values.size()));
 }
 
-/// An override of the key would give all values of the axis the same scene.
+/// Refuses an override of the axis's key, which would give all values of the axis the same scene.
 void check_free(const json& axis, const std::vector<std::string>& set) {
   const std::string start = axis["key"].get<std::string>() + "=";
   for (const std::string& item : set)
@@ -72,9 +72,9 @@ Variant with_value(Variant v, const json& axis, std::size_t k) {
   return v;
 }
 
-/// Cartesian product of a scene's axes; the first varies slowest. Throws Error naming `source` and the JSON pointer if
-/// the numbers of values and labels differ, or if there would be more than `kMostRuns` scenes; and Error if one of
-/// `set` (`key=value`, as in `--set`) is the key of an axis.
+/// Cartesian product of a scene's axes; the first varies slowest. Throws Error with `source` and JSON pointer if the
+/// numbers of values and labels differ or if there would be more than `kMostRuns` scenes, and Error if one of `set`
+/// (`key=value`, as in `--set`) is the key of an axis.
 std::vector<Variant> expand(const json& axes, const std::string& pointer, const std::string& source,
                             const std::vector<std::string>& set) {
   std::vector<Variant> all(1);
@@ -97,7 +97,7 @@ std::vector<Variant> expand(const json& axes, const std::string& pointer, const 
   return all;
 }
 
-/// Builds a Study from its completed file.
+/// Builds a Study from its completed JSON.
 class Builder {
  public:
   Builder(json definition, const std::filesystem::path& file, const StudyOptions& options)
@@ -158,8 +158,8 @@ class Builder {
     }
   }
 
-  /// The solver with each combination of its ladder settings, in order of increasing work; only the solver itself if
-  /// `knobs` is empty.
+  /// The solver with each combination of its sweep settings, by increasing work; if `knobs` is empty, only the solver
+  /// itself.
   std::vector<StudySolver> climb(const StudySolver& solver, const Words& knobs, const std::string& at) const {
     if (knobs.empty()) return {solver};
     if (!j_.contains("ladder")) throw Error(at + ": the study has no \"ladder\"");
@@ -187,14 +187,14 @@ class Builder {
     return rungs;
   }
 
-  /// Tags of the scenes that each solver runs in the quick form, by name; null: the form makes no difference of them.
+  /// By solver name, tags of the scenes that it runs in the quick form; null: the form does not select by tag.
   json quick_by_solver() const {
     const json tags = quick_.is_null() ? json() : quick_["tags"];
     return tags.is_object() ? tags : json();
   }
 
-  /// A requested solver stays even if the quick form leaves it out. If the form names some of its settings, only
-  /// these stay.
+  /// Whether a solver stays in the quick form. A requested solver always stays. If the form names some of the solver's
+  /// settings, only these stay.
   bool stays(const StudySolver& s) const {
     const json quick = quick_by_solver();
     const bool in_quick = quick.is_null() || quick.contains(s.name());
@@ -216,7 +216,7 @@ class Builder {
     return path;
   }
 
-  /// Every scene of the study is a kind; kinds take turns, so that a seed says which one it draws.
+  /// Every scene of the study is a kind. Kinds alternate with the seed, so that a seed determines its kind.
   void draw_scenes() {
     std::vector<ContactKind> kinds;
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) {
@@ -264,7 +264,7 @@ class Builder {
     }
   }
 
-  /// Adds one item for all solvers with the same changes to the scene. The names of their runs must differ.
+  /// Adds one item for all solvers that make equal changes to the scene. The names of their runs must differ.
   void add_forms(const json& scenario, const std::string& path, const Variant& v, const std::string& pointer) {
     std::map<Words, std::size_t> forms;
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
@@ -283,8 +283,9 @@ class Builder {
       Study::Item& item = study_.scenes[at->second];
       const bool is_first = names_.insert(item.scene.name + " " + solver.name()).second;
       if (names_.size() > kMostRuns)
-        throw Error(fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, rungs or solvers",
-                                source_, pointer, kMostRuns));
+        throw Error(
+            fmt::format("{}: {}: more than {} runs; expected fewer scenes, values of axes, sweep settings or solvers",
+                        source_, pointer, kMostRuns));
       item.solvers.push_back(s);
       if (!is_first)
         throw Error(fmt::format("{}: {}: two runs are named {} with {}; labels must differ", source_, pointer,
@@ -309,7 +310,7 @@ class Builder {
     return groups_.emplace(key, static_cast<int>(groups_.size())).first->second;
   }
 
-  /// A tag that selects nothing is treated as a spelling error.
+  /// Refuses a tag that selects nothing, which is probably a spelling error.
   void check_tags() const {
     const auto check = [&](const std::string& pointer, const std::string& word, const Words& known) {
       if (!contains(known, word))

@@ -14,15 +14,15 @@ namespace clothbench {
 /// One solver with one set of settings, as a study names it.
 struct StudySolver {
   std::string solver, label;
-  nlohmann::json settings;                        ///< as given; `complete_settings` adds the rest
-  std::vector<std::string> set;                   ///< changes to the scenes only for this solver, `dotted.key=JSON`
-  nlohmann::json tags = nlohmann::json::array();  ///< of the scenes it runs; empty: all
-  bool joined = false;                            ///< comes from StudyOptions::solvers, not from the study
-  int work = 0;                                   ///< product of its ladder settings; 0: not part of the settings sweep
+  nlohmann::json settings;                        ///< as given; `complete_settings` adds the defaults
+  std::vector<std::string> set;                   ///< changes to the scenes for this solver only, `dotted.key=JSON`
+  nlohmann::json tags = nlohmann::json::array();  ///< tags of the scenes that it runs; empty: all
+  bool joined = false;                            ///< added by StudyOptions::solvers, not by the study
+  int work = 0;                                   ///< product of its sweep settings; 0: not in the settings sweep
   std::string name() const;                       ///< name in tables: "paper", "paper readback=blocking"
 };
 
-/// Length of a trial, and when to end the trials early. The names are those in the file.
+/// Length of a trial, and the rule for ending trials early. Member names as in the file.
 struct StudyRules {
   int frames = 0, min_frames = 0;
   double max_wall_s = 0, warmup_s = 0;
@@ -33,27 +33,27 @@ struct StudyRules {
 enum class StudyLength { Full, Quick };
 
 struct StudyOptions {
-  std::vector<std::string> overrides;  ///< applied to every scene, after all changes of the study
+  std::vector<std::string> overrides;  ///< applied to every scene after all changes by the study
   StudyLength length = StudyLength::Full;
   Assets assets = Assets::MayBeProcedural;
-  /// If not empty, only these run. One that the study lacks joins it, with default settings and unchanged scenes.
+  /// If not empty, only these run. A solver that the study lacks joins it, with default settings and unchanged scenes.
   std::vector<std::string> solvers = {};
-  /// Settings that the study's ladder, if any, varies for such a solver. One without an entry here is not varied.
+  /// Settings that the study's sweep, if any, varies for such an added solver; a solver without an entry is not varied.
   std::map<std::string, std::vector<std::string>> knobs = {};
-  /// For protocol contact: the scenes of the seeds seed, seed + 1, ..., `count` of them. Defaults: 1, and the study's.
+  /// For protocol contact: generate the scenes of the seeds seed, seed + 1, ... Default: 1.
   std::optional<std::uint64_t> seed = {};
-  int count = 0;  ///< 0: the study's
+  int count = 0;  ///< number of seeds; 0: the study's number
 };
 
-/// A study with its axes expanded. Runs of one `group` are interleaved: with the protocol fps all runs on one grid,
-/// with others all runs of one scene.
+/// A study with its axes expanded. Runs of one `group` are interleaved: for protocol fps all runs on one grid,
+/// otherwise all runs of one scene.
 struct Study {
-  /// One form of a scene, and the solvers that run it. A solver's own changes give another form of the same name.
+  /// One form of a scene, and the solvers that run it. A solver's own changes make a different form of the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;
     std::vector<std::size_t> solvers;  ///< indices into Study::solvers
-    /// By solver, drawn with the scene; they replace the study's settings.
+    /// Random settings by solver, sampled with the scene; they replace the study's settings.
     nlohmann::json drawn_settings = nlohmann::json::object();
   };
   std::string name, why, protocol;
@@ -68,11 +68,11 @@ struct Study {
   nlohmann::json definition;  ///< the file with its defaults filled in
 };
 
-/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the quick form is requested and
-/// the study has none. Solver names are not looked up.
+/// Loads a study by path or name ("table3"). Throws Error as `load_scene` does, and if the quick form is requested but
+/// not defined. Solver names are not looked up.
 Study load_study(const std::string& name_or_path, const StudyOptions& = {});
 
-/// True for protocol contact, whose scenes --seed draws.
+/// True for protocol contact, whose scenes are generated from --seed.
 bool is_drawn(const Study&);
 
 /// True if the file is a study rather than a scene (has "protocol").
@@ -80,7 +80,7 @@ bool is_study(const std::string& name_or_path);
 /// True if the file is a study of this protocol.
 bool is_study_of(const std::string& name_or_path, const std::string& protocol);
 
-/// Most runs of a study: each is a file, and all are planned before the first begins.
+/// Maximum number of runs of a study: each is a file, and all are planned before the first begins.
 inline constexpr std::size_t kMostRuns = 100000;
 
 }  // namespace clothbench

@@ -9,15 +9,15 @@
 namespace clothbench::truth {
 namespace {
 
-constexpr double kPlace = 1e-6;  // of L: tolerance for the positions in a scene
+constexpr double kPlace = 1e-6;  // fraction of L: tolerance for the positions in a scene
 
-/// The face a sheet lies on: its outward normal, and the distance of its margin from the sheet.
+/// The face on which a sheet lies: its outward normal, and the distance from the sheet to its contact offset.
 struct Face {
   Vec3 normal{};
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. For a box: below all four corners at the start and moved by `displacement`.
+/// The face of a collider under the sheet. Box: a face below all four corners at the start and after `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {
@@ -42,13 +42,13 @@ Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   return best;
 }
 
-/// `what` is no std::string: GCC 14 would take the collider for a part of the temporary (-Wdangling-reference).
+/// `what` is not a std::string: GCC 14 would warn that the result refers to a temporary (-Wdangling-reference).
 const Collider& only_collider(const Strip& s, const char* what) {
   s.need(s.scene.colliders.size() == 1, std::string("one collider: ") + what);
   return s.scene.colliders[0];
 }
 
-/// How far the strip has run towards u1: by what of it is on top.
+/// Displacement of the strip towards u1, from the material point that is on top.
 std::function<double(const Columns&)> displacement_over(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   const double start = s.links / 2.0 - c.drape_offset_m / c.du();
@@ -149,14 +149,14 @@ ReferenceCase capstan(const Strip& s) {
   const int m = static_cast<int>(std::lround(turns));
   const double first = middle - (m - 1) / 2.0, light = std::round(first);
   s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
-         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for a whole number m, and an offset in half "
-         "cells to suit");
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for an integer m, and a matching offset in "
+         "half cells");
   const double heavy = s.links - (m - 1) - light;
   s.need(light >= 1 && heavy >= 1, "ends that hang");
   s.need(heavy >= light, "an offset towards u1, or none");
   const double half_turn = std::numbers::pi / (2 * m), friction = collider.friction;
   s.need(friction > 0 && friction * std::tan(half_turn) < 1,
-         "friction above 0 and below 1 / tan(half a turn of the strip)");
+         "friction above 0 and below 1 / tan(half the angle between rows)");
   const double light_m = (light - 0.5) * cell, heavy_m = (heavy - 0.5) * cell;  // overhangs below the axis
   const auto moved = [&](int rows) {
     const Capstan cylinder{friction, c.drape_radius_m, c.areal_density_kg_per_m2, s.g, rows};
@@ -170,7 +170,7 @@ ReferenceCase capstan(const Strip& s) {
   known.by_quantity = known.smooth_law = true;
   known.quantity = displacement_over(s);
   if (end > 0) known.quantity_scale = end;
-  // While nothing slides, these are exactly the scene's positions.
+  // While nothing slides, these equal the scene's initial positions exactly.
   known.columns = [s, displacement](int frame) { return draped_columns(s, displacement(frame)); };
   known.continuum = [s, smooth](double share, int frame) {
     return draped_columns(s, smooth(frame)).at(static_cast<std::size_t>(std::lround(share * s.links)));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSide = MaterialLattice::kSide;
 
-/// Lattice indices that [low, high] covers, with room for rounding.
+/// Lattice indices within [low, high], widened for rounding.
 std::array<int, 2> covered(double low, double high, double side) {
   const double cell = side / (kSide - 1);
   const auto clamp = [](double i) { return static_cast<int>(std::clamp(i, -1.0, 1.0 * kSide)); };
@@ -22,7 +22,7 @@ std::array<int, 2> covered(double low, double high, double side) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Infinity counts as NaN: a mean with one infinite part says nothing.
+/// Infinity becomes NaN, because a mean with an infinite term means nothing.
 double finite_or_nan(double value) { return std::isfinite(value) ? value : kNan; }
 
 double square_distance(std::span<const double> a, std::span<const double> b, std::size_t point) {
@@ -43,15 +43,15 @@ std::vector<double> rest_uv(const Cloth& c) {
   }
   for (int j = 0; j < c.rows; ++j)
     for (int i = 0; i < c.columns; ++i) {
-      // Puts the border exactly on the border, regardless of rounding.
+      // The last vertex is placed exactly on the border, whatever the rounding.
       out.push_back(i + 1 == c.columns ? c.width_m : i * c.du());
       out.push_back(j + 1 == c.rows ? c.height_m : j * c.dv());
     }
   return out;
 }
 
-/// The case for a flat rectangle of triangles: the continuum at its vertices. Its columns are means over rows of the
-/// material lattice, as for a run, so that interpolation in triangles does not count as an error.
+/// Converts a case for a flat rectangle of triangles: the continuum's solution at its vertices. Columns are means over
+/// rows of the material lattice, as for a run, so that interpolation in triangles does not count as an error.
 ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   known.vertices = [s, continuum = known.continuum](int frame) {
     const Cloth& c = s.scene.cloth;
@@ -66,7 +66,7 @@ ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   return known;
 }
 
-/// The exact solutions by name, and whether they also hold for a flat rectangle of triangles.
+/// The exact solutions by name; whether each also holds for a flat rectangle of triangles.
 struct Solution {
   const char* name;
   ReferenceCase (*of)(const Strip&);
@@ -88,12 +88,12 @@ void need_flat_mesh(const Strip& s) {
            std::abs(x[1]) <= (0.5 + Strip::kFlat) * c.height_m;
   });
   s.need(flat && c.mesh->pattern_m.empty(),
-         "a mesh that is a flat rectangle round the middle of its frame, its longer side along x");
+         "a mesh that is a flat rectangle around the middle of its frame, its longer side along x");
 }
 
-// Twice the error of 1 % at which work-precision diagrams read off a time: runs with larger errors are not accurate.
+// Twice the 1 % error for which work-precision diagrams show the time: runs with larger errors are not accurate.
 constexpr double kOfMotion = 0.02;
-// A strip bends around a cylinder row by row. With 9 rows on the cylinder, the minimum of random scenes, a row that
+// A strip bends around a cylinder row by row. With 9 rows on the cylinder, the minimum in random scenes, a row that
 // enters or leaves contact can lose (pi / 18)^2 = 3 % of its kinetic energy.
 constexpr double kOnCylinder = 0.03;
 
@@ -113,7 +113,7 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
                                std::span<const std::uint32_t> triangles)
     : points_(lattice.size()) {
   const double width = lattice.points_m.back()[0], height = lattice.points_m.back()[1];
-  // How far a point lies outside the best triangle so far, as its smallest barycentric weight.
+  // For each lattice point the best triangle so far, rated by the point's smallest barycentric weight.
   std::vector<double> inside(lattice.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
     std::array<std::array<double, 2>, 3> p;
@@ -141,7 +141,7 @@ LatticeSampler::LatticeSampler(const MaterialLattice& lattice, std::span<const d
         points_[at] = {{triangles[t], triangles[t + 1], triangles[t + 2]}, w};
       }
   }
-  // A weight of -1e-9 is at most that part of a triangle's height, no greater than the longer side.
+  // A weight of -1e-9 means a distance of at most 1e-9 of the triangle's height, which is at most the longer side.
   for (std::size_t s = 0; s < inside.size(); ++s)
     if (!(inside[s] >= -1e-9))
       throw Error("argument triangles: expected to cover the rest rectangle; the point (" +
@@ -196,7 +196,7 @@ const std::vector<Tolerance>& tolerances() {
       {"free-fall", kOfMotion, 0, "Newton's law: no parameter of the cloth enters", moving},
       {"pendulum", kOfMotion, 0, "one degree of freedom, half a swing at most", moving},
       {"swing-strip", kOfMotion, 0, "the chain is not chaotic until the end of the scene", moving},
-      {"heavy-strip", kOfMotion, 1e-3, "statics; 10^-3 of the length is what stability class F3 takes for no stretch",
+      {"heavy-strip", kOfMotion, 1e-3, "statics; stability class F2 treats 10^-3 of the length as no stretch",
        "stretch of the strip at rest / exact stretch"},
       {"cantilever", kOfMotion, 0, "statics", at_rest},
       {"two-hand-pull", kOfMotion, 0, "waves that the ramp makes longer than a cell",

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 using State = std::vector<double>;
 
-/// From `begin` to `end`, with errors per step below `absolute` and `relative` times the value.
+/// Integrates from `begin` to `end`, with errors per step below `absolute` and below `relative` times the value.
 template <class Values, class Rate>
 void integrate(const char* what, Rate rate, Values& state, double begin, double end, double first_step, double absolute,
                double relative) {
@@ -31,7 +31,7 @@ void integrate(const char* what, Rate rate, Values& state, double begin, double 
 }
 
 /// Solves a symmetric positive definite tridiagonal system in place (elimination without pivoting or allocation).
-/// `off[i]` couples i and i + 1. `diagonal` is overwritten, `rhs` becomes the solution.
+/// `off[i]` couples i and i + 1. `diagonal` is overwritten; `rhs` becomes the solution.
 void solve_tridiagonal(std::span<double> diagonal, std::span<const double> off, std::span<double> rhs) {
   const std::size_t n = diagonal.size();
   for (std::size_t i = 1; i < n; ++i) {
@@ -46,7 +46,7 @@ double p1(double x) { return x == 0 ? 1 : -std::expm1(-x) / x; }
 
 double p2(double x) {
   if (x > 1) return (x + std::expm1(-x)) / (x * x);
-  // sum of (-x)^k / (k + 2)!: the closed form loses all digits near 0.
+  // Series sum of (-x)^k / (k + 2)!, because the closed form loses all digits near 0.
   double term = 0.5, sum = 0;
   for (int k = 0; k < 20; ++k) {
     sum += term;
@@ -57,7 +57,7 @@ double p2(double x) {
 
 double rate_of(const Pendulum& p) { return std::sqrt(p.gravity_m_per_s2 / p.length_m); }
 
-// Units are sqrt(L/g) and L, so that tolerances hold at any scale. State: angles below the horizontal, their rates.
+// Units are sqrt(L/g) and L, so that tolerances fit any scale. State: angles below the horizontal, then their rates.
 class ChainMotion {
  public:
   ChainMotion(int links, double end_mass_ratio)
@@ -104,8 +104,8 @@ Nodes nodes_of(const SwingingChain& c, const State& state) {
   return out;
 }
 
-/// Angles of the links at a share of the load, from a guess, if Newton's method converges. Energy over B/L: n sum of (1
-/// - cos(turn)) - sum of pull_i sin(angle_i)/n.
+/// Link angles at a fraction of the load, if Newton's method converges from the guess. Energy over B/L: n times the sum
+/// of (1 - cos(turn)) minus the sum of pull_i sin(angle_i)/n.
 std::optional<State> bent(double own_weight, State angle, double share) {
   const std::size_t n = angle.size();
   const auto cells = static_cast<double>(n);
@@ -113,7 +113,7 @@ std::optional<State> bent(double own_weight, State angle, double share) {
   double last = 1;
   for (int iteration = 0; iteration < 50; ++iteration) {
     for (std::size_t i = 0; i < n; ++i) {
-      const double beyond = 1 - (static_cast<double>(i) + 0.5) / cells;  // rows of mass 1/n, the last half of it
+      const double beyond = 1 - (static_cast<double>(i) + 0.5) / cells;  // rows of mass 1/n; the last row has half
       const double pull = share * (own_weight * beyond) / cells;
       diagonal[i] = pull * std::sin(angle[i]);
       rhs[i] = pull * std::cos(angle[i]);
@@ -255,14 +255,14 @@ SlideState slide_down(const Incline& i, double t) {
 double greatest_overhang_m(const Capstan& c, double light_overhang) {
   const double weight = c.areal_density_kg_per_m2 * c.gravity_m_per_s2, mu = c.friction;
   if (c.turns <= 0) {
-    // Particular solution A sin + B cos of the linear equation.
+    // Particular solution a sin + b cos of the linear equation.
     const double on = weight * c.radius_m, a = on * (1 - mu * mu) / (1 + mu * mu), b = -2 * mu * on / (1 + mu * mu);
     return (std::exp(mu * pi) * (weight * light_overhang - b) + a * std::sin(pi) + b * std::cos(pi)) / weight;
   }
   const double half = pi / (2 * c.turns);
   const double edge = 2 * c.radius_m * std::sin(half), in = std::cos(half) + mu * std::sin(half),
                out = std::cos(half) - mu * std::sin(half);
-  double tension = light_overhang;  // over rho g
+  double tension = light_overhang;  // divided by rho g
   for (int j = 0; j < c.turns; ++j) {
     const double phi = (2 * j + 1) * half;
     tension = (tension * in + edge * (std::cos(phi) + mu * std::sin(phi))) / out;

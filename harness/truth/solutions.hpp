@@ -5,22 +5,22 @@
 #include <span>
 #include <vector>
 
-// Exact solutions of simple motions and shapes, each described once: as formulas or as the equations of the same mesh.
-// All values are in SI units; tensions and loads are per width. Reference cases check the ranges.
+// Exact solutions of simple motions and shapes, each described once: by formulas or by equations of the scene's mesh.
+// Values are in SI units; tensions and loads per unit width. Reference cases check arguments.
 
 namespace clothbench::truth {
 
-/// Points of a strip in its plane, from the fixed end on; x horizontal.
+/// Points of a strip in its vertical plane, starting at the fixed end; x is horizontal.
 using Nodes = std::vector<std::array<double, 2>>;
 
-/// Point at a share 0 .. 1 of the strip's length, linear between the nodes.
+/// Point at a fraction 0 .. 1 of the strip's length, linear between the nodes.
 std::array<double, 2> node_position(const Nodes&, double share);
 
 /// A free body in uniform gravity with damping proportional to its mass: dv/dt = -g - c v (upwards is positive). Every
 /// point of a cloth without internal motion follows it, whatever its stiffness.
 ///   v = v0 e^{-ct} - g (1 - e^{-ct})/c,   z = v0 t p1(ct) - g t^2 p2(ct),
 ///   p1(x) = (1 - e^{-x})/x,  p2(x) = (x - 1 + e^{-x})/x^2  (1 and 1/2 at x = 0).
-/// Source: Newton's second law. Errors of rounding only.
+/// Source: Newton's second law. Rounding errors only.
 struct FreeFall {
   double speed_m_per_s = 0;  ///< upwards
   double gravity_m_per_s2 = 9.81;
@@ -42,28 +42,28 @@ double pendulum_angle_rad(const Pendulum&, double time_s);
 
 /// A straight strip of inextensible links without bending stiffness, fixed at one end and released at rest from the
 /// horizontal: the motion of an inextensible strip with nodal masses on the same mesh. Coordinates are the link angles.
-/// Tensions T_j follow from |r_j - r_{j-1}| = a differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
+/// Tensions T_j follow from |r_j - r_{j-1}| = a, differentiated twice, with c_j = cos(theta_{j+1} - theta_j):
 ///   T_j (1/m_j + 1/m_{j-1}) - T_{j+1} c_j/m_j - T_{j-1} c_{j-1}/m_{j-1} = a theta_j'^2,
 ///   a theta_j'' = T_{j+1} sin(theta_{j+1} - theta_j)/m_j + T_{j-1} sin(theta_{j-1} - theta_j)/m_{j-1},
-/// where for j = 1 the terms with m_0 are instead + g sin(theta_1) and + g cos(theta_1) on the right.
-/// Source: Newton's second law with Lagrange multipliers. Integrated by Boost.Odeint (Runge-Kutta-Fehlberg 7(8)).
+/// where for j = 1 the terms with m_0 are replaced by + g sin(theta_1) and + g cos(theta_1) on the right. Source:
+/// Newton's second law with Lagrange multipliers. Integrated by Boost.Odeint (Runge-Kutta-Fehlberg 7(8)).
 ///
-/// A strip released from the horizontal is chaotic after 0.5 s * sqrt(L/1 m * 9.81/g): compare positions only up to
+/// A strip released from the horizontal is chaotic after 0.5 s * sqrt(L/1 m * 9.81/g): compare positions only until
 /// then. Until then the error of the positions is below 1e-10 L at the default tolerance.
 struct SwingingChain {
   int links = 32;
   double length_m = 1;
   double gravity_m_per_s2 = 9.81;
-  double end_mass_ratio = 0.5;  ///< mass of the free end row over the mass of an inner row: 1/2 for lumped masses
+  double end_mass_ratio = 0.5;  ///< mass of the free end row over mass of an inner row: 1/2 for lumped masses
 };
 /// The links + 1 nodes [m] at `times_s` (ascending, 0 or more), second coordinate upwards. `tolerance`: error per step
 /// of angles, and of angular speeds in units of sqrt(g/L).
 std::vector<Nodes> swing(const SwingingChain&, std::span<const double> times_s, double tolerance = 1e-13);
 
-/// A strip of springs, T = Y (lambda - 1) per unit rest width, that hangs at rest from its upper edge (s = 0), under
-/// its weight and a load F on its lower edge: T(s) = rho g (L - s) + F, displacement u = (rho g/Y)(L s - s^2/2) + F
-/// s/Y. Rows of springs whose cells give half of their mass to either row lie exactly on this curve. Source:
-/// equilibrium of a heavy bar. Errors of rounding only.
+/// A strip of springs, T = Y (lambda - 1) per unit rest width, that hangs at rest from its upper edge (s = 0) under its
+/// weight and a load F on its lower edge: T(s) = rho g (L - s) + F, displacement u = (rho g/Y)(L s - s^2/2) + F s/Y.
+/// Rows of springs whose cells give half of their mass to each adjacent row lie exactly on this curve. Source:
+/// equilibrium of a heavy bar. Rounding errors only.
 struct HeavyStrip {
   double length_m = 1;
   double areal_density_kg_per_m2 = 0.2;
@@ -73,18 +73,18 @@ struct HeavyStrip {
 };
 double hang_displacement_m(const HeavyStrip&, double rest_m);
 
-/// Shape at rest of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum
-/// of potential and bending energy, (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 per link (quadratic isometric bending, Bergou
-/// et al. 2006), with lumped row masses. The clamp acts on half a cell, so its hinge is twice as stiff. Newton's method
-/// along the branch from no load; angles to 1e-13. Converges with order 2 in 1/links to Euler's elastica,
-/// theta'' = -Gamma (1 - s) cos(theta). Returns links + 1 nodes over the length; second coordinate downwards. Valid for
-/// 0 <= Gamma <= 1e4 while no hinge turns by 90 degrees.
+/// Rest shape of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum of
+/// potential energy plus bending energy, (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 per link (quadratic isometric bending,
+/// Bergou et al. 2006), with lumped row masses. The clamp acts on half a cell, so its hinge is twice as stiff. Newton's
+/// method follows the branch from zero load; angles to 1e-13. Converges with order 2 in 1/links to Euler's elastica,
+/// theta'' = -Gamma (1 - s) cos(theta). Returns links + 1 nodes divided by the length; second coordinate downwards.
+/// Valid for 0 <= Gamma <= 1e4 while no hinge rotates by 90 degrees.
 Nodes cantilever_nodes(int links, double own_weight);
 
-/// A straight chain of equal springs with lumped masses (half a cell's at the ends), without gravity, whose two ends
-/// are moved along it: the motion of a strip pulled by hands on the same mesh, with engineering strain
+/// A straight chain of equal springs with lumped masses (half a cell at each end), without gravity, whose ends are
+/// moved along it: the motion of a strip pulled by hands on the same mesh, with engineering strain
 ///   x_i'' = (c/a)^2 (x_{i+1} - 2 x_i + x_{i-1}),  c = sqrt(Y/rho),  a = L/n.
-/// Source: Newton's second law. Integrated by the method of the swinging chain; errors below 1e-10 L by default.
+/// Source: Newton's second law. Integrated as the swinging chain; errors below 1e-10 L by default.
 struct PulledChain {
   int links = 32;
   double length_m = 1;
@@ -97,9 +97,9 @@ std::vector<std::vector<double>> pull(const PulledChain&, std::span<const double
                                       std::span<const double> first_m, std::span<const double> last_m,
                                       double tolerance = 1e-13);
 
-/// The same pull without a mesh, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
-/// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after; the wave from each end adds a strain of v0/c.
-/// A ramp of L/c or longer is needed: after a sudden start a chain overshoots by 25 %. Only rounding errors.
+/// The same pull in the continuum, as a sum of images (d'Alembert): u_tt = c^2 u_xx, x from the middle, each end moving
+/// outwards with v(t) = v0 sin^2(pi t/(2 Tr)) up to t = Tr and v0 after it; the wave from each end adds a strain of
+/// v0/c. The ramp must be L/c or longer: after a sudden start a chain overshoots by 25 %. Rounding errors only.
 struct PullWave {
   double length_m, wave_speed_m_per_s, hand_speed_m_per_s, ramp_s;
 
@@ -118,8 +118,8 @@ struct PullWave {
 };
 
 /// A cloth that lies flat on a plane at `angle` from the horizontal and starts downhill at `speed`, with Coulomb
-/// friction: acceleration g (sin - mu cos) until it stops, then rest; from rest it sticks if tan(angle) <= mu.
-/// Source: Coulomb 1781. Valid for 0 <= angle < pi/2. Errors of rounding only.
+/// friction: acceleration g (sin - mu cos) until it stops, then rest; from rest it sticks if tan(angle) <= mu. Source:
+/// Coulomb 1781. Valid for 0 <= angle < pi/2. Rounding errors only.
 struct Incline {
   double angle_rad = 0;
   double friction = 0;
@@ -137,8 +137,8 @@ SlideState slide_down(const Incline&, double time_s);
 /// With `turns` = m > 0 the strip has lumped rows, of which m are in contact, at phi = (j - 1/2) pi/m (edges 2 R
 /// sin(pi/2m)). Friction cone at each row, with d = pi/m and q = rho g * edge:
 ///   T+ (cos(d/2) - mu sin(d/2)) = T (cos(d/2) + mu sin(d/2)) + q (cos phi + mu sin phi).
-/// It converges to the smooth strip with order 2 in 1/m. Without weight both are Euler's and Eytelwein's T2/T1 =
-/// e^{mu pi}. Source: balance of one element. Errors of rounding only.
+/// It converges to the smooth strip with order 2 in 1/m. Without weight both are Euler's and Eytelwein's T2/T1 = e^{mu
+/// pi}. Source: balance of one element. Rounding errors only.
 struct Capstan {
   double friction = 0.3;
   double radius_m = 0.05;
@@ -146,12 +146,12 @@ struct Capstan {
   double gravity_m_per_s2 = 9.81;
   int turns = 0;
 };
-/// Longest overhang below the axis that `light_overhang_m` on the other side can balance.
+/// Maximum overhang below the axis that `light_overhang_m` on the other side can balance.
 double greatest_overhang_m(const Capstan&, double light_overhang_m);
 
-/// The strip sliding from rest: at speed v, pressure times R is T + rho g R sin phi - rho v^2 and
-///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = overhangs now,
-/// with E = e^{mu pi}. The inertia is the smooth strip's at any `turns`. A strip that does not slip stays static.
+/// The strip sliding from rest. At speed v, pressure times R is T + rho g R sin phi - rho v^2, and
+///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = current overhangs,
+/// with E = e^{mu pi}. The inertia is the smooth strip's for any `turns`. A strip that does not slip stays static.
 /// Throws Error for a time at which the light end has reached the axis. Expects light_overhang_m <= heavy_overhang_m.
 /// Integrated as above, tolerance 1e-12.
 std::vector<SlideState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,

@@ -7,7 +7,7 @@
 #include "clothbench/error.hpp"
 #include "truth/reference_case.hpp"
 
-// Only for the reference cases: their requirements on a scene.
+// Used only by the reference cases, to check their requirements on a scene.
 namespace clothbench::truth {
 
 using Columns = std::vector<Vec3>;
@@ -51,14 +51,14 @@ struct Strip {
   }
   void need_flat() const { need(scene.cloth.span_m == 0 && scene.cloth.drape_radius_m == 0, "a flat start"); }
   void need_rest() const { need(length(scene.cloth.initial_velocity_m_per_s) == 0, "a start at rest"); }
-  /// Extra weight per width on edge u1, if masses are scaled there and nowhere else.
+  /// Extra weight per unit width on edge u1, if masses are scaled there and nowhere else.
   double end_load_N_per_m() const {
     if (scene.cloth.mass_factors.empty()) return 0;
     const Cloth& c = scene.cloth;
     const double factor = c.mass_factors.back();
     for (std::size_t v = 0; v < c.mass_factors.size(); ++v)
       need(c.mass_factors[v] == ((v + 1) % static_cast<std::size_t>(c.columns) == 0 ? factor : 1),
-           "masses scaled on edge u1 at most, all alike");
+           "masses scaled only on edge u1, all equally");
     return (factor - 1) * c.areal_density_kg_per_m2 * c.du() / 2 * g;
   }
   void need_even_masses() const { need(scene.cloth.mass_factors.empty(), "masses that are not scaled"); }
@@ -67,7 +67,7 @@ struct Strip {
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
   }
   void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
-  /// The membrane stretches by at most this share of the length by the strip's own weight.
+  /// Requires that its own weight stretches the membrane by at most this fraction of the length.
   void need_stiff(double strain, const std::string& text) const {
     const auto Y = scene.material.membrane_stiffness_N_per_m;
     need(!Y || scene.cloth.areal_density_kg_per_m2 * g * length_m / *Y <= strain,
@@ -106,7 +106,7 @@ struct Strip {
     for (int i = 0; i <= links; ++i) out.push_back(at(i));
     return out;
   }
-  /// Mean of `value(i)` over the columns; the two at the ends carry half a cell.
+  /// Mean of `value(i)` over the columns; the two end columns stand for half a cell.
   template <class Value>
   double mean(Value value) const {
     double sum = 0;
@@ -120,7 +120,7 @@ struct Strip {
     return c;
   }
 
-  static constexpr double kLevel = 1e-9, kFlat = 1e-9;  ///< directions; positions, of the length
+  static constexpr double kLevel = 1e-9, kFlat = 1e-9;  ///< for directions; for positions, as a fraction of the length
 };
 
 // strip_cases.cpp

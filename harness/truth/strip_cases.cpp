@@ -1,4 +1,4 @@
-// Reference cases without contact: what each needs of its scene, and its solution in the scene's coordinates.
+// Reference cases without contact: each one's requirements on its scene, and its solution in scene coordinates.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,15 +12,15 @@
 namespace clothbench::truth {
 namespace {
 
-// Inextensible triangles lock: a mesh is elastic, and so stiff that its stretch is small compared with its own error.
+// Inextensible triangles lock, so a mesh must be elastic, but so stiff that its stretch is small relative to its error.
 constexpr double kMeshStrain = 1e-3;
 constexpr const char* kMeshStrainText = "1e-3";
 
-constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet that shears
-// Links of the chain that is used as the continuum of a cantilever: off by 2.4e-7 of its length at Gamma = 10.
+constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet with shear
+// Number of links of the chain that stands for a cantilever's continuum: off by 2.4e-7 of its length at Gamma = 10.
 constexpr int kSmooth = 2048;
 
-/// Positions of a sheet that shears: away from its pinned edge it also narrows, by a third of its strain.
+/// Positions of a sheet with shear: away from its pinned edge it also narrows, by a third of its strain.
 std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Columns& columns) {
   const Cloth& c = s.scene.cloth;
   std::vector<double> out = vertex_values(c, columns);
@@ -34,7 +34,7 @@ std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Colu
   return out;
 }
 
-/// Width [m] of the pinned part of a mesh next to edge u0. Throws Error if other vertices are pinned, or only the edge.
+/// Width [m] of the pinned part of a mesh at edge u0. Throws Error if other vertices are pinned, or only the edge.
 double clamp_of_mesh_m(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   double width_m = 0;
@@ -46,7 +46,7 @@ double clamp_of_mesh_m(const Strip& s) {
   return width_m;
 }
 
-/// Two hands that pull alike and opposite, from the scene's file.
+/// Two hands that pull symmetrically in opposite directions, as in the scene's file.
 PullWave hands_of(const Strip& s) {
   const nlohmann::json grips = nlohmann::json::parse(s.scene.json).at("grips");
   const auto velocity = [&](std::size_t k) {
@@ -104,7 +104,7 @@ ReferenceCase pendulum(const Strip& s) {
   s.need_even_masses();
   ReferenceCase known = s.reference_case();
   known.quantity_scale = std::numbers::pi / 2;
-  // Only the free row's mass moves: a point pendulum.
+  // Only the free row moves, so its mass is a point pendulum.
   const Pendulum p{s.length_m, s.g, std::numbers::pi / 2};
   known.columns = [s, p](int frame) {
     const double a = pendulum_angle_rad(p, s.time_s(frame));
@@ -131,7 +131,7 @@ ReferenceCase swing_strip(const Strip& s) {
   s.need_even_masses();
   const double horizon_s = 0.5 * std::sqrt(s.length_m * 9.81 / s.g);
   s.need(s.time_s(s.scene.time.frames()) <= horizon_s * (1 + 1e-9),
-         "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): then comes chaos");
+         "a duration of at most 0.5 s sqrt(L/1 m 9.81/g): after it the motion is chaotic");
   ReferenceCase known = s.reference_case();
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along); };
   using States = std::vector<Nodes>;
@@ -141,7 +141,7 @@ ReferenceCase swing_strip(const Strip& s) {
     for (const auto& [x, z] : states->at(static_cast<std::size_t>(frame))) out.push_back(s.at(x, z));
     return out;
   };
-  // Four times as many links are 16 times closer to the continuum; computed only on request.
+  // Four times as many links have a 16 times smaller error; computed only on request.
   const auto fine = std::make_shared<States>();
   known.continuum = [s, fine](double share, int frame) {
     if (fine->empty())
@@ -162,7 +162,7 @@ ReferenceCase heavy_strip(const Strip& s) {
   ReferenceCase known = s.reference_case();
   known.settles = known.by_quantity = true;
   known.quantity = [s](const Columns& c) { return dot(c.back() - s.start, s.along) - s.length_m; };
-  if (!s.scene.material.membrane_stiffness_N_per_m) {  // it stays where it starts, whatever its masses
+  if (!s.scene.material.membrane_stiffness_N_per_m) {  // it stays at its start, whatever its masses
     known.columns = [s](int) { return s.columns([&](int i) { return s.at(s.length_m * i / s.links, 0); }); };
     return known;
   }
@@ -171,7 +171,7 @@ ReferenceCase heavy_strip(const Strip& s) {
   known.quantity_scale = hang_displacement_m(strip, s.length_m);
   const bool sheet = s.scene.needs.has(Feature::Shear);
   if (s.mesh() || sheet) {
-    // The pinned edge keeps its width. The half at it is therefore stiffer than a strip, the other one is not.
+    // The pinned edge keeps its width, so the half next to it is stiffer than a strip; the other half is not.
     known.quantity_scale -= hang_displacement_m(strip, s.length_m / 2);
     known.quantity = [s](const Columns& c) { return dot(c.back() - c[c.size() / 2], s.along) - s.length_m / 2; };
   }

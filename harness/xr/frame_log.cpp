@@ -17,12 +17,13 @@ struct Column {
 };
 
 constexpr Column kColumns[] = {
-    {"predicted_display_s", "s", "when the frame is shown, by the runtime's clock, from the first frame's on",
+    {"predicted_display_s", "s", "predicted display time by the runtime's clock, relative to the first frame",
      &FrameRow::predicted_display_s},
-    {"predicted_period_s", "s", "refresh period of the display, by the runtime", &FrameRow::predicted_period_s},
-    {"paint_device_s", "s", "device time of both pictures of the frame before, first to last timestamp",
+    {"predicted_period_s", "s", "refresh period of the display, predicted by the runtime",
+     &FrameRow::predicted_period_s},
+    {"paint_device_s", "s", "device time of both eye views of the previous frame, first to last timestamp",
      &FrameRow::paint_device_s},
-    {"frame_s", "s", "wall time from xrWaitFrame's return to xrEndFrame's", &FrameRow::frame_s},
+    {"frame_s", "s", "wall time from the return of xrWaitFrame to the return of xrEndFrame", &FrameRow::frame_s},
     {"left_seen", "1", "1 if the left hand was tracked", &FrameRow::left_seen},
     {"right_seen", "1", "1 if the right hand was tracked", &FrameRow::right_seen},
 };
@@ -74,7 +75,7 @@ StoredGroup FrameLog::group() const {
     for (const FrameRow& r : rows_) values.push_back(r.*c.value);
     add(c.name, c.units, c.long_name, std::move(values));
   }
-  add("periods", "1", "refresh periods since the frame before", periods());
+  add("periods", "1", "refresh periods since the previous frame", periods());
   return g;
 }
 

@@ -16,11 +16,11 @@ AndroidContext& context() {
 }
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
-/// Beside XR_KHR_vulkan_enable2, which there must be.
+/// Optional extensions; XR_KHR_vulkan_enable2 is required.
 constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
                                  XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME};
 
-/// XR_KHR_vulkan_enable2: the runtime calls Vulkan with our requests and its own.
+/// XR_KHR_vulkan_enable2: the runtime creates Vulkan objects from our requests and its own.
 class RuntimeMaker : public vulkan::Maker {
  public:
   explicit RuntimeMaker(const Instance& xr) : xr_(xr) {}
@@ -95,7 +95,7 @@ void Instance::load() {
   using InitializeLoader = XrResult(XRAPI_PTR*)(const void*);
   const auto initialize = function<InitializeLoader>("xrInitializeLoaderKHR");  // only on Android
   if (initialize != nullptr && XR_FAILED(initialize(&info)))
-    throw Error("the OpenXR loader does not accept an Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
+    throw Error("the OpenXR loader rejected the Android activity (xrInitializeLoaderKHR)", ExitCode::NoDevice);
 }
 
 void Instance::create() {
@@ -157,7 +157,7 @@ void Instance::find_system() {
         "xrGetVulkanGraphicsRequirements2KHR");
   if (needs.minApiVersionSupported > XR_MAKE_VERSION(1, 1, 0xffff))
     throw Error(
-        fmt::format("{} wants Vulkan {}.{} at least; this program uses 1.1", runtime_name_,
+        fmt::format("{} needs at least Vulkan {}.{}; this program uses 1.1", runtime_name_,
                     XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported)),
         ExitCode::NoDevice);
 }

@@ -25,19 +25,19 @@ struct Functions {
 #undef CLOTHBENCH_XR_MEMBER
 };
 
-/// Handles that OpenXR runtimes on Android require: Java VM and activity (a global reference). Null elsewhere.
+/// Handles that OpenXR runtimes on Android require: Java VM and activity (a global reference). Null on other systems.
 struct AndroidContext {
   void* vm = nullptr;
   void* activity = nullptr;
 };
-/// Sets the context of the process; the owner of the activity does so before a session begins.
+/// Sets the context of the process; the owner of the activity calls this before a session begins.
 void set_android_context(const AndroidContext&);
 
-/// An OpenXR runtime, its head-mounted system, and those extensions we use that it has.
+/// An OpenXR runtime, its head-mounted system, and the available ones of the extensions that we use.
 class Instance {
  public:
-  /// The runtime that the system's loader finds ($XR_RUNTIME_JSON and the rest). Throws Error with ExitCode::NoDevice
-  /// if there is no loader, no runtime, no headset, or no XR_KHR_vulkan_enable2.
+  /// Uses the runtime that the system's loader finds ($XR_RUNTIME_JSON etc.). Throws Error with ExitCode::NoDevice if
+  /// there is no loader, no runtime, no headset, or no XR_KHR_vulkan_enable2.
   Instance();
   ~Instance();
   Instance(const Instance&) = delete;
@@ -46,20 +46,20 @@ class Instance {
   const Functions& xr() const { return functions_; }
   XrInstance handle() const { return instance_; }
   XrSystemId system() const { return system_; }
-  const std::string& runtime_name() const { return runtime_name_; }  ///< with its version
+  const std::string& runtime_name() const { return runtime_name_; }  ///< name and version
   const std::string& system_name() const { return system_name_; }
   bool has(const std::string& extension) const { return enabled_.contains(extension); }
   bool tracks_hands() const { return tracks_hands_; }
 
-  /// A function of an extension; null where the runtime lacks it.
+  /// A function of an extension; null if the runtime lacks it.
   template <class Function>
   Function function(const char* name) const {
     return reinterpret_cast<Function>(address(name));
   }
-  /// Throws Error naming the call and the runtime's name for the result, unless it is a success.
+  /// Throws Error with the call and the runtime's name for the result, unless the result is a success.
   void check(XrResult result, const char* call) const;
 
-  /// The Vulkan device that this system displays from; vulkan::Device::get with these options then returns it.
+  /// The Vulkan device that drives this system's display; vulkan::Device::get with these options then returns it.
   std::shared_ptr<vulkan::Device> make_device(const DeviceOptions&) const;
 
  private:

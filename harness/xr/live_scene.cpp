@@ -61,7 +61,7 @@ void LiveScene::find_live(const std::string& source) {
   }
 }
 
-/// Stores the mesh file and the tracks of hands that stay scripted beside the scenario.
+/// Stores the mesh file and the tracks of hands that stay scripted next to the scenario.
 void LiveScene::keep_files(const std::string& source) {
   const auto keep = [&](json& owner, const char* key) {
     if (!owner.contains(key) || !owner[key].is_string()) return;

@@ -18,20 +18,20 @@ using HandsNow = std::array<std::optional<assets::RecordedHand>, 2>;
 /// A scenario whose hands come from a headset. The user's hands replace the scripted hands of the same side. All other
 /// motion stays scripted.
 ///
-/// Live data are written first and read back: scenario and recordings are in `folder` in the formats of ordinary
+/// Live data are first written and then read back: `folder` has scenario and recordings in the formats of ordinary
 /// scenes, so that `clothbench run FOLDER/scenario.json` runs the same frames from the same numbers.
 class LiveScene {
  public:
-  /// Throws Error like load_scene, and if the scene has two hands of the same side. `live_hands`: the headset tracks
-  /// hands.
+  /// Throws Error like load_scene, and if the scene has two hands of the same side. `live_hands`: whether the headset
+  /// tracks hands.
   LiveScene(const std::string& scenario, const std::vector<std::string>& overrides, std::filesystem::path folder,
             bool live_hands);
 
-  /// The scenario as written: cloth and time before the live parts are replaced.
+  /// The scenario as written, with cloth and time before live parts replace them.
   const Scene& written() const { return written_; }
   bool wants(assets::Side) const;
-  /// The scene's origin in the user's space [m], so that the middle of the cloth at its start is 60 cm in front of the
-  /// eyes and 10 cm below.
+  /// The scene's origin in the user's space [m]: the initial cloth's middle is 60 cm in front of the eyes and 10 cm
+  /// below.
   Vec3 place_m() const;
 
   struct Begin {
@@ -49,7 +49,7 @@ class LiveScene {
   const FrameMotion* next(int index, const HandsNow&);
   /// The motion of every frame so far, including the start.
   const std::vector<FrameMotion>& motion() const { return motion_; }
-  /// Writes the recordings, and the scenario with their number of frames. Returns the scenario's file.
+  /// Writes the recordings, and the scenario with their number of frames. Returns the path of the scenario.
   std::filesystem::path save();
 
  private:

@@ -38,7 +38,7 @@ class Loop {
       : o_(options), live_(live), session_(session), device_(device), painter_(device, session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
     show_at_rest();
-    tell(fmt::format("{} on {}; {} x {} pixels an eye", xr.system_name(), xr.runtime_name(), session.extent().width,
+    tell(fmt::format("{} on {}; {} x {} pixels per eye", xr.system_name(), xr.runtime_name(), session.extent().width,
                      session.extent().height));
   }
 
@@ -46,7 +46,7 @@ class Loop {
     try {
       show_frames();
     } catch (const std::exception& e) {
-      // The frames recorded until here are a result, and replay: a headset's device may be lost at any time.
+      // The frames recorded so far are a result that can be replayed: a headset's device may be lost at any time.
       if (log_.rows().empty()) throw;
       end_by(e);
     }
@@ -58,7 +58,7 @@ class Loop {
   }
 
  private:
-  static constexpr double kLeave_s = 2;  // a runtime that does not let go
+  static constexpr double kLeave_s = 2;  // for a runtime that does not end the session
 
   void show_frames() {
     const auto start = Clock::now();
@@ -83,8 +83,7 @@ class Loop {
     painter_.wait();
   }
 
-  /// The session ends here with this error; an earlier outcome is kept. If a frame had begun, it is the one that
-  /// failed.
+  /// Ends the session with this error, unless it already has an outcome. If a frame had begun, that frame failed.
   void end_by(const std::exception& e) {
     done_ = true;
     if (outcome_.status != "ok") return;
@@ -98,7 +97,7 @@ class Loop {
     if (o_.tell) o_.tell(text);
   }
 
-  /// The cloth before anything is live, so that the user sees where it is.
+  /// Shows the cloth before the session is live, so that the user sees where it is.
   void show_at_rest() {
     const Scene& s = live_.written();
     painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
@@ -119,7 +118,7 @@ class Loop {
     try {
       show(state);
     } catch (...) {
-      if (live) log_.add(row);  // it was stepped, and is in the recording
+      if (live) log_.add(row);  // it was stepped and recorded
       throw;
     }
     row.frame_s = seconds(start, Clock::now());
@@ -128,7 +127,7 @@ class Loop {
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
   }
 
-  /// A device that was lost draws nothing any more.
+  /// Draws both eyes, unless the device is lost.
   void show(const XrFrameState& state) {
     std::vector<XrView> views;
     if (state.shouldRender == XR_TRUE && outcome_.status != "device_lost")
@@ -137,8 +136,8 @@ class Loop {
     session_.end_frame(state, views);
   }
 
-  /// Frames before the first of the session: until there is something to begin with. It is begun twice: solvers make
-  /// their kernels the first time, which takes so long that the hands are elsewhere afterwards.
+  /// Handles frames before the session's first one, until rate and hands are known. The session begins twice: the first
+  /// time, solvers compile their kernels, during which the hands move on.
   void prepare(const XrFrameState& state) {
     if (done_ || !rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
     LiveScene::Begin b;
@@ -168,20 +167,20 @@ class Loop {
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
   }
 
-  /// A display changes to a requested rate after some frames, if it offers that rate. Otherwise the highest rate
-  /// counts, because after slow frames, such as a solver's first, runtimes report multiples of the display's period.
+  /// A display changes to a requested rate after some frames, if it offers that rate. Otherwise the highest rate seen
+  /// is used: after slow frames, such as a solver's first, runtimes report multiples of the display's period.
   bool rate_settled(double period_s) {
     constexpr double kTimeout_s = 1, kSame_hz = 0.5, kFastest_hz = 1000;
     if (first_frame_ == Clock::time_point{}) first_frame_ = Clock::now();
     if (settled_) return true;
-    const double hz = std::round(1 / period_s);  // a period is in whole ns
+    const double hz = std::round(1 / period_s);  // periods are whole ns
     const bool asked = std::abs(hz - o_.rate_hz) <= kSame_hz;
     if (asked || (hz > rate_hz_ && hz <= kFastest_hz)) rate_hz_ = hz;
     settled_ = asked || (rate_hz_ > 0 && seconds(first_frame_, Clock::now()) > kTimeout_s);
     return settled_;
   }
 
-  /// The vertex shader reads a GPU solver's positions where they lie.
+  /// Lets the vertex shader read a GPU solver's positions from the solver's own buffer.
   void show_live() {
     const Scene& s = live_.scene();
     painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
@@ -201,9 +200,9 @@ class Loop {
     const HandsNow now = hands_at(hands_, live_, time);
     if (live_.wants(Side::Left)) row.left_seen = now[0] ? 1 : 0;
     if (live_.wants(Side::Right)) row.right_seen = now[1] ? 1 : 0;
-    painter_.wait();  // it read the positions that the step writes
+    painter_.wait();  // it reads the positions that the step overwrites
     row.paint_device_s = painter_.device_s();
-    // From here on the frame is in the recording, so that nothing below may leave it out of the log.
+    // From here on the recording has the frame, so the log must get it too, whatever happens below.
     FrameInput input = frame_input(live_.scene(), index);
     input.motion = live_.next(index, now);
     const auto start = Clock::now();
@@ -250,7 +249,7 @@ class Loop {
     const std::uint64_t n = live_.scene().cloth.vertex_count();
     g.arrays.push_back({"final_position_m",
                         "m",
-                        "where the cloth was after the last frame",
+                        "positions of the cloth after the last frame",
                         {"vertex", "xyz"},
                         {n, 3},
                         false,
@@ -258,7 +257,7 @@ class Loop {
     return g;
   }
 
-  /// Not finite where a lost device has none.
+  /// Contains NaN if the device is lost.
   ClothState last_state() {
     ClothState end;
     try {
@@ -294,7 +293,7 @@ class Loop {
     r.file = writer.finish(outcome_, r.summary);
     r.log = log_;
     r.outcome = outcome_;
-    r.validation_messages = device_->validation_messages();  // the session's own device: pictures count too
+    r.validation_messages = device_->validation_messages();  // the session's device: includes messages about rendering
     return r;
   }
 
@@ -315,7 +314,7 @@ class Loop {
   FrameLog log_;
   Outcome outcome_;
   ClothState state_;
-  Scene shown_;  ///< what is drawn beside the cloth
+  Scene shown_;  ///< drawn together with the cloth
   render::Bounds near_ = render::Bounds::none();
 };
 

@@ -10,7 +10,7 @@
 
 namespace clothbench::xr {
 
-/// Longest session, as limited by the recordings that a scene can read: two minutes at 72 Hz.
+/// Maximum length of a session, set by the recordings that a scene can read: two minutes at 72 Hz.
 inline constexpr int kMostFrames = 8640;
 
 struct LoopOptions {
@@ -19,10 +19,10 @@ struct LoopOptions {
   const SolverEntry* entry = nullptr;
   nlohmann::json settings;  ///< complete
   std::string setting = "default";
-  DeviceOptions device;    ///< its index is ignored: the runtime chooses the device
+  DeviceOptions device;    ///< its index is ignored, because the runtime chooses the device
   double rate_hz = 72;     ///< requested refresh rate of the display
   int frames = 0;          ///< 0: the scene's length
-  double timeout_s = 120;  ///< for hands to be tracked
+  double timeout_s = 120;  ///< for hands to become tracked
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< receives messages for the user; may be empty
 };
@@ -37,12 +37,11 @@ struct LoopResult {
   int validation_messages = 0;
 };
 
-/// A live session: the user sees a cloth and touches it. Waits until hands are tracked. Then steps
-/// the solver once per displayed frame, by the display's refresh period, as the application of the paper does. If
-/// frames are displayed late, the cloth moves slower than in real time, and the log shows it. Ends after `frames`, when
-/// the runtime ends the session, when it is interrupted, or if the device is lost or a call fails after the first step
-/// (`outcome` states which). Stores the frames so far in all of these cases. Throws Error with ExitCode::NoDevice if
-/// there is no headset.
+/// A live session: the user sees a cloth and touches it. Waits until hands are tracked. Then steps the solver once per
+/// displayed frame, by the display's refresh period, as the application of the paper does. If frames are displayed
+/// late, the cloth moves slower than real time, and the log shows it. Ends after `frames`, when the runtime ends the
+/// session, on interruption, or if the device is lost or a call fails after the first step (`outcome` states which); in
+/// all of these cases the frames so far are stored. Throws Error with ExitCode::NoDevice if there is no headset.
 LoopResult run_loop(const LoopOptions&);
 
 }  // namespace clothbench::xr

@@ -1,5 +1,5 @@
 #pragma once
-// OpenXR without prototypes: every function is queried from the runtime, so that nothing links to a loader.
+// OpenXR without prototypes: every function is queried from the runtime, so that no loader is linked.
 #include <vulkan/vulkan.h>
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -7,7 +7,7 @@
 #include <openxr/openxr_platform.h>
 
 /// Declarations of the OpenXR 1.1 specification that the oldest supported headers (1.0.20) lack or restrict to Android.
-/// Numbers and layouts are the specification's; names are ours, to avoid clashes with newer headers.
+/// Numbers and layouts are the specification's; names are ours, so that they do not clash with newer headers.
 namespace clothbench::xr {
 
 /// A structure with its type set and all other members 0.
@@ -18,7 +18,7 @@ T blank(XrStructureType type) {
   return t;
 }
 
-/// XR_KHR_loader_init_android and XR_KHR_android_create_instance: the same layout with different types.
+/// XR_KHR_loader_init_android and XR_KHR_android_create_instance: equal layouts with different types.
 inline constexpr auto kTypeLoaderInitAndroid = static_cast<XrStructureType>(1000089000);
 inline constexpr auto kTypeInstanceCreateAndroid = static_cast<XrStructureType>(1000008000);
 struct AndroidInfo {

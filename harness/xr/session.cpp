@@ -12,7 +12,7 @@ namespace clothbench::xr {
 namespace {
 
 constexpr auto kViews = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-/// Those the renderer's colours are right in: what it writes is linear.
+/// sRGB formats, which give correct colours because the renderer writes linear values.
 constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
 
 using assets::Side;
@@ -57,7 +57,7 @@ Session::Session(const Instance& xr, std::shared_ptr<vulkan::Device> device, con
     create_space(options.origin_m);
     create_eyes();
     choose_blend_mode();
-  } catch (...) {  // no destructor runs then
+  } catch (...) {  // because no destructor runs after an exception here
     release();
     throw;
   }
@@ -103,7 +103,7 @@ void Session::create_eyes() {
   xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, count, &count, views.data()),
             "xrEnumerateViewConfigurationViews");
   if (count != eyes_.size()) throw Error(fmt::format("OpenXR: {} views; expected 2", count), ExitCode::NoDevice);
-  // One size for both, so that the renderer keeps one set of targets.
+  // Equal sizes for both eyes, so that the renderer keeps one set of targets.
   for (const auto& v : views) {
     extent_.width = std::max(extent_.width, v.recommendedImageRectWidth);
     extent_.height = std::max(extent_.height, v.recommendedImageRectHeight);
@@ -115,7 +115,7 @@ void Session::create_eyes() {
   for (const VkFormat f : kFormats)
     if (format_ == VK_FORMAT_UNDEFINED && std::find(formats.begin(), formats.end(), f) != formats.end()) format_ = f;
   if (format_ == VK_FORMAT_UNDEFINED)
-    throw Error("OpenXR: the runtime has no swapchain of 8-bit sRGB (RGBA or BGRA)", ExitCode::NoDevice);
+    throw Error("OpenXR: the runtime has no 8-bit sRGB swapchain (RGBA or BGRA)", ExitCode::NoDevice);
   for (Eye& eye : eyes_) {
     auto info = blank<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
@@ -135,7 +135,7 @@ void Session::create_eyes() {
   }
 }
 
-/// The user sees nothing but the scene, if the headset can do that.
+/// Chooses a mode in which the user sees only the scene, if the headset has one.
 void Session::choose_blend_mode() {
   std::uint32_t count = 0;
   xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
@@ -150,7 +150,7 @@ void Session::choose_blend_mode() {
 
 void Session::request_rate(double rate_hz) const {
   if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
-  // A rate that the display does not have is not an error: the log records the actual rate.
+  // A rate that the display lacks is not an error, because the log records the actual rate.
   xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
                                                                                    static_cast<float>(rate_hz));
 }

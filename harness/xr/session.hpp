@@ -13,7 +13,7 @@ namespace clothbench::xr {
 
 struct SessionOptions {
   double rate_hz = 72;  ///< requested refresh rate of the display, if the runtime allows it
-  Vec3 origin_m{};      ///< the scene's origin in LOCAL space, which begins at the head
+  Vec3 origin_m{};      ///< the scene's origin in LOCAL space, whose origin is at the head
 };
 
 /// Images of one eye.
@@ -22,7 +22,7 @@ struct Eye {
   std::vector<VkImage> images;
 };
 
-/// A session: its states, its clock and its pictures. All locations are in the scene's space.
+/// An OpenXR session: its states, clock and images. All positions are in the scene's space.
 ///
 /// A frame is `wait_frame`, `begin_frame`, `end_frame`, while `running()`; call `pump` between frames.
 class Session {
@@ -32,15 +32,15 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Processes the runtime's events, and begins and ends the session as they require. False once the session is over.
+  /// Processes the runtime's events; begins and ends the session as they require. False once the session is over.
   bool pump();
   bool running() const { return running_; }
   void request_exit();
   XrFrameState wait_frame();
   void begin_frame();
-  /// Shows the pictures drawn, or nothing if `views` is empty.
+  /// Shows the rendered images, or nothing if `views` is empty.
   void end_frame(const XrFrameState&, const std::vector<XrView>& views);
-  /// Both eyes in the scene's space; empty if they are not located.
+  /// Both eyes in the scene's space; empty if they are not tracked.
   std::vector<XrView> views(XrTime) const;
 
   const Instance& instance() const { return xr_; }
@@ -90,7 +90,7 @@ class Hands {
   std::array<XrHandTrackerEXT, 2> trackers_{};
 };
 
-/// Draws both eyes into the session's images in one submission and does not wait for it; the next frame does.
+/// Renders both eyes into the session's images in one submission, without waiting; the next frame waits.
 class Painter {
  public:
   Painter(std::shared_ptr<vulkan::Device>, Session&);
@@ -98,12 +98,12 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// The renderer. Surfaces and positions may be replaced only after `wait`.
+  /// The renderer. Call `wait` before replacing surfaces or positions.
   render::SceneRenderer& renderer() { return renderer_; }
-  /// Waits until the pictures submitted last are drawn. Throws vulkan::Failure.
+  /// Waits until the images of the last submission are rendered. Throws vulkan::Failure.
   void wait();
   void paint(const std::vector<XrView>& views);
-  double device_s() const { return device_s_; }  ///< of the pictures drawn at the last `wait`; NaN without timestamps
+  double device_s() const { return device_s_; }  ///< of the images of the last `wait`; NaN without timestamps
 
  private:
   void record(const std::array<std::uint32_t, 2>& index, const std::vector<XrView>& views);
@@ -118,7 +118,7 @@ class Painter {
   double device_s_;
 };
 
-/// View matrix of an eye, in metres relative to `origin_m`; and projection matrix of its field of view to Vulkan's clip
+/// View matrix of an eye in metres relative to `origin_m`, and projection matrix of its field of view to Vulkan's clip
 /// space (y down, depth 0 at near_m to 1 at far_m).
 render::Mat4 view_of(const XrPosef&, const Vec3& origin_m);
 render::Mat4 projection_of(const XrFovf&, double near_m, double far_m);

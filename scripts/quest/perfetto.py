@@ -55,7 +55,7 @@ def config(source, ids):
 
 def samples(trace):
     """Trace -> [(time [s since 1970], {counter: mean or rate since the sample before})]. Raises ValueError if it is damaged."""
-    names, ahead_ns, out = {}, {}, []  # ahead: how far real time is ahead of each clock
+    names, ahead_ns, out = {}, {}, []  # ahead: real time minus each clock
     try:
         for packet in parts(trace, 1):
             if 6 in packet:

@@ -10,7 +10,7 @@ READ, WRITE = "Read Total (Bytes/sec)", "Write Total (Bytes/sec)"
 WANTED = (READ, WRITE, "Clocks / Second", "GPU Frequency", "GPU % Bus Busy", "GPU % Utilization", "% Stalled on System Memory")
 COUNTER_SOURCES = {"perfetto": "Perfetto's gpu.counters", "ovrgpuprofiler": "ovrgpuprofiler -r, the computer's time of arrival moved to the device's clock"}
 CLOCK_TOLERANCE = 0.02  # relative to the median: steps between clock levels are 8 % and more
-# VrApi's line of every second: series -> (pattern, units, role in the summary, factor to the role's SI unit).
+# VrApi's log line, one per second: series -> (pattern, units, role in the summary, factor to the role's SI unit).
 VRAPI = {
     "fps": (r"FPS=(\d+)/", "s-1", "fps", 1),
     "refresh_rate": (r"FPS=\d+/(\d+)", "s-1", "", 1),
@@ -147,4 +147,4 @@ def write(path, device, found):
     record = {"format": "clothbench-device-samples", "format_version": 2, "device": device, "groups": found}
     with open(path + ".tmp", "w", encoding="utf-8") as out:
         json.dump(record, out, allow_nan=False, indent=0)
-    os.replace(path + ".tmp", path)  # whole or not at all
+    os.replace(path + ".tmp", path)  # readers see the whole file or none

@@ -61,7 +61,7 @@ class Ballistic final : public ClothSolver {
   Plan plan() const override {
     Plan p;
     p.stages = {{"fall", {}, 0, kMissing, kMissing}};
-    p.left_out = {{"everything the scene asks for", "this backend only falls"}};
+    p.left_out = {{"all other features of the scene", "particles only fall"}};
     return p;
   }
 

@@ -62,7 +62,7 @@ void check_sizes(const std::string& path, const ClothbenchPlugin& c) {
                         {"ClothbenchSetting", c.setting_size, sizeof(ClothbenchSetting)},
                         {"ClothbenchStage", c.stage_size, sizeof(ClothbenchStage)}})
     if (s.theirs != s.ours)
-      refuse(path, fmt::format("its {} has {} bytes: expected {}; it was built with another clothbench_plugin.h",
+      refuse(path, fmt::format("its {} has {} bytes: expected {}; it was built with a different clothbench_plugin.h",
                                s.what, s.theirs, s.ours));
 }
 
@@ -206,7 +206,7 @@ const SolverEntry& load(const std::string& given) {
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse(path, fmt::format("cannot be loaded: {}", dlerror()));
   const Entrance enter = entrance(library);
-  if (enter == nullptr) refuse(path, fmt::format("has no function {}: expected a plugin of clothbench", kSymbol));
+  if (enter == nullptr) refuse(path, fmt::format("has no function {}: expected a clothbench plugin", kSymbol));
   const ClothbenchPlugin& plugin = checked(path, enter());
   for (const Loaded& l : loaded())
     if (l.entry.info.name == plugin.name)

@@ -23,7 +23,7 @@ SolverInfo describe() {
                    Feature::MovingPins, Feature::UnevenGrid, Feature::Regions, Feature::Spin,    Feature::ClothMesh};
   info.settings = {
       {"substeps", "16", "steps per frame"},
-      {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE where the cloth is inextensible"},
+      {"integrator", "\"bdf2\"", "bdf2 | conservative: implicit midpoint, or RATTLE if the cloth is inextensible"},
       {"tolerance", "1e-8", "Newton's method stops at this residual acceleration, in units of gravity"}};
   return info;
 }

@@ -1,4 +1,4 @@
-// The life of the activity with a fake system around it: arguments, order of life-cycle calls, RESULT line.
+// Life cycle of the activity with a fake system around it: arguments, order of life-cycle calls, RESULT line.
 #include "android/session.hpp"
 
 #include <algorithm>
@@ -84,7 +84,7 @@ struct Commands {
   }
 };
 
-/// Stands in for a run: frames of 1 ms until interrupted.
+/// Replaces a run: frames of 1 ms until interrupted.
 int frames(int count) {
   for (int k = 0; k < count; ++k) {
     if (interrupt_requested()) return 130;
@@ -100,7 +100,7 @@ class SessionTest : public WithFolder {
     clear_interrupt();
     hold_runs(false);
   }
-  /// An activity that lives until it is destroyed, or the test ends.
+  /// Starts an activity that lives until it is destroyed, or until the test ends.
   Session* start(const std::string& extra) {
     sessions_.push_back(std::make_unique<Session>(
         Activity{extra, [system = system_](const std::string& line) { system->log(line); },
@@ -108,7 +108,7 @@ class SessionTest : public WithFolder {
                  [commands = commands_](const std::vector<std::string>& words) { return commands->run(words); }}));
     return sessions_.back().get();
   }
-  /// Another activity of the same or a later process: a log of its own.
+  /// Makes a different activity of the same or a later process, with its own log.
   void renew() { system_ = std::make_shared<FakeSystem>(); }
 
   std::shared_ptr<FakeSystem> system_ = std::make_shared<FakeSystem>();
@@ -257,7 +257,7 @@ TEST_F(PackedAssets, UnpackOnceAndAgainWhenTheyChange) {
   add("scenarios/b.json", "[]");
   EXPECT_EQ(complaint(), "");
   EXPECT_FALSE(fs::exists(dir_ / "to/scenarios/a.json")) << "what is no longer packed is gone";
-  // Interrupted before its end: no index, so all of it is done again.
+  // If interrupted before its end, there is no index, so all files are unpacked again.
   fs::remove(dir_ / "to/index.txt");
   fs::remove(dir_ / "to/scenarios/b.json");
   EXPECT_EQ(complaint(), "");

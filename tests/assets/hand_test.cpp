@@ -42,8 +42,8 @@ TEST_P(Hands, SkinningFollowsARigidMotion) {
   EXPECT_LT(worst, 1e-6 * 0.2);
 }
 
-// Volumes from another program (numpy, without welding or palm frame) on iwer 2.5.0 and assets 1.0.20, in cm^3. Linear
-// blending loses some where fingers bend.
+// Volumes in cm^3 from another program (numpy, without welding or palm frame) on iwer 2.5.0 and assets 1.0.20. Linear
+// blend skinning loses volume at bent joints.
 TEST_P(Hands, VolumeOfPoses) {
   NEED_NPM_ASSETS(source);
   const Hand hand = open_hand(source, GetParam());

@@ -91,7 +91,7 @@ TEST(Room, TableTopIsWhereTheScanIs) {
   const Table& table = find_table(room, "444c8313");
   const auto corners = table.top_corners();
   const Vector middle = (corners[0] + corners[2]) / 2;
-  // Scanned surface straight above or below the middle, nearest to it.
+  // The scanned surface nearest to the middle, straight above or below it.
   double gap = 1;
   for (const auto& t : room.mesh.triangles) {
     const Vector a = room.mesh.vertex(t[0]) - middle, b = room.mesh.vertex(t[1]) - middle,

@@ -14,7 +14,7 @@
 
 namespace clothbench::assets {
 
-/// The npm assets, or a skip with the reason; with CLOTHBENCH_REQUIRE_ASSETS=1 a failure instead.
+/// The npm assets. Without them, skips with the reason, or fails if CLOTHBENCH_REQUIRE_ASSETS=1.
 #define NEED_NPM_ASSETS(source)                                                                    \
   const char* required_ = std::getenv("CLOTHBENCH_REQUIRE_ASSETS");                                \
   const AssetSource source = locate_assets(required_ != nullptr && std::string(required_) == "1"); \
@@ -28,7 +28,7 @@ std::string base64_of(const std::vector<Item>& items) {
   return encode_base64(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof(Item));
 }
 
-/// Positions of a hand's vertices as solvers get them.
+/// Positions of a hand's vertices as passed to solvers.
 inline std::vector<double> skinned(const Hand& hand, const JointFrames& joints) {
   return posed_positions(*collider_mesh(hand.mesh), mesh_pose(hand, joints, Vector::Zero()));
 }

@@ -99,7 +99,7 @@ TEST(HandTrack, InterpolatesPositionOrientationAndPose) {
   EXPECT_LT((palm.translation() - Vector(1, 2, -3)).norm(), 1e-9);
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(EIGEN_PI / 4, Vector::UnitY()));
   EXPECT_LT(Eigen::Quaterniond(palm.linear()).angularDistance(expected), 1e-6);
-  // Half-way to a half pinch is within the slerp of a slerp: a quarter.
+  // Half of the time to a half pinch: a quarter of the way, within the error of nested slerps.
   const HandPose quarter = blended(hand.pose("relaxed"), hand.pose("pinch"), 0.25);
   const HandPose local = in_palm_frame(half.pose);
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -125,7 +125,7 @@ TEST(HandTrack, RotationTurnsAboutXThenYThenZ) {
   const HandTrack track = parse_hand_track(
       R"({"hand": "right", "keys": [{"time_s": 0, "pose": "point", "position_m": [0,0,0], "rotation_deg": [90, 0, 90]}]})",
       "t");
-  // y -> z by the first turn, which the second leaves.
+  // The first rotation maps y to z; the second one leaves z unchanged.
   EXPECT_LT((track.keys[0].orientation * Vector::UnitY() - Vector::UnitZ()).norm(), 1e-12);
   EXPECT_LT((track.keys[0].orientation * Vector::UnitX() - Vector::UnitY()).norm(), 1e-12);
 }

@@ -1,5 +1,5 @@
 // Hot functions under Google Benchmark: a frame of every solver on small scenes, and the metrics of a frame. Build the
-// target `benchmarks`; compare.py of Google Benchmark reads the output of `benchmarks --benchmark_format=json`.
+// target `benchmarks`; Google Benchmark's compare.py reads the output of `benchmarks --benchmark_format=json`.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace clothbench {
 namespace {
 
-/// One iteration is one frame; the clock is the frame's wall time. The scene restarts where it ends.
+/// One iteration is one frame, measured as the frame's wall time. The scene restarts at its end.
 void time_frames(benchmark::State& state, const SolverEntry& entry, const std::string& scene_name) {
   const Scene scene = load_scene(scene_name);
   const auto solver = load_solver(entry, complete_settings(entry.info, nlohmann::json::object()), {}, scene);

@@ -33,7 +33,7 @@ Collider box(double half_m) {
   return c;
 }
 
-/// A square in y = 0, open: two triangles.
+/// An open square in y = 0, made of two triangles.
 Collider square(double half_m, bool moves) {
   auto mesh = std::make_shared<ColliderMesh>();
   mesh->positions = {-half_m, 0, -half_m, half_m, 0, -half_m, half_m, 0, half_m, -half_m, 0, half_m};
@@ -79,7 +79,7 @@ TEST_P(Bullet, LiesOnAPlaneAtTheMargin) {
 }
 
 TEST_P(Bullet, TakesTheMarginAskedFor) {
-  // 4 mm asks for steps shorter than 4 mm: 0.7 m/s over 72 Hz and 16 substeps is 0.6 mm.
+  // 4 mm needs steps below 4 mm: 0.7 m/s over 72 Hz and 16 substeps is 0.6 mm.
   const Scene s = with_collider(falling(0.03, 9), plane());
   const auto solver = make_solver(GetParam(), {{"collision_margin_m", 0.0}, {"substeps", 16}});
   const ClothState state = from_start(*solver, s, 72);
@@ -122,8 +122,8 @@ TEST_P(Bullet, StaysOnAnOpenMesh) {
   EXPECT_LT(lowest(state, [](const Vec3& p) { return p[1]; }), -0.02) << "the overhang hangs";
 }
 
-/// A square or three capsules that hit a hanging cloth from behind and stop 0.15 m past it: a cloth that hangs gives
-/// way. (One stretched between two edges does not, and bullet-soft lets the square through.)
+/// A square or three capsules that hit a hanging cloth from behind and stop 0.15 m past it: a hanging cloth yields. (A
+/// cloth stretched between two edges does not, and bullet-soft lets the square through.)
 TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
   for (bool capsules : {false, true}) {
     Collider c = square(0.1, true);
@@ -180,7 +180,7 @@ TEST_P(Bullet, SlidesWithoutFrictionAndSticksWithMuch) {
 }
 
 TEST_P(Bullet, AVertexLetGoFallsFreely) {
-  // Nothing pulls at a sheet all of whose vertices are held, and then none.
+  // A sheet whose vertices are all attached, then all released, with no force on it.
   Scene s = sheet(3, 3, 0.2, 0.2);
   for (std::uint32_t v = 0; v < 9; ++v) s.grips.vertices.push_back(v);
   s.needs.add(Feature::MovingPins);

@@ -87,8 +87,7 @@ TEST_P(Bullet, FreeFallIsThatOfItsIntegrator) {
   }
 }
 
-/// A sheet that starts stretched and in motion, without gravity: it contracts, and its centre of mass knows nothing of
-/// it.
+/// A sheet that starts stretched and moving, without gravity: it contracts, and its centre of mass moves on uniformly.
 TEST_P(Bullet, KeepsMomentumAndKnowsItsRestLengths) {
   for (const auto& [columns, rows] : kSizes) {
     Scene s = with_bending(sheet(columns, rows));

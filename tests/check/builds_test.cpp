@@ -55,7 +55,7 @@ TEST(CompareTimes, IntervalAndProbabilityAgree) {
   }
 }
 
-/// Standard deviations, relative: of processes, of the trials in a process, of the frames in a trial.
+/// Relative standard deviations: between processes, between trials in a process, between frames in a trial.
 struct Spread {
   double process, trial, frame;
   bool heavy = false;  ///< one process in ten is 20 % slower
@@ -75,7 +75,7 @@ RunRecord drawn_run(const Spread& s, double frame_s, std::mt19937& random) {
   return r;
 }
 
-/// Share of `repeats` comparisons that call a difference between `count` processes of 1 ms and of `frame_s` a frame.
+/// Fraction of `repeats` comparisons of `count` processes each, of 1 ms and `frame_s` per frame, that report a change.
 double called(const Spread& s, std::size_t count, double frame_s, int repeats, std::mt19937& random) {
   int n = 0;
   for (int k = 0; k < repeats; ++k) {
@@ -95,7 +95,7 @@ double called(const Spread& s, std::size_t count, double frame_s, int repeats, s
 constexpr Spread kSpreads[] = {{0, 0.01, 0.05},    {0.01, 0.01, 0.05}, {0.05, 0.01, 0.05},
                                {0.02, 0.005, 0.3}, {0.2, 0.01, 0.01},  {0.01, 0.01, 0.05, true}};
 
-/// Repeats of one build are called different in 5 % of all comparisons, +- 2 %, however processes, trials and frames
+/// 5 % +- 2 % of all comparisons of one build with itself report a difference, however processes, trials and frames
 /// vary.
 TEST(CompareTimes, FalseAlarmsAreAsRareAsStated) {
   std::mt19937 random(11);
@@ -106,8 +106,8 @@ TEST(CompareTimes, FalseAlarmsAreAsRareAsStated) {
     }
 }
 
-/// A change of twice the spread of processes is found by 5 processes per side in four of five comparisons, one of three
-/// times the spread almost always, and more processes find more.
+/// 5 processes per side find a change of twice the standard deviation of processes in four of five comparisons, and a
+/// change of three times almost always; more processes find more.
 TEST(CompareTimes, FindsChangesOfTheSizeStated) {
   std::mt19937 random(12);
   const Spread s = {0.02, 0.001, 0.001};
@@ -133,7 +133,7 @@ RunRecord run(const std::string& scene, double frame_s, double error) {
   return c;
 }
 
-/// The same runs in several processes, each a little slower than the one before.
+/// The same runs in several processes, each a little slower than the previous one.
 Processes processes(const std::vector<RunRecord>& runs, int count = 5) {
   Processes out;
   for (int k = 0; k < count; ++k) {
@@ -188,13 +188,13 @@ TEST(CompareRuns, ResultsHaveATolerance) {
 TEST(CompareRuns, OneProcessASideMakesNoStatement) {
   const Processes a = processes({run("x", 1e-3, 0.5)}, 1), b = processes({run("x", 9e-3, 0.5)}, 1);
   const nlohmann::json row = comparison_json(compare_processes(a, b))["runs"][0]["time"];
-  EXPECT_EQ(row["verdict"], "too few processes: at least 5 a side");
+  EXPECT_EQ(row["verdict"], "too few processes: 5 per side needed");
   EXPECT_TRUE(row["p"].is_null());
 }
 
 struct Other {
   const char* kind;
-  const char *a, *b;  ///< values that the refusal names
+  const char *a, *b;  ///< both values in the error message
   std::function<void(RunRecord&)> change;
 };
 

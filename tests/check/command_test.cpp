@@ -1,4 +1,4 @@
-// `clothbench check` as a user meets it: exit codes, files, a study of the ballistic solver as the subject.
+// `clothbench check` as users see it: exit codes, files, for a study of the ballistic solver.
 #include "command.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class CheckCommand : public WithFolder {
  protected:
   void SetUp() override { write_study({contact_run("desk"), contact_run("sweep")}); }
 
-  /// A study folder with these runs, as `clothbench study` leaves it.
+  /// A study folder with these runs, as written by `clothbench study`.
   void write_study(const std::vector<RunRecord>& runs) {
     fs::remove_all(run());
     fs::create_directories(run());
@@ -104,7 +104,7 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
   EXPECT_EQ(json::parse(content_of(baseline())), bad);
 }
 
-/// Whatever the summary says: the run of the baseline has the same.
+/// Positions are checked whatever the summary states: the baseline's run has an equal summary.
 TEST_F(CheckCommand, PositionsAreLookedAt) {
   const auto write = [&](const std::vector<float>& position) {
     RunRecord c = contact_run("sweep");
@@ -179,7 +179,7 @@ TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {
   EXPECT_NE(text_.find("scene: scene SHA-256: 0 and "), std::string::npos) << text_;
   EXPECT_EQ(command(arguments + " --allow device"), 2) << "another kind";
   EXPECT_EQ(command(arguments + " --allow scene"), 0) << text_;
-  EXPECT_NE(text_.find("Compared although it differs"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("Compared despite a difference"), std::string::npos) << text_;
   ASSERT_EQ(command(arguments + " --update"), 0) << text_;
   EXPECT_NE(text_.find("baseline differ: scene: scene SHA-256: 0 and "), std::string::npos) << text_;
   EXPECT_EQ(command(arguments), 0) << text_;

@@ -1,4 +1,4 @@
-// Every rule of the check, on runs as the runner would leave them.
+// Every rule of the check, on runs as the runner would store them.
 #include "check/compare.hpp"
 
 #include <gtest/gtest.h>
@@ -101,7 +101,7 @@ TEST(Compare, Outcome) {
   EXPECT_EQ(verdict(ok, ended(ok, "unsupported")), Verdict::Failed);
   EXPECT_EQ(verdict(ok, ended(ok, "ok", "F4")), Verdict::Failed);
   EXPECT_EQ(verdict(ended(ok, "ok", "F4"), ok), Verdict::Improved);
-  // 2 frames and a tenth of 40: 34 to 46 is the same blow-up.
+  // 2 frames and a tenth of 40: a blow-up in frames 34 to 46 counts as the same.
   EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 34)), Verdict::Same);
   EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 33)), Verdict::Failed);
   EXPECT_EQ(verdict(blown, ended(ok, "diverged", "F2", 46)), Verdict::Same);
@@ -154,7 +154,7 @@ TEST(Check, OtherConditionsAreRefusedByNameUnlessAllowed) {
   }
 }
 
-/// Values of a result do not hang on the machine that a solver of the CPU ran on, on drivers, or on timed trials.
+/// Results do not depend on the machine of a CPU solver, on drivers, or on timed trials, so these are no conditions.
 TEST(Check, WhatResultsDoNotHangOnIsNoCondition) {
   RunRecord changed = contact_run();
   changed.header.environment["cpu"] = "Other CPU";

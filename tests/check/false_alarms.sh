@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How often `clothbench compare` calls two sides of one build different: five and five fresh processes in random order, at 5 %.
+# How often `clothbench compare` reports a difference of a build from itself: five fresh processes per side, random order, 5 %.
 #   tests/check/false_alarms.sh COMPARISONS [JOBS]
 set -euo pipefail
 bench=${CLOTHBENCH:-$(cd "$(dirname "$0")/../.." && pwd)/build/release/clothbench} home=$(mktemp -d)

@@ -1,4 +1,4 @@
-// The baseline file, and the output for people and machines: console, JUnit XML, JSON.
+// The baseline file, and the output as text and for machines: terminal, JUnit XML, JSON.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A run of each verdict, with text that every format must escape.
+/// A run for each verdict, with text that every format must escape.
 Checked sample() {
   const std::string nasty = "a <b> & \"c\", 100 %: d]]>\r\nnext\tline \x01\x1b \xff\xEF\xBF\xBF µ";
   Checked c;
@@ -91,7 +91,7 @@ TEST(Json, HasEveryRun) {
   EXPECT_EQ(j["runs"][1]["findings"][1]["allowed"], "≤ 0.0036");
 }
 
-// The baseline file: what is written is read back, what is wrong is said with file and JSON pointer.
+// Baseline files are read back as written; errors have file and JSON pointer.
 
 class BaselineFile : public WithFolder {
  protected:

@@ -3,7 +3,7 @@
 
 namespace clothbench {
 
-/// A desk drop as the runner leaves it: penetration scalars, stages, a scene of 0.5 m x 0.5 m.
+/// A desk drop as the runner stores it: penetration scalars, stages, a scene of 0.5 m x 0.5 m.
 inline RunRecord contact_run(const std::string& scene = "desk", const std::string& solver = "xpbd") {
   RunRecord c = fake_run(solver, 32, "double", 0.01);
   c.header.scene = scene;
@@ -33,7 +33,7 @@ inline RunRecord ended(RunRecord c, const std::string& status, const std::string
   return c;
 }
 
-/// As `collect` gives a planned run without a file: only its file name is known.
+/// A planned run without a file, as `collect` returns it: only its file name is known.
 inline RunRecord planned(const RunRecord& of) {
   RunRecord c;
   c.header.scene = of.header.scene;

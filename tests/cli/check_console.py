@@ -74,7 +74,7 @@ class Console(unittest.TestCase):
         for words in [["list", what] for what in lists] + [["plan", "paper/gravity", "--solver", "ballistic"], ["--help"]] + [[command, "--help"] for command in self.commands()]:
             with self.subTest(words=words):
                 lines = self.piped(*words)[0].split("\nEx")[0].splitlines()
-                # A word and the name of an option with its values are not broken.
+                # Words, and option names with their values, are not broken.
                 long = [line for line in lines if len(line) > COLUMNS and " " in line.strip() and not line.startswith("  -")]
                 self.assertEqual(long, [])
 
@@ -107,7 +107,7 @@ class Console(unittest.TestCase):
         for command in self.commands():
             with self.subTest(command=command):
                 self.assertRegex(self.piped(command, "--help")[0], "Examples?:")
-                if command == "xr":  # needs a runtime: tests/xr asks it
+                if command == "xr":  # needs a runtime; tests/xr covers it
                     continue
                 self.assertIsNotNone(json.loads(self.piped(command, "--json", *asked[command])[0]))
 

@@ -1,4 +1,4 @@
-// The command as a user meets it: arguments, exit codes, files left behind.
+// The command as users see it: arguments, exit codes, files.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ nlohmann::json json_of(const std::string& arguments) {
 
 class Cli : public WithFolder {
  protected:
-  /// A study of ballistic runs, quick enough to interrupt at will.
+  /// A study of ballistic runs, long enough to be interrupted at any time.
   std::string small_study() const {
     const fs::path file = dir_ / "small.json";
     std::ofstream(file) << R"({"name":"small","why":"A test.","protocol":"fps",
@@ -107,7 +107,7 @@ TEST_F(Cli, StudyThenReport) {
     const RunRecord r = read_run(out / (run + ".h5"));
     EXPECT_EQ(r.outcome.status, "ok");
     EXPECT_EQ(r.trials.size(), 3u);
-    // ballistic integrates as its closed form says, in double.
+    // ballistic integrates in double by its closed form.
     EXPECT_LE(r.summary.at("free_fall_error"), 1e-12);
     EXPECT_GT(r.summary.at("fps_median"), 0);
     EXPECT_TRUE(std::isnan(r.summary.at("read_B_per_frame"))) << "bytes of a CPU solver are missing";
@@ -162,7 +162,7 @@ TEST_F(Cli, RequiredAssetsMustBeThere) {
   EXPECT_FALSE(fs::exists(dir_ / "s")) << "nothing has begun";
 }
 
-/// Starts the study, lets it run for a while and sends it a signal.
+/// Starts the study and sends it a signal after a while.
 int run_and_signal(const std::string& study, const fs::path& out, int signal_number, int after_ms, bool resume) {
   const pid_t child = fork();
   if (child == 0) {
@@ -206,7 +206,7 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = content_of(out / "study.json"), manifest_of_run = content_of(one / "study.json");
-  // SolverRun 1 has not been run: it would join one of another scene.
+  // Run 1 has not been executed: it would be added to runs of another scene.
   for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
     const Answer a = command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;

@@ -1,4 +1,4 @@
-// Where the command may write its results: refused with exit code 2 before a solver runs.
+// Folders for results: an unusable one is refused with exit code 2 before a solver runs.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -106,7 +106,7 @@ TEST_F(Out, MoreRunsThanAStudyMayHaveExitTwo) {
   EXPECT_NE(a.text.find("100000"), std::string::npos) << a.text;
 }
 
-// `clothbench study contact` as a user meets it: draws, runs, resumes, reports, and runs a stored scene again.
+// `clothbench study contact` as users see it: generates, runs, resumes, reports, and repeats a stored scene.
 
 class DrawnStudy : public WithFolder {
  protected:
@@ -163,19 +163,19 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
     EXPECT_EQ(a.code, 2) << c.arguments << "\n" << a.text;
     EXPECT_NE(a.text.find(c.expected), std::string::npos) << c.arguments << "\n" << a.text;
   }
-  // Where nothing has been fetched, the message names what fetches it.
+  // If no assets are fetched, the message names the script that fetches them.
   const Answer a = command("study contact --seed 1 --count 1 --solver ballistic", Streams::Both,
                            "CLOTHBENCH_ASSETS=" + dir_.string());
   EXPECT_EQ(a.code, 2);
   EXPECT_NE(a.text.find("scripts/fetch-assets.sh"), std::string::npos) << a.text;
 }
 
-// Several commands one after another in one process, as an app's session runs them: none inherits another's arguments.
+// Several commands one after another in one process, as in an app's session: none may inherit another's arguments.
 
 using Words = std::vector<std::string>;
 
 Answer in_this_process(const Words& words) {
-  setenv("CLOTHBENCH_IN_PROCESS", "1", 1);  // this program is no worker
+  setenv("CLOTHBENCH_IN_PROCESS", "1", 1);  // this program cannot be a worker
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const int code = run_command_line(words);

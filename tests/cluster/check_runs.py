@@ -28,7 +28,7 @@ with tempfile.TemporaryDirectory() as home:
     assert done == {names[1]} and made["ok"] == len(made["runs"]) == 1 and made["runs"][0]["summary"], (done, made)
     with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
         assert json.load(text)["runs"] == names, "the folder says what belongs to it"
-    # The rest at the same time, in two processes; one of them begins with what is there already.
+    # The other runs concurrently in two processes; one of them begins with a run that exists already.
     parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--job", c]) for c in ("0-1", f"2-{len(names) - 1}")]
     assert [p.wait() for p in parts] == [0, 0]
     assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(names)
@@ -52,7 +52,7 @@ with tempfile.TemporaryDirectory() as home:
     assert "nearest known: ballistic" in command("run", "paper/gravity", "--solver", "balistic", code=2)
     assert "nearest known: study" in command("studdy", "table3", code=2)
 
-    # A run against itself differs in nothing, and one process a side makes no statement on times.
+    # A run compared with itself does not differ, and one process per side gives no statement on times.
     compared = json.loads(command("compare", out, out, "--json"))["runs"]
     assert len(compared) == len(names) and all(
         c["time"]["verdict"].startswith("too few processes") and c["verdict"] == "same" and not c["findings"] for c in compared

@@ -1,4 +1,4 @@
-// One body x every registered solver x every scene: what any backend must do, whatever its method.
+// Every registered solver on every scene: requirements on any solver, whatever its method.
 #include "runner/conformance.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Case : ConformanceCase {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.solver << " on " << c.scene; }
 
-/// One of a scene's twelve combinations of sides, grid and mesh, another one for another scene; all in the slow tier.
+/// Selects some of a scene's twelve combinations of sides, grid and mesh, varying by scene; the slow tier runs all.
 bool chosen(const std::string& scene, std::size_t combination) {
   if (CLOTHBENCH_ALL_CASES) return true;
   const auto shift = std::accumulate(scene.begin(), scene.end(), std::size_t{0},
@@ -34,7 +34,7 @@ bool chosen(const std::string& scene, std::size_t combination) {
   return (combination + shift) % 12 == 0;
 }
 
-/// Other scenes need the same features: capstan-hold and cantilever-10.
+/// Skipped combinations; capstan-hold and cantilever-10 need the same features.
 bool takes_long(const std::string& solver, const std::string& scene) {
   if (scene == "validation/capstan-slip") return true;  // a cylinder of 384 sides, minutes on a software device
   return solver == "bullet-deformable" && (scene == "validation/cantilever-1" || scene == "validation/cantilever-100");
@@ -55,12 +55,12 @@ std::vector<Case> cases() {
     for (const auto& file : fs::recursive_directory_iterator(CLOTHBENCH_SOURCE_DIR "/scenarios")) {
       fs::path relative = fs::relative(file.path(), CLOTHBENCH_SOURCE_DIR "/scenarios");
       const std::string folder = relative.begin()->string();
-      if (folder == "stability") continue;  // they name vertices of their own grids, and are there to fail
+      if (folder == "stability") continue;  // they use vertex indices of their own grids, and are made to fail
       if (file.path().extension() != ".json" || folder == "schema" || folder == "studies" || folder == "assets")
         continue;
       const std::string scene = relative.replace_extension().string();
       if (!CLOTHBENCH_ALL_CASES && takes_long(e.info.name, scene)) continue;
-      std::size_t n = 0;  // combinations; a device profile is no new one
+      std::size_t n = 0;  // number of combinations, not counting device profiles
       for (const ConformanceCase& c : conformance_cases(scene, e.info.on_gpu)) {
         if (c.whole) continue;  // they take minutes: `clothbench conformance` runs them
         if (c.profile.empty()) ++n;
@@ -79,7 +79,7 @@ std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-// A study that names a solver of the tree must know it in a build without it.
+// A build without a solver of the tree must still know its name for studies.
 TEST(SolverNames, OfEverySolverThatIsBuilt) {
   const std::vector<std::string>& names = solver_names_of_tree();
   for (const SolverEntry& e : solvers())
@@ -112,7 +112,7 @@ TEST_P(Conformance, DoesWhatABackendMust) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(cases()), case_name);
 
-/// Largest share of its cases that each solver may skip: one that does less than before must say so here.
+/// Maximum fraction of its cases that each solver may skip, so that a solver cannot lose features unnoticed.
 const std::map<std::string, double> kMaxSkipped = {
     {"ballistic", 0},           {"xpbd", 0.36},      {"paper", 0.39},       {"bullet-soft", 0.4},
     {"bullet-deformable", 0.4}, {"reference", 0.74}, {"example-xpbd", 0.83}};

@@ -1,4 +1,4 @@
-// Relations of two runs: a solver that keeps them passes, and each planted fault breaks its relation.
+// Relations of two runs: a solver that obeys them passes, and each planted fault violates its relation.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Falls like `ballistic`, with one fault of choice.
+/// Falls like `ballistic`, with one selectable fault.
 class Cheat : public StillSolver {
  public:
   enum class Fault { None, LiesAlongX, Numbering, Counts, SeesColliders, Remembers, NowhereByColliders, Fails };

@@ -11,7 +11,7 @@
 namespace clothbench::contact {
 namespace {
 
-/// By solid angles (van Oosterom & Strackee 1983, eq. 8): another method than crossings of a ray.
+/// By solid angles (van Oosterom & Strackee 1983, eq. 8), independent of ray crossings.
 double winding_number(const Point<3>& p, const TriangleTree& mesh) {
   double sum = 0;
   for (const Simplex<3>& v : mesh.triangles()) {
@@ -75,7 +75,7 @@ TEST(Distance, ToATriangleAndToASliver) {
   EXPECT_DOUBLE_EQ(squared_distance({7, 4, 0}, sliver), 25);
 }
 
-// Integers that need up to 21 bits a factor: the determinant fits 128-bit integers, and double rounding loses it.
+// Integers with up to 21 bits per factor: the determinant fits into 128 bits, but double rounds it.
 template <int N>
 __int128 integer_determinant(const std::array<std::array<long, N>, N>& m) {
   if constexpr (N == 1) {
@@ -137,7 +137,7 @@ TEST(Predicates, ExtremeSizes) {
   }
 }
 
-// One in the plane, one beyond it, in every place of a fan: exactly one triangle takes a path through the hub.
+// One end in the plane, one beyond it, all around a fan: exactly one triangle is crossed by a path through the hub.
 TEST(Predicates, PathThroughAVertexMeetsOneTriangleOfTheFan) {
   const Point<3> hub(0, 0, 0);
   const Point<3> rim[6] = {{1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {1, -1, 0}};
@@ -164,7 +164,7 @@ TEST(Predicates, Degenerate) {
   EXPECT_EQ(crossing<3>(Point<3>(0, 0, 1), Point<3>(1, 2, -3), {a, a, b}), 0);
 }
 
-// A cloth against itself: figures worked out on paper, and the same pairs as by looking at all of them.
+// Cloth against itself: lengths computed by hand, and the same pairs as a test of all pairs finds.
 
 TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
   const Mesh flat = sheet(12, 12, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 1));
@@ -178,7 +178,7 @@ TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
     EXPECT_EQ(self_contour(m->view()).pairs, 0);
     EXPECT_EQ(self_contour(m->view()).length_m, 0);
   }
-  // Folded flat, layer on layer: they touch, and cross nowhere.
+  // Folded flat, layer on layer: the layers touch but do not cross.
   const Mesh pressed = flat.mapped([](const Point<3>& p) { return Point<3>(std::abs(p[0] - 0.5), 0, p[2]); });
   EXPECT_GT(self_contour(pressed.view()).pairs, 100);
   EXPECT_EQ(self_contour(pressed.view()).length_m, 0);

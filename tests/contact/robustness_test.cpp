@@ -9,7 +9,7 @@ namespace {
 
 Capsule sphere(const Point<3>& centre, double radius_m) { return {centre, centre, radius_m}; }
 
-/// A wavy cloth through a bumpy ball: every figure is nonzero and nothing is special.
+/// A wavy cloth through a bumpy ball: every value is nonzero, and nothing is degenerate.
 Mesh wavy(int cells) {
   return sheet(cells, cells, {-0.3, 0.11, -0.3}, {0, 0, 0.6}, {0.6, 0, 0}).mapped([](const Point<3>& p) {
     return Point<3>(p + Point<3>(0.003, 0.02 * std::sin(14 * p[0] + 3 * p[2]), 0.001));
@@ -22,7 +22,7 @@ TEST(Robustness, CoincidentCopiesStayFinite) {
   const int cells = 8;
   const Mesh flat = patch(cells), bent = wavy(cells);
   EXPECT_EQ(against(flat, flat).contour_length_m, 0);
-  // No more than all edges together.
+  // At most the length of all edges together.
   const double edges = 3 * 0.6 * (cells + 1) * 1.5, length = against(bent, bent).contour_length_m;
   EXPECT_TRUE(length >= 0 && length <= edges) << length;
 }
@@ -43,7 +43,7 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
     EXPECT_GT(p[i], 0) << i;
     EXPECT_NEAR(p[i], q[i], 1e-12 * p[i]) << i;
   }
-  // On the cloth's side too: a cell that has fallen together.
+  // A degenerate cell on the cloth's side too.
   Mesh collapsed = cloth;
   for (int k = 0; k < 3; ++k) collapsed.positions[3 * 200 + k] = collapsed.positions[3 * 201 + k];
   for (const double x : fields(against(collapsed, ball))) EXPECT_TRUE(std::isfinite(x));
@@ -93,7 +93,7 @@ TEST(Robustness, RotationAndTranslationInvariance) {
   const auto shape = fields(capsule_contact(cloth.view(), {&c, 1}));
   const Mesh turned = moved(cloth);
   const auto turned_shape = fields(capsule_contact(turned.view(), {&t, 1}));
-  // The sides of its triangles lie elsewhere.
+  // After the rotation, the edges of the capsule's triangles are elsewhere.
   EXPECT_NEAR(shape[0], turned_shape[0], 0.02 * shape[0]);
   EXPECT_NEAR(shape[1], turned_shape[1], 1e-9 * shape[1]);
 }
@@ -123,7 +123,7 @@ Mesh lowered_sheet(int cells, double d) {
   return sheet(cells, cells, Point<3>(0, kRadius - d, 0) - 0.5 * (u + v), v, u);
 }
 
-/// Sphere turned so that the plane cuts it in no special way, but with a vertex on top, where the depth is largest.
+/// A sphere rotated so that the plane cuts it in general position, but with a vertex on top, the deepest point.
 Mesh ball(int n) {
   const Mesh plain = octasphere(n, kRadius);
   const Point<3> top = plain.view().vertex(plain.triangles[n][0]).normalized();
@@ -136,7 +136,7 @@ ContactSample mesh_sample(int level, double d) {
   return against(cloth, object);
 }
 
-/// Three levels, each half as coarse: close to the exact value, and the observed order 2 +- 0.3.
+/// Three levels, each with half the resolution: close to the exact value, with observed order 2 +- 0.3.
 TEST(UnitNumbers, SphereMesh) {
   for (const double d : {0.005, 0.01, 0.02}) {
     const double exact = exact_contour(d);
@@ -148,14 +148,14 @@ TEST(UnitNumbers, SphereMesh) {
   }
 }
 
-/// The contour of a capsule's triangles lies between the contours of the capsule and of one whose radius is smaller by
-/// the stated error.
+/// The contour of a capsule's triangles lies between the contour of the capsule and that of one whose radius is smaller
+/// by the stated error.
 void expect_contour(double found, double at_radius, double at_less, const char* what) {
   EXPECT_LE(found, at_radius * (1 + 1e-12)) << what;
   EXPECT_GE(found, at_less * (1 - kCapsuleError)) << what;
 }
 
-// Level sheets in a sphere, across a capsule that lies along x (a stadium), and across one that stands on its end.
+// Horizontal sheets in a sphere, through a capsule along x (a stadium), and through an upright capsule.
 TEST(UnitNumbers, CapsulesByTriangles) {
   const double length = 0.3, less = (1 - kCapsuleError) * kRadius;
   const Capsule ball = sphere(Point<3>::Zero(), kRadius), lying{{-length / 2, 0, 0}, {length / 2, 0, 0}, kRadius},
@@ -196,7 +196,7 @@ TEST(UnitNumbers, CapsuleMeshIsWithinItsError) {
   }
 }
 
-// Two spheres far enough apart count as two, a duplicate changes nothing, and what is inside the other does not count.
+// Two separate spheres count twice, a duplicate changes nothing, and contour inside the other capsule does not count.
 TEST(UnitNumbers, UnionOfCapsules) {
   const Mesh cloth = sheet(40, 20, {-0.5, 0.09, -0.25}, {0, 0, 0.5}, {1, 0, 0});
   const Capsule left = sphere({-0.22, 0, 0}, kRadius), right = sphere({0.21, 0, 0}, kRadius);
@@ -205,13 +205,13 @@ TEST(UnitNumbers, UnionOfCapsules) {
   };
   EXPECT_NEAR(length({left, right}), length({left}) + length({right}), 1e-12);
   EXPECT_EQ(length({left, right, left}), length({left, right}));
-  // A finger of two capsules that share a joint is as long as one.
+  // A finger of two capsules with a common joint has the contour of one long capsule.
   const Point<3> a(-0.2, 0, 0), joint(0.01, 0, 0), b(0.2, 0, 0);
   EXPECT_NEAR(length({{a, joint, kRadius}, {joint, b, kRadius}}), length({{a, b, kRadius}}),
               0.01 * length({{a, b, kRadius}}));
 }
 
-// Smaller than a cloth triangle, and between its vertices: vertices can't see it.
+// A fingertip smaller than a cloth triangle and between its vertices, which cannot detect it.
 TEST(UnitNumbers, FingertipInsideOneTriangle) {
   const Mesh cloth = sheet(2, 2, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
   const double r = 0.02, d = 0.005;

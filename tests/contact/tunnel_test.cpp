@@ -20,7 +20,7 @@ class Watched {
     counts_.assign(cloth.positions.size() / 3, 0);
   }
 
-  /// Share of the vertices that are on the other side than at the start.
+  /// Fraction of the vertices that are on the other side than at the start.
   double move(const Mesh& to) {
     contour_m_ = contour(to.view(), tree_).length_m;
     const auto step = proven_crossings(cloth_.positions, to.positions, object_.view(), tree_, links_);
@@ -41,16 +41,16 @@ class Watched {
   double contour_m_ = 0;
 };
 
-// An even number of cells puts a row of vertices into the plane of the patch, and an odd one puts none; z = 0 runs
-// along edges of an even patch.
+// With an even number of cells, a row of vertices lies in the plane of the patch; z = 0 is along edges of an even
+// patch.
 TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
   for (const int cells : {31, 32, 33})
     for (const int patch_cells : {1, 2, 5, 8})
       for (const double z : {0.0, 0.013}) {
         Watched w(patch(patch_cells), curtain(cells, 0.7, z));
         w.move(curtain(cells, 0.2, z));
-        // Special positions count as if the cloth were moved by (e, e^2, e^3): the row in the plane is still above it,
-        // and the last column passes just beside the patch.
+        // Special positions count as if the cloth were translated by (e, e^2, e^3): the row in the plane still counts
+        // as above it, and the last column passes just outside the patch.
         const double rows = (cells + 1) / 2, columns = cells;
         EXPECT_NEAR(w.move(curtain(cells, 0, z)), rows * columns / ((cells + 1) * (cells + 1)), 1e-12);
         EXPECT_NEAR(w.contour_m(), 1, 1e-12) << cells << ' ' << patch_cells << ' ' << z;
@@ -71,7 +71,7 @@ TEST(Tunnel, RoundTheBorderAndBackCountsNothingButThroughAndRoundDoes) {
   EXPECT_EQ(w.move(at(0.9, -0.3)), 0);
 }
 
-/// A cloth that slides off the patch: level above it, round its rim at x = 0.5 in a quarter circle, down beside it.
+/// A cloth that slides off the patch: horizontal above, a quarter circle around its rim at x = 0.5, then vertical.
 Mesh sliding_off(double slid) {
   constexpr double kAbove = 0.02;
   return sheet(8, 40, {-0.4, 0, -0.4}, {0, 0, 0.8}, {0.8, 0, 0}).mapped([=](const Point<3>& p) {
@@ -82,7 +82,7 @@ Mesh sliding_off(double slid) {
   });
 }
 
-// At 72 Hz and 7 m/s a vertex goes 97 mm a frame, and its straight path cuts the rim that it went round.
+// At 72 Hz and 7 m/s a vertex moves 97 mm per frame, so its straight path cuts through the rim that it moved around.
 TEST(Tunnel, ClothThatSlidesOffARimHasNotTunnelled) {
   for (const double step : {0.097, 0.08}) {
     const Mesh object = patch(5);
@@ -102,7 +102,7 @@ TEST(Tunnel, ClothThatSlidesOffARimHasNotTunnelled) {
   }
 }
 
-// Level all the time, so that there is no contour in any frame, and wider than the patch.
+// Horizontal in every frame, so that no frame has a contour, and wider than the patch.
 TEST(Tunnel, ALevelClothThatFallsThroughCounts) {
   const Mesh cloth = sheet(12, 12, {-0.8, 0, -0.8}, {0, 0, 1.6}, {1.6, 0, 0});
   Watched w(patch(5), cloth.moved({0, 0.3, 0}));
@@ -119,7 +119,7 @@ TEST(Tunnel, ALevelClothThatFallsThroughCounts) {
   EXPECT_NEAR(through, inside / 169.0, 1e-12);
 }
 
-// The same way between frames, but through the patch a hand's breadth inside the rim.
+// Equal motion between frames, but through the patch, 10 cm inside the rim.
 TEST(Tunnel, ClothThatIsPulledThroughCounts) {
   Watched w(patch(5), sliding_off(0).moved({-0.1, 0, 0}));
   double last = 0;
@@ -127,7 +127,7 @@ TEST(Tunnel, ClothThatIsPulledThroughCounts) {
   EXPECT_GT(last, 0.9);
 }
 
-// All on a coarse lattice: paths through vertices and edges, along triangles, ending on them.
+// All points are on a coarse lattice: paths go through vertices and edges, along triangles, or end on them.
 TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
   Mesh cube;
   for (int i = 0; i < 8; ++i) cube.add(Point<3>(i & 1 ? 2 : -2, i & 2 ? 2 : -2, i & 4 ? 2 : -2));
@@ -138,7 +138,7 @@ TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> lattice(-3, 3);
     const auto point = [&] { return Point<3>(lattice(random), lattice(random), lattice(random)); };
-    // Far outside, so that its side is beyond doubt.
+    // Far outside, so that its side is certain.
     const Point<3> out(9, 5, -7);
     int inside_seen = 0;
     for (int trial = 0; trial < 3000; ++trial) {
@@ -147,7 +147,7 @@ TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
                 b_out = signed_crossings(b, out, tree);
       ASSERT_EQ(out_a + a_b + b_out, 0) << a.transpose() << " -> " << b.transpose();
       ASSERT_EQ(a_b, -signed_crossings(b, a, tree));
-      // Moved a little along +x, then +y, then +z, a point of the lattice is inside [-2, 2).
+      // Translated a little along +x, then +y, then +z, a lattice point is inside if it is in [-2, 2).
       const bool inside = (a.array() >= -2).all() && (a.array() < 2).all();
       ASSERT_EQ(out_a, inside ? -1 : 0) << a.transpose();
       inside_seen += inside;
@@ -156,8 +156,8 @@ TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
   }
 }
 
-// Turning, shrinking, jerking about: whatever a closed mesh does in between, those inside at the end are those that
-// crossed once more inwards than outwards.
+// Turning, shrinking, jerking about: whatever a closed mesh does, the points inside at the end are those that crossed
+// once more inwards than outwards.
 TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
   const Mesh cloth = sheet(20, 20, {-0.5, -0.5, 0.01}, {1, 0, 0}, {0, 1, 0});
   const Mesh ball = octasphere(8, 0.3);
@@ -189,7 +189,7 @@ TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
   }
 }
 
-// Space-time on a lattice: vertices of the mesh move through the cloth's vertices and land on them.
+// Space-time on a lattice: vertices of the mesh move through the cloth's vertices and end on them.
 TEST(Tunnel, MovingLatticeMeshKeepsTheBalance) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> lattice(-3, 3);
@@ -202,7 +202,7 @@ TEST(Tunnel, MovingLatticeMeshKeepsTheBalance) {
     const TriangleTree before(from.view()), after(to.view());
     const Point<3> p = point(), q = point(), out(20, 9, 7);
     const int inside_before = -signed_crossings(out, p, before), inside_after = -signed_crossings(out, q, after);
-    // The count goes with the normals, outwards.
+    // Crossings are signed by the outward normals.
     ASSERT_EQ(-swept.signed_crossings(p, q), inside_after - inside_before) << trial;
   }
 }

@@ -47,7 +47,7 @@ with Folder() as top:
     environment = {**os.environ, "FAKE_ASSETS": str(BUILD / "packed-assets")}
     call = lambda command: must(command, env=environment, timeout=240)
 
-    # One undisturbed life, arguments by intent extra.
+    # One life cycle without disturbances; arguments come from an intent extra.
     f = fresh(top, "plain")
     verdict, out = result_of(text := call(host(f, ARGS, "create", "resume", "finish", "pause", "destroy"))), f / "files/runs/small"
     assert verdict == "PASS", text
@@ -63,7 +63,7 @@ with Folder() as top:
     assert verdict == "FAIL" and "no-such-scene: no such file" in text, text
     print("ok: failure")
 
-    # Paused, resumed; destroyed in mid-run; created again in the same process.
+    # Paused and resumed; destroyed during a run; created again in the same process.
     f = fresh(top, "lives")
     text = call(host(f, ARGS, "create", "resume", "150", "pause", "100", "resume", "200", "destroy"))
     result_of(text)
@@ -72,7 +72,7 @@ with Folder() as top:
     assert text.count(": RESULT ") == 2 and text.rstrip().splitlines()[-1].startswith("I clothbench: RESULT PASS"), text
     print("ok: pause, resume, destroy, create again")
 
-    # Killed at some moments; with --resume it ends whole.
+    # Killed at several times; with --resume it completes.
     f = fresh(top, "killed")
     for least, more in ((1, ""), (2, " --resume"), (7, " --resume")):  # trials finished before the kill
         child = subprocess.Popen(host(f, ARGS + more, "create", "resume", "finish", "destroy"), env=environment,
@@ -86,7 +86,7 @@ with Folder() as top:
     assert verdict == "PASS" and set(trials(f / "files/runs/small").values()) == {3}, text
     print(f"ok: killed three times, the last with {before} of 12 trials done, then whole")
 
-    # Damaged assets are a result too.
+    # Damaged assets also give a RESULT line.
     f = fresh(top, "damaged")
     shutil.copytree(BUILD / "packed-assets", f / "packed")
     (f / "packed/scenarios/paper/gravity.json").write_text("{}")

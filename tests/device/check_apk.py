@@ -24,7 +24,7 @@ for wanted in ["package: name='org.clothbench.quest'", "sdkVersion:'29'", "targe
                "uses-permission: name='com.oculus.permission.HAND_TRACKING'", "uses-permission: name='android.permission.HAND_TRACKING'",
                "launchable-activity: name='android.app.NativeActivity'", "uses-permission: name='android.permission.INTERNET'"]:
     assert wanted in badging, (wanted, badging)
-# aapt2 takes any "lib/" in an asset's path for an ABI's folder too.
+# aapt2 also takes a "lib/" in an asset's path for an ABI's folder.
 native = re.search(r"native-code: (.*)", badging).group(1)
 assert "'arm64-v8a'" in native and not any(f"'{abi}'" in native for abi in ("armeabi-v7a", "x86", "x86_64")), native
 assert "application-debuggable" not in badging, badging
@@ -40,7 +40,7 @@ print("ok: manifest")
 must([zipalign, "-c", "-p", "4", apk])
 verified = must([apksigner, "verify", "-v", "--min-sdk-version", "29", apk])
 assert "Verifies" in verified and re.search(r"v3[^:]*\): true", verified), verified
-# One byte changed is found.
+# A single changed byte is detected.
 with Folder() as folder:
     bad = bytearray(apk.read_bytes())
     bad[len(bad) // 3] ^= 1
@@ -64,7 +64,7 @@ with zipfile.ZipFile(apk) as z:
         symbols = must(["readelf", "--dyn-syms", "-W", library])
         exported = [l.split()[-1] for l in symbols.splitlines() if re.search(r"GLOBAL\s+DEFAULT\s+\d+\s", l)]
         assert exported == ["ANativeActivity_onCreate"], exported
-        # Segments on 4 KiB pages, and another machine's library, are refused.
+        # Segments on 4 KiB pages and a library for another machine are refused.
         elf = bytearray(library.read_bytes())
         offset = int.from_bytes(elf[32:40], "little")
         loads = [offset + k * 56 for k in range(int.from_bytes(elf[56:58], "little")) if elf[offset + k * 56] == 1]

@@ -11,11 +11,11 @@ except ImportError as e:
 if not HOST_COMMAND.exists():
     skip(f"{HOST_COMMAND} is not built (set CLOTHBENCH_HOST_COMMAND)")
 
-# Greatest difference of a coordinate allowed, as a share of the cloth's width: rounding, carried through half a second of motion
-# (1.5 s in the sweep). `ballistic` is IEEE double without a choice. `xpbd` and `paper` are float32 in shaders that no driver has
-# contracted so far; the sums of `paper` come in any order. Bullet takes square roots and products by SSE here, by NEON there.
+# Maximum difference of a coordinate, as a fraction of the cloth's width: rounding errors that grow over half a second of motion
+# (1.5 s in the sweep). `ballistic` is plain IEEE double. `xpbd` and `paper` are float32 in shaders that no driver has contracted
+# so far; the sums of `paper` have no fixed order. Bullet computes square roots and products with SSE here, with NEON there.
 TOLERANCE = {"ballistic": 0.0, "bullet-soft": 1e-4, "xpbd": 1e-6, "paper": 1e-5}
-# scene, what is changed of it, solvers
+# scene, changes to it, solvers
 SCENES = [
     ("fall", "paper/gravity", ["--set", "cloth.grid=[16,16]", "--set", "time.duration_s=0.5"], list(TOLERANCE)),
     ("hang", "paper/gravity", ["--set", "cloth.grid=[9,7]", "--set", "time.duration_s=0.5",

@@ -17,7 +17,7 @@ TOLERANCE = 1e-6  # of the cloth's width, as for positions (check_positions.py)
 
 
 def environment(folder):
-    # Pictures are not asked for: Debian's lavapipe for arm64 crashes under qemu as soon as it draws, whatever it is.
+    # Without rendering: Debian's lavapipe for arm64 crashes under qemu with any drawing.
     return {**os.environ, "CLOTHBENCH_ASSETS": "procedural", "FAKE_ASSETS": str(BUILD / "packed-assets"), "XR_RUNTIME_JSON": MANIFEST,
             "CLOTHBENCH_NULL_XR": f"blind=1,log={folder}/runtime.json"}
 

@@ -1,8 +1,7 @@
-// A fake Android around the activity's library: loads it, hands it an ANativeActivity and the few JNI calls it makes,
-// and plays a life given as words.
+// A fake Android around the activity's library: loads it, passes it an ANativeActivity with the few JNI calls it makes,
+// and executes a sequence of life-cycle steps.
 //   fake_host LIBRARY FILES INTERNAL ARGS STEP...
-// STEP: create | resume | pause | destroy | finish (wait for the activity to ask for its end) | <number>
-// (ms)
+// STEP: create | resume | pause | destroy | finish (wait until the activity asks to end) | <number> (wait, ms)
 #include <android/native_activity.h>
 #include <dlfcn.h>
 #include <jni.h>

@@ -11,7 +11,7 @@ import sys
 from documents import text_of, tracked, written
 
 RATE = r"frame|second|step|substep|iteration|run|side|scene|cell|vertex|triangle|pair|thread|workgroup|group|dispatch|cloth|solver|minute"
-# What to write instead, the form, an example that it refuses, and one that it accepts.
+# Per rule: what to write instead, the pattern, an example that it refuses, and one that it accepts.
 RULES = [
     ("put the subject first, not \"Of\"", r"^Of (?!course)", "Of hulls, a subgroup asks a pair.", "Offsets are equal."),
     ("repeat the noun instead of \"that of\" or \"those of\"", r"\b(?:that|those) of\b", "The bytes are those of the first.", "Use those offsets."),

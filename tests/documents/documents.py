@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-# Made by the program, or grown with every release.
+# Files that the program writes, or that grow with every release.
 GENERATED = re.compile(r"^(CHANGELOG\.md|harness/metrics/REGISTRY\.md|results/reference/.*(?<!README)\.md)$")
 # A fenced block, after a mark such as <!-- needs hardware: a headset --> if it has one.
 BLOCK = re.compile(r"^(?:[ ]*<!-- needs (hardware|network|root): (.+?) -->\n)?([ ]*)```(?:sh|bash)\n(.*?)^\3```", flags=re.M | re.S)

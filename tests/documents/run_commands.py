@@ -22,7 +22,7 @@ from documents import ROOT, all_commands, tracked
 
 TABLE = Path(__file__).with_name("commands.txt")
 MOST_SECONDS = 60  # of a command
-# What no command of a document reads; the published results are large, and only their own documents read them.
+# Files that no documented command reads; the published results are large and used only in their own documents.
 ASIDE = re.compile(r"^(tests/|results/reference/.*\.(?!md$)\w+$)")
 ASIDE_OF_RESULTS = re.compile(r"^tests/")
 SHELL = """

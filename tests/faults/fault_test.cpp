@@ -1,6 +1,6 @@
-// Every call of a small run that Vulkan may refuse is refused once, and from then on: the run ends in a row or in an
-// error that names what failed, what was finished before stays, no object is left over, and going on gives the very
-// same bits. With CLOTHBENCH_ALL_FAULTS every call with every result, else every fifth call with one of them.
+// Every Vulkan call of a small run that may fail is made to fail, once or permanently. The run must end in a row or in
+// an error that names the cause, keep what was finished before, leak no object, and continue to bit-identical results.
+// With CLOTHBENCH_ALL_FAULTS every call with every result, otherwise every fifth call with one result.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -20,7 +20,7 @@
 #include "vulkan_faults.hpp"
 #include "with_folder.hpp"
 
-// The driver's own: LLVM keeps what it compiled.
+// Leaks of the driver: LLVM keeps compiled code.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libvulkan_lvp\nleak:libLLVM\nleak:libvulkan.so\n"; }
 
 namespace clothbench {
@@ -52,7 +52,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
   }
   void TearDown() override { faults::disarm(); }
 
-  /// Without a device from before, so that making one is part of the run.
+  /// Without an existing device, so that creating one is part of the run.
   static void forget_device() { vulkan::Device::get({})->mark_lost(); }
 
   RunResult run(const std::string& folder, bool resume = false) {
@@ -65,7 +65,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
 
   static void expect_same(const RunRecord& a, const RunRecord& b) {
     ASSERT_EQ(a.accuracy.position.size(), b.accuracy.position.size());
-    // The order of paper's atomic sums is the device's: a few units in the last place of a metre.
+    // paper's atomic sums have no fixed order: differences of a few units in the last place of a metre.
     const float off = std::string(GetParam()) == "paper" ? 1e-5F : 0;
     for (std::size_t k = 0; k < a.accuracy.position.size(); ++k)
       ASSERT_LE(std::abs(a.accuracy.position[k] - b.accuracy.position[k]), off) << "number " << k;
@@ -102,7 +102,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
     } else {
       EXPECT_TRUE(error.find("vk") != std::string::npos || error.find("Vulkan") != std::string::npos) << error;
     }
-    // The same process goes on, and to the same end: finished trials are read, not run again.
+    // The same process continues to the same end: finished trials are read, not repeated.
     const RunResult again = run(error.empty() ? folder + "_again" : folder, !error.empty());
     ASSERT_EQ(again.files.size(), 1u);
     expect_same(read_run(again.files[0]), right);
@@ -113,7 +113,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
     fs::remove_all(dir_ / (folder + "_again"));
   }
 
-  /// Calls of a whole run, and what comes of it.
+  /// Number of calls of a run without faults, and its result.
   std::pair<int, RunRecord> undisturbed() {
     forget_device();
     faults::disarm();
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Faults, ::testing::Values("xpbd", "paper"),
 TEST(FaultTable, HasEveryCallOfTheSolver) {
   std::set<std::string> known;
   for (const std::string& name : faults::names()) known.insert(name);
-  // Nothing comes back from these.
+  // Calls that return no result.
   const std::regex cannot_fail("vk(Cmd|Get(Physical|Device|Buffer|InstanceProcAddr)|UpdateDescriptorSets).*");
   const std::regex call("\\bvk[A-Z][A-Za-z0-9]*(?=\\()");
   int found = 0;

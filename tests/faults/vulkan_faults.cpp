@@ -12,7 +12,7 @@ struct State {
 };
 
 State& state() {
-  static State& s = *new State;  // calls may come after statics are gone
+  static State& s = *new State;  // never destroyed: calls may come after static destructors
   return s;
 }
 
@@ -55,8 +55,8 @@ std::map<std::string, long> alive() {
     const VkResult injected = clothbench::faults::next(#name);          \
     return injected != VK_SUCCESS ? injected : __real_##name arguments; \
   }
-// The wait is made even so: a lost device has stopped, but this one still runs what it was given, and the caller then
-// destroys what that uses.
+// The wait is executed nevertheless: a lost device would have stopped, but this one still runs its work, and the caller
+// then destroys what that work uses.
 #define WAITS(name, parameters, arguments)                     \
   extern "C" VkResult __real_##name parameters;                \
   extern "C" VkResult __wrap_##name parameters {               \

@@ -22,8 +22,7 @@ void fuzz_track(const std::uint8_t* data, std::size_t size);
 void fuzz_part(const std::uint8_t* data, std::size_t size);
 void fuzz_hdf5(const std::uint8_t* data, std::size_t size);
 
-/// A reader may do two things with any input: accept it, or throw Error with a message. Everything else ends the
-/// program.
+/// A reader may accept an input or throw Error with a message. Anything else ends the program.
 template <class Read>
 void reads_or_refuses(Read read) {
   try {
@@ -33,7 +32,7 @@ void reads_or_refuses(Read read) {
   }
 }
 
-/// A file with these bytes, as long as it lives; in memory where the system has a place for that.
+/// A file with these bytes for this object's lifetime; in memory if the system supports that.
 class MemoryFile {
  public:
   MemoryFile(const void* data, std::size_t size)

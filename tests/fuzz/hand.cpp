@@ -1,5 +1,5 @@
-// Hands: binary glTF to a skinned mesh. An input that begins with { is the JSON, a zero and the binary part of a file
-// whose container is put round them here.
+// Hands: binary glTF to a skinned mesh. An input that begins with { is the JSON, a zero byte and the binary part of a
+// file; this program adds the container.
 #include "assets/hand.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// Result files. The input is a list of changes to a good file, made through the library: fields gone, of other shapes,
-// types and values. Damage below that, in the library's own structures, is the library's to find; some of it ends in
-// its own code.
+// Result files. The input is a list of changes to a valid file, made with the library: removed fields, other shapes,
+// types and values. Damage to the library's own structures is not tested: some of it crashes inside the library.
 #include <hdf5.h>
 
 #include <cstring>
@@ -16,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The good file's bytes, its objects by path and its attributes by path and name.
+/// The valid file's bytes, its objects by path, and its attributes by path and name.
 struct Sample {
   std::vector<char> bytes;
   std::vector<std::string> objects;

@@ -1,4 +1,4 @@
-// One libFuzzer program for all readers, of which $READER names the one to try.
+// One libFuzzer program for all readers; $READER selects one.
 #include <cstdio>
 #include <map>
 

@@ -1,4 +1,4 @@
-// Scenario files: text to completed scene.
+// Scenario files: text to resolved scene.
 #include "base/json_text.hpp"
 #include "fuzz.hpp"
 #include "scenario/load.hpp"
@@ -6,8 +6,7 @@
 void clothbench::fuzz_scene(const std::uint8_t* data, std::size_t size) {
   reads_or_refuses([&] {
     const nlohmann::json j = parse_json(std::string(reinterpret_cast<const char*>(data), size), "scene.json");
-    // The schema bounds what a file may request. Loading is slow near the bounds, so the fuzzer searches for faults
-    // with small values.
+    // The schema limits what a file may request. Loading is slow near the limits, so the fuzzer uses small values.
     const auto number = [&](const char* pointer, double otherwise) {
       const nlohmann::json::json_pointer at(pointer);
       return j.contains(at) && j[at].is_number() ? j[at].get<double>() : otherwise;

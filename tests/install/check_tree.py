@@ -13,7 +13,7 @@ import unittest
 CMAKE, BUILD, SOURCE = sys.argv[1:4]
 SMALL = ["--set", "cloth.grid=[8,8]", "--set", "cloth.sides=single", "--set", "time.duration_s=0.25", "--trials", "1"]
 
-# Stands in for npm: what the packages have, without a network.
+# Replaces npm by a script that creates the packages' content without a network.
 FAKE_NPM = """#!/bin/sh
 set -e
 [ "$1" = ci ]
@@ -40,7 +40,7 @@ class Tree(unittest.TestCase):
         cls.share = cls.tree / "share" / "clothbench"
 
     def command(self, *words, code=0, **environment):
-        # Other tests run at the same time. If they counted as jobs, the report would withhold this run's times.
+        # Other tests run concurrently. If they counted as jobs, the report would withhold this run's times.
         env = {k: v for k, v in os.environ.items() if not k.startswith("CLOTHBENCH_")} | {"CLOTHBENCH_JOBS": "1"}
         done = subprocess.run(
             [self.tree / "bin" / "clothbench", *words], env=env | environment, cwd=self.home, capture_output=True, text=True, check=False
@@ -61,9 +61,9 @@ class Tree(unittest.TestCase):
         self.addCleanup(file.write_text, given, encoding="utf-8")
         file.write_text(json.dumps(json.loads(given) | {"why": "Changed where it was moved to."}), encoding="utf-8")
         self.assertEqual(self.why(), "Changed where it was moved to.")
-        # The variable comes first.
+        # The environment variable has priority.
         self.assertEqual(self.why(CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios")), json.loads(given)["why"])
-        # And the source tree last.
+        # The source tree comes last.
         (self.share / "scenarios").rename(self.share / "away")
         self.addCleanup((self.share / "away").rename, self.share / "scenarios")
         self.assertEqual(self.why(), json.loads(given)["why"])
@@ -74,7 +74,7 @@ class Tree(unittest.TestCase):
             there = json.loads(self.command("list", kind, "--json", CLOTHBENCH_SCENARIOS=os.path.join(SOURCE, "scenarios")))
             self.assertEqual(here, there)
             self.assertGreater(len(here), 3)
-        self.command("validate", "validation/hang-mesh")  # has a file beside it
+        self.command("validate", "validation/hang-mesh")  # uses a file next to the scene
         self.assertTrue((self.share / "scenarios" / "schema" / "scene.schema.json").is_file())
 
     def test_a_wrong_variable_names_every_place(self):
@@ -129,7 +129,7 @@ class Tree(unittest.TestCase):
                 continue
             raw = file.read_bytes()
             content = gzip.decompress(raw) if file.suffix == ".gz" else raw
-            # A whole path below the tree: the name of a folder in / is part of many other words.
+            # Complete paths below the tree, because the name of a folder in / is part of many other words.
             self.assertNotRegex(content, rb"(?<![\w.-])" + re.escape(SOURCE.encode()) + rb"/(harness|scenarios|scripts|solvers|build)\b", file)
 
 

@@ -21,14 +21,14 @@ double rms_way(const motion_check::Motion& m, std::size_t from, std::size_t to) 
   return std::sqrt(sum / static_cast<double>(m.vertices));
 }
 
-/// Velocity of the mean of the vertices, between a frame and the one before it.
+/// Mean velocity of the vertices between the previous frame and this one.
 V3 mean_velocity(const motion_check::Motion& m, std::size_t frame) {
   V3 sum = V3::Zero();
   for (std::size_t v = 0; v < m.vertices; ++v) sum += m.at(frame, v) - m.at(frame - 1, v);
   return sum / (m.dt(frame) * static_cast<double>(m.vertices));
 }
 
-/// Whether all colliders are planes, and one is steep or the cloth lands too fast to stop in a tenth of a second.
+/// Whether all colliders are planes, and one is steep or the cloth lands too fast to stop within a tenth of a second.
 bool slides(const motion_check::Motion& m, const Facts& f) {
   bool out = false;
   for (const Collider& c : m.scene.colliders) {
@@ -103,7 +103,7 @@ bool changes_force(const Right& right, const Motion& told) {
   std::vector<std::uint32_t> about = held;
   for (std::uint32_t v = 0; held.empty() && v < was.vertices; ++v) about.push_back(v);
   const M6 keep = motion_check::free_of_attachments(was, 0, middle_of(was, 0, about));
-  // Sliding on a face is judged more closely than what colliders of other shapes push.
+  // Sliding on a face has a tighter tolerance than contact with colliders of other shapes.
   const double lasting = right.facts.slides ? 0.035 : 0.05;
   // A moving collider may exert any force on attached cloth.
   const std::vector<std::size_t>& air = right.facts.air;
@@ -126,7 +126,7 @@ bool changes_force(const Right& right, const Motion& told) {
       }
     };
     V6 change = V6::Zero();
-    double bent = 0;  // what paths that bend inside a frame may explain
+    double bent = 0;  // error that motion within a frame may explain
     add(is, 1, change), add(was, -1, change);
     for (std::size_t v = 0; v < is.vertices; ++v) {
       const V3 ahead = (is.at(k + 1, v) - is.at(k, v)) / after;

@@ -1,4 +1,4 @@
-// Wrong motions fail by what positions say, and right ones pass: no bound of a scene is asked.
+// Wrong motions fail and correct motions pass by their positions only, without any bound of a scene.
 #include <gtest/gtest.h>
 
 #include "trial.hpp"

@@ -9,7 +9,7 @@
 namespace clothbench::liars {
 namespace {
 
-// A right motion at other places, at other moments.
+// The correct motion at other positions or other times.
 
 using Told = std::optional<Motion>;
 using Index = std::size_t;
@@ -22,7 +22,7 @@ V3 direction(Dice& dice) {
   return v3(rows[0]);
 }
 
-/// A direction across `up`.
+/// A direction perpendicular to `up`.
 V3 level(const V3& up, Dice& dice) {
   for (;;) {
     const V3 d = direction(dice), across = d - d.dot(up) * up;
@@ -30,25 +30,25 @@ V3 level(const V3& up, Dice& dice) {
   }
 }
 
-/// 0 up to frame `from`, then smoothly up to 1 within `frames`.
+/// 0 until frame `from`, then smoothly up to 1 within `frames` frames.
 double faded(Index k, Index from, double frames) {
   const double x = std::min(static_cast<double>(std::max(k, from) - from) / frames, 1.0);
   return x * x * (3 - 2 * x);
 }
 
-/// A frame well inside a range.
+/// A random frame well inside a range.
 Index between(Index first, Index last, Dice& dice) {
   if (last <= first) return first;
   return first + static_cast<Index>(dice.whole(0, static_cast<int>(last - first)));
 }
 
-/// A frame of the motion with something going on, not among the first or last few.
+/// A random frame in which something happens, not among the first or last few.
 Index amid(const Right& r, Dice& dice) {
   const Index n = r.motion.frames(), end = std::min(n - 5, std::max<Index>(r.facts.at_rest, 12));
   return std::clamp<Index>(between(6, std::max<Index>(7, end * 3 / 4), dice), 4, n - 5);
 }
 
-/// The right motion with the vertices that are not held moved.
+/// The correct motion with its unattached vertices moved.
 template <class Move>
 Motion moved(const Right& r, Move move) {
   Motion out = r.motion;
@@ -58,7 +58,7 @@ Motion moved(const Right& r, Move move) {
   return out;
 }
 
-/// The right motion at other moments: frame k shows the moment of frame `moment(k)`, which may be a fraction.
+/// The correct motion at other times: frame k shows the time of frame `moment(k)`, which may be a fraction.
 template <class Moment>
 Motion retimed(const Right& r, Moment moment) {
   const double last = static_cast<double>(r.motion.frames() - 1);
@@ -70,7 +70,7 @@ Motion retimed(const Right& r, Moment moment) {
   });
 }
 
-/// Vertices that may be told lies of in any frame.
+/// Vertices that are unattached in every frame.
 std::vector<Index> loose(const Right& r) {
   std::vector<Index> out;
   for (Index v = 0; v < r.motion.vertices(); ++v)
@@ -78,22 +78,22 @@ std::vector<Index> loose(const Right& r) {
   return out;
 }
 
-// To which scenes a lie applies, and whether positions determine it.
+// Conditions on scenes for a lie, and whether positions determine that it is one.
 
 bool always(const Facts&) { return true; }
 bool surely(const Right&, const Motion&) { return true; }
 bool never(const Right&, const Motion&) { return false; }
-/// Positions tell a lie about forces if attachments leave an equation and it changes them beyond a tolerance.
+/// A lie about forces is determined if attachments leave an equation and it changes the force beyond a tolerance.
 bool judged(const Right& r, const Motion& told) { return r.facts.equations > 0 && changes_force(r, told); }
 bool stiff(const Right& r, const Motion&) { return r.facts.soft_strain < 0.05; }
-/// Where normals differ, a force without friction may be one with friction on other vertices.
+/// If normals differ, a force without friction on some vertices may equal one with friction on others.
 bool drags(const Right& r, const Motion& told) { return r.facts.slides && judged(r, told); }
 bool attached(const Facts& f) { return f.attached; }
 bool flies(const Facts& f) { return !f.air.empty(); }
 bool drops(const Facts& f) { return f.falls && !f.attached && f.collider; }
 bool lies_still(const Facts& f) { return drops(f) && f.at_rest + 24 < f.frames; }
 bool has_kinematic(const Facts& f) { return f.kinematic && f.deepest_touch < f.frames; }
-/// A vertex off in one frame looks like an impact unless it moves by more than vertices are accelerated around it.
+/// One displaced vertex in one frame looks like an impact unless it moves more than the vertices around it accelerate.
 template <int Millimetres>
 bool beyond_impact(const Right& r, const Motion& told) {
   const Facts& f = r.facts;
@@ -101,7 +101,7 @@ bool beyond_impact(const Right& r, const Motion& told) {
                by_m = 1e-3 * Millimetres;
   return by_m > 1.5 * floor_m && by_m > 3 * accelerated_m(r.motion, first_difference(r, told));
 }
-/// A patch stands still in the air while it and the cloth move.
+/// A patch stands still in the air while it and the rest of the cloth should move.
 bool hangs_still(const Right& r, const Motion& told) {
   const Facts& f = r.facts;
   const Index k = first_difference(r, told);
@@ -115,7 +115,7 @@ bool hangs_still(const Right& r, const Motion& told) {
   }
   return stopped > 3 && 2 * move > told.vertices() + 2 * stopped;
 }
-/// Cloth that comes to rest farther away than a contact may be: a tenth of the offset and four times the resolution.
+/// Cloth that comes to rest farther away than contact allows: a tenth of the offset plus four times the resolution.
 bool hovers_at_rest(const Right& r, const Motion&) {
   return lies_still(r.facts) && 0.002 > 1.2 * (0.1 * r.facts.offset_m + 4e-4 * r.facts.length_m);
 }
@@ -134,7 +134,7 @@ Told noise(const Right& r, double size_m, Dice& dice, bool held_too) {
   return out;
 }
 
-/// A level direction in which a line of held vertices lets the cloth swing.
+/// A horizontal direction in which a line of attached vertices lets the cloth swing.
 V3 across_held_line(const Right& r, Dice& dice) {
   V3 line = V3::Zero();
   Index first = r.motion.vertices();
@@ -179,7 +179,7 @@ Told without_colliders(const Right& r, bool moving_alone) {
   });
 }
 
-/// From a frame on the cloth is elsewhere, beyond the collider that it touches, and falls on from there.
+/// From one frame on, the cloth is on the far side of the collider that it touches, and falls on from there.
 Told jumped_through(const Right& r) {
   const Motion& m = r.motion;
   const Index at = std::min(r.facts.first_touch + 1, m.frames() - 4);

@@ -12,21 +12,21 @@ namespace clothbench::liars {
 
 using V3 = Eigen::Vector3d;
 
-/// Properties of a scene and its right motion, for the choice of lies. All frames count from 0, the start.
+/// Properties of a scene and its correct motion, for the choice of lies. Frames count from 0, the start.
 struct Facts {
-  int equations = 6;       ///< how many of the six momentum equations attachments do not absorb
+  int equations = 6;       ///< number of the six momentum equations that attachments do not absorb
   bool falls = false;      ///< the scene has gravity
   bool attached = false;   ///< pins or grips
   bool collider = false;   ///< static or kinematic
   bool kinematic = false;  ///< a kinematic collider
-  bool self = false;       ///< the cloth meets itself
-  bool slides = false;     ///< only on planes, steep or faster than they stop in a tenth of a second
+  bool self = false;       ///< the cloth has self-contact
+  bool slides = false;     ///< only planes; steep, or cloth too fast to stop in a tenth of a second
   std::size_t frames = 0;
   std::size_t first_touch = 0;    ///< first frame with a collider in reach; `frames` if there is none
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
   std::size_t fastest = 0;        ///< frame of the highest RMS speed
-  std::size_t deepest_touch = 0;  ///< with kinematic: the frame with most contacts; else `frames`
-  std::vector<std::size_t> air;   ///< frames without contact and two neighbours without
+  std::size_t deepest_touch = 0;  ///< if kinematic: the frame with most contacts; otherwise `frames`
+  std::vector<std::size_t> air;   ///< frames without contact in them and in both neighbours
   double speed_m_per_s = 0;       ///< at `fastest`
   double frame_s = 0;             ///< duration of a frame
   double length_m = 1;
@@ -36,7 +36,7 @@ struct Facts {
   V3 up{};                 ///< unit vector against gravity
 };
 
-/// A right motion, and others of the same scene and solver that a lie may need.
+/// A correct motion, and other motions of its scene and solver that a lie may need.
 struct Right {
   Motion motion;
   Facts facts;
@@ -47,29 +47,29 @@ struct Right {
 
 Facts facts_of(const Motion&);
 
-/// Whether a lie changes a force or moment, beyond those that attachments exert, by more than the check tolerates: in
-/// one interval, or on average over 3 or 12.
+/// Whether a lie changes a force or moment that attachments cannot exert by more than the check's tolerance: in one
+/// interval, or on average over 3 or 12.
 bool changes_force(const Right&, const Motion& told);
 
-/// One way of being wrong. A lie leaves attached vertices where they belong unless it is about them.
+/// One way of falsifying a motion. Attached vertices stay at their prescribed positions unless the lie is about them.
 struct Lie {
   const char* name;
   bool (*applies)(const Facts&);
-  /// Whether positions determine that the motion is wrong, decided before the check sees it.
+  /// Whether positions determine that the motion is wrong; decided before the check runs.
   bool (*determined)(const Right&, const Motion& told);
   std::optional<Motion> (*tell)(const Right&, Dice&);
   bool right = false;  ///< a control: it must pass
 };
 
-/// All lies, after the controls. Velocities are in no file, so that none is about them.
+/// All lies, after the controls. No lie is about velocities, because files do not store them.
 const std::vector<Lie>& lies();
 
-/// First frame that is not right; the number of frames if there is none.
+/// First frame that differs from the correct motion; the number of frames if none does.
 std::size_t first_difference(const Right&, const Motion& told);
-/// Largest second difference [m] of a vertex in the frames around one.
+/// Largest second difference [m] of a vertex in the frames around `frame`.
 double accelerated_m(const Motion&, std::size_t frame);
 
-/// Largest distance [m] of a vertex from where it is in the right motion.
+/// Largest distance [m] of a vertex from its position in the correct motion.
 double difference_m(const Right&, const Motion&);
 
 }  // namespace clothbench::liars

@@ -1,4 +1,4 @@
-// Tells lies of right motions and counts those that the check of motions sees.
+// Makes lies from correct motions and counts the ones that the motion check detects.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ double time_ms(std::size_t frames, Work work) {
   return shortest / static_cast<double>(frames);
 }
 
-/// Cost of the check, part by part, and of all other metrics of the same run [ms per frame].
+/// Cost of the motion check, part by part, and of all other metrics of the run [ms per frame].
 nlohmann::json cost_of(const std::string& name, const std::string& solver) {
   const auto scene = std::make_shared<const Scene>(load_scene(name));
   const std::optional<Motion> m = run(scene, {solver, "{}"});

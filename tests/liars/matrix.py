@@ -62,14 +62,14 @@ def run(a):
     def work(job):
         left = end - time.monotonic()
         rows = judge(a.liars, job, min(left, a.limit)) if left > 1 else []
-        return rows if time.monotonic() < end else []  # not done
+        return rows if time.monotonic() < end else []  # time ran out
 
     with a.result.open("a") as out:
         def keep(rows):
             out.writelines(json.dumps(r) + "\n" for r in rows)
             out.flush()
 
-        for name in COSTS if a.costs else []:  # alone on the machine
+        for name in COSTS if a.costs else []:  # without other processes on the machine
             if ("costs", name) not in finished:
                 keep(judge(a.liars, ("costs", name), a.limit))
         with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
@@ -93,7 +93,7 @@ def table(result):
     trials, costs, done = ([r for r in rows if key in r] for key in ("lie", "cost", "done"))
     lies = [t for t in trials if t["determined"] and not t["right"]]
     tried = [t for t in trials if t["lie"] == RIGHT]
-    right = [t for t in tried if EXACT not in t["by"]]  # the others are no right motions
+    right = [t for t in tried if EXACT not in t["by"]]  # the other motions are not correct
     noisy = [t for t in trials if t["lie"] == NOISY]
     scenes = [c["cost"] for c in costs]
     out = ["## Checks", "", "| check | " + " | ".join(["lies caught", "by no other check", "right motions failed", *scenes]) + " |", "|---" * (4 + len(scenes)) + "|"]

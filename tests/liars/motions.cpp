@@ -35,8 +35,8 @@ std::string rate_of(Dice& dice) {
   return fmt::format("time.frame_rate_hz={}", kRates[static_cast<std::size_t>(dice.whole(0, 4))]);
 }
 
-/// The kinds of the studies of contact and physics, at small grids. Frames are as the study has them where a hand is
-/// fast, and where the study draws them.
+/// The kinds of the studies `contact` and `physics` on small grids. Frame rates are the study's if a hand is fast or
+/// the rate is random.
 void add_drawn(std::vector<Kind>& out) {
   for (const std::string study : {"contact", "physics"}) {
     const std::filesystem::path file = find_scenario(study);
@@ -61,7 +61,7 @@ void add_drawn(std::vector<Kind>& out) {
   }
 }
 
-/// Scenes of the paper and of contact as they stand, but for grid, frame rate, stiffness and density.
+/// Scenes of the paper and of contact, with a different grid, frame rate, stiffness and density.
 void add_files(std::vector<Kind>& out) {
   for (const char* name : {"paper/gravity", "paper/capsule-sweep", "paper/hand-push", "paper/two-hand-stretch-2mps",
                            "paper/desk-flat-low", "paper/desk-corner-low", "contact/plane", "contact/open-sheet",
@@ -163,7 +163,7 @@ std::vector<RightSolver> right_solvers(const Scene& scene, const std::string& on
           !(entry.info.on_gpu && entry.devices().empty()))
         out.push_back(with);
   };
-  // Bullet keeps neither friction nor thin bodies, and its soft bodies rebound. They also take velocities from
+  // Bullet satisfies neither friction nor thin bodies, and its soft bodies rebound. They also compute velocities from
   // positions in single precision: after a fall of 70 m, forces are off by a tenth of the weight.
   const bool alone = scene.colliders.empty() && scene.motion.empty(), pinned = !scene.pins.vertices.empty();
   add(true, {"xpbd", R"({"quality": "accurate"})"});

@@ -10,7 +10,7 @@
 
 namespace clothbench::liars {
 
-/// A motion as a file stores it, with what it is a motion of.
+/// A motion as a file stores it, with the scene and the solver that it belongs to.
 struct Motion {
   std::shared_ptr<const Scene> scene;
   std::string solver;  ///< name and quality: "xpbd accurate"
@@ -24,22 +24,21 @@ struct Motion {
   void put(std::size_t frame, std::size_t vertex, const Vec3& x);
 };
 
-/// Kinds of scenes: the kinds of the studies `contact` and `physics`, scenes of the paper, and thin bodies on which a
-/// cloth falls. Grids have 12 to 20 vertices per side where the kind allows any. Frame rates are 60 to 144 Hz, or as
-/// the study draws them.
+/// Kinds of scenes: those of the studies `contact` and `physics`, scenes of the paper, and thin bodies on which a cloth
+/// falls. Grids have 12 to 20 vertices per side if the kind allows. Frame rates are 60 to 144 Hz, or as in the study.
 const std::vector<std::string>& scene_kinds();
-/// The same kind and seed give the same scene.
+/// Equal kind and seed give an equal scene.
 Scene draw_scene(const std::string& kind, std::uint64_t seed);
 
-/// A solver with settings for which a kind of scene is known to come out right.
+/// A solver with settings that are known to give a correct motion for a kind of scene.
 struct RightSolver {
   std::string name, settings_json;
   std::string label() const;
 };
-/// Those that run the scene; more than one if several do. `only`: the label of one, which may not be right.
+/// Solvers that give a correct motion of the scene. `only`: label of one to use, which need not be correct.
 std::vector<RightSolver> right_solvers(const Scene&, const std::string& only);
 
-/// The motion by a solver; none if a step fails. `changed`: what the solver is given instead of the scene.
+/// The motion by a solver; none if a step fails. `changed`: scene that the solver gets instead.
 std::optional<Motion> run(const std::shared_ptr<const Scene>&, const RightSolver&,
                           const std::function<void(Scene&)>& changed = nullptr);
 

@@ -9,10 +9,10 @@
 namespace clothbench::liars {
 namespace {
 
-/// Differences below this multiple of the resolution are no lie.
+/// Differences below this multiple of the resolution do not count as lies.
 constexpr double kNoticed = 10e-4;
 
-/// Error against the scene's exact solution over its bound, as a run fails by it; NaN if there is none.
+/// Error against the scene's exact solution, divided by its bound (a run fails above 1); NaN if there is none.
 double solution_ratio(const Motion& m) {
   if (m.scene->reference_case.empty() || m.frames() != static_cast<std::size_t>(m.scene->time.frames()) + 1)
     return std::numeric_limits<double>::quiet_NaN();
@@ -42,7 +42,7 @@ Trial judged(const Right& right, const Lie& lie, const Motion& told) {
   t.determined = lie.determined(right, told);
   t.difference_m = difference_m(right, told);
   t.findings = motion_check::verify(*told.scene, {told.time_s, told.position}, told.contact_offsets_m);
-  // Noise is below what the check resolves, but not below the bound of a solution at rest.
+  // Noise is below the check's resolution, but not below the bound of a solution at rest.
   const bool noise = lie.right && told.position != right.motion.position;
   t.solution = noise ? std::numeric_limits<double>::quiet_NaN() : solution_ratio(told);
   return t;
@@ -76,7 +76,7 @@ std::vector<Trial> tell_all(const Matrix& matrix) {
       t.kind = kind;
       t.seed = seed;
       if (!lie.right && !(t.difference_m > kNoticed * right.facts.length_m)) continue;
-      // A right motion that fails cannot show whether a lie is seen.
+      // If a correct motion fails, it cannot show whether a lie is detected.
       if (lie.right && t.failed()) trusted = false;
       out.push_back(std::move(t));
     }

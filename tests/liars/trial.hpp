@@ -8,13 +8,13 @@
 
 namespace clothbench::liars {
 
-/// Which motions are told lies of. One motion per seed; only the seed decides on the kind of scene and the solver, so a
-/// large matrix can be split into small ones.
+/// Selects the motions to falsify: one per seed. The seed alone decides the kind of scene and the solver, so that a
+/// large matrix can be split.
 struct Matrix {
   std::uint64_t seed = 1000;
   int motions = 40;
   std::vector<std::string> kinds;  ///< empty: all
-  std::string solver;              ///< label; empty: all that are right for the scene
+  std::string solver;              ///< label; empty: all that are correct for the scene
   std::string only_lie;            ///< empty: all
 };
 
@@ -24,15 +24,15 @@ struct Trial {
   std::uint64_t seed = 0;
   bool right = false, determined = false;
   double difference_m = 0;
-  double solution = 0;  ///< error against the scene's exact solution over its bound; NaN if there is none
+  double solution = 0;  ///< error over the bound of the scene's exact solution; NaN if there is none
   std::vector<motion_check::Finding> findings;
 
   const motion_check::Finding& worst() const { return *motion_check::worst(findings); }
-  /// As a run fails, without any bound that a scene states.
+  /// The rule by which runs fail, without the bounds in the scene's file.
   bool failed() const { return !(worst().ratio <= 1) || solution > 1; }
 };
 
-/// Motions of the matrix that pass, with their lies, and those that are right and fail.
+/// Motions of the matrix that pass with their lies, and correct motions that fail.
 std::vector<Trial> tell_all(const Matrix&);
 
 /// A line of a result file: a trial without its motion.

@@ -1,4 +1,4 @@
-// Rules of the claims of study `reproduction`, on motions known to be right and wrong.
+// Criteria of the claims in study `reproduction`, on motions known to be correct or wrong.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Path falls(double most_m) {
 }
 const Path kRests = falls(kStart_m - kTop_m - kMargin_m);
 
-/// Rests, except for one half, which the desk does not stop.
+/// At rest, except for one half, which falls through the desk.
 void half_falls_through(int frame, std::vector<double>& x) {
   const std::vector<double> start = x;
   kRests(frame, x);
@@ -53,7 +53,7 @@ void half_falls_through(int frame, std::vector<double>& x) {
     if (start[k] > 0.1) x[k + 1] = start[k + 1] - fallen_m(frame);
 }
 
-/// Along x to `most` times its length by the middle of the run, and back to `end` times.
+/// Stretched along x to `most` times its length by the middle of the run, then back to `end` times.
 Path pulled(double most, double end = 1) {
   return [=](int frame, std::vector<double>& x) {
     const double t = 2.0 * frame / kFrames, scale = t < 1 ? 1 + t * (most - 1) : most + (t - 1) * (end - most);
@@ -68,7 +68,7 @@ Path pops(double by_m) {
   };
 }
 
-/// Criteria that the motion does not meet, as `claim_point` of the report counts them: without the check of motion.
+/// Violated criteria, counted as in the report's `claim_point`: without the motion check.
 std::string unmet(const Scene& scene, const Path& path) {
   std::string out;
   for (const std::string& name : unmet_bounds(scene, prescribed(path)))

@@ -1,4 +1,4 @@
-// One collider of each shape against figures worked out here.
+// One collider of each shape against numbers computed here.
 #include "metrics/collider_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ SceneContact at_height(const Scene& scene, double y) {
 }
 
 TEST(ColliderContact, ABoxIsSolidWhicheverWayItIsTurned) {
-  // A 0.6 m sheet, level, 1 cm under the top of a box of 0.3 m; then the box turned about the vertical.
+  // A horizontal 0.6 m sheet 1 cm below the top of a 0.3 m box; then with the box rotated about the vertical.
   for (const char* turn :
        {"colliders.0.rotation_deg=[0,0,0]", "colliders.0.rotation_deg=[0,30,0]", "colliders.0.rotation_deg=[90,0,0]"}) {
     const Scene scene = load_scene("contact/box", {"cloth.grid=[61,61]", turn});

@@ -1,4 +1,4 @@
-// From a scene file to the result file: a cloth with a prescribed motion meets colliders, and the file says how far.
+// From scene file to result file: cloth with a prescribed motion intersects colliders, and the file states how deep.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,14 +64,14 @@ TEST(ContactScene, MarginsThatCannotBeAreFaults) {
   EXPECT_PRED2(mentions, fault({std::numeric_limits<double>::infinity()}), "a contact margin of inf m");
 }
 
-/// Prescribed motions obey no law of motion: only the scene's own bounds are asked.
+/// Prescribed motions obey no law of motion, so only the scene's own bounds are checked.
 bool own_bounds_hold(const RunRecord& r) {
   for (const auto& [name, value] : r.summary)
     if (name.starts_with("expect.") && name != "expect.motion" && value != 1) return false;
   return r.summary.contains("expect.motion");
 }
 
-// R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2) = 0.27388 m; 0.26148 m with R less by 1 %.
+// R = 0.1 m, d = 0.01 m: contour 2 pi sqrt(2Rd - d^2) = 0.27388 m; 0.26148 m if R is 1 % smaller.
 TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   const SolverEntry solver = prescribed(lifted([](int frame) { return frame < 4 ? 0.0 : -0.11; }));
   const RunRecord r = stored_run(scene_from(kSphereScene), solver);
@@ -123,7 +123,7 @@ const char* const kSelfScene = R"({"name":"over","why":"A sheet laid over itself
   "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","self_contact_pairs_max":{"at_most":0}}})";
 
-/// Its right half is laid over its left half, 5 cm above; in frames 5 to 9 its far end dips through.
+/// Its right half is folded over its left half, 5 cm above it; in frames 5 to 9 the far end dips through.
 void laid_over(int frame, std::vector<double>& x) {
   for (std::size_t v = 0; v < x.size(); v += 3) {
     const double u = x[v] + 0.5;
@@ -133,7 +133,7 @@ void laid_over(int frame, std::vector<double>& x) {
   }
 }
 
-// Level below, tilted above: they cross along one line as long as the sheet is wide.
+// Horizontal below, tilted above: the halves cross along one line as long as the sheet is wide.
 TEST(ContactScene, ASheetThatCrossesItselfSaysHowFar) {
   const RunRecord r = stored_run(scene_from(kSelfScene), prescribed(laid_over));
   EXPECT_EQ(series(r, "self_contact_pairs")[4], 0);
@@ -181,7 +181,7 @@ TEST(ContactScene, AHandPushedThroughAStillClothCrossesIt) {
   EXPECT_EQ(r.header.environment.at("assets"), "procedural");
 }
 
-// Every scene's expectations must be about something its metrics measure: "has no value" would break them for all.
+// Every bound must be on a scalar that the scene's metrics measure; otherwise every run would fail with "has no value".
 TEST(ContactScene, NoSceneExpectsWhatItDoesNotMeasure) {
   for (const auto& file : std::filesystem::recursive_directory_iterator(scenario_root())) {
     const std::string folder_name = file.path().parent_path().filename().string();

@@ -1,5 +1,5 @@
-// A control that stays: the motion of the cloth without the colliders, hands or layers that it should feel. Every bound
-// on contact has to fail for it somewhere, or the bound proves nothing.
+// Control: the motion of the cloth without the colliders, hands or layers of its scene. Every bound on contact must
+// fail for it in some scene; otherwise the bound proves nothing.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -42,7 +42,7 @@ std::vector<std::vector<double>> motion_of(const Scene& scene) {
   return out;
 }
 
-/// The bounds of the scene that its control breaks.
+/// The scene's bounds that its control violates.
 std::set<std::string> broken_by_control(const Scene& scene) {
   const auto motion = motion_of(unaware(scene));
   const SolverEntry control = prescribed([&](int frame, std::vector<double>& x) { x = motion.at(frame); });

@@ -75,7 +75,7 @@ TEST(Expect, MistakesAreRefusedWithTheNearestName) {
   EXPECT_EQ(message(R"({"stretch_max":{"at_most":1}})"), "");
 }
 
-// Each name that the schema allows in `expect` must exist in the summary: otherwise it could never have a value.
+// Each name that the schema allows in `expect` must be in the summary; otherwise it could never have a value.
 TEST(Expect, EveryNameTheSchemaKnowsIsInTheSummary) {
   const Scene scene = scene_expecting("{}");
   const SolverEntry& entry = find_solver("ballistic");

@@ -65,7 +65,7 @@ TEST_F(Metrics, FreeFallGoesWhereGravityAndTheInitialVelocitySendIt) {
       const MetricContext c{scene, entry, settings};
       const int frame = 36;
       const double t = frame * scene.time.dt(), keep = std::exp(-2 * t);
-      // x(t) of dv/dt = g - c v; a solver that ignores damping falls without it.
+      // x(t) of dv/dt = g - c v. A solver that ignores damping must match the fall without damping.
       const bool damps = !entry.info.ignores.has(Feature::Damping);
       ClothState s;
       s.position = initial_positions(scene);

@@ -1,4 +1,4 @@
-// Popping of motions that are known: a vertex snapped, a spring released, cloth swept, dropped, cracked like a whip.
+// Popping of known motions: a vertex that snaps, a released spring, swept and dropped cloth, a cracking whip.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using Motion = std::function<Vec3(std::size_t v, double time_s)>;
 
 constexpr std::size_t kMiddle = 40, kCorner = 80;
-constexpr double kStart_s = 0.25;  ///< a whole frame at 36, 60, 72 and 144 Hz
+constexpr double kStart_s = 0.25;  ///< frame-aligned at 36, 60, 72 and 144 Hz
 
 const std::string kLevelSheet = "contact/plane";
 const std::string kFarBelow = R"(colliders=[{"type":"plane","point_m":[0,-9,0]}])";
@@ -51,7 +51,7 @@ double bound_m() {
   return kMissing;
 }
 
-/// 0 until the start, then evenly up to 1.
+/// 0 until the start, then linearly up to 1.
 double ramp(double time_s, double lasts_s) { return std::clamp((time_s - kStart_s) / lasts_s, 0.0, 1.0); }
 
 Motion snapped(double by_m, double in_s, const std::vector<std::size_t>& vertices = {kMiddle}) {
@@ -98,7 +98,7 @@ TEST(Popping, OfAReleasedSpringFollowsFromItsSpeed) {
 }
 
 TEST(Popping, IsNoneWhereAHandOrAGripTakesTheClothAlong) {
-  const auto swept = [](std::size_t v, double t) {  // 13 m/s from rest and to rest, wherever the hand has been
+  const auto swept = [](std::size_t v, double t) {  // reaches 13 m/s from rest and returns to rest
     return Vec3{v % 9 > 2 ? 0.3 * ramp(t, 0.3 / 13) : 0, 0, 0};
   };
   const std::string hand =
@@ -127,7 +127,7 @@ TEST(Popping, IsNoneInAFallAndWhereASheetStopsOnAPlane) {
   }
 }
 
-/// A wave runs along the sheet to its free edge, which it moves at twice its speed and beyond. That is no popping. The
+/// A wave runs along the sheet to its free edge, which it moves at over twice its speed. That is not popping, but the
 /// same motion of only the edge is.
 TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   const Scene scene = scene_of(72);
@@ -159,7 +159,7 @@ TEST(Popping, OfACornerIsWhatItsWaveDoesNotExplain) {
   EXPECT_GT(pop_of(scene, cracked(1, true)), 10 * bound_m());
 }
 
-/// A neighbour's motion is the length of its path, also if it turns round within a window. Distant motion does not
+/// A neighbour's motion is measured by path length, even if it reverses within a window. Distant motion does not
 /// matter, and a vertex that jumps and returns does not explain its own jump.
 TEST(Popping, OfAVertexAmongOthersThatTurnRound) {
   const Scene scene = scene_of(72);
@@ -192,8 +192,8 @@ TEST(Popping, OfOneFrameIsTheSameAtEveryFrameRate) {
   }
 }
 
-/// A snap may begin at any moment of a frame. Its value stays between the values of a snap that begins with a frame and
-/// takes as long, or a frame longer; so a snap that takes a frame longer never has a larger value.
+/// A snap may begin at any time within a frame. Its value is between the values of two snaps that begin with a frame:
+/// one as long, and one a frame longer. So a snap that is a frame longer never has a larger value.
 TEST(Popping, OfASnapThatBeginsWithinAFrameIsBounded) {
   for (const double rate : {36.0, 60.0, 72.0, 90.0, 120.0}) {
     const Scene scene = scene_of(rate);
@@ -212,7 +212,7 @@ TEST(Popping, OfASnapThatBeginsWithinAFrameIsBounded) {
   }
 }
 
-/// A snap from frame 18 to 19 is seen as soon as the window after it is whole, and in every longer prefix.
+/// A snap from frame 18 to 19 is detected once the window after it is complete, and in every longer prefix.
 TEST(Popping, IsSeenOnceTheWindowAfterItIsWhole) {
   const Scene scene = scene_of(72);
   const AccuracyPass snap = moved(scene, snapped(0.06, 1.0 / 72));

@@ -9,7 +9,7 @@ namespace clothbench {
 /// Positions of the cloth at the end of frame `frame` (0 = initial state), from those at the start.
 using Path = std::function<void(int frame, std::vector<double>& position)>;
 
-/// A solver that gives its cloth a prescribed motion, whatever is in the way, so that the values of metrics are known.
+/// A solver that gives its cloth a prescribed motion, ignoring all obstacles, so that the values of metrics are known.
 class PrescribedSolver final : public StillSolver {
  public:
   PrescribedSolver(SolverInfo info, Path path, std::vector<double> contact_margins_m = {})

@@ -1,5 +1,5 @@
-// Short runs for strict.py: solvers of the CPU and prescribed motions, in files like any other. Positions are
-// rounded to the precision of the files before anything is measured, so that a reader has what the metrics had.
+// Short runs for strict.py: CPU solvers and prescribed motions, stored in ordinary files. Positions are rounded to the
+// precision of the files before they are measured, so that a reader sees what the metrics saw.
 //
 // usage: stored_runs FOLDER
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace clothbench {
 namespace {
 
-/// Another solver with the positions that a file keeps.
+/// Wraps a solver and rounds positions to the precision of files.
 class Rounded final : public WrappedSolver {
  public:
   using WrappedSolver::WrappedSolver;
@@ -32,7 +32,7 @@ SolverEntry rounded(SolverEntry entry) {
   return entry;
 }
 
-/// Waves that leave no vertex in a special place.
+/// Waves in which no vertex has a special position.
 Path waves(double height_m, double drop_m_per_frame = 0) {
   return [=](int frame, std::vector<double>& x) {
     for (std::size_t k = 0; k < x.size(); k += 3) {
@@ -44,7 +44,7 @@ Path waves(double height_m, double drop_m_per_frame = 0) {
   };
 }
 
-/// The same, but for one vertex or another that jumps aside in every fourth frame.
+/// `rest`, with one vertex or another jumping aside in every fourth frame.
 Path jumping(const Path& rest) {
   return [=](int frame, std::vector<double>& x) {
     rest(frame, x);

@@ -26,8 +26,8 @@ std::vector<Scene> scenes_of(const char* folder) {
   return out;
 }
 
-/// The set says for itself which scenes a bound is defined for, as scenes are read before metrics exist. It must agree
-/// with the registry: a bound without a value fails, and a missing bound proves nothing.
+/// The strict set itself states for which scenes a bound is defined, because scenes are read before metrics exist. This
+/// must agree with the registry: a bound without a value fails, and a missing bound proves nothing.
 TEST(StrictContact, ABoundIsDefinedWhereItsMetricsAre) {
   std::size_t seen = 0;
   for (const char* folder : {"paper", "contact"})
@@ -41,7 +41,7 @@ TEST(StrictContact, ABoundIsDefinedWhereItsMetricsAre) {
           if (std::find(scalar->from.series.begin(), scalar->from.series.end(), m.name) != scalar->from.series.end())
             applies = applies && m.applies(scene);
         if (std::string(b.scalar) == "pop_max_m")
-          applies = scene.grips.vertices.empty();  // what is let go springs back
+          applies = scene.grips.vertices.empty();  // released cloth springs back
         if (std::string(b.scalar) == "crossings_max") applies = !scene.colliders.empty();
         EXPECT_EQ(b.defined(scene), applies) << scene.name << b.scalar;
         ++seen;

@@ -1,4 +1,4 @@
-// Touch and slip of whole scenes, and what the summary makes of their series.
+// Touch and slip of whole scenes, and the summary values computed from their series.
 #include <gtest/gtest.h>
 
 #include "scenario/load.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 const Path kStill = [](int, std::vector<double>&) {};
 
-// Smaller than a cell and between its vertices: the face touches.
+// A fingertip smaller than a cell, between its vertices: the face touches.
 TEST(Touch, AFingertipBetweenVerticesTouches) {
   const auto touching = [](double z) {
     const Scene scene = load_scene(
@@ -27,7 +27,7 @@ TEST(Touch, SlidingOnAPlaneIsTheWaySlid) {
   const Scene scene =
       load_scene("contact/plane", {"cloth.grid=[9,9]", "colliders.0.friction=0.3", "time.duration_s=1"});
   const double down = scene.cloth.center_m[1] - scene.colliders[0].margin_m;
-  // Laid down at frame 10; from frame 20 on 1 mm a frame along x.
+  // Laid down at frame 10; from frame 20 on, 1 mm per frame along x.
   const RunRecord run = stored_run(scene, prescribed([&](int frame, std::vector<double>& x) {
                                      for (std::size_t k = 0; k < x.size(); k += 3) {
                                        x[k] += frame > 20 ? 1e-3 * (frame - 20) : 0;
@@ -42,7 +42,7 @@ TEST(Touch, SlidingOnAPlaneIsTheWaySlid) {
   EXPECT_NEAR(run.summary.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
 }
 
-/// The distance that contact holds the cloth at is the solver's to tell, in whatever words its settings have for it.
+/// The contact offset is declared by the solver, whatever its settings are called.
 TEST(Touch, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
   const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
   const auto touching = [&](double height, const std::vector<double>& margins) {

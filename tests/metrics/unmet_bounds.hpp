@@ -33,7 +33,7 @@ inline const std::vector<double>& series(const RunRecord& r, const std::string& 
   throw std::runtime_error("no metric " + name);
 }
 
-/// Names in the scene's `expect` that the stored run of a prescribed motion does not meet. NaN meets nothing.
+/// Names in the scene's `expect` whose bounds the stored run of a prescribed motion violates. NaN violates every bound.
 inline std::set<std::string> unmet_bounds(const Scene& scene, const SolverEntry& motion) {
   std::set<std::string> out;
   for (const auto& [name, met] : stored_run(scene, motion).summary)

@@ -1,6 +1,6 @@
-// The validation layer (1.3.239) does not see a missing barrier between kernels that update a buffer in place, and
-// lavapipe, which runs dispatches one after another, does not show it. So the recorded commands are checked here:
-// accesses from the kernels' own code, barriers with the very masks that were recorded.
+// The validation layer (1.3.239) does not detect a missing barrier between kernels that update a buffer in place, and
+// lavapipe, which runs dispatches one after another, hides it. So this test checks the recorded commands: accesses from
+// the kernels' own code, barriers with the masks that were recorded.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr VkAccessFlags kAnyAccess = ~VkAccessFlags{0};
 
-/// One thing that happens on the queue's or the host's time line.
+/// One event on the queue's or the host's time line.
 struct Event {
   enum class Kind { Access, Barrier } kind = Kind::Access;
   std::string name;
@@ -29,8 +29,7 @@ struct Event {
   // Barrier:
   VkPipelineStageFlags before = 0, after = 0;
   VkAccessFlags made_available = 0, made_visible = 0;
-  std::pair<const vulkan::Program*, std::size_t> source{nullptr,
-                                                        0};  ///< which recorded barrier; null for implicit ones
+  std::pair<const vulkan::Program*, std::size_t> source{nullptr, 0};  ///< the recorded barrier; null for implicit ones
 };
 
 Event implicit_barrier(const char* name, VkPipelineStageFlags before, VkPipelineStageFlags after,
@@ -64,7 +63,7 @@ Event work(const vulkan::Program::Recorded& r) {
   return e;
 }
 
-/// The host fills what is copied from and reads what is copied to.
+/// Host event: writes the buffers that are copied from, reads the buffers that are copied to.
 Event host(const std::set<const vulkan::Buffer*>& filled, const std::set<const vulkan::Buffer*>& fetched) {
   Event e;
   e.name = "host";
@@ -76,7 +75,7 @@ Event host(const std::set<const vulkan::Buffer*>& filled, const std::set<const v
   return e;
 }
 
-/// Does barrier b order `first` before `second`, and show what `first` wrote?
+/// Whether barrier b orders `first` before `second` and makes the writes of `first` visible.
 bool orders(const Event& b, const Event& first, const Event& second, const Event::Touch& f, const Event::Touch& s) {
   if ((b.before & first.stage) == 0 || (b.after & second.stage) == 0) return false;
   if (!f.written) return true;  // write after read: execution order is enough
@@ -84,8 +83,8 @@ bool orders(const Event& b, const Event& first, const Event& second, const Event
   return (b.made_available & first.write_access) != 0 && (b.made_visible & next) == next;
 }
 
-/// Time line of the programs submitted one after another, each waited for; before the first and after the last the
-/// host writes and reads the host buffers they use.
+/// Time line of programs that are submitted one after another, each with a wait. The host accesses their host buffers
+/// before the first and after the last.
 std::vector<Event> time_line(const std::vector<const vulkan::Program*>& submitted) {
   std::set<const vulkan::Buffer*> filled, fetched;
   for (const vulkan::Program* p : submitted)
@@ -93,14 +92,14 @@ std::vector<Event> time_line(const std::vector<const vulkan::Program*>& submitte
       if (r.from != nullptr && r.from->place() == vulkan::Buffer::Place::Host) filled.insert(r.from);
       if (r.to != nullptr && r.to->place() == vulkan::Buffer::Place::Host) fetched.insert(r.to);
       if (r.kernel == nullptr) continue;
-      for (const vulkan::Binding& b : r.kernel->bindings())  // a kernel's own counts in host memory
+      for (const vulkan::Binding& b : r.kernel->bindings())  // a kernel's counters in host memory
         if (b.access != vulkan::Access::Read && b.buffer->place() == vulkan::Buffer::Place::Host)
           fetched.insert(b.buffer);
     }
   constexpr VkPipelineStageFlags kEverything = ~VkPipelineStageFlags{0};
   std::vector<Event> events = {host(filled, fetched)};
   for (const vulkan::Program* p : submitted) {
-    // vkQueueSubmit shows the device what the host wrote; it says nothing of earlier submissions.
+    // vkQueueSubmit makes host writes visible to the device; it does not order earlier submissions.
     events.push_back(
         implicit_barrier("submit", VK_PIPELINE_STAGE_HOST_BIT, kEverything, VK_ACCESS_HOST_WRITE_BIT, kAnyAccess));
     std::size_t barriers = 0;
@@ -112,15 +111,15 @@ std::vector<Event> time_line(const std::vector<const vulkan::Program*>& submitte
       events.push_back(implicit_barrier("recorded", r.stages_before, r.stages_after, r.written, r.next));
       events.back().source = {p, barriers++};
     }
-    // Waiting for the fence orders, but shows the host nothing.
+    // Waiting for the fence orders execution, but makes nothing visible to the host.
     events.push_back(implicit_barrier("fence", kEverything, VK_PIPELINE_STAGE_HOST_BIT, 0, 0));
     events.push_back(host(filled, fetched));
   }
   return events;
 }
 
-/// The first pair of accesses that no barrier orders, as text; empty if there is none. Barriers from `without` are
-/// taken as absent.
+/// The first pair of accesses that no barrier orders, as text; empty if there is none. Barriers in `without` are
+/// treated as absent.
 std::string hazard(const std::vector<Event>& events,
                    std::pair<const vulkan::Program*, std::size_t> without = {nullptr, 0}) {
   for (std::size_t j = 0; j < events.size(); ++j) {
@@ -131,7 +130,7 @@ std::string hazard(const std::vector<Event>& events,
         if (first.source.first == nullptr || first.source != without) between.push_back(&first);
         continue;
       }
-      // The host is in order with itself.
+      // Host accesses are in program order.
       if (first.stage == VK_PIPELINE_STAGE_HOST_BIT && events[j].stage == VK_PIPELINE_STAGE_HOST_BIT) continue;
       for (const auto& f : first.touches)
         for (const auto& s : events[j].touches) {

@@ -1,5 +1,5 @@
-// Second order in time (BDF2): errors against `reference` in double precision (of bending against its own limit), the
-// frames at which it begins anew, and the scenes in which it is off.
+// Second order in time (BDF2): errors against `reference` in double precision (bending: against its own limit), the
+// frames at which it restarts, and the scenes in which it is off.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Settings of a solver that predicts.
+/// Settings of a solver with BDF2.
 nlohmann::json predicting(nlohmann::json given = nlohmann::json::object()) {
   given["time_order"] = 2;
   return given;
@@ -31,7 +31,7 @@ class Bdf2 : public Gpu {
     for (int f = 0; f < s.time.frames(); ++f) out.push_back(after_frame(*made, s, f));
     return out;
   }
-  /// Root of the mean square of the distance of all vertices in all frames, over the longer side; NaN if any is.
+  /// RMS distance over all vertices and frames, divided by the longer side; NaN if any distance is NaN.
   static double rms(const Scene& s, const std::vector<ClothState>& a, const std::vector<ClothState>& b) {
     double sum = 0, n = 0;
     for (std::size_t f = 0; f < a.size(); ++f)
@@ -43,7 +43,7 @@ class Bdf2 : public Gpu {
   }
 };
 
-/// A sheet that hangs by one edge and swings in its own plane and out of it, or a strip.
+/// A sheet that hangs by one edge and swings in its own plane and out of it, or such a strip.
 Scene swing(Scene s) {
   s.pins.vertices = edge_vertices(s.cloth, "u0");
   s.needs.add(Feature::Pins);
@@ -82,8 +82,8 @@ TEST_F(Bdf2, StripsAndSheetsOfSecondOrderInTime) {
   }
 }
 
-/// A new length of frame, a reset, a restart and a vertex let go of begin with a substep of backward Euler or with a
-/// prediction of another ratio; the next frame is like any other again.
+/// A new frame length, a reset, a restart or a released vertex begins with a substep of backward Euler, or of BDF2 with
+/// a different step ratio; the frame after it is ordinary again.
 TEST_F(Bdf2, BeginsAnewWhereThereIsNoLastSubstep) {
   const Scene s = with_bending(with_pins(sheet(9, 7)));
   const auto solver = make("xpbd", predicting({{"substeps", 5}}));
@@ -99,7 +99,7 @@ TEST_F(Bdf2, BeginsAnewWhereThereIsNoLastSubstep) {
   for (std::size_t k = 0; k < again.position.size(); ++k)
     most = std::max(most, std::abs(again.position[k] - straight.position[k]));
   EXPECT_LE(most, 2e-3) << "one substep of first order";
-  // Let go, what was held flies on at the hand's speed and falls.
+  // After release, the attached vertices fly on at the hand's speed and fall.
   constexpr int kRelease = 4, kFlight = 12;
   Scene flies = sheet(5, 4);
   std::vector<std::uint32_t> all(20);
@@ -116,7 +116,7 @@ TEST_F(Bdf2, BeginsAnewWhereThereIsNoLastSubstep) {
   }
 }
 
-/// Strain of a strip of 33 x 2 vertices along its lines at the end; NaN if any position is.
+/// Strain of a strip of 33 x 2 vertices along its grid lines at the end; NaN if any position is NaN.
 double strain(const Scene& s, const ClothState& state) {
   double most = 0;
   for (std::size_t i = 1; i < 33; ++i) {

@@ -1,4 +1,4 @@
-// Counted bytes are closed forms where every vertex takes the same path, and counting changes no bit of a result.
+// Counted bytes have a closed form if every vertex takes the same path, and counting leaves results bit-identical.
 #include <map>
 
 #include "contact_scenes.hpp"
@@ -41,7 +41,7 @@ TEST_F(Bytes, AreClosedFormsOfSimpleKernels) {
   expect(of_paper.at("ApplyExplicitEuler"), 2 * vertex * n, vertex * n);
   expect(of_paper.at("AverageConstraintDeltas"), 2 * 2 * vertex * n, 2 * 2 * vertex * n);
   expect(of_paper.at("UpdatePositions"), 2 * vertex * n, 2 * vertex * n);
-  // Positions and velocities, their rounding errors, and those before the last substep.
+  // Positions and velocities, their rounding errors, and their values before the last substep.
   expect(of_xpbd.at("Lines"), 6 * vertex * n, 6 * vertex * n);
 }
 

@@ -1,4 +1,4 @@
-// Cloths whose links are not all alike: the plan of chains, and what they do against a reference in double precision.
+// Cloths whose links differ: how chains are laid out, and their motion against a reference in double precision.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ std::vector<ChainColour> plan_of(const Scene& s, const ChainCloth& cloth, std::u
   return colours_of(edge_paths(s, cloth), s.cloth.vertex_count(), block);
 }
 
-/// Links of every chain, and whether no vertex of a colour is on two.
+/// Links of every chain; also checks that no vertex is on two chains of a colour.
 std::multiset<Ends> links_of(const std::vector<ChainColour>& colours, std::size_t vertices, std::uint32_t block) {
   std::multiset<Ends> out;
   for (const ChainColour& f : colours) {
@@ -111,7 +111,7 @@ TEST_F(Chained, MeshesAndUnevenGridsEndWhereTheReferenceDoes) {
     const double coarse = error(1, 40), fine = error(1, 160);
     EXPECT_LT(fine, 4e-3) << s->cloth.rows;
     EXPECT_LT(fine, 0.4 * coarse) << "of order one in the substep";
-    // With order two, rounding in single precision is of the same size with 160 substeps.
+    // At second order, rounding in single precision is as large as the error with 160 substeps.
     EXPECT_LT(error(2, 40), 5e-4) << s->cloth.rows;
     EXPECT_LT(error(2, 160), 5e-4) << s->cloth.rows;
   }
@@ -119,7 +119,7 @@ TEST_F(Chained, MeshesAndUnevenGridsEndWhereTheReferenceDoes) {
 
 TEST_F(Chained, RepeatBitForBitAndFallFreely) {
   Scene s = mesh_sheet(20);
-  s.material.membrane_stiffness_N_per_m.reset();  // links: elastic sheets have triangles
+  s.material.membrane_stiffness_N_per_m.reset();  // links only: elastic sheets would use triangles
   EXPECT_EQ(end_of(s, "xpbd", {}).position, end_of(s, "xpbd", {}).position);
   s = uneven(sheet(20, 20), 4, 0.3);
   const std::vector<double> start = initial_positions(s);

@@ -23,7 +23,7 @@ inline Scene with_collider(Scene s, const Collider& c) {
   return s;
 }
 
-/// Touched on both sides, as `xpbd` has it.
+/// With two-sided contact, as `xpbd` supports it.
 inline Scene two_sided(Scene s) {
   s.cloth.sides = Sides::Double;
   s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
@@ -51,7 +51,7 @@ inline Collider half_space(Vec3 point, Vec3 normal, double friction) {
   return c;
 }
 
-/// Turned about two axes, so that no face is level.
+/// Rotated about two axes, so that no face is horizontal.
 inline Collider box(Vec3 center, Vec3 half, double friction = 0) {
   Collider c = touching(Collider::Shape::Box, friction);
   c.center_m = center;
@@ -63,7 +63,7 @@ inline Collider box(Vec3 center, Vec3 half, double friction = 0) {
   return c;
 }
 
-/// Two capsules, one of them a ball; they move with `capsules_moved`.
+/// Two capsules, one of them a sphere; they move with `capsules_moved`.
 inline Collider capsules(Vec3 at, double friction = 0) {
   Collider c = touching(Collider::Shape::Capsules, friction);
   c.capsules = {{{at[0] - 0.2, at[1] + 0.013, at[2]}, {at[0] + 0.21, at[1] - 0.02, at[2] + 0.11}, 0.05},
@@ -71,8 +71,8 @@ inline Collider capsules(Vec3 at, double friction = 0) {
   return c;
 }
 
-/// Octahedron with its normals outwards; twice as long along x. With joints, its two halves follow one each and the
-/// ring between them both.
+/// Octahedron with outward normals, twice as long along x. With joints, each half follows one joint and the ring
+/// between them follows both.
 inline Collider octahedron(Vec3 at, double radius, bool skinned, double friction = 0) {
   Collider c = touching(Collider::Shape::Mesh, friction);
   auto mesh = std::make_shared<ColliderMesh>();
@@ -112,7 +112,7 @@ inline Collider open_sheet(Vec3 at, double half, double friction = 0) {
   return c;
 }
 
-/// Where moving colliders are at instant k: they travel by 0.01 m along x and turn a little, joint by joint.
+/// Pose of a moving collider at instant k: it moves by 0.01 m along x per instant and rotates a little, joint by joint.
 inline ColliderPose pose_at(const Collider& c, int k) {
   ColliderPose pose;
   const double way = 0.01 * k;
@@ -129,7 +129,7 @@ inline ColliderPose pose_at(const Collider& c, int k) {
   return pose;
 }
 
-/// Folded over a line along v, its layers `apart` m apart across `normal`, and in contact with itself.
+/// Folded over a line along v, with its layers `apart` m apart along `normal`, and with self-contact.
 inline Scene folded(Scene s, double apart = 0.1, double friction = 0) {
   Cloth& c = s.cloth;
   c.axis_u = {0, 1, 0};
@@ -141,7 +141,7 @@ inline Scene folded(Scene s, double apart = 0.1, double friction = 0) {
   return s;
 }
 
-/// Motion of everything that moves, and of `grips`, which go along (0.02, 0.03, -0.01) m a frame and are let go at
+/// Motion of everything that moves, and of `grips`, which move by (0.02, 0.03, -0.01) m per frame and release at
 /// instant `release`.
 inline Scene moving(Scene s, std::vector<std::uint32_t> grips = {}, int release = 1000) {
   const std::vector<double> x = initial_positions(s);
@@ -158,7 +158,7 @@ inline Scene moving(Scene s, std::vector<std::uint32_t> grips = {}, int release 
   return s;
 }
 
-/// One of every kind that `paper` touches, within reach of a sheet of 1 x 1 m at the origin.
+/// One collider of every kind that `paper` supports, within reach of a sheet of 1 x 1 m at the origin.
 inline Scene everything(Scene s, double friction = kContactFriction) {
   s = doubled(s);
   s = with_collider(s, sphere({-0.31, -0.05, -0.27}, 0.17, friction));

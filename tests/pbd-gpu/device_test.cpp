@@ -45,7 +45,7 @@ TEST_F(Gpu, RowsOfGroupsReachEveryItemOnce) {
 }
 
 TEST_F(Gpu, MessagesAreOfTheSolverThatCausedThem) {
-  // A device of its own, so that the messages are not held against another test.
+  // A separate device, so that its messages do not count against another test.
   const DeviceOptions own{0, true};
   const auto device = vulkan::Device::get(own);
   ASSERT_NE(device, device_);
@@ -105,7 +105,7 @@ TEST_F(Gpu, ListIsNotEmptyAndBadIndexIsNoDevice) {
 TEST(Room, IsForTheLargestBufferAndForAll) {
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, 3u << 20, 5u << 20), "");
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, (3u << 20) - 1, 5u << 20),
-            "buffer \"a\" of 3.0 MiB, and its largest has 3.0 MiB");
+            "buffer \"a\" of 3.0 MiB, and its limit is 3.0 MiB");
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, 3u << 20, (5u << 20) - 1),
             "buffers of at least 5.0 MiB, and it has 5.0 MiB");
 }

@@ -1,4 +1,4 @@
-// Frames that are not waited for end as the others do.
+// Pipelined frames end in the same state as frames with a wait.
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"
 
@@ -36,7 +36,7 @@ TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
       if (device_->has_timestamps()) {
         EXPECT_GT(flown->last_cost().device_s, 0);
       }
-      // The next frames are stepped again as if nothing had been in flight.
+      // Frames stepped afterwards are the same as without pipelined frames before them.
       EXPECT_EQ(after_frame(*flown, s, count).position, after_frame(*stepped, s, count).position);
     }
 }

@@ -1,5 +1,5 @@
-// Contact by planes in one dispatch: bit for bit the motion of one dispatch per pass, for every kind of collider, for
-// held vertices, by one workgroup and by many; and what it costs where no collider is active.
+// Contact by planes in one dispatch: bit-identical to one dispatch per pass for every kind of collider, for attached
+// vertices, with one workgroup and with many; and its cost if no collider is active.
 #include <set>
 
 #include "contact_scenes.hpp"
@@ -14,14 +14,14 @@ struct FrameRun {
   ClothState end;
   std::vector<double> counts;
   long dispatches = 0;
-  std::size_t recorded = 0, most_recorded = 0;  // commands, before the first frame and in any
+  std::size_t recorded = 0, most_recorded = 0;  // commands: before the first frame; maximum in any frame
   std::set<std::string> kernels;
   bool timed_out = false;
 };
 
 class FusedFrames : public Gpu {
  protected:
-  /// In one dispatch of a workgroup, which lavapipe runs at once: it ends a thread's loops after 65535 rounds.
+  /// In one dispatch of one workgroup, which lavapipe runs at once; it ends a thread's loops after 65535 iterations.
   static FrameRun run(const Scene& s, const char* in_one, int frames, const char* barrier = "always",
                       int substeps = kSubsteps) {
     const auto solver = make("xpbd", {{"substeps", substeps},
@@ -54,7 +54,7 @@ class FusedFrames : public Gpu {
   }
 };
 
-/// A sheet that falls onto something in frames of the usual length.
+/// A sheet that falls onto a collider, in frames of the usual length.
 Scene falling(int columns, int rows, const Collider& collider) {
   Scene s = with_damping(with_bending(with_collider(sheet(columns, rows), collider)));
   s = two_sided(s);
@@ -72,7 +72,7 @@ TEST_F(FusedFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
       {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
       {"hand", octahedron({-0.1, 0.017, 0.021}, 0.12, true, kContactFriction)},
       {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
-  // Compiling the kernel takes a CPU longer than running it: held vertices come with two of the kinds.
+  // Compiling the kernel takes a CPU longer than running it, so only two kinds are combined with attached vertices.
   for (const auto& [name, collider] : kinds) {
     const bool held = name == "sphere" || name == "hand";
     SCOPED_TRACE(name);
@@ -83,15 +83,15 @@ TEST_F(FusedFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
       s = moving(s);
     const FrameRun one = run(s, "always", 10), many = run(s, "never", 10, "never");
     expect_same(one, many);
-    // A half-space is never far: no kernel is there for frames without contact.
+    // A half-space is always in reach, so there is no kernel for contact-free frames.
     const int contact_free = name == "half-space" ? 0 : 1;
     EXPECT_LE(one.dispatches, contact_free + (collider.mesh && collider.moves() ? 3 : collider.moves() ? 2 : 1));
     EXPECT_GT(many.dispatches, kSubsteps * 8);
   }
 }
 
-/// Frames in which convex shapes are active and a slow cloth meets none, then contact: the frames without it by one
-/// workgroup, and on larger cloth by many.
+/// Convex shapes are active from the start, but the slow cloth touches one only later. Frames before the contact use
+/// one workgroup, or many for larger cloth.
 TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
   for (const int columns : {17, 33}) {
     Scene s = falling(columns, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
@@ -100,13 +100,13 @@ TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
     const FrameRun phases = run(s, "never", 14, "never"), one = run(s, "always", 14);
     expect_same(one, phases);
     EXPECT_TRUE(one.kernels.contains(columns > 32 ? "fused_frame_contact_free" : "line_frame_contact_free"));
-    // It is held up, so that a frame that missed the collider would show.
+    // The collider stops the cloth, so that a frame that missed it would show.
     s.colliders[0].center_m = {0, -9, 0};
     EXPECT_NE(run(s, "never", 14, "never").end.position, phases.end.position);
   }
 }
 
-/// Fast cloth makes several lists of pairs a frame, each in a dispatch, and fewer when the collider has stopped it.
+/// Fast cloth builds several pair lists per frame, each in a dispatch; fewer once the collider has stopped it.
 TEST_F(FusedFrames, OfFastClothTakeALongerFrameInParts) {
   Scene s = falling(17, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
   s.cloth.initial_velocity_m_per_s = {0.4, -12, 0.3};

@@ -1,4 +1,4 @@
-// Contact by planes over random scenes: whatever comes, nothing crosses.
+// Contact by planes in random scenes: nothing may pass through.
 #include "contact_check.hpp"
 #include "liars/motions.hpp"
 

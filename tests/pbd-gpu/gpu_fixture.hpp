@@ -12,14 +12,14 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Whether the case of this number in a matrix is run now: every fifth in the quick tier, each with
-/// CLOTHBENCH_WHOLE_MATRIX=1 (the slow tier's pbd_gpu.matrix). A pipeline takes a CPU device a good part of a second.
+/// Whether this case of a matrix runs now: every fifth in the quick tier, all with CLOTHBENCH_WHOLE_MATRIX=1 (the slow
+/// tier's pbd_gpu.matrix). Compiling a pipeline takes a CPU device most of a second.
 inline bool in_turn(std::size_t number) {
   constexpr std::size_t kEvery = 5;
   return std::getenv("CLOTHBENCH_WHOLE_MATRIX") != nullptr || number % kEvery == 0;
 }
 
-/// Every test runs under core and synchronization validation and ends with no message.
+/// Every test runs under core and synchronization validation and fails if there is a message.
 class Gpu : public ::testing::Test {
  protected:
   static DeviceOptions options() { return {-1, true}; }
@@ -44,7 +44,7 @@ class Gpu : public ::testing::Test {
                            : make_xpbd(complete_settings(xpbd_info(), given), options());
   }
 
-  /// The state at the end of the scene, by any solver.
+  /// The state at the end of the scene, computed by any solver.
   static ClothState end_of(const Scene& s, const std::string& solver, const nlohmann::json& settings) {
     const SolverEntry& e = find_solver(solver);
     const auto made = e.make(complete_settings(e.info, settings), solver == "xpbd" ? options() : DeviceOptions{});

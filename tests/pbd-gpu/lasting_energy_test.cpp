@@ -1,4 +1,4 @@
-// Scenes without input of work end with no more energy than they began with, at every quality.
+// Scenes without input of work end with at most their initial energy, at every quality.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -32,7 +32,7 @@ double spring_energy(const Scene& s, const std::vector<double>& x) {
   return energy;
 }
 
-/// Kinetic, spring and gravity's energy minus its value at the start, over M g L: the mean over the last second.
+/// Kinetic, spring and potential energy minus its value at the start, over M g L: mean over the last second.
 double lasting_gain(ClothSolver& solver, const Scene& s) {
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s), speed = initial_velocities(s);
   const auto energy = [&](const std::vector<double>& x, const std::vector<double>& v) {
@@ -54,7 +54,7 @@ double lasting_gain(ClothSolver& solver, const Scene& s) {
   return lasting;
 }
 
-/// A sheet held by one corner has links under a tension that is far above the explicit limit.
+/// The links of a sheet held by one corner have a tension far above the explicit stability limit.
 TEST_F(Gpu, ASheetHeldByOneCornerComesToRest) {
   Scene s =
       load_scene("validation/hang-elastic", {"cloth.grid=[33,33]", "material.damping_per_s=1", "time.duration_s=12"});

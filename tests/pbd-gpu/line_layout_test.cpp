@@ -1,4 +1,4 @@
-// How lines are planned: tethers, taut lines, substeps, threads. No device.
+// Layout of grid lines: tethers, taut lines, substeps, threads. Needs no device.
 #include "xpbd/lines/line_layout.hpp"
 
 #include "gpu_fixture.hpp"

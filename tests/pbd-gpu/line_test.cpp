@@ -1,6 +1,6 @@
-// Purposes of the line solver: little stretch for few substeps, the reference cases, and that it stays whole where
-// lines are singular. Bounds are a little above what it measures, which is what a sequential double-precision emulation
-// of the same method gives.
+// Purposes of the line solver: little stretch with few substeps, the reference cases, and robustness if lines are
+// singular. Bounds are slightly above its measured values, which equal those of a sequential double-precision emulation
+// of the method.
 #include <cmath>
 
 #include "clothbench/record.hpp"
@@ -30,8 +30,8 @@ TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
     double error;
     int order = 1;
   };
-  // Frames of 60 Hz, and of 960 Hz in the last, whose waves are slowed where tension is held back (0.061 if it were
-  // not). The hands' speed there changes at each frame's end, which costs the second order some of it.
+  // Frames of 60 Hz; of 960 Hz in the last row, where tension is limited and waves are slower (0.061 otherwise). There
+  // the hands' speed changes at the end of each frame, which reduces the second order.
   for (const Row& row : {Row{"swing-strip", 3, 4.5e-3},
                          {"swing-strip", 5, 2.7e-3},
                          {"swing-strip", 10, 1.5e-3},
@@ -74,37 +74,36 @@ TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
   }
 }
 
-/// No vertex is farther from a pin than the cloth between them is long: along its lines, if it does not shear.
+/// No vertex is farther from a pin than the cloth between them is long; without shear, along its lines.
 TEST_F(LineScenes, TethersEndWhereTheClothIsTaut) {
   for (const bool shear : {true, false}) {
     Scene s = with_pins(sheet(33, 31));
     if (!shear) s.needs = s.needs - FeatureSet{Feature::Shear};
     s.material.membrane_stiffness_N_per_m.reset();
-    const auto farthest =
-        [&](bool tethers) {  // distance over length; not of vertices beside a pin, whose links are torn
-          const auto solver = make("xpbd", {{"substeps", 2}, {"tethers", tethers}});
-          solver->load(s);
-          const std::vector<double> x = after(*solver, s, 36).position;
-          double most = 0;
-          for (std::size_t v = 8 * 33; v < s.cloth.vertex_count(); ++v)
-            for (const std::uint32_t pin : s.pins.vertices) {
-              const double u = std::abs(static_cast<int>(v % 33) - static_cast<int>(pin)) * s.cloth.du(),
-                           along = static_cast<double>(v / 33) * s.cloth.dv();
-              if (u < 0.25) continue;
-              const double reach = shear ? std::hypot(u, along) : u + along;
-              most = max_or_nan(most, length(minus(vertex_at(x, v), vertex_at(x, pin))) / reach);
-            }
-          return most;
-        };
+    const auto farthest = [&](bool tethers) {  // distance over length; not for neighbours of pins, whose links are torn
+      const auto solver = make("xpbd", {{"substeps", 2}, {"tethers", tethers}});
+      solver->load(s);
+      const std::vector<double> x = after(*solver, s, 36).position;
+      double most = 0;
+      for (std::size_t v = 8 * 33; v < s.cloth.vertex_count(); ++v)
+        for (const std::uint32_t pin : s.pins.vertices) {
+          const double u = std::abs(static_cast<int>(v % 33) - static_cast<int>(pin)) * s.cloth.du(),
+                       along = static_cast<double>(v / 33) * s.cloth.dv();
+          if (u < 0.25) continue;
+          const double reach = shear ? std::hypot(u, along) : u + along;
+          most = max_or_nan(most, length(minus(vertex_at(x, v), vertex_at(x, pin))) / reach);
+        }
+      return most;
+    };
     const double with = farthest(true);
     EXPECT_TRUE(with >= (shear ? 0.98 : 0.88) && with <= 1.03) << shear << ": " << with;
     EXPECT_GE(farthest(false), 1.1) << "or this tests nothing";
   }
 }
 
-/// One dispatch of many workgroups that wait for one another moves the cloth bit for bit as one dispatch per colour
-/// does, or is refused, or says that a frame was lost: never anything else. Which of them on lavapipe is a matter of
-/// its threads.
+/// One dispatch with many workgroups that wait for one another moves the cloth bit-identically to one dispatch per
+/// colour, or is refused, or reports a lost frame; nothing else may happen. On lavapipe the outcome depends on its
+/// threads.
 TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   Scene s = with_bending(with_damping(with_pins(sheet(33, 31))));
   int agreed = 0;
@@ -136,10 +135,10 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
   EXPECT_GE(agreed, 1) << "one workgroup has none to wait for";
 }
 
-/// The modulus of elastic sheets is the scene's, at every resolution: a sheet that shears hangs to rest by its weight.
+/// Elastic sheets have the scene's modulus at every resolution: a sheet with shear, hanging at rest by its weight.
 class Moduli : public Gpu, public ::testing::WithParamInterface<const char*> {
  protected:
-  /// Error of the stretch of the lower half, over the exact one; there E is the only modulus that counts.
+  /// Error of the stretch of the lower half, divided by the exact stretch; E is the only modulus that matters there.
   static double error(const nlohmann::json& settings) {
     const Scene s =
         load_scene("validation/heavy-strip", {"material.shear=true", std::string("cloth.grid=") + GetParam()});

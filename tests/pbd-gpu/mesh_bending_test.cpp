@@ -1,5 +1,4 @@
-// Bending of triangle meshes in xpbd: the matrix against beams, and what the kernel makes of it against double
-// precision.
+// Bending of triangle meshes in xpbd: the matrix against beams, and the kernel against double precision.
 #include "gpu_fixture.hpp"
 #include "strips.hpp"
 #include "xpbd/mesh/matrices.hpp"
@@ -40,7 +39,7 @@ TEST(MeshBendingMatrix, ItsBoundIsAboveTheGreatestEigenvalueAndNotMuch) {
 
 using MeshBending = Gpu;
 
-/// Links as soft as nothing: what is left is M (x - y) = -h^2 K x, y the prediction.
+/// With almost no link stiffness, M (x - y) = -h^2 K x remains, y being the prediction.
 TEST_F(MeshBending, OneSubstepIsTheImplicitStepInDoublePrecision) {
   for (const double B : {1e-5, 3e-3, 0.5}) {
     Scene s = clamped_strip(12, 0.25, 4, B);

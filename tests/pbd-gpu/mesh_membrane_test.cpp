@@ -16,8 +16,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// A sheet of width x height m along x and y, pinned along x = 0. Its inner vertices are a square lattice, turned
-/// by an angle, each moved by up to a share of a cell.
+/// A sheet of width x height m along x and y, pinned along x = 0. Its inner vertices are a square lattice, rotated by
+/// an angle, each moved by up to a fraction of a cell.
 Scene random_sheet(double width, double height, int cells, double angle, double share, unsigned seed) {
   ClothMesh mesh = drawn_mesh({width, height, cells, angle, share, seed});
   std::vector<std::uint32_t> pins = mesh.groups.at("u0");
@@ -25,17 +25,17 @@ Scene random_sheet(double width, double height, int cells, double angle, double 
 }
 
 struct IsotropicModuli {
-  double E;   ///< over the Y that the scene states
+  double E;   ///< divided by the scene's Y
   double nu;  ///< Poisson's ratio
 };
 
-/// Moduli of a flat triangle mesh that hangs along axis_u by its least u and has come to rest at `position` [m], xyz
-/// interleaved. These are the moduli whose exact displacement, along u (p/E) (L u - u^2/2 - nu v^2/2) and across it
-/// -nu (p/E) (L - u) v, with p = density times gravity and v from the middle, is nearest to the displacement of the
-/// vertices between 0.4 L and 0.9 L, by least squares and but for motions of the whole. NaN without enough of them, or
-/// if the sheet is not longer than it was.
+/// Moduli of a flat triangle mesh that hangs along axis_u by its smallest u and has come to rest at `position` [m], xyz
+/// interleaved. For these moduli the exact displacement, (p/E) (L u - u^2/2 - nu v^2/2) along u and -nu (p/E) (L - u) v
+/// across it, with p = density times gravity and v from the middle, is the least-squares fit to the displacement of the
+/// vertices between 0.4 L and 0.9 L, apart from rigid motion. NaN without enough of them, or if the sheet has not
+/// become longer.
 IsotropicModuli hanging_moduli(const Scene& s, const std::vector<double>& position) {
-  constexpr double kFirst = 0.4, kLast = 0.9;  // of the length: the held edge and the free one change the motion
+  constexpr double kFirst = 0.4, kLast = 0.9;  // of the length: both edges disturb the displacement
   const std::vector<Vec3>& rest = s.cloth.mesh->vertices;
   const auto sides = [&](std::size_t k) {
     const auto [least, most] =
@@ -93,7 +93,7 @@ TEST(MeshMembrane, TrianglesHaveTheEnergyOfAnIsotropicSheet) {
 
 class MembraneOf : public Gpu {
  protected:
-  /// A strip 4 : 1 that hangs along the direction of its lattice turned by an angle, 1 % strain at its top, to rest.
+  /// A strip 4 : 1 that hangs at rest, its lattice rotated by an angle, with 1 % strain at its top.
   static Scene hanging(int cells, double angle, double share, unsigned seed) {
     Scene s = with_damping(random_sheet(1, 0.25, cells, angle, share, seed));
     s.gravity_m_per_s2 = {50, 0, 0};
@@ -120,7 +120,7 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
   }
 }
 
-/// Bit for bit, momentum kept: sheets that turn and fall, of triangles, and of triangles that bend.
+/// Free sheets of triangles, with and without bending, that rotate and fall: bit-identical repeats, momentum conserved.
 TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
   constexpr int kFrames = 10;
   for (auto [s, tolerance] :

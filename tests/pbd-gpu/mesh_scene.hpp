@@ -7,7 +7,7 @@
 
 namespace clothbench::pbd_gpu {
 
-/// A square sheet of n x n vertices, pushed about inside, whose diagonals lie either way; two corners held.
+/// A square sheet of n x n vertices, displaced inside, with diagonals in both directions; two corners are pinned.
 inline Scene mesh_sheet(int n) {
   std::vector<Vec3> x;
   std::vector<std::array<std::uint32_t, 3>> t;
@@ -32,7 +32,7 @@ inline Scene mesh_sheet(int n) {
   return of_mesh(cloth_mesh({std::move(x), std::move(t)}, "sheet"), {0, static_cast<std::uint32_t>(n - 1)});
 }
 
-/// A tube of radius 0.2 m and length 0.5 m, closed round z: no edge of it is on a border but at its two ends.
+/// A tube of radius 0.2 m and length 0.5 m around z, with borders only at its two ends.
 inline Scene mesh_tube(int around, int along) {
   std::vector<Vec3> x;
   std::vector<std::array<std::uint32_t, 3>> t;
@@ -50,7 +50,7 @@ inline Scene mesh_tube(int around, int along) {
   return of_mesh(cloth_mesh({std::move(x), std::move(t)}, "tube"), {});
 }
 
-/// One column of cells of another width.
+/// One column of cells with a different width.
 inline Scene uneven(Scene s, std::size_t column, double factor) {
   s.cloth.column_factors.assign(static_cast<std::size_t>(s.cloth.columns - 1), 1);
   s.cloth.column_factors[column] = factor;

@@ -5,7 +5,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Nothing but colliders, read back: what a method finds in its buffers during a frame.
+/// Reads back colliders: the content that solvers find in their buffers during a frame.
 class Mirror final : public GpuSolver {
  public:
   Mirror(bool as_convex_shapes, Vec3 origin)

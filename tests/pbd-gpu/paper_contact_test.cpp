@@ -1,5 +1,5 @@
-// Collision kernels of `paper` against the same in double on the CPU, and what travels to them each frame. A sheet at
-// rest that only flies has no constraint to satisfy: its predicted positions are known, and only contact moves them.
+// Collision kernels of `paper` against the same method in double on the CPU, and uploads per frame. A freely flying
+// sheet satisfies all constraints: its predicted positions are known, and only contact moves them.
 #include <Eigen/Dense>
 #include <algorithm>
 
@@ -16,7 +16,7 @@ Vector vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 struct Contact {
   double mesh_depth = 0.03, hand_depth = 0.01;  // defaults of the solver
   bool slows = false;                           // friction on velocities
-  Vector removed = Vector::Zero();              // displacement that the velocity of a particle leaves out
+  Vector removed = Vector::Zero();              // displacement that does not count in the velocity of a particle
   long touched = 0;
 
   void touch(Vector& at, const Vector& from, const Vector& normal, double push, double friction) {
@@ -53,7 +53,7 @@ struct Contact {
       const Vector a = Vector::Map(&x[3 * t[0]]), b = Vector::Map(&x[3 * t[1]]), d = Vector::Map(&x[3 * t[2]]);
       const Vector normal = (b - a).cross(d - a).normalized();
       const double height = (at - a).dot(normal);
-      // Barycentric coordinates of the foot, from the 3 x 3 system of its definition.
+      // Barycentric coordinates of the projection, from the 3 x 3 system of its definition.
       Eigen::Matrix3d m;
       m << b - a, d - a, normal;
       const Vector s = m.inverse() * (at - a);
@@ -81,7 +81,7 @@ struct Contact {
   }
 };
 
-/// A sheet that flies through where the colliders are, as its first frame finds them.
+/// A sheet that flies through the colliders' positions in its first frame.
 Scene flying(int columns, int rows) {
   Scene s = sheet(columns, rows);
   s.cloth.initial_velocity_m_per_s = {0.7, -0.9, 0.4};
@@ -90,7 +90,7 @@ Scene flying(int columns, int rows) {
 
 class PaperContacts : public Gpu {
  protected:
-  /// One frame; returns how many contacts there were.
+  /// Runs one frame; returns the number of contacts.
   long expect_as_in_double(const Scene& s, const std::string& what,
                            const nlohmann::json& settings = nlohmann::json::object()) {
     const auto solver = make("paper", settings);
@@ -165,7 +165,7 @@ TEST_F(PaperContacts, OtherReadingsMoveTheClothElsewhere) {
 }
 
 TEST_F(PaperContacts, AFallenSheetStaysOnAMesh) {
-  // 0.3 m of fall are 2.4 m/s and 34 mm a frame at 72 Hz.
+  // 0.3 m of fall give 2.4 m/s, and 34 mm per frame at 72 Hz.
   Scene s = with_collider(doubled(with_damping(sheet(9, 9, 0.2, 0.2))),
                           open_sheet({0.003, -0.3, 0.004}, 0.4, kContactFriction));
   const auto solver = make("paper"), thin = make("paper", {{"mesh_depth_m", 0.001}});

@@ -38,7 +38,7 @@ TEST_F(Gpu, XpbdDoesNotFreezeWithManySubstepsFarFromTheOrigin) {
   EXPECT_LE(free_fall_error(s, after(*solver, s, 8), 8, xpbd_free_fall_m(s, settings, 8)), 1e-4);
 }
 
-/// A sheet that was stretched and let go, without gravity: what its centre of mass does.
+/// A stretched, released sheet without gravity keeps its momentum: the motion of its centre of mass.
 TEST_F(Gpu, XpbdKeepsMomentum) {
   for (const int columns : {17, 33}) {
     Scene s = with_bending(sheet(columns, 17));
@@ -61,7 +61,7 @@ TEST_F(Gpu, UniaxialStiffnessIsYOnSquareAndOblongCells) {
   expect_uniaxial_stiffness([] { return make("xpbd", {{"substeps", 40}}); });
 }
 
-/// Tethers must not carry the load of elastic cloth, however short its stiff links stretch.
+/// Tethers must not carry the load of elastic cloth, however little its stiff links stretch.
 TEST_F(Gpu, StiffStripsHangByTheirLinks) {
   for (const char* Y : {"1000", "30000", "300000"}) {
     const Scene s = load_scene("validation/heavy-strip", {std::string("material.membrane_stiffness_N_per_m=") + Y});

@@ -1,4 +1,4 @@
-// Splitting-error correction: where it is off, why, and that it costs nothing there.
+// Splitting-error correction: when it is off, why, and that it costs nothing then.
 
 #include "contact_scenes.hpp"
 #include "gpu_fixture.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 class SplittingCorrection : public Gpu {
  protected:
-  /// Why the plan has none ("" where it has), and that its buffers are there if and only if it is on.
+  /// The plan's reason for not using it ("" if it does); also checks that its buffers exist only if it is on.
   static std::string reason(const Scene& s, const nlohmann::json& given = nlohmann::json::object()) {
     const auto solver = make("xpbd", given);
     solver->load(s);

@@ -1,5 +1,5 @@
-// One frame of `paper` against the same method in double on the CPU, written from the paper, not from the shaders;
-// `xpbd` in every layout of its lines against the layout that it chooses.
+// One frame of `paper` against the method in double on the CPU, written from the paper, not from the shaders; `xpbd` in
+// every layout of its lines against the layout that it selects itself.
 #include <algorithm>
 
 #include "clothbench/vector.hpp"
@@ -88,7 +88,7 @@ TEST_F(Gpu, PlanStatesSubsteps) {
   EXPECT_EQ(planned(falling, {{"substeps", 7}}), 7);
 }
 
-/// Lines within a subgroup of this device, across several, and side by side.
+/// Lines within a subgroup of this device, across several subgroups, and side by side.
 TEST_F(Gpu, EveryLayoutOfLinesTakesTheSameSteps) {
   const nlohmann::json layouts[] = {
       {{"vertices_a_thread", 2}},

@@ -1,4 +1,4 @@
-// Contact of `xpbd` by planes: nothing crosses at any step, by the harness's measures; friction; lists that are short.
+// Contact of `xpbd` by planes: nothing passes through in any step, by the harness's metrics; friction; short lists.
 
 #include "contact_check.hpp"
 #include "contact_scenes.hpp"
@@ -10,7 +10,7 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Instant k of a hand round (-1, 0, 0) that goes 10 mm an instant along x, its two joints turning against each other.
+/// Instant k of a hand around (-1, 0, 0) that moves 10 mm per instant along x; its two joints rotate oppositely.
 void pose_hand(ColliderPose& pose, std::size_t k) {
   for (std::size_t joint = 0; joint < pose.joints.size(); ++joint) {
     const double way = 0.01 * static_cast<double>(k), turn = 0.002 * static_cast<double>(k) * (joint == 0 ? 1 : -1),
@@ -19,7 +19,7 @@ void pose_hand(ColliderPose& pose, std::size_t k) {
   }
 }
 
-/// A sheet that falls onto something; frames are steps, so that every one of them can be checked.
+/// A sheet that falls onto a collider; frames equal steps, so that every step can be checked.
 Scene falling_in_steps(const Collider& collider, double steps_per_s) {
   Scene s = with_collider(sheet(12, 10), collider);
   s = two_sided(s);
@@ -41,7 +41,7 @@ TEST_F(XpbdContacts, NothingCrossesAtAnyStep) {
       {"mesh", octahedron({0.013, 0.017, 0.021}, 0.12, false, kContactFriction)},
       {"hand", octahedron({-1, 0.017, 0.021}, 0.12, true, kContactFriction)},
       {"open sheet", open_sheet({0.03, 0.1, 0.01}, 0.32, kContactFriction)}};
-  // A moving collider goes 10 mm a step: 8 and 12 m/s.
+  // A moving collider moves 10 mm per step: 8 and 12 m/s.
   for (const double steps_per_s : {800.0, 1200.0})
     for (const auto& [name, collider] : kinds) {
       if (!collider.moves() && steps_per_s > 800) continue;
@@ -55,13 +55,13 @@ TEST_F(XpbdContacts, NothingCrossesAtAnyStep) {
 Collider slope(bool half, double angle) {
   const double sine = std::sin(angle), cosine = std::cos(angle);
   if (half) return half_space({0, 0, 0}, {sine, cosine, 0}, 0.5);
-  // The nearest points of a large face have lost the digits that tell its normal.
+  // The difference of nearest points on a large face has lost the digits that give its normal.
   Collider large = box({-sine, -cosine, 0}, {2, 1, 1}, 0.5);
   large.axes = {{{cosine, -sine, 0}, {sine, cosine, 0}, {0, 0, 1}}};
   return large;
 }
 
-/// A sheet slides on a slope by g (sin - friction cos) T^2 / 2, or is held, on a half-space and on a large box.
+/// A sheet on a slope slides by g (sin - friction cos) T^2 / 2 or sticks, on a half-space and on a large box.
 TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
   const double friction = 0.5, g = 9.81, T = 0.5;
   for (const bool half : {true, false})
@@ -82,7 +82,7 @@ TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
     }
 }
 
-/// A list that is too short cuts the reach, and what it then has no place for makes the run an error.
+/// If a pair list is too short, the motion bound is reduced; pairs that still do not fit make the run an error.
 TEST_F(XpbdContacts, DropNoPairInSilence) {
   Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);
   const SolverEntry& entry = find_solver("xpbd");
@@ -107,7 +107,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
 }
 
 TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
-  // It lies at the end, with few substeps, and falls at the start.
+  // At the end it is at rest, with few substeps; at the start it falls.
   Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
   s = two_sided(s);
   const auto solver = make("xpbd");
@@ -120,7 +120,7 @@ TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
   EXPECT_EQ(ends[0].position, ends[1].position) << "by the frame that the last one of the run before had recorded";
 }
 
-/// Two triangles in the plane z = `at`, 4 m wide, that a single joint carries along z.
+/// Two triangles in the plane z = `at`, 4 m wide, moved along z by a single joint.
 Collider carried_wall(double at) {
   Collider c = touching(Collider::Shape::Mesh, 0);
   auto mesh = std::make_shared<ColliderMesh>();

@@ -1,4 +1,4 @@
-// Contact of the cloth with itself by planes: nothing crosses at any step; the same bits again; friction.
+// Self-contact by planes: nothing crosses in any step; bit-identical repeats; friction.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 nlohmann::json with(int substeps) { return {{"substeps", substeps}}; }
 
-/// A fold that falls on the floor and on itself, nothing quite parallel.
+/// A fold that falls on the floor and on itself, without parallel parts.
 Scene fold_on_floor(int columns = 13, int rows = 7) {
   Scene s = with_collider(folded(sheet(columns, rows), 0.12, kContactFriction),
                           half_space({0, -0.25, 0}, {0, 1, 0}, kContactFriction));
@@ -44,7 +44,7 @@ long crossings(const Scene& s, const ClothState& state) {
   return contact::self_contour({state.position, all}).pairs;
 }
 
-/// Frames are steps, so that every one of them can be checked; without contact the same cloth passes through itself.
+/// Frames equal steps, so that every step can be checked; without contact this cloth passes through itself.
 TEST_F(SelfContacts, NothingCrossesAtAnyStep) {
   Scene fold = fold_on_floor();
   fold.time = {500, 0.2};
@@ -61,8 +61,8 @@ TEST_F(SelfContacts, NothingCrossesAtAnyStep) {
   }
 }
 
-/// A sheet falls on its edge at 6 m/s, and the floor stops it within a frame. Only gravity may pull its centre of mass
-/// down.
+/// A sheet falls on its edge at 6 m/s, and the floor stops it within a frame. Its centre of mass may accelerate down
+/// only by gravity.
 TEST_F(SelfContacts, AnImpactPullsNothingDown) {
   const Scene s = load_scene(
       "contact/self-crumple",
@@ -87,8 +87,8 @@ TEST_F(SelfContacts, AnImpactPullsNothingDown) {
   }
 }
 
-/// The ball stops the middle of a sheet while its rim falls on. The list of pairs has capacity for small motion bounds
-/// only, and they must not drag along what lies.
+/// The sphere stops the middle of a sheet while its rim falls on. The pair list only has capacity for small motion
+/// bounds, which must not drag resting vertices along.
 TEST_F(SelfContacts, WithAShortListWhatTheBallStopsStaysThere) {
   const Scene s = load_scene("contact/sphere", {"cloth.grid=[16,16]", "time.duration_s=0.45",
                                                 R"(cloth.self_collision={"thickness_m":0.006,"friction":0.3})"});
@@ -104,7 +104,7 @@ TEST_F(SelfContacts, WithAShortListWhatTheBallStopsStaysThere) {
   }
 }
 
-/// The leg of a folded sheet that ends with its last column, and half of the bow, is held; the other comes at `speed`.
+/// A folded sheet: the leg with its last column and half of the bend are attached; the other leg approaches at `speed`.
 Scene closing(double speed, double friction = 0) {
   Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);
   const int columns = s.cloth.columns;
@@ -118,7 +118,7 @@ Scene closing(double speed, double friction = 0) {
   return s;
 }
 
-/// Least distance of the outer vertices of the free leg from the held one, which lie along y.
+/// Minimum distance between the outer vertices of the free leg and the attached leg, whose vertices lie along y.
 double layers_apart(const Scene& s, const ClothState& state) {
   const std::size_t columns = static_cast<std::size_t>(s.cloth.columns);
   double least = std::numeric_limits<double>::infinity();
@@ -147,7 +147,7 @@ TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
         fastest =
             std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
   }
-  // A fast one is seen at a frame's end when it comes back from the stretched bow.
+  // A fast leg is detected at the end of a frame when it returns from the stretched bend.
   if (GetParam() <= 5) {
     EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "they must have met for this to say anything";
   }
@@ -155,11 +155,11 @@ TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
 }
 
 TEST_F(ClosingLayers, FrictionHoldsALayerThatSlidesOnAnother) {
-  // Pressed on by gravity, it slides on the layer below at 0.5 m/s, which v^2 / (2 mu g) stops after 26 mm.
+  // Pressed down by gravity, it slides on the layer below at 0.5 m/s and stops after v^2 / (2 mu g) = 26 mm.
   double way[2];
   for (const int k : {0, 1}) {
     Scene s = closing(0, k == 0 ? 0 : 0.5);
-    s.material.shear = false;  // of strips, so that a layer may slide sideways
+    s.material.shear = false;  // strips, so that a layer may slide sideways
     s.needs = s.needs - FeatureSet{Feature::Shear};
     const std::vector<double> x = initial_positions(s);
     const std::size_t free_end = 0, held_end = static_cast<std::size_t>(s.cloth.columns - 1);

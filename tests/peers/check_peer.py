@@ -45,8 +45,8 @@ class Peer(unittest.TestCase):
         self.assertEqual(summary["contact_length_max_m"], 0)
 
     def test_friction_on_a_slope(self):
-        # Two thirds of a metre without friction; by Coulomb's law 0.08 m here, and nothing on the gentler slope, where
-        # both engines creep by 7 to 8 % of the length in 2 s.
+        # 0.67 m without friction; by Coulomb's law 0.08 m here, and nothing on the gentler slope, where both engines
+        # creep by 7 to 8 % of the length in 2 s.
         outcome, summary, _ = self.run_on("validation/incline-stick")
         self.assertTrue(outcome["expect"].startswith("fail: truth_"), self.text)
         self.assertLess(summary["truth_quantity_error"], 0.1)
@@ -60,7 +60,7 @@ class Peer(unittest.TestCase):
         self.assertEqual(self.run_on("stability/s11-far-away")[0]["status"], "ok", self.text)
 
     def test_a_rod_that_turns_in_the_sheet(self):
-        # Built with strict aliasing NvCloth crashes here: it looks spheres up in cells of any number.
+        # With strict aliasing NvCloth crashes here: it looks up spheres in wrong cells.
         self.assertEqual(self.run_on("stability/s17-collider-spin")[0]["status"], "ok", self.text)
 
     def test_what_the_engine_cannot_do_has_a_reason(self):

@@ -1,4 +1,4 @@
-// The faults, one a row. A kernel's text that is no longer there is an error: plant the fault where it is now.
+// The faults, one per row. It is an error if a kernel no longer contains the text to replace; then adapt the row.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@
 namespace clothbench {
 namespace {
 
-/// Texts of all colliders' shapes changed alike.
+/// Applies the same change to all colliders of some shape.
 template <class Change>
 std::function<void(Scene&)> colliders(Change change) {
   return [change](Scene& s) {
@@ -74,8 +74,8 @@ std::vector<Fault> faults() {
              "vec3 gain = 0.99 * p.gravity_h.xyz,"),
       kernel("grips forgotten by the kernel", "pulled", "xpbd/lines/line_frame.comp", "if (GRIPS > 0u) move_held(s);",
              "if (GRIPS > 999999u) move_held(s);"),
-      // A fault in every phase of contact. Where planes hold ("struck") responses may be wrong and nothing is
-      // passed; only they decide a rope's friction on a drum ("wrapped").
+      // A fault in every phase of contact. In "struck", planes keep the cloth out even if responses are wrong; in
+      // "wrapped", responses alone determine a rope's friction on a drum.
       kernel("points of pieces stand still within the frame", "struck",
              "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)"),
       kernel("a hundredth of the motion bound", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",

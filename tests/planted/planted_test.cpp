@@ -1,5 +1,5 @@
-// One fault at a time in solver, metrics and records: each must be caught, by what `clothbench check` does with the
-// run and the same run of a healthy run as its baseline.
+// One fault at a time in solver, metrics and records. Each must be detected by `clothbench check`, with a healthy run
+// as its baseline.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ const Stage& stage(const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
-/// Contact by planes takes half of the time: it is left to the slow tier's planted.whole.
+/// Contact by planes takes half of the time, so only the slow tier (planted.whole) runs it.
 bool left_to_slow_tier(const std::string& stage) {
   return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr &&
          (stage == "struck" || stage == "wrapped" || stage == "heaped");
@@ -45,7 +45,7 @@ std::string caught_by(const RunRecord& was, const RunRecord& is) {
   }
 }
 
-// One test, because both halves need the healthy runs.
+// One test, because both parts need the healthy runs.
 TEST(Planted, AHealthyRunPassesTwiceAndEveryFaultIsCaught) {
   for (const Stage& s : stages()) {
     if (left_to_slow_tier(s.name)) continue;

@@ -1,4 +1,4 @@
-// Scenes for planted faults: each needs a part of the solver, or has a figure that is known beforehand.
+// Scenes for planted faults: each needs a part of the solver, or has a value that is known in advance.
 #include <fmt/format.h>
 
 #include "../metrics/prescribed_solver.hpp"
@@ -52,8 +52,8 @@ const char* const kPushed = R"({"name":"pushed","why":"A capsule pushes a hangin
   "time":{"frame_rate_hz":72,"duration_s":0.4},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":0.001},"crossings_max":{"at_most":0}}})";
 
-// Contact in so few substeps that responses do not suffice and planes have to hold: a corner of a box and a
-// fingertip that comes up through the inside of a cell.
+// Contact with so few substeps that responses do not suffice and planes must keep the cloth out: a corner of a box, and
+// a fingertip that rises through the inside of a cell.
 const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a box and a fingertip that comes up.",
   "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.9,-4,0.3],"pose":{"center_m":[0.003,0.14,0.002]}},
   "material":{"membrane_stiffness_N_per_m":1000,"damping_per_s":0.1},
@@ -62,7 +62,7 @@ const char* const kStruck = R"({"name":"struck","why":"A sheet is thrown onto a 
   "time":{"frame_rate_hz":72,"duration_s":0.3},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":1e-5}}})";
 
-// Self-contact: the cloth is thrown into a heap with so few substeps that only planes keep its layers apart.
+// Self-contact: a folded cloth is thrown down with so few substeps that only planes keep its layers apart.
 const char* const kHeaped = R"({"name":"heaped","why":"A folded sheet is thrown onto the floor and onto itself.",
   "cloth":{"grid":[17,17],"size_m":[0.5,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","initial_velocity_m_per_s":[0.6,-5,0.4],
            "pose":{"center_m":[0,0.1,0],"axis_u":[0,1,0],"axis_v":[0,0,1],"drape":{"radius_m":0.04}},"start":{"shape":"rest","noise_m":0.001,"seed":8},
@@ -85,7 +85,7 @@ const char* const kPressed = R"({"name":"pressed","why":"A sheet pushed into a s
   "time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101},"contact_length_max_m":{"at_least":0.2615,"at_most":0.2739}}})";
 
-// A capsule comes up into a static sheet: 0.01 m deep in the last frame, 5 mm less the one before.
+// A capsule rises into a static sheet: 0.01 m deep in the last frame, 5 mm less in the frame before.
 const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a static sheet.",
   "cloth":{"grid":[25,25],"size_m":[0.24,0.24],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{}},
   "material":{"membrane_stiffness_N_per_m":1000},
@@ -93,7 +93,7 @@ const char* const kRising = R"({"name":"rising","why":"A capsule comes up into a
   "time":{"frame_rate_hz":60,"duration_s":0.5},
   "expect":{"outcome":"ok","depth_max_m":{"at_least":0.0099,"at_most":0.0101}}})";
 
-// The right half laid over the left, in the last frame through it along one line as long as the sheet is wide.
+// The right half is folded over the left half; in the last frame they cross along one line, as long as the width.
 const char* const kCrossed = R"({"name":"crossed","why":"A sheet laid over itself and through.",
   "cloth":{"grid":[17,9],"size_m":[1,0.5],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{},"self_collision":{"thickness_m":0.002}},
   "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},

@@ -31,7 +31,7 @@ const std::string& build_commands() {
   return ninja;
 }
 
-/// Kernels as built, by their code; without files that an older build left.
+/// Kernels as built, by their code; without old files of an earlier build.
 const std::map<Code, std::string>& built() {
   static const std::map<Code, std::string> all = [] {
     std::map<Code, std::string> out;

@@ -3,14 +3,14 @@
 
 namespace clothbench {
 
-/// One place of a kernel's source that is exchanged.
+/// A text in a kernel's source, and its replacement.
 struct ShaderFault {
   std::string file;          ///< below solvers/pbd-gpu
-  std::string is, is_to_be;  ///< text that stands there exactly once
+  std::string is, is_to_be;  ///< text that occurs exactly once, and its replacement
 };
 
-/// While it lives every kernel is compiled from sources with this fault before it goes to the driver, with the very
-/// command that the build compiles it with. Throws std::runtime_error if the text is not there exactly once.
+/// While it exists, every kernel is compiled from sources with this fault before it is passed to the driver, with the
+/// build's own compiler command. Throws std::runtime_error if the text does not occur exactly once.
 class ShaderVariant {
  public:
   explicit ShaderVariant(const ShaderFault&);
@@ -18,7 +18,7 @@ class ShaderVariant {
   ShaderVariant(const ShaderVariant&) = delete;
   ShaderVariant& operator=(const ShaderVariant&) = delete;
 
-  /// How many kernels came to the driver otherwise than they were built: none means that the fault was not in the run.
+  /// Number of kernels that reached the driver in changed form. 0: the run did not have the fault.
   static int exchanged();
 };
 

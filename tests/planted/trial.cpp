@@ -10,7 +10,7 @@
 namespace clothbench {
 namespace {
 
-/// A solver that gets another scene, or whose output is changed.
+/// A solver that gets a changed scene, or whose output is changed.
 class Faulty final : public WrappedSolver {
  public:
   Faulty(std::unique_ptr<ClothSolver> inner, const Fault& fault) : WrappedSolver(std::move(inner)), fault_(fault) {}
@@ -50,7 +50,7 @@ class Faulty final : public WrappedSolver {
 
 bool in_solver(const Fault& f) { return f.scene || f.input || f.state || f.status || f.plan; }
 
-/// The pass's metrics again, by what metrics make of another scene.
+/// The pass's metrics, computed again with a different scene.
 std::vector<MetricSeries> measured_in(const Scene& scene, const Stage& stage, const nlohmann::json& settings,
                                       const AccuracyPass& pass) {
   MetricPass again(MetricContext{scene, stage.entry, settings});

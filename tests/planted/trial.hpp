@@ -19,10 +19,10 @@ struct Stage {
   nlohmann::json settings = nlohmann::json::object();
 };
 
-/// One thing that is wrong. Only one of the members that name its place is filled.
+/// One fault. Only one of the members that select its place is set.
 struct Fault {
   std::string name, stage;
-  // In the solver: a kernel, what it is given, what it gives back, what it says of itself.
+  // In the solver: a kernel, its input, its output, or its declarations.
   std::optional<ShaderFault> shader = {};
   std::function<void(Scene&)> scene = {};
   std::function<void(const Scene&, FrameInput&)> input = {};
@@ -30,18 +30,18 @@ struct Fault {
   std::function<StepStatus(int frame)> status = {};
   std::function<void(Plan&)> plan = {};
   std::function<void(nlohmann::json&)> settings = {};
-  // In the metrics: the scene they are reported, or what they make of a pass.
+  // In the metrics: the scene that they get, or their results for a pass.
   std::function<void(Scene&)> metric_scene = {};
   std::function<void(AccuracyPass&)> metrics = {};
-  // In what is kept of the run.
+  // In the stored record of the run.
   std::function<void(RunRecord&)> record = {};
 };
 
-/// Scenes that are small enough to be run again and again, and need every part of a solver that faults are planted in.
+/// Small scenes that can run many times and together need every part of a solver with planted faults.
 std::vector<Stage> stages();
 std::vector<Fault> faults();
 
-/// The run as its execution leaves it, with the fault if there is one.
+/// The run as its execution leaves it, with the fault if one is given.
 RunRecord execute_run(const Stage&, const Fault* fault = nullptr);
 
 }  // namespace clothbench

@@ -63,7 +63,7 @@ class Authors(PluginTest):
         words = ["run", "paper/gravity", "--solver", self.library("faulty_NONE"), "--set", "cloth.grid=[5,5]", "--out", self.out]
         self.assertEqual(self.command("--in-process", *words), 0, self.text)
         shutil.rmtree(self.out)
-        # A crash is the program's own: a debugger stops at it.
+        # The crash happens in the program itself, so a debugger stops at it.
         self.assertEqual(self.command(*words, "--in-process", FAULT="crash:3"), -11, self.text)
         self.assertEqual(self.command("plan", "paper/gravity", "--solver", self.library("faulty_NONE"), "--in-process", FAULT="create"), -11)
 
@@ -89,7 +89,7 @@ class Authors(PluginTest):
             self.assertIn(word, " ".join(row["faults"]))
         (row,) = self.conform(self.library("faulty_STRETCHES"), *scene, code=1)
         self.assertIn("stages:", " ".join(row["faults"]))
-        # Six frames show nothing wrong; the whole scene does. Where hands move, a loose grip is not held.
+        # Six frames show no fault, but the whole scene does: where hands move, a loose attachment is not held.
         (row,) = self.conform(self.library("faulty_LATE"), "--scene", "paper/two-hand-stretch-0p5mps", code=1)
         self.assertTrue(all(f.startswith("whole scene: ") and "from its hand" in f for f in row["faults"]), row)
         self.assertEqual(self.command("conformance", "ballistic", "--scene", "paper/gravitiy"), 2)

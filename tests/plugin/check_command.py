@@ -31,7 +31,7 @@ class Plugin(PluginTest):
         self.assertEqual(code, 0, self.text)
         outcome, summary, header = self.stored("gravity__example-xpbd__default")
         self.assertEqual(outcome["status"], "ok")
-        # Without free_fall_m the exact fall is compared, from which the plugin always differs by half a substep.
+        # Without free_fall_m the exact fall is used, from which the plugin always differs by half a substep.
         self.assertLess(summary["free_fall_error"], 0.5 / 72 / 20 / 0.25)
         self.assertGreater(summary["free_fall_error"], 0)
         self.assertGreater(summary["fps_median"], 0)
@@ -149,7 +149,7 @@ class Plugin(PluginTest):
             self.assertNotIn("prints", process.stdout)
             self.assertIn("prints", process.stderr)
 
-    # --- commands except run and study: a crash is a result, and results of other solvers are kept
+    # --- commands other than run and study: a crash is a result, and results of other solvers are kept
 
     def test_a_crash_is_an_answer_of_plan(self):
         words = ["plan", "paper/gravity", "--solver", self.faulty(), "--solver", "ballistic"]

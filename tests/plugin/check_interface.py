@@ -26,7 +26,7 @@ class Interface(PluginTest):
         return pathlib.Path(self.log).read_text(encoding="utf-8") if os.path.exists(self.log) else ""
 
     def test_the_rest_shape_and_springs_of_grids_and_meshes(self):
-        # The plugin checks what it is given and refuses to be created if it is wrong.
+        # The plugin checks its input and refuses creation if it is wrong.
         for scene, *more in (
             ("paper/gravity", *SMALL),
             ("paper/gravity", *SMALL, "--set", "material.membrane_stiffness_N_per_m=50"),

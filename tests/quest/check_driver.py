@@ -109,7 +109,7 @@ class Driver(unittest.TestCase):
         for count, expected in ((4, None), (5, 3.0)):
             raw, file = os.path.join(self.home, f"raw{count}"), os.path.join(self.home, "samples.json")
             subprocess.run([MAKE_SAMPLE, raw, "1.7e9"], check=True, stdout=subprocess.DEVNULL)
-            # Whole samples of 0.05 s in the first trial, which lasts from 0.2 to 0.6 s, and one beside it.
+            # Complete samples of 0.05 s in the first trial, from 0.2 to 0.6 s, and one outside.
             times = [1.7e9 + 0.3 + 0.05 * k for k in range(count)] + [1.7e9 + 0.65]
             series = [{"name": role, "units": "1", "long_name": role, "role": role, "values": [3] * count + [9]} for role in ("read", "fps")]
             group = {"name": "g", "source": "s", "period_s": 0.05, "time_unix_s": times, "series": series}

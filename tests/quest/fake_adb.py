@@ -123,7 +123,7 @@ def pull(source, into):
     if PLAN.get("pull_fails"):
         die(f"adb: error: cannot write '{into}': No space left on device")
     to = os.path.join(into, os.path.basename(source), *(["one"] if source.endswith("/runs") else []))
-    # Raw files of a run that took place while the app ran.
+    # Raw files of a run that took place while the app was running.
     subprocess.run([PLAN["make_sample"], to, f"{world()['started']:.6f}"], check=True, stdout=subprocess.DEVNULL)
     print(f"{source}: 3 files pulled")
 

@@ -1,4 +1,4 @@
-// Bending of triangle meshes (Morley's element) against beams, on meshes drawn by a seed.
+// Bending of triangle meshes (Morley's element) against beams, on random meshes with fixed seeds.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// `clothbench render` as a user meets it.
+// `clothbench render` as users see it.
 #include "command.hpp"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A run of `scene` whose cloth only falls, stored and read again.
+/// A run of `scene` whose cloth only falls, stored and read back.
 struct Stored {
   Scene scene;
   Motion read;
@@ -92,7 +92,7 @@ TEST_F(Pictures, ShowsWhatIsNotFinite) {
   shots.movie = false;
   shots.frames = {1, 2, 3};
   EXPECT_EQ(take(m, shots, {}).pictures.size(), 3u);
-  std::fill(m.position.begin(), m.position.end(), NAN);  // nothing of the cloth is left to look at
+  std::fill(m.position.begin(), m.position.end(), NAN);  // no vertex is left to look at
   EXPECT_EQ(take(m, shots, {}).pictures.size(), 3u);
 }
 
@@ -206,7 +206,7 @@ TEST_F(Stereo, FilesHaveTheColumnOnlyWhereAsked) {
   }
 }
 
-/// The vertex shader reads the positions that read_state gives.
+/// The vertex shader reads the positions that read_state returns.
 TEST_F(Stereo, TheSolversBufferLooksAsItsState) {
   const Scene scene = load_scene("paper/gravity", {"cloth.grid=[16,16]"});
   const auto device = vulkan::Device::get(kValidated);

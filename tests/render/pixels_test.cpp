@@ -1,4 +1,4 @@
-// Pictures, pixel by pixel, under core and synchronization validation.
+// Images, pixel by pixel, under core and synchronization validation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ class Pixels : public ::testing::Test {
  protected:
   void TearDown() override { EXPECT_EQ(device_->validation_messages(), 0); }
 
-  /// Seen from `from` times z, so from behind with -1 (the sheet is turned instead of the camera).
+  /// Seen along z from the side `from`; -1: from behind (the sheet is rotated, not the camera).
   Picture draw(const Cloth& cloth, const std::vector<double>& x, const Surfaces& s = {}) {
     renderer_.set_cloth(cloth, {0, 0, 0});
     renderer_.write_positions(x);
@@ -186,7 +186,7 @@ TEST_F(Pixels, KnownVerticesAreWhereTheCameraSaysTheyAre) {
 TEST_F(Pixels, EdgesAreAntialiased) {
   const Cloth cloth = upright(2, 2);
   std::vector<double> x = positions_of(cloth);
-  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] += 0.2 * x[k];  // edges neither level nor upright
+  for (std::size_t k = 0; k < x.size(); k += 3) x[k + 1] += 0.2 * x[k];  // edges neither horizontal nor vertical
   const Picture p = draw(cloth, x);
   int between = 0;
   const auto at = seen_at(camera_, {0, 0.5, 0});
@@ -224,7 +224,7 @@ TEST_F(Pixels, SaysWhatDoesNotFit) {
 }
 
 TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
-  // As a headset's loop would: its image, its matrices, its command buffer.
+  // As in a headset's loop: its image, its matrices, its command buffer.
   const Cloth cloth = upright(9, 9);
   const Picture expected = draw(cloth, positions_of(cloth));
   const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,

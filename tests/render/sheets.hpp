@@ -43,7 +43,7 @@ inline Camera front_camera() {
   return c;
 }
 
-/// Position of a point in the picture: 0..1 from left and from top; empty if it is behind the camera.
+/// Position of a point in the image: 0..1 from left and from top; empty if it is behind the camera.
 inline std::optional<std::array<double, 2>> seen_at(const Camera& c, const Vec3& p) {
   const Vec3 d = minus(p, c.eye_m);
   const double depth = -dot(d, c.back);

@@ -33,12 +33,12 @@ for path in sorted((sample / "runs").rglob("*.h5")):
         files.setdefault(tuple(f.attrs[k] for k in ("scene", "solver", "setting")), path)
 same = lambda a, b: a is None and not np.isfinite(b) or a is not None and a == b  # noqa: E731
 
-# Nothing from elsewhere, and below 20 MB.
+# Loads nothing from elsewhere; at most 20 MB.
 assert len(html) < 20e6, len(html)
 markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
 assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
 
-# Static text has no results, which would be those of other runs; the head states trials and device of these ones.
+# Static text contains no results, which could belong to other runs; the head states trials and device of these runs.
 static_text = re.sub(r'<(script|style|svg)\b.*?</\1>|<section id="overview">.*?</section>|<details>.*?</details>', "", html, flags=re.S)
 assert not re.search(r"\d+ of \d+|\d\s?(ms|µs|%)(?! interval)|results/reference", static_text), "a result in static text"
 title = re.search(r"<title>(.*?)</title>", html)[1]
@@ -46,7 +46,7 @@ assert "studies <b>run, table3</b>" in html and re.search(rf"<h1>{re.escape(titl
 assert "trials per run <b>1</b>" in html and "commit <b>" in html and "date <b>" in html
 assert not re.search(r"\b(nan|inf)\b", html.split('id="clothbench-motions"')[0].split('id="clothbench-data"')[0].split("<body>")[1]), "not a number in prose"
 
-# Tables: those of report.md, run by run.
+# Tables equal those of report.md, run by run.
 markdown = (report / "report.md").read_text(encoding="utf-8")
 assert not re.search(r"\b(nan|inf)\b", markdown), "not a number in a table or a note"
 tables = [t for s in doc["sections"] for t in s["tables"]]
@@ -64,7 +64,7 @@ for t in tables:
         assert [[(c if isinstance(c, str) else c[0]).strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
 assert any(r[0].startswith("published") for r in static["Table 3: speed and error"])
 
-# Numbers of the tables, text and value, each computed again from what the file of its run stores.
+# Numbers in the tables, text and value, each recomputed from the run's file.
 STORED = {"crossings": ("crossings_max", 1), "contour, max / settled [mm]": ("contact_length_max_m", 1e3), "depth [mm]": ("depth_max_m", 1e3), "popping [mm]": ("pop_max_m", 1e3),
           "strain, max / end [%]": ("stretch_max", 100), "stretch [%]": ("stretch_max_last_second", 100), "free-fall error": ("free_fall_error", 1), "load [ms]": ("load_s", 1e3)}
 TIMES = {"frame p50 [ms]": (0.5, 1e3), "p95 / p99 / worst [ms]": (0.95, 1e3), "missed 72 / 90 Hz [%]": (None, 1)}  # quantile; text over value
@@ -136,7 +136,7 @@ def words(index, size):
     return np.frombuffer(zlib.decompress(base64.b64decode(blobs[index], validate=True)), f"<u{size}")
 
 
-# Motions: within half a step of the stored positions, with the numbers shown under them.
+# Motions: within half a step of the stored positions, with the numbers that the viewer shows.
 moved = series = 0
 for c in motions["runs"]:
     r = doc["runs"][c["run"]]
@@ -161,7 +161,7 @@ for c in motions["runs"]:
     moved += np.ptp(x, axis=0).max() > 0
 assert moved == len(motions["runs"]) >= 14 and series >= 30, (moved, series)
 
-# Colliders: every shape is there, and an array of each kind reads back.
+# Colliders: every shape occurs, and an array of each kind can be decoded.
 shapes = {}
 for groups in motions["colliders"]:
     for g in groups:

@@ -220,7 +220,7 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
   EXPECT_EQ(entry(table_of(runs, kRates), "xpbd", "desk", "contact offset [mm]"), "20");
 }
 
-/// A claim at a point of the box: `held` 1, 0, or NaN, and the dispatches of a frame.
+/// A claim at a point of the box: `held` is 1, 0 or NaN; `dispatches` per frame.
 RunRecord claim(const std::string& kind, int iterations, double held, double dispatches) {
   RunRecord c = generated("paper", kind, iterations, 0, "pass");
   nlohmann::json scenario = nlohmann::json::parse(c.header.scenario_json);
@@ -231,7 +231,7 @@ RunRecord claim(const std::string& kind, int iterations, double held, double dis
   c.header.scenario_json = scenario.dump();
   c.header.scene += "-" + kind;
   c.summary["expect.contact_length_max_m"] = held;
-  c.summary["expect.motion"] = 0;  // no part of a claim
+  c.summary["expect.motion"] = 0;  // not part of a claim
   c.summary["dispatches"] = dispatches;
   return c;
 }
@@ -267,7 +267,7 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "30–99 iterations").substr(0, 3), "1/2");
   EXPECT_EQ(cell("c8", "100–299 iterations").substr(0, 3), "1/1");
   EXPECT_EQ(cell("all", "100–299 iterations"), "–") << "one claim says nothing about all";
-  // The cheapest point lacks a claim, so nothing is known of both together there.
+  // At the cheapest point one claim was not run, so it is unknown whether both hold there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
   EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),
             "1 of 2 claims: clothbench study contact --seed 4 --count 2");

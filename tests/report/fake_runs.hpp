@@ -9,7 +9,7 @@
 
 namespace clothbench {
 
-/// A run as the runner leaves it, of the paper's gravity scene.
+/// A run of the paper's gravity scene, as the runner stores it.
 inline RunRecord fake_run(const std::string& solver, int n, const std::string& sides, double frame_s,
                           bool on_gpu = true) {
   RunRecord c;
@@ -51,7 +51,7 @@ inline RunRecord with_outcome(RunRecord c, const std::string& status, int frame,
   return c;
 }
 
-/// The entry under the heading `column` of the row that starts with these cells; "" if there is none.
+/// The cell under the heading `column` in the row that starts with these cells; "" if there is none.
 inline std::string entry(const Table& t, const std::vector<std::string>& start, const std::string& column) {
   for (std::size_t k = 0; k < t.rows.at(0).size(); ++k)
     for (const auto& row : t.rows)
@@ -66,7 +66,7 @@ inline std::string entry(const Table& t, const std::string& first, const std::st
   return entry(t, std::vector{first}, column);
 }
 
-/// All tables of a report of these runs whose view has the title; none if they have none.
+/// All tables of a report of these runs with the view's title; empty if there are none.
 inline std::vector<Table> tables_titled(const std::vector<RunRecord>& runs, const std::string& title) {
   const RunTable table(runs);
   for (const View& v : views())
@@ -77,7 +77,7 @@ inline std::vector<Table> tables_titled(const std::vector<RunRecord>& runs, cons
   throw std::runtime_error("no view has the title " + title);
 }
 
-/// The first of them; one without rows if there is none.
+/// The first of these tables; an empty one if there is none.
 inline Table table_of(const std::vector<RunRecord>& runs, const std::string& title) {
   const std::vector<Table> all = tables_titled(runs, title);
   return all.empty() ? Table{"", "", {{}}} : all.front();

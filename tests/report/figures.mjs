@@ -1,5 +1,5 @@
-// The figures of a report without a browser: what they count and leave out, sizes on paper, and colours and symbols of
-// solvers (harness/report/solvers.json), which are told apart with every common colour blindness.
+// The figures of a report without a browser: what they count and omit, sizes on paper, and colours and symbols of
+// solvers (harness/report/solvers.json), which must be distinguishable with all common colour-vision deficiencies.
 //   node figures.mjs ROOT
 import assert from 'node:assert';
 import {readFileSync} from 'node:fs';
@@ -10,7 +10,7 @@ const {draw_on_paper, number, paper_widths} = await import(join(report, 'web/src
 const {make_figures, settled} = await import(join(report, 'web/src/figures.js'));
 const {looks, paper_look} = await import(join(report, 'web/src/state.js'));
 
-// What is no number never stands in a text.
+// Text shows "–" for everything that is not a finite number.
 assert.deepEqual([NaN, Infinity, null, undefined, 0, 12.345, 4.5e-7].map(v => number(v)), ['–', '–', '–', '–', '0', '12.3', '4.5·10⁻⁷']);
 
 /// Many scenes, solvers and settings of every kind.
@@ -30,14 +30,14 @@ for (const [n, solver] of solvers.entries()) {
 }
 const doc = {runs, solvers: roles, studies: []}, figures = Object.fromEntries(make_figures(doc).map(f => [f.id, f])), rows = id => figures[id].rows(settled(figures[id], {}));
 assert.deepEqual(Object.keys(figures), ['error-time', 'verdicts', 'forest', 'failure-speed', 'claims-map', 'rates', 'stability', 'frame-times']);
-// A verdict that was not measured is no failure, and nothing unsupported passed.
+// A verdict that was not measured is not a failure, and an unsupported run has not passed.
 assert.deepEqual([...new Set(rows('failure-speed').map(r => r.speed))], [0.5, 2]);
 const all = rows('forest').find(r => r.kind === 'all' && r.solver === solvers[3]);
 assert.deepEqual([all.good, all.runs, all.unsupported, Math.round(100 * all.low), Math.round(100 * all.high)], [3, 9, 1, 12, 65]);
 const stable = rows('stability').find(r => r.case === 'all');
 assert.deepEqual([stable.good, stable.runs], [9, 26]);
 
-// On paper: one or two columns of text wide, at most 110 mm tall, with letters of 7 to 8 points.
+// On paper: as wide as one or two columns of text, at most 110 mm high, letters of 7 to 8 points.
 const kPoint = 25.4 / 72, look = paper_look(looks(solvers, roles));
 for (const figure of Object.values(figures))
   for (const width of Object.values(paper_widths)) {

@@ -41,7 +41,7 @@ class ReportFiles : public WithFolder {
   fs::path run_;
 };
 
-/// Programs of the PATH while it lives: none but what is put into its folder.
+/// While it exists, PATH contains only programs that the test puts into its folder.
 class OnlyPrograms {
  public:
   explicit OnlyPrograms(const fs::path& dir) : dir_(dir), path_("PATH", dir.c_str()) { fs::create_directories(dir); }

@@ -59,7 +59,7 @@ TEST(Overview, WorkPerFrameFitsAPlantedLawAndThePublishedRates) {
   EXPECT_EQ(cell("paper", "slope (error) [µs per particle]").substr(0, 4), "0.50");
   EXPECT_EQ(cell("paper", "C2: 128² / 64²"), "3.02");
   EXPECT_EQ(cell("paper", "iterations"), "10.0");
-  // 65, 42, 40 and 16 frames per second by Python's statistics.linear_regression.
+  // Values for 65, 42, 40 and 16 frames per second from Python's statistics.linear_regression.
   EXPECT_EQ(cell("published: PBD", "fixed [ms]"), "7.48");
   EXPECT_EQ(cell("published: PBD", "slope (error) [µs per particle]"), "1.58 (0.360)");
   EXPECT_EQ(cell("published: PBD", "max residual [%]"), "40");
@@ -139,7 +139,7 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
   EXPECT_EQ(value("rank"), "") << "too uncertain";
   EXPECT_NE(value("conditions").find("wide interval"), std::string::npos);
   EXPECT_EQ(t.rows.size(), 2u) << "no GPU times";
-  // Tables of rates have the same tails, of the largest mesh.
+  // Tables of rates show the same tail times, for the largest mesh.
   const Table rates = table_of({c}, "Frame rates");
   for (const char* head : {"p95 / p99 / worst [ms]", "missed 72 / 90 Hz [%]", "real-time factor", "trials"})
     EXPECT_EQ(entry(rates, "xpbd", head), value(head)) << head;
@@ -153,7 +153,7 @@ TEST(Tables, TimesPerFrameHaveTailsAndMissedDeadlines) {
             "25.0 / 48.0 / 50.0 / 50.0");
 }
 
-/// A run with trials of `frames` frames that vary by a share of the mean, in an order that is no trend.
+/// A run with trials of `frames` frames whose times vary by a fraction of the mean, in an order without trend.
 RunRecord timed(const std::string& solver, double frame_s, double vary, int frames = 72, int trials = 3) {
   RunRecord c = fake_run(solver, 8, "single", frame_s, false);
   for (int t = 0; t < trials; ++t) {
@@ -176,7 +176,7 @@ TEST(Intervals, HoldTheMedianAndShrinkWithTheSpread) {
   }
   EXPECT_LT(narrow.wall.median.high - narrow.wall.median.low, wide.wall.median.high - wide.wall.median.low);
   EXPECT_TRUE(std::isnan(none.wall.median.low)) << "too few frames";
-  // A trial that is twice as slow as the others makes the interval that wide, however many frames each has.
+  // One trial at half the speed makes the interval wide, however many frames each trial has.
   RunRecord c = timed("a", 1e-3, 0.01);
   for (double& s : c.trials[1].frame_wall_s) s *= 2;
   for (double& s : c.trials[2].frame_wall_s) s *= 2;
@@ -261,7 +261,7 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
   const nlohmann::json j = runs_json(runs)[1];
   EXPECT_TRUE(j["summary"]["frame_wall_median_s"].is_null());
   EXPECT_EQ(j["withheld"]["frame_wall_median_s"], "not timed alone: up to 11 jobs ran side by side");
-  // Where every time is withheld, the table stays with the reason.
+  // If every time is withheld, the table stays and states the reason.
   EXPECT_EQ(entry(table_of({runs[1]}, kTable3), "crowd", "8²"), "–");
 }
 
@@ -291,7 +291,7 @@ TEST(Tables, LatexKnowsEveryCharacter) {
             "\\begin{table}\n\\caption{Error\\_max of 50 \\%}\n\\begin{tabular}{lr}\n\\toprule\n"
             "case & x {[}mm] \\\\\n\\midrule\n{[}a] $\\le$ 3 $\\times$ 2 & 1.5 -- 2 \\\\\n\\bottomrule\n"
             "\\end{tabular}\n\\par\\footnotesize Set \\texttt{time.dt\\_s} \\& more.\n\\end{table}\n");
-  // The tables of a report have no character that LaTeX would have to be taught.
+  // The tables use only characters that LaTeX has without further packages.
   std::string all;
   for (const Table& each : all_tables(study())) all += each.latex();
   EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](unsigned char c) { return c < 128; })) << all;

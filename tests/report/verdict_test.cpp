@@ -1,4 +1,4 @@
-// A run counts as passed or not equally in every table, on the console and in JSON.
+// All tables, the terminal and JSON agree on whether a run passed.
 
 #include <gtest/gtest.h>
 
@@ -179,7 +179,7 @@ TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   for (RunRecord& c : runs)
     if (c.header.environment["gpu"] != "CPU") c.header.environment["gpu_is_software"] = true;
   EXPECT_EQ(warnings_of(RunTable(runs)).at(0),
-            "Software Vulkan device (Fake GPU): it shows correctness; its times say nothing of a GPU.");
+            "Software Vulkan device (Fake GPU): its results are valid, but its times tell nothing about a GPU.");
   runs[1].header.environment["gpu"] = "Other GPU";
   runs[1].header.environment["git_dirty"] = true;
   runs[1].header.environment["created"] = "2026-01-02T00:05:00Z";

@@ -60,7 +60,7 @@ const aim = await page.$eval('#contents li:nth-last-child(3) a', link => (link.c
 const is_near = hash => Math.abs(document.querySelector(hash).getBoundingClientRect().top - 99) < 101;
 check(await page.waitForFunction(is_near, {timeout: 30000}, aim).catch(() => false), `the first link on a new page leads to ${aim}`);
 
-/// Scrolls through the page, so that every figure and table is drawn.
+/// Scrolls through the page so that every figure and table is drawn.
 async function draw_all() {
   const ids = await page.$$eval('figure, .table', list => list.map(e => e.id));
   for (const id of ids) {
@@ -70,7 +70,7 @@ async function draw_all() {
   await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
 }
 
-/// Every cell of every table on the page equals the stored one.
+/// Every cell of every table on the page equals the stored cell.
 async function check_tables() {
   await page.$$eval('.table button.more:not([hidden])', list => list.forEach(b => b.click()));
   const shown = await page.$$eval('.table', list => Object.fromEntries(list.map(t => [t.querySelector('h3').firstChild.textContent, [...t.querySelectorAll('tr')].map(r => [...r.cells].map(c => [c.textContent.trim(), c.dataset.value ?? '', ['good', 'bad', 'dim'].find(x => c.classList.contains(x)) ?? '']))])));
@@ -99,7 +99,7 @@ async function check_tables() {
   check(numbers.length > 1 && numbers.every((v, k) => k === 0 || v <= numbers[k - 1]), `a click on a head of numbers sorts them downwards: ${numbers.slice(0, 4)}`);
 }
 
-/// A mark stands where its value is: from two marks follow the scales of the others.
+/// Marks are at their values' positions: two marks determine the scales, which must hold for all others.
 async function check_places(id, x_of, y_of) {
   const marks = await page.evaluate(i => window.clothbench.figures.find(f => f.entry.id === i).marks.map((m, k) => {
     const at = document.querySelector(`#${i} [data-i="${k}"]`)?.getAttribute('transform')?.match(/translate\(([-\d.]+) ([-\d.]+)\)/);
@@ -115,7 +115,7 @@ async function check_places(id, x_of, y_of) {
   }
 }
 
-/// Every figure shows as many marks as it has values, for every choice; its table of values has the stored ones.
+/// Every figure shows as many marks as it has values, for every choice; its table has the stored values.
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
   equal(ids, ['error-time', 'rates', 'verdicts', 'frame-times'], 'figures');
@@ -134,7 +134,7 @@ async function check_figures() {
     }
   }
   for (const id of ['rates', 'error-time']) await check_places(id, Math.log, Math.log);
-  // Every value in the tables behind the figures is the stored one of its run.
+  // Every value in the tables of the figures equals its run's stored value.
   const values = await page.evaluate(() => window.clothbench.figures.flatMap(f => {
     const stored = row => window.clothbench.document.runs.find(d => d.file && d.file === row.file) ?? row;
     f.details.open = true;
@@ -160,7 +160,7 @@ async function check_filter() {
   equal(await count(), before, 'and back');
 }
 
-/// First screen, no sideways scroll, closed menu on a phone, and no violation that axe finds, at three widths.
+/// At three widths: first screen, no sideways scroll, closed menu on a phone, no violation found by axe.
 async function check_widths() {
   const axe = readFileSync(join(packages, 'axe-core', 'axe.min.js'), 'utf8');
   await page.evaluate(axe);
@@ -183,7 +183,7 @@ async function check_widths() {
   }
   await page.setViewport({width: 390, height: 844});
   await wait(400);
-  // A wide table scrolls in its own box, says so, and keeps the names of its rows and its most important column in sight.
+  // A wide table scrolls in its own box, indicates this, and keeps row names and its most important column in view.
   const boxes = await page.$$eval('.scroll', list => list.filter(b => b.scrollWidth > b.clientWidth + 1).map(b => {
     const hint = b.parentElement.querySelector('.head button:not([title])'), said = hint.checkVisibility() && /^\d+ more columns? →$/.test(hint.textContent);
     hint.click();
@@ -204,7 +204,7 @@ async function check_widths() {
   await page.setViewport({width: 1280, height: 900});
 }
 
-/// Wide margins: this machine may be busy.
+/// Wide limits, because this machine may be busy.
 async function check_budgets(file) {
   const page = await browser.newPage();
   await page.goto(pathToFileURL(resolve(file)).href, {waitUntil: 'load'});
@@ -237,7 +237,7 @@ async function check_without_script() {
   await plain.close();
 }
 
-/// The value of a mark, by the pointer and by keyboard, with the command that makes its run again.
+/// The value of a mark, by pointer and keyboard, with the command that repeats its run.
 async function check_values() {
   await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'}));
   await wait(200);
@@ -325,7 +325,7 @@ async function check_without_webgl() {
   await plain.close();
 }
 
-/// The page's own strain and depth against what the files say of the same frames.
+/// Compares the page's own strain and depth with the files' values for the same frames.
 async function check_colours() {
   const results = await page.evaluate(async () => {
     const v = window.clothbench.viewer, out = [];
@@ -352,7 +352,7 @@ async function check_colours() {
   });
   const off = results.filter(r => !(r.strain >= r.stored - r.tolerance));
   equal(off, [], `strain of ${results.length} motions below what the file says`);
-  // What the page shows may be greater: it counts edges that are too short, too.
+  // The page's value may be larger, because it also counts edges that are too short.
   const stretched = results.filter(r => r.stored > 0.005),
         agree = stretched.filter(r => Math.abs(r.strain - r.stored) <= r.tolerance);
   check(agree.length > 0 && 2 * agree.length >= stretched.length, `strain is the file's in ${agree.length} of ${stretched.length} stretched motions`);

@@ -1,4 +1,4 @@
-// The page of a report: how motions are packed, thinned and reported, and that data cannot break out of the page.
+// The page of a report: motions are packed, thinned and described correctly, and data cannot break out of the page.
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <zlib.h>

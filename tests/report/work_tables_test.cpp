@@ -1,4 +1,4 @@
-// The report of error against run time, from points that are known.
+// The report of error against run time, for known points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ RunRecord run(const std::string& solver, const std::string& setting, double fram
 constexpr const char* kWork = "Error against run time";
 constexpr const char* kCases = "Reference cases and their reference solutions";
 
-/// Value of the row of `solver` in the scene, refused or not.
+/// Value in the row of `solver` in the scene, refused or not.
 std::string value(const std::vector<RunRecord>& runs, const std::string& title, const std::string& solver,
                   const std::string& head) {
   const Table t = table_of(runs, title);

@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 root, bench = pathlib.Path(sys.argv[1]), sys.argv[2]
-# A program in place of clothbench, for what takes long or fails: the first call of a study is interrupted by the limit.
+# Replaces clothbench in steps that take long or fail: the limit interrupts the first call of a study.
 STUB = """#!/bin/bash
 [ "$1" != --version ] || { echo "clothbench 0 (c), sources $SOURCES"; exit; }
 echo "$*" >>"$CALLS"
@@ -56,7 +56,7 @@ with tempfile.TemporaryDirectory() as scratch:
         code, said = call(out, *words, **with_stub)
         assert code == 2 and why in said, (words, code, said)
 
-    # The program itself: one study, and what is published of it.
+    # The program itself: one study, and the published files made from it.
     real, to = scratch / "real", scratch / "to"
     code, said = call("--report", real, "--to", to)
     assert code == 2 and "no file \"version\"" in said, (code, said)

@@ -1,5 +1,5 @@
-// A process that writes trials is killed at 200 random moments: what it had finished is there and whole, and the run
-// can be completed to the same file as an undisturbed one.
+// A process that writes trials is killed at 200 random times: its finished trials must be there and complete, and the
+// run can be completed to a file equal to that of an undisturbed run.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -30,7 +30,7 @@ TimedTrial trial(int k) {
 
 constexpr int kTrials = 12;
 
-/// Writes what is missing of kTrials trials, telling each finished one through the pipe, and finishes the run.
+/// Writes the missing ones of kTrials trials, reporting each finished one through the pipe, and finishes the run.
 void work(const fs::path& dir, int pipe_out) {
   const RunRecord r = sample_run();
   RunWriter writer(dir, r.header);
@@ -98,9 +98,9 @@ TEST_F(Kill, TwoHundredTimesNothingFinishedIsLost) {
   EXPECT_GT(interrupted, 50) << "the kills must meet runs in progress";
 }
 
-// No more room: a limit on the size of files fails the same writes with an error as a full disk does, for any user.
+// Full disk: a limit on file sizes makes the same writes fail with an error, for any user.
 
-/// Positions that do not compress, 1.5 MB of them.
+/// 1.5 MB of positions that do not compress.
 RunRecord large_run() {
   RunRecord r = sample_run();
   std::uint32_t noise = 1;
@@ -111,7 +111,7 @@ RunRecord large_run() {
   return r;
 }
 
-/// Runs `work` in a process that may write files of 256 kB at most. Returns its exit status: 0 if an Error was thrown
+/// Runs `work` in a process that may write files of at most 256 kB. Returns its exit status: 0 if an Error was thrown
 /// that names `file`, 10 if nothing was thrown.
 int with_little_room(const std::string& file, const auto& work) {
   const pid_t child = fork();
@@ -153,7 +153,7 @@ TEST_F(FullDisk, AWriteThatFailsIsAnErrorAndWhatWasFinishedStays) {
   EXPECT_EQ(with_little_room("x.h5", [&] { write_hdf5(h5, r); }), 0);
   EXPECT_FALSE(fs::exists(h5)) << "half a file must not look like one";
   EXPECT_EQ(temporary_files(dir_), 0u);
-  // With room again everything is still there to be finished.
+  // With room again, everything is still there and can be finished.
   writer.write_accuracy(r.accuracy);
   EXPECT_EQ(read_run(writer.finish(r.outcome, r.summary)).accuracy.position, r.accuracy.position);
 }

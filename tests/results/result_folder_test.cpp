@@ -1,4 +1,4 @@
-// One process at a time writes into a folder of results, and one that died blocks nothing.
+// Only one process at a time writes into a results folder, and a dead process blocks nothing.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

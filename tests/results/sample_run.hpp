@@ -5,7 +5,7 @@
 
 namespace clothbench {
 
-/// A small run with every kind of content; all values differ, some are missing.
+/// A small run with every kind of content; all values differ, and some are missing.
 inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertices = 6) {
   RunRecord r;
   r.header.scene = "sample";
@@ -64,7 +64,7 @@ inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertic
   return r;
 }
 
-/// NaN equals NaN; everything else bit for bit.
+/// NaN equals NaN; everything else is bit-identical.
 template <class T>
 bool same(const std::vector<T>& a, const std::vector<T>& b) {
   if (a.size() != b.size()) return false;

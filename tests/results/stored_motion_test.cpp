@@ -1,4 +1,4 @@
-// A scene and a motion come back from only a result file: without the scenario's folder, its meshes, rooms and hands.
+// Scene and motion are read from a result file only, without the scenario's folder, its meshes, rooms and hands.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// While it lives, neither scenarios nor assets can be found.
+/// During its lifetime, neither scenarios nor assets can be found.
 struct WithoutData {
   Variable scenarios{kScenarioFolder.variable, "/nonexistent"}, assets{"CLOTHBENCH_ASSETS", "/nonexistent"};
 };
@@ -56,7 +56,7 @@ StoredMotion read_alone(const fs::path& file) {
   return read_motion(file);
 }
 
-/// Colliders, grips, their motion and jumps: what is stored of them, and what a solver reads of them beside that.
+/// Compares colliders, grips, their motion and jumps: their stored form, and the other data that solvers read.
 void expect_same_stage(const Scene& a, const Scene& b) {
   ASSERT_EQ(a.colliders.size(), b.colliders.size());
   for (std::size_t k = 0; k < a.colliders.size(); ++k) {
@@ -84,7 +84,7 @@ void expect_same_stage(const Scene& a, const Scene& b) {
 }
 
 void expect_same_cloth(const Scene& a, const Scene& b) {
-  // A drawn sheet is moved to its middle after its edges are measured, which rounds their lengths.
+  // A generated sheet is centred after its edges are measured, which rounds their lengths.
   const auto near = [](const std::vector<double>& p, const std::vector<double>& q) {
     ASSERT_EQ(p.size(), q.size());
     for (std::size_t k = 0; k < p.size(); ++k) ASSERT_NEAR(p[k], q[k], 1e-14 + 1e-12 * std::abs(p[k])) << k;
@@ -178,7 +178,7 @@ TEST_F(StoredMotionFile, WhatDoesNotFitIsNamed) {
   const Scene mesh = load_scene("validation/hang-mesh");
   RunWriter writer(dir_, header_of(mesh));
   writer.write_accuracy(at_start(mesh, 2));
-  EXPECT_PRED2(mentions, fault(writer.finish({}, {})), "/cloth is missing");
+  EXPECT_PRED2(mentions, fault(writer.finish({}, {})), "/cloth, the cloth's mesh, is missing");
 }
 
 TEST_F(StoredMotionFile, ARunWithoutTrajectoryHasNone) {

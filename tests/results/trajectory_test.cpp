@@ -1,4 +1,4 @@
-// A file whose positions are not the motion that its outcome is of is found, whatever its summary says.
+// A file whose positions are not its outcome's motion is found, whatever its summary says.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ class Trajectory : public WithFolder {
     H5Fclose(f);
   }
 
-  /// The same dataset with only its first `rows` rows.
+  /// Keeps only the first `rows` rows of a dataset.
   void cut(const char* dataset, hid_t type, hsize_t rows, hsize_t columns) const {
     const hid_t f = H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     ASSERT_GE(H5Ldelete(f, dataset, H5P_DEFAULT), 0) << dataset;
@@ -70,7 +70,7 @@ TEST_F(Trajectory, ANumberThatIsNoneIsFound) {
   }
 }
 
-/// As a program stores it whose solver gave it: the hash fits.
+/// As a program would store it if its solver gave a NaN: the hash matches.
 TEST_F(Trajectory, ANumberThatIsNoneIsFoundAlsoWithItsHash) {
   run_.accuracy.position[7] = std::numeric_limits<float>::quiet_NaN();
   write();
@@ -84,18 +84,18 @@ TEST_F(Trajectory, AnotherMotionIsFound) {
   std::vector<float> x = run_.accuracy.position;
   x[5] += 1e-6f;
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
   run_.outcome.status = "diverged";
   write();
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
 }
 
 TEST_F(Trajectory, OtherTimesAreFound) {
   std::vector<double> t = run_.accuracy.time_s;
   for (double& v : t) v *= 2;
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not the motion that its outcome is of");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
   t[3] = t[2];
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
   EXPECT_PRED2(mentions, trajectory_fault(file()), "the time of frame 3");
@@ -124,9 +124,9 @@ TEST_F(Trajectory, ACborFileIsLookedAtToo) {
   EXPECT_PRED2(mentions, trajectory_fault(writer.finish({}, {})), "is not finite");
 }
 
-// Files that HDF5 reads and no run has written: what fuzzing the reader found, each as it was.
+// Files that HDF5 can read but no run has written: cases found by fuzzing the reader.
 
-/// Message of reading a good file after `change`.
+/// Error message from reading a valid file after `change`.
 std::string said(const std::function<void(hid_t file)>& change) {
   const fs::path path = fs::temp_directory_path() / ("clothbench-damage-" + std::to_string(getpid()) + ".h5");
   write_hdf5(path, sample_run());

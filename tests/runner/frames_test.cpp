@@ -1,4 +1,4 @@
-// Uneven frames, a hitch or a jitter of the scene's clock, reach the solver wherever a scene is run.
+// Uneven frames (hitch or jitter of the scene's clock) reach the solver in every kind of run.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 const std::string kHitch = R"(time.hitch={"frame":3,"dt_s":0.1})", kJitter = R"(time.jitter={"share":0.5})";
 
-/// A cloth that does not move, and the frames that were requested of it.
+/// A solver whose cloth does not move, which records the frames that it is asked for.
 class Spy final : public StillSolver {
  public:
   Spy(SolverInfo info, std::vector<FrameInput>& seen) : StillSolver(std::move(info)), seen_(seen) {}
@@ -122,7 +122,7 @@ TEST(UnevenFrames, ReachTheReference) {
   GTEST_SKIP() << "no solver reference in this build";
 }
 
-// A failed or impossible run must not pass for a good one.
+// A failed or impossible run must not count as a good one.
 
 const nlohmann::json kNone = nlohmann::json::object();
 

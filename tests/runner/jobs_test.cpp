@@ -1,4 +1,4 @@
-// How many clothbench jobs share the machine.
+// Number of clothbench jobs that share the machine.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ TEST_F(Jobs, AreProcessesOfTheProgramBesideThisOne) {
   process(10, "sh", 1);
   process(11, "clothbench", 10);
   fs::create_directories(dir_ / "self");
-  fs::create_directories(dir_ / "99");  // ended meanwhile
+  fs::create_directories(dir_ / "99");  // a process that has ended meanwhile
   EXPECT_EQ(jobs_in(dir_, 11), 1);
   for (int k = 0; k < 10; ++k) process(20 + k, "clothbench", 10);
   EXPECT_EQ(jobs_in(dir_, 11), 11) << "ten more started by the same shell";
@@ -66,7 +66,7 @@ bool runs(pid_t child, const std::string& name) {
 
 TEST_F(Jobs, ARealOneIsSeenAndToldNumbersCount) {
   const Variable unset("CLOTHBENCH_JOBS", nullptr);
-  // A child would be one job with its parent: it is left to init.
+  // A child would form one job with its parent, so it is reparented to init.
   const fs::path program = dir_ / "clothbench";
   fs::copy_file("/bin/sleep", program);
   int tell[2];

@@ -1,4 +1,4 @@
-// A cached reference value is found again only by what it depends on, all of it.
+// A cached reference value is found only if everything on which it depends is equal.
 #include <gtest/gtest.h>
 
 #include <fstream>

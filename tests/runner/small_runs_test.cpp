@@ -1,4 +1,4 @@
-// Runs of a small scene: held in the middle of a trial as a paused activity holds them, on a ladder, resumed.
+// Runs of a small scene: paused in the middle of a trial as by a paused activity, in a settings sweep, resumed.
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -19,7 +19,7 @@ namespace {
 /// Steps `inner`, with the settings of the run.
 using WrappedStep = std::function<StepStatus(ClothSolver& inner, const nlohmann::json& settings, const FrameInput&)>;
 
-/// Another solver with its step replaced.
+/// A solver with its step replaced.
 class Wrapped final : public WrappedSolver {
  public:
   Wrapped(std::unique_ptr<ClothSolver> inner, nlohmann::json settings, WrappedStep step)
@@ -31,7 +31,7 @@ class Wrapped final : public WrappedSolver {
   WrappedStep step_;
 };
 
-/// The ballistic solver with another step.
+/// The ballistic solver with its step replaced.
 SolverEntry ballistic_with(const WrappedStep& step) {
   SolverEntry entry = find_solver("ballistic");
   entry.make = [make = entry.make, step](const nlohmann::json& settings, const DeviceOptions& device) {
@@ -40,7 +40,7 @@ SolverEntry ballistic_with(const WrappedStep& step) {
   return entry;
 }
 
-/// Runs of a small scene in a folder of the test's own.
+/// Runs of a small scene in the test's own folder.
 class SmallRuns : public WithFolder {
  protected:
   void SetUp() override { options_.out = dir_; }
@@ -104,7 +104,7 @@ TEST_F(Hold, AnInterruptEndsAHeldRun) {
   EXPECT_NO_THROW(run.run_accuracy(rules));
 }
 
-// Ladders of settings: where they end, and what is stored of the rest; and trials that agree.
+// Settings sweeps: where they end, and what is stored for the remaining settings; and trials that agree.
 
 class Ladder : public SmallRuns {};
 
@@ -118,7 +118,7 @@ TEST_F(Ladder, EndsAtATimeOutAndStoresTheRestWithItsReason) {
     rungs.push_back({&scene_, &entry, {{"substeps", substeps}}, "substeps=" + std::to_string(substeps), substeps});
   RunPlan plan = plan_of(rungs, 4, 5, 0.1);
   plan.rules.run_limit_s = 0.4;
-  plan.rules.agree = 0.5;  // a sleep is never that far off by itself
+  plan.rules.agree = 0.5;  // a sleep never differs that much by itself
   const RunResult result = execute_runs(plan, options_);
   EXPECT_TRUE(result.faults.empty());
   std::map<std::string, RunRecord> runs;
@@ -138,7 +138,7 @@ TEST_F(Ladder, EndsAtATimeOutAndStoresTheRestWithItsReason) {
   EXPECT_TRUE(std::isnan(runs.at("substeps=10").trials[0].pipelined_wall_s)) << "not asked for";
 }
 
-// A folder is gone on with only if what it holds is of the same scene, settings and version of the solver.
+// A folder is continued only if its runs have the same scene, settings and solver version.
 
 namespace fs = std::filesystem;
 
@@ -153,7 +153,7 @@ class Resume : public SmallRuns {
   RunPlan plan(const Scene& scene, int substeps = 4) const {
     return plan_of({{&scene, &entry_, {{"substeps", substeps}}}}, 1, 2);
   }
-  /// Error that refuses to continue, before anything is written and in the run itself.
+  /// The Error that refuses to continue, both before anything is written and in the run itself.
   std::string refused(const RunPlan& p) const {
     const std::string looked = refusal([&] { require_same_runs(options_.out, p, true); }, ExitCode::BadInput);
     EXPECT_EQ(refusal([&] { execute_runs(p, options_); }), looked);
@@ -182,7 +182,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
   execute_runs(plan(scene_), options_);
   EXPECT_NE(refused(plan(scene_, 5)).find("\"substeps\":5"), std::string::npos);
   EXPECT_EQ(refused(plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2)), "");
-  entry_.make = nullptr;  // of a solver that this process does not have
+  entry_.make = nullptr;  // as for a solver that this process does not have
   require_same_runs(options_.out, plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2), true);
   EXPECT_THROW(require_same_runs(options_.out, plan(scene_, 5), true), Error);
 }
@@ -193,7 +193,7 @@ TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
   EXPECT_NE(refused(plan(scene_)).find("-next"), std::string::npos);
 }
 
-/// A plan with trials goes on from untimed passes that were made before, also from those that ended badly.
+/// A plan with trials continues from earlier untimed passes, also from passes that ended badly.
 TEST_F(Resume, UntimedPassesAreNotRepeated) {
   int steps = 0;
   const SolverEntry entry = ballistic_with([&](ClothSolver& inner, const nlohmann::json& s, const FrameInput& f) {

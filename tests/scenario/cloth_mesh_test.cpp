@@ -1,4 +1,4 @@
-// Cloths of triangles: what is read of an OBJ file, what is refused, and the scene that comes of it.
+// Cloths of triangles: what is read from an OBJ file, what is refused, and the resulting scene.
 #include "scenario/cloth_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -157,11 +157,11 @@ TEST(ClothMesh, RefusesWhatIsOfGridsAlone) {
   EXPECT_PRED2(mentions, refusal([&] { load_scene(folder.file("pinned.json", pinned.dump())); }), "/pins/0/nearest_m");
 }
 
-// Polygons cut into triangles: drawn from seeds, and those that are none.
+// Polygons cut into triangles: random ones with fixed seeds, and invalid ones.
 
 using Polygon = std::vector<Vec3>;
 
-/// Half the sum of cross products: the area of whatever surface the polygon bounds, seen along its normal.
+/// Half the sum of cross products: the vector area of any surface that the polygon bounds.
 Vec3 area_vector(const Polygon& p) {
   Vec3 sum{};
   for (std::size_t k = 0; k < p.size(); ++k)
@@ -202,7 +202,7 @@ class Draw {
     return p;
   }
 
-  /// Turned, moved, scaled, and begun at another corner.
+  /// The polygon rotated, moved, scaled, and starting at a different corner.
   Polygon anywhere(Polygon p) {
     std::rotate(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(below(p.size())), p.end());
     const double a = between(0, 6), b = between(0, 6), size = std::pow(10, between(-3, 3));
@@ -214,7 +214,7 @@ class Draw {
     return p;
   }
 
-  /// Some corners once more, right after themselves.
+  /// Repeats some corners directly after themselves.
   Polygon repeated(const Polygon& p) {
     Polygon out;
     for (const Vec3& x : p)
@@ -226,8 +226,8 @@ class Draw {
   std::mt19937 random_;
 };
 
-/// That triangles are two fewer than the different corners and wound as the polygon is. Together they have its area,
-/// seen along the same axis: as none has a negative one, none is outside and none lies on another.
+/// Checks the number of triangles (distinct corners minus two), their winding and total area, projected along the
+/// polygon's axis: as no area is negative, no triangle is outside and none overlaps another.
 void expect_cut(const Polygon& p) {
   constexpr double kRounding = 1e-12;
   std::size_t different = 0;
@@ -295,7 +295,7 @@ TEST(Polygon, ThatIsNoneIsRefused) {
   Draw draw(1);
   EXPECT_PRED2(mentions, why(draw.star(kMostCorners + 1)), "1001 corners; expected at most 1000");
   for (unsigned seed = 1; seed <= 300; ++seed) {
-    // Two neighbouring corners on a circle change places: the sides before and after them cross.
+    // Two neighbouring corners on a circle are swapped, so the sides before and after them cross.
     Draw other(seed);
     Polygon p = other.star(5 + other.below(20));
     for (Vec3& x : p) x = scaled(1 / length(x), x);
@@ -304,7 +304,7 @@ TEST(Polygon, ThatIsNoneIsRefused) {
   }
 }
 
-// Sheets of irregular triangles that are drawn by number.
+// Sheets of irregular triangles, generated from numbers.
 
 TEST(DrawnMesh, FillsItsRectangleAtAnyAngle) {
   for (const double angle : {0.0, 0.4, 0.8, 1.6})

@@ -37,7 +37,7 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
   const ColliderMesh& m = *s.colliders[0].mesh;
   EXPECT_FALSE(m.closed);
   EXPECT_FALSE(m.skinned());
-  // Highest vertex below the cloth: no more than 30 cm below it, and closer than the roughness of a triangle to that.
+  // Highest mesh vertex below the cloth: at most 30 cm below it, to within a triangle's roughness.
   const auto x = initial_positions(s);
   double highest = -INFINITY;
   for (std::size_t v = 0; v < m.vertex_count(); ++v) {
@@ -50,7 +50,7 @@ TEST_F(Colliders, FlatDropStartsThirtyCentimetresOverTheTable) {
                                  Feature::Friction, Feature::DoubleSided}));
   EXPECT_TRUE(s.motion.empty());
   EXPECT_EQ(s.motion_after(0), nullptr);
-  // Computed values are part of the record, and the record loads to the same scene.
+  // Computed values are part of the record, and the record loads as the same scene.
   const Scene again = scene_from_json(nlohmann::json::parse(s.json), s.source);
   EXPECT_EQ(again.json, s.json);
   EXPECT_EQ(again.cloth.center_m, s.cloth.center_m);
@@ -74,7 +74,7 @@ TEST_F(Colliders, CornerDropHangsHalfOutside) {
     if (x[3 * v + 1] < x[3 * low + 1]) low = v;
   EXPECT_EQ(low, 0u);
   EXPECT_NEAR(x[1], center.y() + 0.3, 1e-9);
-  // The lowest corner is over the middle of a long edge; the sheet is symmetric about the plane through that edge.
+  // The lowest corner is above the middle of a long edge; the sheet is symmetric about the plane through that edge.
   const assets::Vector corner(x[0], center.y(), x[2]), out = (corner - center).normalized();
   std::size_t outside = 0, inside = 0;
   for (std::size_t v = 0; v < x.size() / 3; ++v) {

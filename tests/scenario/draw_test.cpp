@@ -1,4 +1,4 @@
-// Scenes of the study of drawn contact: the same for a seed, others for others, all within their ranges and loadable.
+// Random scenes of study `contact`: equal for equal seeds, different for others, all within their ranges and loadable.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr int kKinds = 10;
 
-/// One form of each scene: as `bullet-soft` runs it.
+/// One form of each scene: the one that `bullet-soft` runs.
 Study drawn(std::uint64_t seed, int count, StudyLength length = StudyLength::Full) {
   StudyOptions o;
   o.length = length;
@@ -69,7 +69,7 @@ TEST(DrawContact, AllScenesOf200SeedsLoadAndLoadAgain) {
   }
 }
 
-/// Scenes of the seeds from 1 on as drawn, neither completed nor loaded, which takes a while.
+/// Scenes of the seeds from 1 on as generated, neither completed nor loaded, because that takes long.
 std::vector<json> drawn_alone(std::uint64_t count) {
   const std::filesystem::path file = find_scenario("contact");
   const json study = drawn(1, 1).definition;
@@ -109,7 +109,7 @@ TEST(DrawContact, EveryRangeIsCoveredAndKept) {
       const double low = range[0], high = range[1];
       bool any = false;
       for (const auto& [drawn_name, is] : found) {
-        // A range may be drawn from several times, under names of its own.
+        // A range may be sampled several times, under different names.
         const bool its = drawn_name == name || (name == "depth_m" && drawn_name == "depth_in_m");
         if (!its) continue;
         any = true;
@@ -162,7 +162,7 @@ TEST(DrawContact, HandsComeFromAfarAndStayAwayForASecond) {
 }
 
 TEST(DrawContact, RecordedScenesStayAsTheyAre) {
-  // Without desks, which depend on the rooms that are there.
+  // Without desks, which depend on the available rooms.
   std::string all;
   for (const Study::Item& item : drawn(2, 8).scenes) {
     const json scene = json::parse(item.scene.json);
@@ -194,7 +194,7 @@ TEST(DrawContact, RefusesBadInput) {
   EXPECT_PRED2(mentions, with([](json& j) { j["scenes"][2]["draw"]["ranges"].erase("way_m"); }),
                "/scenes/2/draw/ranges: \"way_m\" is missing");
   EXPECT_PRED2(mentions, ranged("wy_m", {0, 1}),
-               "/scenes/2/draw/ranges/wy_m: nothing is drawn from it; nearest known: way_m");
+               "/scenes/2/draw/ranges/wy_m: this range is not used; nearest known: way_m");
   EXPECT_PRED2(mentions, ranged("way_m", {1, 0}), "/scenes/2/draw/ranges/way_m: expected the lower bound first");
   EXPECT_PRED2(mentions, ranged("speed_m_per_s", {0, 1}), "expected a range above 0");
   EXPECT_PRED2(mentions, with([](json& j) { j["scenes"][2].erase("draw"); }), "/scenes/2: \"draw\" is missing");
@@ -202,7 +202,7 @@ TEST(DrawContact, RefusesBadInput) {
                "/scenes/0/draw: only for protocol contact");
 }
 
-// Study `reproduction`: points that fill the box of what the article leaves open, shared by the claims of a round.
+// Study `reproduction`: points fill the box of settings that the article leaves open; the claims of a round share one.
 
 constexpr std::uint64_t kClaims = 2;
 
@@ -247,7 +247,7 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
     const auto part = [&](const std::string& name, double u) {
       ++counts[name].at(static_cast<std::size_t>(std::clamp(static_cast<int>(kParts * u), 0, kParts - 1)));
     };
-    // Ranges that span a decade are even in the logarithm.
+    // Ranges that span a decade are uniform in the logarithm.
     part("iterations", std::log(iterations) / std::log(100));
     part("stiffness", std::log10(stiffness / 0.1));
     part("words", settings["collisions"] == "after" ? 0.25 : 0.75);
@@ -262,7 +262,7 @@ TEST(DrawBox, PointsFillTheBoxEvenlyAndReachItsCorners) {
   EXPECT_NEAR(corners, 0.1 * kRounds, 0.06 * kRounds);
 }
 
-/// Settings `best` of the paper's solver are the point at which most claims hold, which the report names by its seed.
+/// Settings `best` of the paper's solver are the point at which most claims hold; the report gives its seed.
 TEST(DrawBox, TheBestOfThePaperIsAPointOfTheBox) {
   StudyOptions o;
   o.seed = 31;

@@ -227,7 +227,7 @@ TEST_F(DataFolderTest, VariableThenInstalledThenSource) {
   fs::create_directories(named);
   setenv(kFolder.variable, named.c_str(), 1);
   EXPECT_EQ(find_data(kFolder, roots_), named);
-  setenv(kFolder.variable, "", 1);  // as good as not set
+  setenv(kFolder.variable, "", 1);  // same as not set
   EXPECT_EQ(find_data(kFolder, roots_), installed);
 }
 
@@ -240,7 +240,7 @@ TEST_F(DataFolderTest, OneErrorNamesEveryPlace) {
        {std::string("CLOTHBENCH_DATA_FOLDER_TEST"), installed.string(), source.string(), std::string("test files")})
     EXPECT_PRED2(mentions, why(), place);
   fs::create_directories(installed);
-  setenv(kFolder.variable, named.c_str(), 1);  // a wrong variable is not passed over
+  setenv(kFolder.variable, named.c_str(), 1);  // a wrong variable is not ignored
   for (const fs::path& place : {named, installed, source}) EXPECT_PRED2(mentions, why(), place.string());
 }
 

@@ -1,5 +1,5 @@
-// Messages of readers about wrong input of any length: where it is, in few words, and not the input itself. Also
-// about radii that a headset did not know, and of more runs than a study may have.
+// Readers' messages about wrong input of any length: the place, briefly, and not the input itself. Also about radii
+// unknown to a headset, and about more runs than a study may have.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -71,7 +71,7 @@ assets::HandRecording recording(float radius_m, bool capsules) {
   return r;
 }
 
-/// The document with each of its values in turn a long string, and each of its keys in turn a long one.
+/// Copies of the document: each of its values in turn replaced by a long string, and each key by a long one.
 std::vector<json> lengthened(const json& document) {
   std::vector<json> out;
   const json flat = document.flatten();

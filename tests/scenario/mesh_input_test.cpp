@@ -1,4 +1,4 @@
-// Contents of a mesh's file beyond its triangles: seams, names; glTF beside OBJ.
+// Contents of a mesh file other than triangles: seams, names; glTF as well as OBJ.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// Two triangles of a unit square that meet along a seam: vertices 2 and 3 are there twice. Each panel has its own
-// place in the texture, which is not read.
+// Two triangles of a unit square that meet along a seam: vertices 2 and 3 occur twice. The panels have separate texture
+// coordinates, which are not read.
 constexpr char kPanels[] =
     "o front\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\ng waist left\nf 1/1 2/2 3/3\n"
     "o back\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 2 0\nvt 2 1\nvt 1 1\ng\nf 4/4 5/5 6/6\n";
@@ -98,7 +98,7 @@ json square_gltf() {
                      assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size())}}}}};
 }
 
-/// The same as a .glb, its buffer outside the text.
+/// The same glTF as a .glb, with its buffer outside the text.
 std::string binary(json j) {
   const std::string uri = j["buffers"][0]["uri"];
   const std::vector<std::uint8_t> bytes = assets::decode_base64(uri.substr(uri.find(',') + 1), "file", "/uri");
@@ -154,7 +154,7 @@ TEST_F(MeshInput, OfAGltfTheActiveSceneIsRead) {
 
 TEST_F(MeshInput, MorphTargetsMoveTheirVertices) {
   json j = square_gltf();
-  // The positions as displacements: each weight adds the square once more.
+  // The positions as displacements: each weight adds the square's coordinates once more.
   j["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"NORMAL", 0}}};
   const auto corner = [&] { return assets::parse_gltf(j.dump(), "m.gltf").vertices.at(2); };
   EXPECT_EQ(corner(), (Vec3{2, 2, 5}));
@@ -235,7 +235,7 @@ TEST_F(MeshInput, RefusesBadGltfNamingThePlace) {
   EXPECT_PRED2(mentions, refusal([] { assets::parse_gltf("{", "cut.gltf"); }), "cut.gltf");
 }
 
-/// tinygltf leaves out a value of a wrong type. Replaces each value of a file, and each list and object, by others.
+/// tinygltf skips a value of a wrong type. This test replaces each value, list and object of a file by others.
 TEST_F(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
   json whole = square_gltf();
   whole.update({{"scene", 0},
@@ -278,7 +278,7 @@ TEST_F(MeshInput, RefusesEachWrongTypeInAGltfNamingThePlace) {
 
 TEST_F(MeshInput, FilesThatAreTooLargeAreNotRead) {
   const std::string path = folder.file("huge.obj", "");
-  std::filesystem::resize_file(path, std::uintmax_t{300} << 20);  // takes no place on the disk
+  std::filesystem::resize_file(path, std::uintmax_t{300} << 20);  // occupies no disk space
   EXPECT_PRED2(mentions, refusal([&] { scene_of("huge.obj", "", {}); }), "at most 268435456 are read");
 }
 
@@ -287,7 +287,7 @@ TEST_F(MeshInput, RegionsAreTheTrianglesOfAGroup) {
   const Scene s = regions({{{"group", "waist"}, {"membrane_stiffness_N_per_m", 100}}});
   EXPECT_TRUE(s.needs.has(Feature::Regions));
   EXPECT_EQ(triangle_stiffnesses(s), (std::vector<std::optional<double>>{100, 1000}));
-  // The seam is the longest edge, and both triangles have half of it.
+  // The seam is the longest edge; each of its two triangles contributes half of it.
   const ClothMesh& mesh = *s.cloth.mesh;
   const std::vector<std::optional<double>> of_edges = edge_stiffnesses(s);
   ASSERT_EQ(of_edges.size(), mesh.edges.size());
@@ -315,7 +315,7 @@ TEST_F(MeshInput, RegionsThatAMeshOrAGridDoesNotHaveAreRefused) {
            {mesh, json::object(), ": expected \"group\""},
            {grid, {{"group", "cuff"}}, "/group: expected a cloth that is a mesh"},
            {grid, json::object(), ": expected \"columns\""},
-           {drawn, {{"group", "u0"}}, "/group: no triangle"}}) {  // a border has none for itself
+           {drawn, {{"group", "u0"}}, "/group: no triangle"}}) {  // a border has no triangle of its own
     json j = scenario;
     j["material"]["regions"] = json::array({region});
     j["material"]["regions"][0]["membrane_stiffness_N_per_m"] = 100;

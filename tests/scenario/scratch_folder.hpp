@@ -6,7 +6,7 @@
 
 namespace clothbench {
 
-/// A scene of a cloth that is a mesh.
+/// A scene whose cloth is a mesh.
 inline nlohmann::json mesh_scenario(nlohmann::json mesh) {
   return {{"name", "mesh"},
           {"why", "a mesh for the tests"},

@@ -54,7 +54,7 @@ std::string study_error(const std::string& text, StudyOptions options = {}) {
   return refusal([&] { study_of(text, options); });
 }
 
-/// Names of solvers and scenes, with the sides of the cloth they get.
+/// Names of solvers and scenes, with the sides of the cloth in each run.
 std::vector<std::string> runs(const Study& s) {
   std::vector<std::string> out;
   for (const Study::Item& item : s.scenes)
@@ -88,7 +88,7 @@ TEST(Study, AnAxisMayChangeOtherKeysAlong) {
   EXPECT_EQ(s.scenes[0].scene.time.duration_s, 0.25);
   EXPECT_EQ(s.scenes[1].scene.time.duration_s, 0.5);
   EXPECT_PRED2(mentions, study_error(with(R"({"time.duration_s":[0.25]})")),
-               "/scenes/0/axes/0/with/time.duration_s: expected one value each of the axis, 2; found 1");
+               "/scenes/0/axes/0/with/time.duration_s: expected one per value of the axis, 2; found 1");
 }
 
 TEST(Study, AKeyOfAnAxisIsNotOverridden) {
@@ -167,7 +167,7 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
         << item.scene.name << " touches nothing";
     for (const std::size_t k : item.solvers)
       if (s.solvers[k].solver == "paper") {
-        // It knows no two-sided contact without a second layer.
+        // It does not support two-sided contact without a second layer.
         EXPECT_EQ(item.scene.cloth.sides == Sides::Double, item.scene.colliders.empty()) << item.scene.name;
         EXPECT_FALSE(item.scene.needs.has(Feature::SelfCollision)) << item.scene.name << ": it passes through itself";
       }

@@ -1,4 +1,4 @@
-// Sheets that are uneven, heavy in places, or start where they do not rest; frames of unlike lengths; hands that jump.
+// Sheets with uneven cells or masses, or a start away from rest; frames of unequal length; hands that jump.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ double total(const std::vector<double>& v) { return std::accumulate(v.begin(), v
 TEST(Regular, NeedsNothingNew) {
   const Scene s = load({});
   for (Feature f : {Feature::UnevenGrid, Feature::Regions, Feature::Spin}) EXPECT_FALSE(s.needs.has(f));
-  EXPECT_EQ(s.json.find("start"), std::string::npos);  // what a scene does not use does not stand in it
+  EXPECT_EQ(s.json.find("start"), std::string::npos);  // unused features are not in the scene's JSON
   EXPECT_EQ(s.json.find("stability"), std::string::npos);
 }
 
@@ -177,21 +177,21 @@ TEST(Irregular, WhatIsWrongIsNamed) {
   for (const auto& r : refused) EXPECT_PRED2(mentions, refusal([&] { load(r.set); }), r.complaint);
 }
 
-// Degenerate input that is not refused: every solver that claims what it needs simulates it sanely (table in
-// scenarios/stability/README.md; tests/scenario/load_test.cpp has what is refused).
+// Degenerate input that is accepted: every solver that supports its features must simulate it sensibly (table in
+// scenarios/stability/README.md; tests/scenario/load_test.cpp has the refused input).
 
 const char* const kSheet = R"({"name": "sheet", "why": "a sheet of bad input",
   "cloth": {"grid": [5, 4], "size_m": [0.4, 0.3], "areal_density_kg_per_m2": 0.2, "sides": "single", "pose": {"center_m": [0, 0.05, 0], "axis_u": [1, 0, 0], "axis_v": [0, 0, 1]}},
   "material": {"membrane_stiffness_N_per_m": 1000, "damping_per_s": 1}, "time": {"frame_rate_hz": 60, "duration_s": 0.25}})";
 
-/// A floor of two triangles round (0, 0, 0), and more of them.
+/// A floor of two triangles around (0, 0, 0), and further triangles.
 std::string mesh(const std::string& positions, const std::string& triangles) {
   return R"(colliders=[{"type": "mesh", "positions_m": [[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1])" + positions +
          R"(], "triangles": [[0, 1, 2], [0, 2, 3])" + triangles + "]}]";
 }
 
 struct Case {
-  const char* name;  ///< of the input, also of the test
+  const char* name;  ///< of the input and of the test
   std::vector<std::string> set;
 };
 
@@ -219,7 +219,7 @@ const std::vector<Case>& cases() {
 
 class BadInput : public ::testing::TestWithParam<std::size_t> {};
 
-/// Those that the project answers for. Others are baselines, shown as they are: they may blow up, not break the run.
+/// Solvers under this project's responsibility. The others are baselines: they may blow up, but must not break the run.
 bool is_ours(const SolverInfo& info) { return info.name == "xpbd" || info.name == "reference"; }
 
 void expect_sane(const Scene& scene, const SolverEntry& entry) {
@@ -235,7 +235,7 @@ void expect_sane(const Scene& scene, const SolverEntry& entry) {
   const std::vector<double> start = initial_positions(scene);
   for (int f = 0; f < scene.time.frames(); ++f) {
     const StepStatus status = solver->step({f, scene.time.at(f + 1), scene.time.dt_after(f), scene.motion_after(f)});
-    // The reference's Newton may say that it has found no solution; that is no wrong one.
+    // The reference's Newton iteration may report that it found no solution, which is not a wrong solution.
     const bool gave_up =
         entry.info.name == "reference" && (status == StepStatus::Diverged || status == StepStatus::NotFinite);
     ASSERT_TRUE(status == StepStatus::Ok || gave_up || !is_ours(entry.info)) << "frame " << f;

@@ -1,4 +1,4 @@
-// Stands in for `clothbench run-child` with solvers that go wrong as their name says, in frame 3.
+// Replaces `clothbench run-child` by solvers that fail in frame 3 in the way that their names say.
 #include <chrono>
 #include <csignal>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Each outcome class on frames made for it, and on frames that just miss it.
+// Each outcome class on frames that just trigger it, and on frames that just do not.
 #include "metrics/stability/judge.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr unsigned F(int k) { return 1u << k; }
 class Judge : public ::testing::Test {
  protected:
   Judge() { load(); }
-  /// A hanging sheet of 9 x 9 cells of 0.125 m, all classes judged, 60 frames.
+  /// A hanging sheet of 9 x 9 cells of 0.125 m, all classes evaluated, 60 frames.
   void load(const std::vector<std::string>& set = {}) {
     std::vector<std::string> all = {R"(stability={"case": "S01", "judged": ["F0", "F1", "F2"], "settle_s": 0.5})"};
     all.insert(all.end(), set.begin(), set.end());
@@ -64,7 +64,7 @@ TEST_F(Judge, F0NotFinite) {
 }
 
 TEST_F(Judge, F0Unbounded) {
-  // Twice the diagonal: 7.45 m/s; ten times that is the limit.
+  // Free fall by twice the diagonal gives 7.45 m/s; the limit is ten times that.
   const double most = 10 * std::sqrt(2 * 9.81 * 2 * std::sqrt(2.0));
   ClothState s = rest_;
   s.velocity[40] = 0.99 * most;
@@ -77,7 +77,7 @@ TEST_F(Judge, F1EnergyGain) {
   ClothState s = rest_;
   const double M = 0.2, gL = 9.81;
   add(s);
-  // All vertices alike: M v^2 / 2 = gain M g L; the pinned ones are only in the sum.
+  // Equal velocities: M v^2 / 2 = gain M g L; the pinned vertices count only in the sum.
   for (const double gain : {0.099, 0.101}) {
     for (std::size_t k = 0; k < s.velocity.size(); k += 3) s.velocity[k] = std::sqrt(2 * gain * gL);
     const StabilityFrame f = add(s);
@@ -118,7 +118,7 @@ TEST_F(Judge, F2Torn) {
 
 TEST_F(Judge, F2AllowsWhatTheLoadsDo) {
   load({"material.membrane_stiffness_N_per_m=10"});
-  // M g / (Y w) = 0.196, twice that when it comes suddenly.
+  // M g / (Y w) = 0.196; a sudden load doubles it.
   EXPECT_EQ(add(stretched(1.39)).classes & F(2), 0u);
 }
 

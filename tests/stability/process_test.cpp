@@ -1,4 +1,4 @@
-// A run whose process fails becomes a row with its reason, and the study goes on.
+// A run whose process fails becomes a row with its reason, and the study continues.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ class Process : public WithFolder {
   int runs_ = 0;
 };
 
-/// All solvers of a timed group live in one process, which one of them ends.
+/// All solvers of a timed group share one process, and one of them ends it.
 TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
   const char* const kLimit = "CLOTHBENCH_SOLVER_LIMIT_S";
   setenv(kLimit, "4", 1);
@@ -78,7 +78,7 @@ TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
       << "one sentence per solver that finished none of its runs";
 }
 
-/// Untimed passes side by side give the rows of passes one after another.
+/// Parallel untimed passes give the same rows as sequential ones.
 TEST_F(Process, UntimedPassesSideBySideChangeNoRow) {
   const Scene scene = scene_from_json(kScenario, "test");
   std::deque<SolverEntry> solvers;
@@ -150,7 +150,7 @@ TEST_F(Process, OneChildTakesManyRunsAndIsReplacedAfterAFault) {
   EXPECT_EQ(run("loses-device").outcome.status, "device_lost");
   EXPECT_EQ(run("falls").outcome.status, "ok");
   EXPECT_EQ(worker_->children(), 2);
-  // Once in a child with a past, once in one without.
+  // The crash must recur in a process that has run nothing else.
   EXPECT_EQ(run("crashes").outcome.status, "crashed");
   EXPECT_EQ(worker_->children(), 3);
   EXPECT_EQ(run("falls").outcome.status, "ok");

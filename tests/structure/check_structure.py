@@ -15,11 +15,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 BUDGET = Path(__file__).with_name("lines.txt")
 
-# A room may include those before it and the public interface (include/clothbench).
+# A room may include rooms before it in this list and the public interface (include/clothbench).
 ROOMS = ["base", "assets", "scenario", "truth", "metrics", "results", "runner", "report", "check", "render", "xr", "cli", "android"]
 SOLVERS_MAY_INCLUDE = {"base", "clothbench"}
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 400, 60
-# A table, row after row, and a macro that pmccabe takes for a function's head.
+# A table with one row per entry, and a macro that pmccabe takes for a function head.
 LONG_ON_PURPOSE = {"clothbench::metrics", "__attribute__"}
 CODE = (".cpp", ".hpp", ".h", ".glsl", ".comp", ".js", ".mjs", ".py", ".sh", ".cmake")
 

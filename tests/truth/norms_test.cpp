@@ -25,7 +25,7 @@ struct Mesh {
   }
 };
 
-/// n x m cells over w x h with inner vertices shaken by up to a third of a cell, diagonals and orientations at random.
+/// n x m cells over w x h, with inner vertices moved by up to a third of a cell, and random diagonals and windings.
 Mesh mesh(int n, int m, double w, double h, double shake = 0) {
   Mesh out;
   std::mt19937 random(7);

@@ -1,4 +1,4 @@
-// Exact solutions against published numbers, limits, and integrations of the same equations in other variables.
+// Exact solutions against published numbers, limiting cases, and integrations of the equations in other variables.
 #include "truth/solutions.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using State = std::vector<double>;
 constexpr double kDegree = pi / 180;
 
 /// A table of published numbers: comment lines with its source and "# digits N" (significant), a line of column names,
-/// rows.
+/// then rows.
 class PrintedTable {
  public:
   using Row = std::map<std::string, double>;
@@ -46,7 +46,7 @@ class PrintedTable {
     EXPECT_GT(digits_, 0) << file;
   }
 
-  /// To half a unit of the last printed digit, and the uncertainty of the printed value itself.
+  /// Tolerance: half a unit of the last printed digit, plus the uncertainty of the printed value itself.
   void expect(double computed, double printed, const std::string& what, double uncertainty = 0) const {
     const double half =
         printed == 0 ? 1e-15 : 0.5 * std::pow(10, std::floor(std::log10(std::abs(printed))) - digits_ + 1);
@@ -65,7 +65,7 @@ std::string text(const PrintedTable::Row& row) {
   return out.str();
 }
 
-/// y' = f(y, dy, t) from `y` at 0 to `end`.
+/// Integrates y' = f(y, dy, t) from `y` at 0 to `end`.
 template <class F>
 State integrated(State y, double end, F f) {
   namespace odeint = boost::numeric::odeint;
@@ -113,7 +113,7 @@ TEST(SwingingChain, HasThePublishedMotion) {
     ASSERT_EQ(states.size(), rows.size());
     const auto tip = static_cast<std::size_t>(key.first), middle = (tip + 1) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      // The published run's own error, and ours grown by the chaos that sets in after 0.5 s.
+      // The published run's own error, plus ours, which grows by the chaos that begins after 0.5 s.
       const double own = 3 * rows[i].at("uncertainty") + 1e-12;
       const auto &x = states[i][tip], &m = states[i][middle];
       table.expect(x[0], rows[i].at("x_tip"), text(rows[i]), own);
@@ -151,7 +151,7 @@ TEST(HeavyStrip, HasThePublishedStretchAlsoInRows) {
     EXPECT_NEAR(slope, (0.3 * 9.81 * (1.5 - at) + 7) / 200, 1e-8) << "the strain carries what hangs below";
   }
   for (const int n : {1, 7, 32}) {
-    double moved = 0;  // springs that carry half of their own cell and all below it
+    double moved = 0;  // each spring carries half of its own cell and everything below
     for (int row = 1; row <= n; ++row) {
       moved += 1.5 / n * (0.3 * 9.81 * 1.5 / n * (n - row + 0.5) + 7) / 200;
       EXPECT_NEAR(moved, hang_displacement_m(loaded, 1.5 * row / n), 1e-14);
@@ -159,7 +159,7 @@ TEST(HeavyStrip, HasThePublishedStretchAlsoInRows) {
   }
 }
 
-/// Euler's elastica by shooting for the angle of the tip: from there inwards theta'' = -Gamma s cos(theta).
+/// Euler's elastica by shooting over the tip angle: from the tip inwards theta'' = -Gamma s cos(theta).
 std::array<double, 2> elastica_tip(double gamma) {
   const auto shot = [&](double tip_angle) {
     return integrated({tip_angle, 0, 0, 0}, 1, [&](const State& y, State& d, double s) {
@@ -296,8 +296,7 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
     EXPECT_NEAR(atwood[f].distance_m, 0.1 * std::cosh(k * times[f]) - 0.1, 1e-10);
     EXPECT_NEAR(atwood[f].speed_m_per_s, 0.1 * k * std::sinh(k * times[f]), 1e-9);
   }
-  // With friction: the tension over rho along the cylinder, from the light side, at the acceleration that it starts
-  // with.
+  // With friction: tension divided by rho along the cylinder, from the light side, at the initial acceleration.
   const double mu = 0.3, R = 0.05, g = 9.81, light = 0.2, heavy = 0.7, t = 1e-4;
   const double a = 2 * slide_over({mu, R, 0.2, g, 0}, light, heavy, State{0, t}).back().distance_m / (t * t);
   const State tension = integrated({light * (g + a)}, pi, [&](const State& y, State& d, double phi) {

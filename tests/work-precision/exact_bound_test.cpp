@@ -1,4 +1,4 @@
-// A scene with an exact solution has bounds of its own: the solution passes, one that is off on either side fails.
+// A scene with an exact solution has its own bounds: the solution passes, and motions that are off to either side fail.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ Motion scaled(const Judged& j, double k) {
   };
 }
 
-/// The start, farther along axis_u by a share of the longer side.
+/// The start, moved along axis_u by a fraction of the longer side.
 Motion crept(const Scene& s, double share) {
   std::vector<double> out = initial_positions(s);
   const double by_m = share * std::max(s.cloth.width_m, s.cloth.height_m);
@@ -101,7 +101,7 @@ void expect_two_sided(const Scene& s) {
   const double of = moves ? tolerance.of_motion : tolerance.at_rest;
   for (const double sign : {-1.0, 1.0}) {
     EXPECT_EQ(j.verdict(moves ? scaled(j, 1 + sign * 0.5 * of) : crept(s, sign * 0.5 * of)), "pass") << sign;
-    if (moves && moved_m < 200 * rounding_m) continue;  // stiff strips far away: float32 does not show some per cent
+    if (moves && moved_m < 200 * rounding_m) continue;  // stiff strips far away: float32 cannot resolve some per cent
     EXPECT_TRUE(j.fails(moves ? scaled(j, 1 + sign * 3 * of) : crept(s, sign * 3 * of))) << sign;
   }
 }
@@ -141,7 +141,7 @@ TEST(Tolerances, EveryReferenceCaseHasOneAndItsReason) {
   }
 }
 
-/// A scene with an exact solution needs no `expect`; the bound follows the parameters in use.
+/// A scene with an exact solution needs no `expect`; the bound follows the actual parameters.
 TEST(ExactBounds, FollowsOverridesAndNeedsNoFile) {
   const Judged moon(load_scene("validation/incline-slip", {"gravity_m_per_s2=[0,-1.6,0]"}));
   EXPECT_TRUE(moon.scene.expect.empty());
@@ -152,7 +152,7 @@ TEST(ExactBounds, FollowsOverridesAndNeedsNoFile) {
   EXPECT_TRUE(judge(moon.scene, broken, {}, {}).text.starts_with("fail: outcome diverged, expected ok"));
 }
 
-/// The bounds are in every result, and equal the function's.
+/// The bounds are in every summary and equal those of exact_bound().
 TEST(ExactBounds, IsPartOfASummary) {
   const Scene s = load_scene("validation/pendulum");
   AccuracyPass pass;
@@ -164,7 +164,7 @@ TEST(ExactBounds, IsPartOfASummary) {
   EXPECT_TRUE(std::isnan(scalars_of({s, pass}, "truth_").at("truth_e2_bound"))) << "only of a whole run";
 }
 
-/// Positions that are right but were rounded to float32, ten metres from the origin, still pass.
+/// Correct positions that were rounded to float32, ten metres from the origin, still pass.
 TEST(ExactBounds, AllowsTheRoundingOfFloat32) {
   const Judged j(load_scene("validation/heavy-strip",
                             {"material.membrane_stiffness_N_per_m=1e6", "cloth.pose.center_m=[10,9.5,10]"}));
@@ -177,9 +177,9 @@ TEST(ExactBounds, AllowsTheRoundingOfFloat32) {
   EXPECT_TRUE(j.fails(crept(j.scene, 1e-5)));
 }
 
-// Which stiffness an exact solution depends on, which decides whether a solver without it is ranked.
+// On which stiffness an exact solution depends; this decides whether a solver without that stiffness is ranked.
 
-/// Scenes are not listed by hand: which stiffness a truth depends on is found by changing it.
+/// No list of scenes: the dependence of each solution on a stiffness is found by changing the stiffness.
 TEST(Dependence, IsMeasuredOnEveryTruth) {
   const auto needs = [](const std::string& name, const std::vector<std::string>& set = {}) {
     const auto found = truth_dependence(load_scene("validation/" + name, set));
@@ -190,7 +190,7 @@ TEST(Dependence, IsMeasuredOnEveryTruth) {
   EXPECT_EQ(needs("two-hand-pull"), "Y");
   EXPECT_EQ(needs("cantilever-10"), "B");
   for (const char* name : {"free-fall", "pendulum", "swing-strip", "incline-stick"}) EXPECT_EQ(needs(name), "") << name;
-  // The strip's stretch is rho g L^2 / 2 Y: a tenth more stiffness, an eleventh less stretch.
+  // The strip's stretch is rho g L^2 / 2 Y: a tenth more stiffness gives an eleventh less stretch.
   const auto heavy = truth_dependence(load_scene("validation/heavy-strip"));
   EXPECT_NEAR(heavy.at("truth_dependence_Y"), (1 - 1 / 1.1) / std::log(1.1), 1e-6);
   EXPECT_EQ(needs("heavy-strip", {"material.membrane_stiffness_N_per_m=1e5"}), "Y") << "however little it stretches";

@@ -1,5 +1,4 @@
-// V14 and V15: friction of `xpbd` by the closed forms. Bounds are what is reached on a software device, not what is
-// hoped for.
+// V14 and V15: friction of `xpbd` against closed forms. The bounds are what it reaches on a software device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +66,7 @@ TEST_F(Friction, CriticalAngleWithinATenthOfADegree) {
   EXPECT_GE(quantity(15.9), 0.01) << "m in 2 s";
 }
 
-/// The error falls with the substeps, of which a finer strip has more at default.
+/// The error falls with more substeps; by default, a finer strip has more of them.
 TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-slip"), 0.05); }
 
 }  // namespace

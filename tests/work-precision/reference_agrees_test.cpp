@@ -1,4 +1,4 @@
-// The reference solver against every truth, within its own stated uncertainty.
+// The reference solver against every exact solution, within its own stated uncertainty.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ TEST_P(ReferenceAgrees, AgreeWithTheTruth) {
     }
 }
 
-/// The closed form of a sheet that hangs, whose rows do not move alike, against the springs of all its rows.
+/// The closed form of a hanging sheet, whose rows do not move alike, against springs in all of its rows.
 TEST(SheetReferences, AgreeWithTheClosedForm) {
   const Scene s = load_scene("validation/heavy-strip", {"material.shear=true", "time.duration_s=1.5"});
   const ReferenceResult r = compute_reference(s, {.settling_substeps = 2});
@@ -35,7 +35,7 @@ TEST(SheetReferences, AgreeWithTheClosedForm) {
   EXPECT_LT(r.uncertainty, 1e-3);
 }
 
-/// The error of the mesh itself falls with its cells, is larger than its uncertainty, and is not below the continuum.
+/// The mesh's own error falls with cell size, exceeds its uncertainty, and is not below that of the continuum.
 TEST(MeshReferences, StateTheErrorOfTheMesh) {
   const std::vector<std::string> short_ones[] = {{}, {"time.duration_s=1", "material.damping_per_s=30"}, {}};
   const char* const names[] = {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};

@@ -1,4 +1,4 @@
-// ReferenceCases: from a scene to its exact answer, and a run's distance from it.
+// ReferenceCases: the exact solution of a scene, and a run's distance from it.
 #include "truth/reference_case.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Scene scene(const std::string& name, const std::vector<std::string>& set = {}) {
   return load_scene("validation/" + name, set);
 }
 
-/// The truth itself as a run's state.
+/// The exact solution as a run's state.
 ClothState truth_state(const Scene& s, const truth::ReferenceCase& known, int frame) {
   return {truth::vertex_positions(s.cloth, known, frame), std::vector<double>(3 * s.cloth.vertex_count())};
 }
@@ -51,7 +51,7 @@ TEST_P(ReferenceCases, TheTruthIsNoDistanceFromItself) {
   EXPECT_TRUE(std::isnan(judge.judge(last, state).quantity_error));
 }
 
-/// Held vertices of the truth are where the scene holds them, and moving truths begin where the scene does.
+/// Attached vertices of the solution are at the scene's prescribed positions; moving solutions start at its start.
 TEST_P(ReferenceCases, AgreeWithTheScene) {
   const Scene s = scene(GetParam());
   const auto known = truth::reference_case_of(s);
@@ -67,8 +67,7 @@ TEST_P(ReferenceCases, AgreeWithTheScene) {
   for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(first[k], start[k], 1e-12);
 }
 
-/// Order 2 in the run's size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse
-/// error.
+/// Order 2 in cell size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse error.
 TEST(SpaceError, FallsWithTheRun) {
   const double coarse = TruthJudge(scene("swing-strip", {"cloth.grid=[17,3]"})).space_error(),
                fine = TruthJudge(scene("swing-strip")).space_error();
@@ -79,7 +78,7 @@ TEST(SpaceError, FallsWithTheRun) {
   EXPECT_EQ(TruthJudge(fall).space_error(), 0);
 }
 
-/// Any triangulation of the rectangle has the same answer, and the columns of the continuum.
+/// Any triangulation of the rectangle has the same solution, with the continuum's columns.
 TEST(MeshCases, DoNotDependOnTheTriangles) {
   for (const char* name : {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"}) {
     const Scene coarse = scene(name, {"cloth.mesh.drawn.cells=9"}),
@@ -95,7 +94,7 @@ TEST(MeshCases, DoNotDependOnTheTriangles) {
   }
 }
 
-/// Semi-implicit Euler of one step a frame is g t dt/2 behind free fall: what the ballistic solver's error must be.
+/// Semi-implicit Euler with one step per frame lags g t dt/2 behind free fall: the expected error of `ballistic`.
 TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
   const Scene s = scene("free-fall");
   const SolverEntry& entry = find_solver("ballistic");
@@ -117,7 +116,7 @@ TEST(TruthMetrics, BallisticIsBehindByItsOwnStep) {
   EXPECT_TRUE(std::isnan(scalars_of({s, pass}).at("truth_error"))) << "a pass that broke off has no error";
 }
 
-/// A sheet that shears hangs as a strip does: half as far from the pinned edge, which keeps its width, as it is long.
+/// A sheet with shear hangs like a strip, measured half a length away from the pinned edge, which keeps its width.
 TEST(ReferenceCases, ASheetThatShearsNarrowsAsItStretches) {
   const Scene s = scene("heavy-strip", {"material.shear=true"}), rows = scene("heavy-strip");
   const auto sheet = truth::reference_case_of(s), strip = truth::reference_case_of(rows);
@@ -192,9 +191,9 @@ TEST(Span, TheArcHangsAndItsRunsKeepTheirLengths) {
   EXPECT_THROW(load_scene(name, {"cloth.grid=[2,2]"}), Error);
 }
 
-// The order in time that a solver's integrator declares, observed on the pendulum.
+// The order in time that a solver declares for its integrator, observed on the pendulum.
 
-constexpr int kIterations = 64;  // solved: what remains is the integrator's
+constexpr int kIterations = 64;  // converged, so that only the integrator's error remains
 
 bool has(const SolverInfo& info, const char* setting) {
   for (const SettingSpec& s : info.settings)

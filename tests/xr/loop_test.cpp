@@ -9,10 +9,10 @@
 namespace clothbench::xr {
 namespace {
 
-constexpr double kFloat_m = 1e-6;  // places within 2 m in float32
+constexpr double kFloat_m = 1e-6;  // float32 rounding of coordinates below 2 m
 const Vec3 kPlace_m = {0, -0.1, -0.6};
 
-/// Script's time of a frame, by where the palm is.
+/// The script's time of a frame, from the palm's position.
 double time_of(const assets::RecordedHand& hand, bool right) {
   const double x = static_cast<double>(hand.joints[0].position_m[0]) + kPlace_m[0];
   return (0.3 - (right ? x : -x)) / 0.6;
@@ -52,7 +52,7 @@ TEST_F(Sessions, CapsulesOfTheRuntimeReachTheSolver) {
   const Scene scene = load_scene(r.scenario.string());
   ASSERT_EQ(scene.motion.size(), 51u);
   for (std::size_t k = 0; k < hand.frames.size(); ++k) {
-    // The scene is begun a frame before its first step.
+    // The scene begins one frame before its first step.
     const double t = first + static_cast<double>(k) / 72;
     const null_xr::V palm = null_xr::palm_at(true, t);
     expect_at(hand.frames[k].joints[0].position_m, palm, "palm");
@@ -155,8 +155,8 @@ TEST_F(Sessions, StepsAndShowsEveryFrame) {
   for (const StoredArray& a : r.log.group().arrays) EXPECT_EQ(a.values.size(), 30u) << a.name;
 }
 
-/// A strict display shows a frame that took 20 ms after two periods, one that took 40 ms after three: 36 and 24 a
-/// second.
+/// A strict display shows a frame that took 20 ms after two periods, and one that took 40 ms after three: 36 and 24
+/// frames per second.
 TEST_F(Sessions, LateFramesAreDividedRates) {
   const LoopResult r = run(options("paper/capsule-sweep", 40), "blind=1,stalls=15:0.02;16:0.02;17:0.02;25:0.04");
   int twice = 0, thrice = 0;
@@ -171,7 +171,7 @@ TEST_F(Sessions, LateFramesAreDividedRates) {
   EXPECT_NEAR(r.summary.at("xr_fps_worst"), 24, 1e-4);
 }
 
-/// Runtimes that pace a slow application name multiples of the display's period.
+/// For a slow application, runtimes report multiples of the display's period.
 TEST_F(Sessions, SlowFramesBeforeTheFirstDoNotChangeTheRate) {
   const LoopOptions o = options("paper/capsule-sweep", 12);
   const LoopResult r = run(o, "blind=1,multiple=200");
@@ -198,8 +198,8 @@ TEST_F(Sessions, TheUserMayEndIt) {
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
-/// A garment, touched by the user's hand: it is seen though the scene holds it 1.2 m above its origin, and its mesh is
-/// saved with the recording.
+/// A garment touched by the user's hand: it is visible although the scene holds it 1.2 m above its origin, and its mesh
+/// is saved with the recording.
 TEST_F(Sessions, ClothMayBeAMesh) {
   LoopOptions o = options("garments/sleeve", 12);
   o.overrides = {R"(cloth.mesh.file="assets/sleeve-small.obj")"};
@@ -249,7 +249,7 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   expect_error(o, ExitCode::NoDevice, "XR_KHR_vulkan_enable2");
 }
 
-/// A point seen by an eye lies where the field of view's tangents say.
+/// A point seen by an eye is where the tangents of the field of view put it.
 TEST(Views, AnEyesClipSpace) {
   using render::operator*;
   const XrFovf fov{-0.9f, 0.6f, 0.8f, -0.7f};

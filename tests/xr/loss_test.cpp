@@ -1,4 +1,4 @@
-// A live session whose device is lost: what was recorded until then is stored and replays, and the error is said.
+// A live session whose device is lost: the frames so far are stored and can be replayed, and the error is reported.
 #include <gtest/gtest.h>
 #include <vulkan/vulkan.h>
 
@@ -10,15 +10,15 @@
 
 namespace {
 
-/// A device that goes after so many calls that submit or wait (-1: never), and stays away. Its work is done by
-/// then.
+/// A device that is lost after this number of calls that submit or wait (-1: never) and stays lost. Its work is
+/// finished by then.
 struct {
   int calls_left = -1;
   bool lost = false;
   std::string by;
 } device;
 
-/// Whether this call finds it gone; `finish` lets it end what it does, once.
+/// Whether this call finds the device lost; once, `finish` lets it finish its work.
 template <class Fn>
 bool goes(const char* call, Fn finish) {
   if (device.lost) return true;
@@ -51,7 +51,7 @@ class Loss : public Sessions {
  protected:
   ~Loss() override { device = {}; }
 
-  /// The device goes `calls` calls after the session has begun.
+  /// The device is lost `calls` calls after the session begins.
   LoopResult lost_after(LoopOptions o, int calls) {
     o.tell = [calls](const std::string& text) {
       if (text.ends_with(" Hz")) device.calls_left = calls;
@@ -80,7 +80,7 @@ class Loss : public Sessions {
   std::string failed_;
 };
 
-/// A step submits and waits, and so does a picture: the device goes at each of the four.
+/// A step submits and waits, and so does rendering: the device is lost at each of the four calls.
 TEST_F(Loss, WhereverInAFrame) {
   const LoopOptions o = options("paper/capsule-sweep", 60);
   std::set<std::string> failed;

@@ -10,7 +10,7 @@
 
 namespace clothbench::xr {
 
-/// Sessions on the null runtime in a folder that goes with the test.
+/// Sessions on the null runtime in a folder that the test removes at its end.
 class Sessions : public WithFolder {
  protected:
   Sessions() {
@@ -42,7 +42,7 @@ class Sessions : public WithFolder {
     return r;
   }
 
-  /// Positions after the whole of a scenario, run as on a desktop.
+  /// Positions at the end of a scenario, run as on a desktop.
   static std::vector<double> replayed(const LoopResult& live, const LoopOptions& o) {
     const Scene scene = load_scene(live.scenario.string());
     const auto solver = o.entry->make(o.settings, {});
@@ -55,7 +55,7 @@ class Sessions : public WithFolder {
     return state.position;
   }
 
-  nlohmann::json reported_;  ///< by the runtime, when its instance ended
+  nlohmann::json reported_;  ///< by the runtime, when its instance ends
 };
 
 }  // namespace clothbench::xr

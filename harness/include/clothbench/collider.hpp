@@ -17,7 +17,7 @@ struct Capsule {
   double radius_m = 0;
 };
 
-/// An affine map of space, rows of a 3 x 4 matrix: x -> linear part * x + last column [m].
+/// An affine map of space as rows of a 3 x 4 matrix: x -> linear part * x + last column [m].
 using Affine = std::array<std::array<double, 4>, 3>;
 
 /// Geometry of a mesh collider. It is shared between copies of a scene and never changed.
@@ -37,22 +37,22 @@ struct ColliderMesh {
   bool skinned() const { return !joints.empty(); }
 };
 
-/// An obstacle that the cloth must not penetrate. One struct serves all shapes; `shape` says which fields are used. The
-/// fields of a dynamic collider hold its state at t = 0; FrameMotion holds its later states.
+/// A collider: an obstacle that the cloth must not penetrate. One struct serves all shapes; `shape` decides which
+/// fields are used. The fields of a moving collider hold its state at t = 0; FrameMotion holds its later states.
 struct Collider {
   enum class Shape : std::uint8_t { Plane, Sphere, Box, Capsules, Mesh };
   Shape shape = Shape::Plane;
   std::string name;      ///< for tables and messages: "living_room/444c8313", "right-hand-sweep"
-  double margin_m = 0;   ///< distance [m] from the surface at which contact stops the cloth
+  double margin_m = 0;   ///< contact offset [m]: distance from the surface at which contact stops the cloth
   double friction = 0;   ///< Coulomb coefficient between cloth and collider
   Vec3 center_m{};       ///< plane: a point on it; sphere, box: centre
   Vec3 normal{};         ///< plane: unit vector into free space
   double radius_m = 0;   ///< sphere
   Vec3 half_extent_m{};  ///< box, along `axes`
   std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< box: orthonormal, in world coordinates
-  std::vector<Capsule> capsules;                                ///< their number never changes
+  std::vector<Capsule> capsules;                                ///< their number is constant during a run
   std::shared_ptr<const ColliderMesh> mesh;
-  bool recorded = false;  ///< a user's hand, recorded or in a live session: its speed is not known beforehand
+  bool recorded = false;  ///< a user's hand, recorded or live: its speed is not known in advance
 
   /// The feature that a solver must support to collide with it.
   Feature feature() const;
@@ -65,7 +65,7 @@ struct ColliderPose {
   std::vector<Affine> joints;  ///< of a skinned mesh: one matrix per joint
 };
 
-/// Poses of all dynamic colliders and grips at one instant. Between instants ends and vertices move in straight lines.
+/// Poses of all moving colliders and grips at one instant. Between instants, ends and vertices move in straight lines.
 struct FrameMotion {
   std::vector<ColliderPose> colliders;  ///< one per Scene::colliders
   std::vector<Vec3> grip_position_m;    ///< one per Scene::grips.vertices: its position while held

@@ -7,8 +7,8 @@ namespace clothbench {
 /// Process exit codes of the `clothbench` command.
 enum class ExitCode : int { Ok = 0, CheckFailed = 1, BadInput = 2, NoDevice = 3, Interrupted = 130 };
 
-/// Base class of all exceptions of the project. The message is complete: it names the file and JSON pointer, the
-/// argument, or the Vulkan call, and what was expected. A solver that diverges is a result (StepStatus).
+/// Base class of all exceptions of the project. The message is complete: it names what failed (file and JSON pointer,
+/// argument or Vulkan call) and what was expected. A solver that diverges is a result, not an error (StepStatus).
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, ExitCode code = ExitCode::BadInput)
@@ -19,7 +19,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A solver cannot be created or cannot load a scene. This gives a row of the results; any other Error ends the run.
+/// A solver cannot be created or cannot load a scene. The run becomes a row of results; other Errors end the command.
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}

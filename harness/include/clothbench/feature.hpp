@@ -7,8 +7,8 @@
 
 namespace clothbench {
 
-/// A property of scenes that solvers must support: one per row of feature_table.hpp. Only the loader derives them from
-/// the scenario (`derive_needs`). A run fails unless its stages serve exactly what the scene needs (`check_stages`).
+/// A property of scenes that solvers must support, one per row of feature_table.hpp. Only the loader (`derive_needs`)
+/// derives features from the scenario. A run fails unless its stages serve exactly these (`check_stages`).
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"
@@ -18,7 +18,7 @@ enum class Feature : std::uint8_t {
 
 enum class FeatureOf : std::uint8_t {
   Cloth,
-  Collider,  ///< touches the cloth
+  Collider,  ///< something that touches the cloth
   Data       ///< changes the data of a stage and needs no separate stage
 };
 
@@ -38,11 +38,11 @@ inline constexpr std::array<FeatureRow, kFeatureCount> kFeatures = {{
 
 constexpr std::string_view name_of(Feature f) { return kFeatures[static_cast<std::size_t>(f)].name; }
 
-/// A set of features; a value type with the usual set algebra.
+/// A set of features, with the usual set operations.
 class FeatureSet {
  public:
   constexpr FeatureSet() = default;
-  /// Bit k stands for the kth feature; bits beyond the last one are dropped.
+  /// Bit k stands for feature k; bits at and beyond kFeatureCount are dropped.
   constexpr explicit FeatureSet(std::uint32_t bits) : bits_(bits & ((1u << kFeatureCount) - 1)) {}
   constexpr FeatureSet(std::initializer_list<Feature> features) {
     for (Feature f : features) bits_ |= bit(f);

@@ -1,7 +1,7 @@
 // Every feature is a row here and a bit in clothbench_plugin.h, in the same order. A file that includes this one first
-// defines the macro FEATURE, with these arguments:
+// defines the macro FEATURE with these arguments:
 //   enumerator, name in files, suffix of the plugin's bit CLOTHBENCH_<suffix>, category (FeatureOf), description,
-//   expression that tells whether `scene` needs it (it may use helpers of harness/scenario/load.cpp).
+//   expression that is true if `scene` needs the feature (it may use helpers of harness/scenario/load.cpp).
 
 FEATURE(Stretch, stretch, STRETCH, Cloth, "stretch along the edges of the grid or mesh", true)
 FEATURE(Shear, shear, SHEAR, Cloth, "shear, along the diagonals of a grid", scene.material.shear && !scene.cloth.mesh)
@@ -19,7 +19,7 @@ FEATURE(MovingMesh, moving_mesh, MOVING_MESH, Collider, "a kinematic skinned mes
         touches(scene, Feature::MovingMesh))
 FEATURE(Friction, friction, FRICTION, Cloth, "Coulomb friction, on colliders or between layers of the cloth",
         rubs(scene))
-// A scene without colliders has no contact, so it does not need two-sided contact either.
+// Two-sided contact also needs colliders, because a scene without colliders has no contact.
 FEATURE(DoubleSided, double_sided, DOUBLE_SIDED, Cloth, "contact on both faces without a duplicated layer",
         scene.cloth.sides == Sides::Double && !scene.colliders.empty())
 FEATURE(DuplicatedLayer, duplicated_layer, DUPLICATED_LAYER, Cloth,

@@ -10,16 +10,16 @@ namespace clothbench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// How a run ended. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, error,
-/// over_budget (not run: a setting with less work had timed out).
+/// Result of a run. `status` is one of ok, not_finite, diverged, device_lost, timed_out, crashed, unsupported, error,
+/// over_budget (not run, because a setting with less work timed out).
 struct Outcome {
   std::string status = "ok";
-  std::string klass = "ok";  ///< failure class F0 to F3, or ok
+  std::string klass = "ok";  ///< outcome class F0 to F3, or ok
   int failed_frame = -1;
   std::string message;
-  /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" for a scene without it.
+  /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" if the scene has none.
   std::string expect = {};
-  std::string trajectory_sha256 = {};  ///< of the motion that this is the outcome of; set by the store
+  std::string trajectory_sha256 = {};  ///< hash of the motion that this result describes; set by the store
 };
 
 struct StageRecord {
@@ -46,15 +46,15 @@ struct TimedTrial {
   int index = 0;
   std::vector<double> frame_wall_s, frame_device_s;
   std::vector<double> stage_device_s, stage_read_B, stage_write_B;  ///< (frame, stage)
-  /// Mean wall time [s] of a frame when the same frames are run again without waiting for each. NaN if it was not
-  /// measured or the solver keeps no more than one frame in flight.
+  /// Mean wall time [s] of a frame if the trial's frames are run once more without waiting for each. NaN if not
+  /// measured, or if the solver keeps at most one frame in flight.
   double pipelined_wall_s = kMissing;
-  /// Wall times [s] of the first frames, run again with rendering; empty unless requested.
+  /// Wall times [s] of the first frames in a second run with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a solver that runs on the host; empty for a GPU solver. Time of the process
-  /// (CLOCK_PROCESS_CPUTIME_ID), the sum over its threads.
+  /// CPU times [s] of the timed frames of a CPU solver; empty for a GPU solver. CPU time of the process, summed over
+  /// its threads (CLOCK_PROCESS_CPUTIME_ID).
   std::vector<double> frame_cpu_s = {};
-  /// System time of the first timed frame's begin and the last one's end [s since 1970 UTC], for other programs.
+  /// System time at which the first timed frame begins and the last one ends [s since 1970 UTC], for other programs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
@@ -93,11 +93,11 @@ struct RunRecord {
   RunHeader header;
   std::vector<TimedTrial> trials;
   AccuracyPass accuracy;
-  std::vector<StoredGroup> replay;  ///< colliders and grips with their motion; see replay_of (results/store.hpp)
+  std::vector<StoredGroup> replay;  ///< motion of colliders and grips, from replay_of (results/store.hpp)
   Outcome outcome;
-  std::map<std::string, double> summary;  ///< every scalar a table prints; NaN = missing
-  std::string file = {};                  ///< path that a report read it from; empty if it was not read from a file
-  std::vector<StoredGroup> samples = {};  ///< device readings during the run (DeviceSamples); not read back
+  std::map<std::string, double> summary;             ///< every scalar for tables; NaN = missing
+  std::string file = {};                             ///< the file it was read from; empty if none
+  std::vector<StoredGroup> samples = {};             ///< device readings during the run (DeviceSamples); not read back
   std::map<std::string, std::string> withheld = {};  ///< summary values that a report must not print, and why
 };
 

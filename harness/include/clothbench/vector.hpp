@@ -7,7 +7,7 @@ namespace clothbench {
 
 using Vec3 = std::array<double, 3>;
 
-/// Vertex `v` of a list of coordinates (x, y, z of the first, of the second, …).
+/// Vertex `v` of interleaved coordinates (x, y, z of vertex 0, of vertex 1, …).
 template <class Numbers>
 Vec3 vertex_at(const Numbers& x, std::size_t v) {
   return {x[3 * v], x[3 * v + 1], x[3 * v + 2]};
@@ -19,10 +19,10 @@ inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// Not std::hypot(x, y, z): libstdc++'s gives 0 for (0, NaN, 0).
+/// Not std::hypot(x, y, z), which returns 0 for (0, NaN, 0) in libstdc++.
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
-/// Greater of two numbers, and NaN if either is: std::max would lose it.
+/// Maximum of two numbers, or NaN if either is NaN, which std::max could drop.
 inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
 }  // namespace clothbench

@@ -17,13 +17,13 @@ namespace {
 
 /// Depth [m] of a triangle in a capsule; 0 or less if it is outside.
 double depth_in(const Simplex<3>& triangle, const Capsule& c) {
-  // Most capsules are far away, which the boxes show at less cost; the factor covers rounding.
+  // Most capsules are far away; comparing boxes first is cheaper. The factor covers rounding.
   const double apart = box_of(triangle).squaredExteriorDistance(Box(c.a).extend(c.b));
   if (apart > c.radius_m * c.radius_m * (1 + 1e-12)) return 0;
   return c.radius_m - std::sqrt(squared_distance(c.a, c.b, triangle));
 }
 
-/// Whether a point on capsule `own` lies inside another. A surface that capsules share counts for the first of them.
+/// Whether a point on capsule `own` is inside another one. A surface that capsules share belongs to the first of them.
 bool hidden(const Point<3>& p, std::span<const Capsule> shapes, std::size_t own) {
   for (std::size_t k = 0; k < shapes.size(); ++k)
     if (k != own && signed_distance(p, shapes[k]) < (k < own ? 0 : -kCapsuleError * shapes[k].radius_m)) return true;
@@ -51,11 +51,11 @@ Kernel::Triangle_3 to_cgal(const Simplex<3>& v) {
   return {point(v[0]), point(v[1]), point(v[2])};
 }
 
-/// Point where the segment meets the plane of the triangle, known to lie between p and q.
+/// Intersection of segment p-q with the plane of the triangle; p and q lie on different sides.
 Point<3> point_of_crossing(const Point<3>& p, const Point<3>& q, const Simplex<3>& v) {
   const Point<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const double height_p = std::abs(normal.dot(p - v[0])), height_q = std::abs(normal.dot(q - v[0]));
-  // If the sum of the heights is rounding noise, so are both heights; then any point between will do.
+  // If the sum of the heights is rounding noise, so is each of them, and any point between p and q is accurate enough.
   const double share = height_p + height_q > 0 ? height_p / (height_p + height_q) : 0.5;
   return p + share * (q - p);
 }
@@ -68,8 +68,8 @@ void add_pair(Contour& to, const Simplex<3>& cloth, const Simplex<3>& object) {
 
 Point<4> at_time(const Point<3>& p, double t) { return {p[0], p[1], p[2], t}; }
 
-/// Whether a coordinate separates the motion p -> q from the triangle that moves from `from` to `to`. Both motions are
-/// linear, so a strict separation at the start and at the end holds in between, and a translation by e changes nothing.
+/// Whether a coordinate axis separates the motion p -> q from the triangle that moves from `from` to `to`. Both motions
+/// are linear, so a strict separation at start and end holds in between, and a translation by e changes nothing.
 bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex<3>& from, const Simplex<3>& to) {
   for (int k = 0; k < 3; ++k) {
     const auto [low_from, high_from] = std::minmax({from[0][k], from[1][k], from[2][k]});
@@ -79,7 +79,7 @@ bool separated_by_coordinate(const Point<3>& p, const Point<3>& q, const Simplex
   return false;
 }
 
-/// The edges at which a mesh is open.
+/// Border edges of a mesh: edges of one triangle only.
 std::vector<Link> border_of(const TriangleMeshView& mesh) {
   const std::vector<std::uint32_t> welded = welded_vertices(mesh);
   std::map<Link, int> passes;
@@ -152,7 +152,7 @@ ContactSample half_space_contact(const TriangleMeshView& cloth, const Point<3>& 
   return out;
 }
 
-// Each end of the segment is a crossing of an edge of one triangle with the other.
+// Each end of the intersection segment is where an edge of one triangle crosses the other triangle.
 std::optional<std::array<Point<3>, 2>> intersection(const Simplex<3>& cloth, const Simplex<3>& object) {
   std::array<Point<3>, 6> ends;
   int count = 0;
@@ -203,7 +203,7 @@ int signed_crossings(const Point<3>& p, const Point<3>& q, const TriangleTree& m
   return sum;
 }
 
-/// The ray follows the axis along which it leaves the mesh's box soonest; along an axis, the ray's box is the ray.
+/// The ray follows the axis along which it leaves the mesh's box soonest, because an axis-aligned ray is its own box.
 bool is_inside(const Point<3>& p, const TriangleTree& mesh) {
   const Box& box = mesh.tree().box();
   if (mesh.triangles().empty() || !box.contains(p)) return false;
@@ -272,7 +272,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
-  // A vertex cannot have moved around the border if its distances to it before and after exceed twice its displacement.
+  // If its distances to the border sum up to more than twice its displacement, a vertex has not moved around it.
   const std::vector<Link> border = border_of(mesh);
   const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();
@@ -290,7 +290,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
     for (const auto& [a, b] : links)
       if (step[a] == step[b] && step[a] != 0 && proven[a] != proven[b]) proven[a] = proven[b] = changed = true;
   }
-  // From the border of a piece inwards.
+  // Drop the crossings of every unproven group, from vertices with a link to other vertices inwards.
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : links) {

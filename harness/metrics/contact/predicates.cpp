@@ -11,8 +11,8 @@ namespace {
 template <class T, int N>
 using Square = std::array<std::array<T, N>, N>;
 
-/// Determinant by minors of two rows (Laplace). With kPermanent all terms are added: given |entries|, this is the sum
-/// of all magnitudes. Written out, because most of a contact metric's time is spent here.
+/// Determinant by minors of two rows (Laplace). With kPermanent all terms are added: for |entries| as input, this is
+/// the sum of the terms' magnitudes. Unrolled by hand, because contact metrics spend most of their time here.
 template <class T, int N, bool kPermanent = false>
 T determinant(const Square<T, N>& m) {
   const auto less = [](const T& a, const T& b) -> T { return kPermanent ? a + b : a - b; };
@@ -35,7 +35,7 @@ int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N
   return static_cast<int>(CGAL::sign(determinant<CGAL::MP_Float, N>(m)));
 }
 
-/// Sign of the determinant with its last row moved by shift * (e, e^2, e^3, 0): its first nonzero cofactor decides.
+/// Sign of the determinant, its last row moved by shift * (e, e^2, e^3, 0), e -> 0+: sign of the first cofactor not 0.
 template <int N>
 int perturbed_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail, int shift) {
   if (const int sign = sign_of_determinant<N>(head, tail)) return sign;
@@ -75,10 +75,10 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
   const double value = determinant<double, N>(m);
   const double bound = determinant<double, N, true>(magnitude);
   // A term is rounded at most 4 (differences) + 3 (products) + 6 (sums) times for N = 4: 13 * 2^-53 < 2^-48. The
-  // absolute bound covers errors of underflow; an overflow fails the comparison, as NaN does.
+  // absolute bound covers underflow errors. On overflow or NaN the comparison is false.
   constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
   if (std::abs(value) > kRelative * bound && bound > kLeast && std::isfinite(bound)) return value > 0 ? 1 : -1;
-  // Whether every term has a factor that is exactly 0. This is the common tie: points that share a coordinate.
+  // 0 if every term has a factor that is exactly 0, the most common tie: points that share a coordinate.
   for (auto& row : magnitude)
     for (double& x : row) x = x == 0 ? 0 : 1;
   if (determinant<double, N, true>(magnitude) == 0) return 0;
@@ -91,8 +91,8 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
   const int side_p = side<N>(simplex, p, shift);
   const int side_q = side<N>(simplex, q, shift);
   if (side_p * side_q >= 0) return 0;
-  // Seen along the segment, p lies in the simplex if replacing any corner by p keeps the orientation:
-  // det(q - p, w1 - w0, ..., p - w0), where w are the corners with one of them exchanged for the last.
+  // In a projection along the segment, p is inside if replacing any corner by p keeps the orientation det(q - p, w1 -
+  // w0, ..., p - w0), where w are the corners with the replaced one moved to the end.
   int first = 0;
   for (int i = N - 1; i >= 0; --i) {
     Simplex<N> w = simplex;
@@ -103,7 +103,7 @@ int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, in
     tail[0] = p;
     for (int k = 1; k < N - 1; ++k) head[k] = w[k];
     head[N - 1] = p;
-    // For i = 0 the exchange puts the last corner first.
+    // For i = 0 the swap moves the last corner to the front, which reverses the orientation.
     const int sign = perturbed_sign<N>(head, tail, shift) * (i == N - 1 ? 1 : -1);
     if (sign == 0) return 0;
     if (i == N - 1) first = sign;

@@ -231,7 +231,7 @@ double squared_distance(const Point<3>& a, const Point<3>& b, const Point<3>& c,
     s = uu > 0 ? unit(-uw / uu) : 0;
   }
   const double inner = (w + s * u - t * v).squaredNorm();
-  // Where the segments are nearly parallel, s is rounding noise; then a pair with an end of a segment is nearest.
+  // If the segments are nearly parallel, s is rounding noise; a pair that includes an end point is then nearest.
   const auto from = [&](const Point<3>& p, const Point<3>& start, const Point<3>& way, double squared) {
     const double share = squared > 0 ? unit(way.dot(p - start) / squared) : 0;
     return (p - start - share * way).squaredNorm();

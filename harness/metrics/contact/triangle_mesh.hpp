@@ -15,22 +15,22 @@ namespace clothbench::contact {
 template <int N>
 using Point = Eigen::Matrix<double, N, 1>;
 
-/// N points of N-space: a triangle for N = 3, a tetrahedron of space-time (x, y, z, t) for N = 4.
+/// N points in N dimensions: a triangle for N = 3, a tetrahedron in space-time (x, y, z, t) for N = 4.
 template <int N>
 using Simplex = std::array<Point<N>, N>;
 
-/// Exact sign (-1, 0, 1) of det(head[0] - tail[0], ..., head[N-1] - tail[N-1]), differences not rounded. N = 2, 3, 4.
-/// Uses floating point with an error bound first (after Shewchuk 1997), and exact arithmetic where that cannot decide.
+/// Exact sign (-1, 0, 1) of det(head[0] - tail[0], ..., head[N-1] - tail[N-1]), with exact differences. N = 2, 3, 4.
+/// Uses floating point with an error bound first (after Shewchuk 1997), then exact arithmetic if the sign is uncertain.
 template <int N>
 int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail);
 
-/// Whether and in which direction the segment p -> q crosses the simplex: +1 along its normal, -1 against it, 0 if not.
+/// Direction in which the segment p -> q crosses the simplex: +1 along its normal, -1 against it, 0 if it does not.
 ///
 /// Exact, also in degenerate configurations of p, q and the simplex: there the segment is translated by shift * (e,
-/// e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990, restricted to one common
-/// translation). One translation for all tests is consistent: a path through a common edge or vertex of triangles
-/// crosses those that it crosses after a small translation, and a path that ends on a surface is on a definite side of
-/// it. A simplex without volume is never crossed. The normal of a triangle (a, b, c) is (b - a) x (c - a).
+/// e^2, e^3) in space, e -> 0+ (simulation of simplicity, Edelsbrunner & Muecke 1990, with one common translation). One
+/// translation for all tests is consistent: a path through an edge or vertex shared by triangles crosses the ones that
+/// it crosses after a small translation, and a path that ends on a surface ends on a definite side. A simplex without
+/// volume is never crossed. A triangle (a, b, c) has the normal (b - a) x (c - a).
 template <int N>
 int crossing(const Point<N>& p, const Point<N>& q, const Simplex<N>& simplex, int shift = 1);
 
@@ -57,10 +57,10 @@ bool all_finite(std::span<const double>);
 /// For every vertex, the lowest index of a vertex at exactly the same position.
 std::vector<std::uint32_t> welded_vertices(const TriangleMeshView&);
 
-/// Two neighbouring points of a cloth, by number.
+/// Indices of two neighbouring vertices of a cloth.
 using Link = std::array<std::uint32_t, 2>;
 
-/// The edges of triangles, each once, the lower vertex first, in order.
+/// The edges of triangles, each once, with the lower vertex first; in ascending order.
 std::vector<Link> edges_of(std::span<const std::array<std::uint32_t, 3>> triangles);
 
 double area(const Simplex<3>& triangle);
@@ -73,13 +73,13 @@ inline Box grown(const Box& b, double by) {
   return {b.min() - Point<3>::Constant(by), b.max() + Point<3>::Constant(by)};
 }
 
-/// A hierarchy of boxes over items 0..n-1.
+/// A bounding volume hierarchy over the boxes of items 0..n-1.
 class BoxTree {
  public:
   BoxTree() = default;
   explicit BoxTree(std::vector<Box> boxes);
 
-  /// visit(item) for every item whose box meets `query`, faces included.
+  /// visit(item) for every item whose box overlaps or touches `query`.
   template <class Visit>
   void for_each_overlapping(const Box& query, Visit visit) const {
     if (boxes_.empty() || !query.intersects(box_)) return;
@@ -97,8 +97,8 @@ class BoxTree {
     }
   }
 
-  /// The item with the smallest squared_distance(item) below `bound`; -1 if there is none. `bound` becomes that
-  /// distance. squared_distance must not be less than the squared distance from `p` to the item's box.
+  /// The item with the smallest squared_distance(item) below `bound`; -1 if none. `bound` becomes its squared distance.
+  /// squared_distance must be at least the squared distance from `p` to the item's box.
   template <class SquaredDistance>
   int nearest(const Point<3>& p, double& bound, SquaredDistance squared_distance) const {
     int best = -1;
@@ -128,7 +128,7 @@ class BoxTree {
         const double squared = hierarchy_.getVolume(*volume).squaredExteriorDistance(p);
         if (squared < bound) stack.push_back({*volume, squared});
       }
-      // The nearer child goes on top of the stack, so that it is visited first.
+      // The nearer child is pushed last, so that it is visited first.
       if (stack.size() == first + 2 && stack[first].squared < stack[first + 1].squared)
         std::swap(stack[first], stack[first + 1]);
     }
@@ -145,14 +145,14 @@ class BoxTree {
   Hierarchy hierarchy_;
 };
 
-/// The triangles of a mesh that have area, in a tree for queries. Copies the data it needs.
+/// The triangles of a mesh that have a positive area, in a tree for queries. Copies its input.
 class TriangleTree {
  public:
   /// Throws Error unless positions come in threes, indices are in range and numbers are finite.
   explicit TriangleTree(const TriangleMeshView&);
 
   const std::vector<Simplex<3>>& triangles() const { return triangles_; }
-  /// Their numbers in the mesh.
+  /// Indices of these triangles in the mesh.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
   const BoxTree& tree() const { return tree_; }
 
@@ -174,7 +174,7 @@ struct Capsule {
   double radius_m;
 };
 
-/// Where on the axis the point nearest to p is, from 0 at a to 1 at b; 0 for a sphere.
+/// Parameter on the axis of its point nearest to p, from 0 at a to 1 at b; 0 for a sphere.
 double axis_share(const Point<3>& p, const Capsule&);
 
 /// Signed distance [m] to the surface, negative inside; exact.
@@ -187,9 +187,9 @@ struct CapsuleMesh {
   TriangleMeshView view() const { return {positions, triangles}; }
 };
 
-/// The triangles lie inside the capsule, so cloth outside it never crosses them. With kCapsuleSides sides around the
-/// axis and a quarter of that from equator to pole, they are at most 1 - cos²(π / kCapsuleSides) of the radius below
-/// the surface: kCapsuleError rounds that up.
+/// The triangles lie inside the capsule, so cloth outside the capsule never crosses them. With kCapsuleSides sides
+/// around the axis and a quarter as many from equator to pole, they are at most 1 - cos²(π / kCapsuleSides) of the
+/// radius below the surface; kCapsuleError is that number rounded up.
 CapsuleMesh capsule_mesh(const Capsule&);
 inline constexpr int kCapsuleSides = 32;
 inline constexpr double kCapsuleError = 0.01;
@@ -197,11 +197,11 @@ inline constexpr double kCapsuleError = 0.01;
 /// The surface near a point.
 struct Nearest {
   double distance_m;   ///< signed for capsules, unsigned for triangles
-  Point<3> normal;     ///< unit, from the surface to the point; zero where the point lies on it or on an axis
+  Point<3> normal;     ///< unit vector from the surface to the point; zero if the point is on the surface or on an axis
   Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest point of a union of capsules. `before`: the same ones at the previous frame, not spun about their axes.
+/// Nearest point of a union of capsules. `before`: the capsules one frame earlier; no capsule spins about its axis.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
 /// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.

@@ -1,4 +1,4 @@
-// How the cloth intersects the colliders of its scene: contour, depth, and what passes through between two frames.
+// Intersection of the cloth with the colliders of its scene: contour, depth, and passages between two frames.
 #include <algorithm>
 
 #include "metrics/collider_contact.hpp"
@@ -11,7 +11,7 @@ bool has_depth(const Scene& s) {
   return kWithContactMetrics && std::any_of(s.colliders.begin(), s.colliders.end(), has_inside);
 }
 
-/// The continuous check counts them (metrics/motion_check).
+/// Passages through colliders, which the continuous check counts (metrics/motion_check).
 double crossings(const RunView& r) {
   const motion_check::Finding* f = r.finding("crossing");
   return f == nullptr ? kMissing : motion_check::kCrossingTolerance * f->ratio;
@@ -19,9 +19,9 @@ double crossings(const RunView& r) {
 
 }  // namespace
 
-// Slack. Contact amplifies rounding until a fold lies elsewhere, so differences appear as whole edges and percents. The
-// slack of contour lengths is a third of an edge of a 32 x 32 cloth, and the slack of depths half of the millimetre
-// that the scenes' own verdicts allow. Those verdicts hold without any additional slack.
+// Tolerances. Contact amplifies rounding errors until folds move, so results differ by whole edges and by percents.
+// Contour lengths may differ by a third of an edge of a 32 x 32 cloth, and depths by half of the millimetre that scenes
+// allow in `expect`. The criteria in `expect` themselves have no such tolerance.
 MetricGroup contact_metrics() {
   using enum SlackUnit;
   using enum Expect;

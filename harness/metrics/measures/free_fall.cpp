@@ -5,8 +5,8 @@
 namespace clothbench {
 namespace {
 
-/// Displacement of a freely falling body under the solver's integrator. It is the same in every direction, so the
-/// solver declares it for the vertical only, and each component is evaluated as if it were vertical.
+/// Displacement of a freely falling body under the solver's integrator. Its law is the same in every direction, so the
+/// solver declares only the vertical one, and each component is computed as if vertical.
 Vec3 fall(const MetricContext& c, int frame) {
   Scene body;
   body.cloth = c.scene.cloth;
@@ -24,7 +24,7 @@ Vec3 fall(const MetricContext& c, int frame) {
   return way;
 }
 
-/// Greatest distance of a vertex's vector from the exact one, over `scale`; `exact(i, k)`: component k, entry i of all.
+/// Largest distance of a vertex's vector from the exact one, over `scale`; `exact(v, k)`: component k of vertex v.
 template <class Exact>
 double greatest_error(const std::vector<double>& values, double scale, Exact exact) {
   double most = 0;
@@ -39,7 +39,7 @@ double greatest_error(const std::vector<double>& values, double scale, Exact exa
   return std::sqrt(most);
 }
 
-/// Greatest distance of a vertex from the integrator's own fall, over |g| T^2 / 2; NaN at T = 0.
+/// Largest distance of a vertex from the integrator's free fall, divided by |g| T^2 / 2; NaN at T = 0.
 double free_fall_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;
@@ -50,8 +50,8 @@ double free_fall_error(const MetricFrame& f) {
                         [&](std::size_t i, std::size_t k) { return start[i] + way[k]; });
 }
 
-/// Greatest error of a vertex's velocity after a free fall without damping, divided by |g| T; NaN at T = 0. Every
-/// integrator of this field is exact here, so it shows velocities that do not belong to the motion.
+/// Largest error of a vertex's velocity in free fall without damping, divided by |g| T; NaN at T = 0. All common
+/// integrators are exact here, so an error shows velocities that do not match the motion.
 double free_fall_velocity_error(const MetricFrame& f) {
   if (f.index == 0) return kMissing;
   const Scene& s = f.context.scene;
@@ -61,7 +61,7 @@ double free_fall_velocity_error(const MetricFrame& f) {
   });
 }
 
-/// Integrators declare their fall only for even frames.
+/// Integrators declare their free fall only for frames of equal length.
 bool falls_freely(const Scene& s) {
   return touches_nothing(s) && kGravity.met(s) && s.time.ends_s.empty() && s.cloth.spin_rad_per_s == Vec3{};
 }

@@ -1,4 +1,4 @@
-// Hands that hold and pull the cloth: how well it follows them, how far it is stretched, and the strain after release.
+// Hands that grip and pull the cloth: how closely it follows them, how far it stretches, the strain after release.
 #include <algorithm>
 
 #include "metrics/registry.hpp"
@@ -20,8 +20,8 @@ double grip_error(const MetricFrame& f) {
   return most;
 }
 
-/// Stretch that the holding hands impose in a frame: their distance over that at the start. It is the maximum over all
-/// pairs of vertices that lay at least a quarter of the cloth's shorter side apart, and at least 1.
+/// Stretch that the attachments impose in a frame: their current distance divided by their distance at the start. It is
+/// the maximum over all pairs that started at least a quarter of the cloth's shorter side apart, and at least 1.
 double pulled(const Scene& scene, const std::vector<double>& start, std::size_t frame) {
   const FrameMotion& m = scene.motion[frame];
   const double apart = std::min(scene.cloth.width_m, scene.cloth.height_m) / 4;
@@ -36,7 +36,7 @@ double pulled(const Scene& scene, const std::vector<double>& start, std::size_t 
   return most;
 }
 
-/// Number of frames from the start during which any hand holds.
+/// Number of frames from the start during which any attachment is active.
 std::size_t held_frames(const RunView& r) {
   std::size_t f = 0;
   for (; f < r.pass.time_s.size(); ++f) {
@@ -50,7 +50,7 @@ bool has_grips(const RunView& r) {
   return !r.scene.grips.vertices.empty() && r.pass.time_s.size() <= r.scene.motion.size();
 }
 
-/// The maximum ratio of an edge to its rest length, divided by the stretch that the hands impose, while they hold.
+/// Largest ratio of an edge to its rest length, divided by the imposed stretch; maximum over the attached frames.
 double edge_ratio(const RunView& r) {
   const std::vector<double>* most = r.series("stretch_max");
   if (!has_grips(r) || most == nullptr) return kMissing;
@@ -61,7 +61,7 @@ double edge_ratio(const RunView& r) {
   return all == -1 ? kMissing : all;
 }
 
-/// Residual strain one second after the hands let go (the failure of the paper's Fig. 13).
+/// Strain one second after release (large in the failure that the paper's Fig. 13 shows).
 double strain_released(const RunView& r) {
   const std::vector<double>*mean = r.series("stretch_mean_positive"), &t = r.pass.time_s;
   if (!has_grips(r) || mean == nullptr) return kMissing;

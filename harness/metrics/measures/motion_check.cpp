@@ -14,7 +14,7 @@ MetricGroup motion_check_metrics() {
     };
     g.scalars.push_back(
         {.name = kMotionCheck + s.name,
-         .from = own({}, std::string(s.what) + ", over its tolerance: the largest of all frames", ratio, "1"),
+         .from = own({}, std::string(s.what) + ", divided by its tolerance; maximum over the frames", ratio, "1"),
          .present = [&s](const RunView& r) { return r.finding(s.name) != nullptr; }});
   }
   const auto frame = [](const RunView& r) {
@@ -22,7 +22,7 @@ MetricGroup motion_check_metrics() {
     return f == nullptr ? kMissing : f->frame;
   };
   g.scalars.push_back({.name = kMotionCheck + "frame",
-                       .from = own({}, "frame in which the statistic with the largest ratio has it", frame, "1"),
+                       .from = own({}, "frame with the largest ratio of all statistics", frame, "1"),
                        .present = [](const RunView& r) { return !r.findings().empty(); },
                        .better = Better::Neither});
   return g;

@@ -1,4 +1,4 @@
-// Displacements that nothing explains.
+// Displacements that no driver, neighbour or own motion explains.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,18 +9,18 @@
 namespace clothbench {
 namespace {
 
-/// Within some 30 ms the eye sums what it sees (Barlow 1958, by daylight): a viewer sees a jump there, not a motion.
-/// Whole frames, and two of them, since a snap that is shorter than a frame may begin before a frame and end after it.
+/// The eye sums light over some 30 ms (Barlow 1958, daylight): within it a viewer sees a jump, not a motion. At least
+/// two whole frames, since a snap shorter than a frame's duration may straddle a frame.
 double window_s(const Scene& scene) {
   constexpr double kRounding = 1e-9;
   return std::max(2.0, std::ceil(1.0 / 36 / scene.time.dt() - kRounding)) * scene.time.dt();
 }
 
-// A body that is hit leaves at up to twice the speed of what hits it, and a wave that arrives at a free edge moves that
-// edge at twice its own: it and its reflection add up. Two edges reflect it at a corner.
+// A body that is hit leaves at up to twice the speed of what hits it. A wave that arrives at a free edge moves it at
+// twice the wave's speed, because wave and reflection add up; at a corner, two edges reflect it.
 constexpr double kDoubled = 2, kAtCorner = 4;
 
-/// A time within a run: `share` of the way from frame `before` to the next.
+/// A time within a run: `share` is the fraction of the interval from frame `before` to the next.
 struct Moment {
   std::size_t before;
   double share;
@@ -32,13 +32,13 @@ Moment moment(const std::vector<double>& time_s, double t) {
   return {before, (t - time_s[before]) / (time_s[before + 1] - time_s[before])};
 }
 
-/// All vertices at a time.
+/// All vertices at one time.
 struct Instant {
   std::vector<Vec3> position_m;
   std::vector<double> path_m;  ///< length of the path since the first frame, negative before it
 };
 
-/// The motion of a run between frames; until the start all vertices move at their initial velocities.
+/// The motion of a run, interpolated between frames. Before the start all vertices move at their initial velocities.
 class Paths {
  public:
   explicit Paths(const RunView& r) : run_(r), vertices_(r.scene.cloth.vertex_count()), path_m_(vertices_, 0) {
@@ -74,7 +74,7 @@ class Paths {
   std::vector<double> path_m_;  ///< of each frame's vertices
 };
 
-/// Distance [m] that the fastest collider or grip has gone by the end of each frame.
+/// Path length [m] by the end of each frame, summed over the fastest collider or grip of each frame.
 std::vector<double> driven_m(const RunView& r) {
   const std::vector<double> speeds = driving_speeds_m_per_s(r.scene);
   std::vector<double> way(r.pass.time_s.size(), 0);
@@ -85,8 +85,8 @@ std::vector<double> driven_m(const RunView& r) {
 
 /// Neighbours that can move a vertex.
 struct Surroundings {
-  std::vector<std::uint32_t> near;  ///< the vertices up to two edges away, without itself: a fold is at least this wide
-  double gain;                      ///< largest ratio of its speed to theirs
+  std::vector<std::uint32_t> near;  ///< vertices up to two edges away, without itself: folds are at least this wide
+  double gain;                      ///< largest ratio of the vertex's speed to its neighbours' speeds
 };
 
 std::vector<Surroundings> surroundings(const Cloth& cloth) {
@@ -105,9 +105,9 @@ std::vector<Surroundings> surroundings(const Cloth& cloth) {
   return out;
 }
 
-/// Maximum displacement in the second of three windows beyond the explained one. This is the largest of twice the path
-/// of any driver in any window, twice the vertex's own displacement in the first or third window in this direction, and
-/// the neighbours' paths in these two windows times the vertex's gain. `x` has the windows' ends.
+/// Maximum displacement in the second of three windows beyond the explained one. Explained is the largest of: twice the
+/// path of any driver in any window; twice the vertex's displacement in the first or third window in the same
+/// direction; a neighbour's path in these two windows times the vertex's gain. `x`: states at the ends of the windows.
 double unexplained_m(const std::array<Instant, 4>& x, double driven_m, const std::vector<Surroundings>& round) {
   const auto displacement = [&](std::size_t window, std::size_t v) {
     return minus(x[window + 1].position_m[v], x[window].position_m[v]);

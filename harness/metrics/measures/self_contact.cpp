@@ -7,7 +7,7 @@ namespace {
 
 bool touches_itself(const Scene& s) { return kWithContactMetrics && s.needs.has(Feature::SelfCollision); }
 
-/// Excess over the start frame's value, so that a start that crosses itself is not counted against a solver.
+/// Excess over the value at the start, so that a self-intersecting start does not count against a solver.
 Reduction beyond_start(Reduction r) {
   return {r.series, r.how + ", minus the value of the initial frame",
           [series = r.series.front(), value = r.value](const RunView& run) {

@@ -8,7 +8,7 @@ namespace {
 bool is_judged(const Scene& s) { return !s.stability.name.empty(); }
 bool with_judge(const RunView& r) { return is_judged(r.scene); }
 
-/// 0 stable, 1 degraded, 2 failed, also by an end that frames do not show; none if the solver does not run the scene.
+/// 0 stable, 1 degraded, 2 failed (also if the run ends early without a sign in its frames); none if unsupported.
 double grade(const RunView& r) {
   using enum StabilityVerdict::Grade;
   if (r.outcome.status == "unsupported") return kMissing;

@@ -1,4 +1,4 @@
-// Figures from the clock and the plan of a run: times, rates, bytes, memory.
+// Scalars from the clock and the plan of a run: times, rates, bytes, memory.
 #include <algorithm>
 #include <numeric>
 
@@ -14,7 +14,7 @@ constexpr double kBandwidthWindow_s = 5;  // the paper's Fig. 5
 double median(const std::vector<double>& v) { return quantile(v, 0.5); }
 using Values = std::vector<double>;
 
-/// One number of each trial that has frames.
+/// One number per trial that has frames.
 template <class Of>
 Values of_trials(const RunView& r, Of of) {
   Values out;
@@ -23,7 +23,7 @@ Values of_trials(const RunView& r, Of of) {
   return out;
 }
 
-/// The frames of all trials.
+/// One series over the frames of all trials, joined.
 Values of_frames(const RunView& r, Values TimedTrial::*list) {
   Values out;
   for (const TimedTrial& t : r.run->trials)
@@ -47,7 +47,7 @@ struct Bandwidth {
   double peak = kMissing, window_s = kMissing;
 };
 
-/// Bytes per second of one trial in windows of 5 s (of the whole trial where that is shorter).
+/// Bytes per second of one trial in windows of 5 s (a shorter trial is one window).
 Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_bytes) {
   const std::size_t frames = trial.frame_wall_s.size();
   if (frames == 0 || stage_bytes.size() < frames) return {};
@@ -69,7 +69,7 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// Maximum of concurrent clothbench processes while the run was loaded and timed; missing if a part does not state it.
+/// Maximum number of concurrent clothbench processes while the run was loaded and timed; missing if a part lacks it.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;
@@ -109,13 +109,13 @@ Scalar reported(Better better, const char* name, const char* units, const char* 
           .of_machine = true};
 }
 
-/// A value that follows from the solver's buffers and kernels on any machine.
+/// A value that follows from the solver's buffers and kernels, whatever the machine.
 Scalar of_solver(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
                  const Gate* gate = nullptr) {
   return {.name = name, .from = own({}, doc, std::move(value), units), .gate = gate, .present = timed};
 }
 
-/// A value that the code which runs a study or reads the device stores.
+/// A value stored by the code that runs a study or reads the device.
 Scalar reading(const char* name, const char* units, const char* doc, Better better = Better::Neither) {
   return {.name = name, .from = own({}, doc, nullptr, units), .better = better, .of_machine = true};
 }

@@ -1,4 +1,4 @@
-// Where the cloth rests: how much of it touches, how far it slides, how low it hangs.
+// Contact without penetration: how much of the cloth touches, how far it slides, how low it hangs.
 #include <algorithm>
 #include <limits>
 

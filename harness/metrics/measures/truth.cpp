@@ -1,4 +1,4 @@
-// Distance of a run from its scene's truth, per frame and as a whole; energy of scenes that conserve it.
+// Distance of a run from its scene's exact solution, per frame and overall; energy of scenes that conserve it.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ auto truth_field(double TruthErrors::*field) {
   return [field](const MetricFrame& f) { return (*f.truth).*field; };
 }
 
-/// Energy minus that at the start, over M g L.
+/// Energy minus the energy at the start, divided by M g L.
 double energy_rise(const MetricFrame& f) {
   const Scene& s = f.context.scene;
   const ClothState& state = f.state;
@@ -42,7 +42,7 @@ double energy_rise(const MetricFrame& f) {
   return energy / (total * length(s.gravity_m_per_s2) * std::max(c.width_m, c.height_m));
 }
 
-/// Only for a run that reaches its end: a pass that was cut short has no error.
+/// Null unless the run reaches its end: an incomplete pass has no error.
 const std::vector<double>* whole_series(const RunView& r, const std::string& name) {
   return r.whole() ? r.series(name) : nullptr;
 }
@@ -53,7 +53,7 @@ double greatest_amount(const std::vector<double>& values) {
   return most;
 }
 
-/// `moving` is for an exact solution that moves; for one at rest only the last frame counts.
+/// `moving` reduces the series of a moving exact solution; for a solution at rest only the last frame counts.
 Reduction of_whole(const char* series, const char* how, double (*moving)(const RunView&, const std::vector<double>&)) {
   return {{series}, how, [=, name = std::string(series)](const RunView& r) {
             const std::vector<double>* v = whole_series(r, name);
@@ -83,7 +83,7 @@ double truth_error(const RunView& r) {
   return over_time(r.reference_case().by_quantity ? "truth_quantity_error" : "truth_error_e2").value(r);
 }
 
-/// Bound on another scalar of a whole run.
+/// Upper bound on another scalar of a whole run.
 Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
   const auto value = [bound](const RunView& r) { return r.whole() ? r.exact_bound().*bound : kMissing; };
   return {
@@ -93,7 +93,7 @@ Scalar bound_on(const std::string& scalar, double ExactBound::*bound) {
       .better = Better::Neither};
 }
 
-/// Values that a study adds to the summaries of a scene's runs: runner/reference.cpp, truth_dependence.cpp.
+/// Values that a study adds to the summaries of a scene's runs; see runner/reference.cpp and truth_dependence.
 Scalar of_the_study(const char* name, const char* doc, const Gate* gate = nullptr) {
   return {.name = name, .from = own({}, doc, nullptr, "1"), .gate = gate, .better = Better::Neither};
 }

@@ -11,7 +11,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Radius [m] of a finger: what a skinned hand may move in a frame before the direction of its force is unknown.
+/// Radius [m] of a finger. If a skinned hand moves by much of it in a frame, the direction of its force is unknown.
 constexpr double kFinger_m = 0.01;
 /// Frames whose contacts are kept: a window and its neighbours.
 constexpr std::size_t kFramesKept = 16;
@@ -77,7 +77,7 @@ Pose& AllBodies::pose(Body& b, std::size_t frame) {
   return *slot;
 }
 
-/// Largest displacement [m] of a collider between the frame before and this one.
+/// Largest displacement [m] of a collider's point from the previous frame to this one.
 double AllBodies::displacement(Body& b, std::size_t frame) {
   if (!b.moves() || frame == 0 || frame >= m.frames) return 0;
   std::pair<std::size_t, double>& known = b.displacements[frame % b.displacements.size()];
@@ -140,9 +140,9 @@ void AllBodies::touch_capsules(Body& b, std::size_t frame, const std::vector<V3>
   }
 }
 
-/// Every triangle of the surface within reach of a triangle of the cloth may push along its own normal, and along the
-/// shortest way between the two: a frame does not say where in it they met. Where the cloth moves by more than half a
-/// cell, the overlap of boxes decides about triangles that are smaller than the reach.
+/// Every surface triangle within reach of a cloth triangle may push along its own normal, and along the line between
+/// the nearest points of both: a frame does not tell when they met. If the cloth moves by more than half a cell,
+/// surface triangles smaller than the reach count if their boxes overlap.
 void AllBodies::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
                                bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
@@ -173,7 +173,7 @@ void AllBodies::touch_triangle(Body& b, Pose& p, const Corners& corners, const s
     if (!(d < reach)) return;
     for (const std::uint32_t v : corners) (*flags)[v] = true;
     const V3 way = d > 0 ? V3((best[0] - best[1]) / d) : normal;
-    // Over the triangles of one flat face, the way to the farther one is no normal of the surface.
+    // Next to coplanar triangles of one face, the direction to the farther triangle is not a surface normal.
     if (way.dot(normal) < 0.99 && b.kind.nearest != nullptr) {
       const SurfacePlace at = b.kind.nearest(b.collider, {best[0][0], best[0][1], best[0][2]});
       if (to_v3(at.normal).dot(normal) > 1 - 1e-6) {
@@ -215,7 +215,7 @@ void AllBodies::touch_surface(Body& b, std::size_t frame, const std::vector<V3>&
     for (const V3& q : x) places.push_back(b.kind.nearest(b.collider, {q[0], q[1], q[2]}));
   for (const Corners& t : m.triangles) {
     const double allowed = std::max({reach[t[0]], reach[t[1]], reach[t[2]]});
-    // Over one flat face nothing of a triangle is nearer than its vertices.
+    // Above one flat face, the nearest point of a cloth triangle is a vertex.
     if (!places.empty() && places[t[0]].normal == places[t[1]].normal && places[t[0]].normal == places[t[2]].normal) {
       const auto near = [&](std::uint32_t v) { return places[v].distance_m < allowed; };
       if (std::none_of(t.begin(), t.end(), near)) continue;
@@ -227,7 +227,7 @@ void AllBodies::touch_surface(Body& b, std::size_t frame, const std::vector<V3>&
       continue;
     }
     touch_triangle(b, p, t, x, allowed, any);
-    if (any && m.has_attachments() && found->size() > before) {  // any force at all: the frame is not judged
+    if (any && m.has_attachments() && found->size() > before) {  // any force is possible: the frame is not evaluated
       flags->assign(x.size(), true);
       return;
     }
@@ -250,7 +250,7 @@ void AllBodies::touch(Body& b, std::size_t frame, const std::vector<V3>& x, cons
     touch_capsules(b, frame, x, its_reach, any);
   else
     touch_surface(b, frame, x, its_reach, any);
-  // Depth, where a signed distance is known.
+  // Depth, if a signed distance is known.
   const double margin = b.collider.margin_m > 0 ? b.collider.margin_m : kInfinite;
   const double allowed =
       std::max(std::isfinite(b.radius_m) ? std::min(margin, b.radius_m / 4) : (std::isfinite(margin) ? margin : 0.0),
@@ -302,7 +302,7 @@ std::span<const Contact> AllBodies::contacts(std::size_t frame) {
     half_way.push_back(way / 2);
   }
   for (Body& b : bodies) touch(b, frame, x, half_way);
-  // Neighbouring triangles touch at their common vertices.
+  // Neighbouring triangles give equal contacts at their common vertices; keep one of them.
   std::unordered_set<std::uint64_t> known_places;
   std::erase_if(*found, [&](const Contact& c) {
     std::uint64_t place = c.any_force ? 1 : std::bit_cast<std::uint64_t>(c.friction);

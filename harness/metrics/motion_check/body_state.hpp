@@ -16,7 +16,7 @@ using contact::Box;
 using contact::Simplex;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Contact offsets are met to a tenth.
+/// Tolerance of contact offsets: a tenth.
 inline constexpr double kOffsetFactor = 1.1;
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -29,8 +29,8 @@ struct MedialPoint {
   V3 at_rest;
 };
 
-/// The centre line of one collider in any pose: the axes of its capsules, or in a hand mesh the segments through the
-/// middles of the flesh round each joint of the fingers. Empty for other colliders.
+/// The centre line of one collider in any pose: the axes of its capsules or, for a hand mesh, segments through the
+/// centres of the flesh around the joints of each finger. Empty for other colliders.
 class CentreLine {
  public:
   explicit CentreLine(const Collider& c);
@@ -46,8 +46,8 @@ struct Pose {
   std::vector<Capsule> capsules;
   std::vector<double> positions;
   std::vector<std::uint32_t> near;         ///< triangles that may be within reach of the cloth
-  std::unique_ptr<contact::BoxTree> tree;  ///< of those
-  std::vector<bool> noted;                 ///< of those: which are contacts of the frame already
+  std::unique_ptr<contact::BoxTree> tree;  ///< over the triangles in `near`
+  std::vector<bool> noted;                 ///< per triangle in `near`: whether it is already a contact of the frame
 };
 
 struct Body {
@@ -56,20 +56,20 @@ struct Body {
   double offset_m;
   CentreLine line;
   double radius_m = kInfinite;
-  std::vector<double> lengths_m = {};  ///< of its capsules at the start
+  std::vector<double> lengths_m = {};  ///< of its capsules' axes at the start
   std::vector<Corners> triangles = {};
   std::array<std::unique_ptr<Pose>, 4> poses = {};
-  std::array<std::pair<std::size_t, double>, 4> displacements = {};  ///< [m] by frame, from the frame before it
+  std::array<std::pair<std::size_t, double>, 4> displacements = {};  ///< (frame, displacement [m] in it)
   std::unique_ptr<contact::TriangleTree> still = nullptr;            ///< the surface of a static mesh
   std::unique_ptr<contact::TriangleTree> middle = nullptr;           ///< the middle plane of a box
   std::vector<double> middle_positions = {};
   std::vector<Corners> middle_triangles = {};
-  std::vector<V3> inner = {};  ///< points deep inside, of a body at rest
+  std::vector<V3> inner = {};  ///< points deep inside a static body
 
   bool moves() const { return collider.moves(); }
 };
 
-/// Gives a plate its middle plane, as far from its border as from its faces. A bar has none.
+/// Gives a plate its middle plane, inset from its border by half the thickness. A bar gets none.
 void add_middle(Body& b);
 
 inline Box box_of(std::span<const double> positions) {
@@ -137,7 +137,7 @@ inline std::array<V3, 2> nearest_of_segments(const V3& a, const V3& b, const V3&
   return {a + s * u, c + t * v};
 }
 
-/// The nearest of pairs of points.
+/// Keeps the nearest of several pairs of points.
 struct NearestPair {
   std::array<V3, 2> best;
   double least = kInfinite;
@@ -167,8 +167,8 @@ inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex
   return out.best;
 }
 
-/// The same for a triangle on one side of the plane of `s`: with its vertex that is nearest to that plane. If the foot
-/// of this vertex is inside `s`, nothing is nearer.
+/// Nearest points if a triangle lies on one side of the plane of `s`; `lowest`: its vertex nearest to that plane. If
+/// this vertex projects into `s`, no other point is nearer.
 inline std::array<V3, 2> nearest_to_plane(const Simplex<3>& t, const Simplex<3>& s, std::size_t lowest,
                                           const Box& box) {
   const V3 weights = contact::nearest_weights(t[lowest], s);

@@ -1,5 +1,5 @@
-// Cloth hinges on each straight line across it: links meet the line where they cross it, so except for bending rigidity
-// they exert no moment about the line on the part beyond it. A part that nothing touches must turn as gravity turns it.
+// Cloth bends freely about a straight line across it: links cross the line in points on it, so except for bending
+// rigidity they exert no moment about it. Gravity alone must explain how a part beyond it without contact rotates.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,20 +12,20 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Intervals over which a moment is averaged.
+/// Numbers of intervals over which a moment is averaged.
 constexpr std::size_t kSpans[] = {1, 3, 12};
 constexpr std::size_t kKept = 12;
-/// Depth of a part beyond a line, in cells.
+/// Minimum depth of the part beyond a line, in cells.
 constexpr double kDeep = 2.8;
-/// Limits for a line that links cross between vertices: distance of a crossing from it, in cells; vertices beyond it.
+/// Limits if links cross a line between vertices: offset of a crossing from the line, in cells; vertices beyond it.
 constexpr double kFlat = 0.1;
 constexpr std::size_t kMany = 20;
-/// Forces of a line that is not straight act this many times their sum beside it.
+/// If a line is not straight, forces act at most this many times the bulge away from it.
 constexpr double kBulge = 6;
 
 /// A point of the grid: column and row.
 using Place = std::array<int, 2>;
-/// All places with p i + q j = c; the part beyond has more.
+/// All grid points with p i + q j = c; for the part beyond the line, p i + q j > c.
 struct Line {
   int p, q, c;
   int level(const Place& at) const { return p * at[0] + q * at[1]; }
@@ -94,7 +94,7 @@ class Hinges {
     double value = 0, scale = 0, hidden = 0;  ///< [N m]
     std::size_t beyond = 0;                   ///< vertices of the part
   };
-  /// Lines along rows, columns, diagonals and edges of the hull of what is blocked; through the middle if nothing is.
+  /// Rows, columns, diagonals and hull edges at the border of the hull `blocked`; through the centre if it is empty.
   std::vector<Line> lines_of(const std::vector<Place>& blocked) const {
     const Place last = place_.back();
     std::vector<Line> out;
@@ -116,7 +116,7 @@ class Hinges {
     return out;
   }
 
-  /// Where the sheet crosses a line: its vertices on it, in their order, and then its links.
+  /// Points of the sheet on a line: first its vertices, in order along the line, then points on links that cross it.
   std::vector<V3> crossings(const Line& line, std::size_t k, std::size_t& vertices) const {
     std::vector<std::pair<int, V3>> on;
     std::vector<V3> links;
@@ -143,7 +143,7 @@ class Hinges {
     return out;
   }
 
-  /// Moment about a line, of the part beyond it, in the intervals around a frame.
+  /// Moment about a line of the forces on the part beyond it, in the two intervals around a frame.
   Moment moment(const Line& line, std::size_t k) const {
     const std::vector<V3>&force = force_[k % kKept], &velocity = relative_[k % kKept];
     std::size_t vertices = 0;
@@ -168,10 +168,10 @@ class Hinges {
       net += mass * size;
       ++out.beyond;
     }
-    // A curved sheet is stiff, and a corner whips.
+    // A curved sheet is stiff in bending, and a corner moves like a whip; neither is evaluated.
     if (on.size() > vertices && (bulge_m > kFlat * m_.cell_m || out.beyond < kMany)) return {};
     out.hidden *= m_.dt(k) / 3;
-    // A line that is not straight exerts moments by what it bulges.
+    // If the line is not straight, links exert moments with its bulge as lever arm.
     out.hidden += kBulge * bulge_m * net + 3 * m_.scene.material.bending_rigidity_N_m * length_m / m_.cell_m;
     return out;
   }
@@ -188,7 +188,7 @@ class Hinges {
       sum.value += now.value, sum.hidden += now.hidden, sum.scale += now.scale, sum.beyond = now.beyond;
     }
     double off = std::max(0.0, std::abs(sum.value) - sum.hidden) / sum.scale;
-    if (span == 3) {  // an impact may take one of three intervals
+    if (span == 3) {  // an impact may fall into one of three intervals
       std::sort(each.begin(), each.end());
       off = std::min(off, each[1]);
     }
@@ -196,22 +196,22 @@ class Hinges {
     found_.add("hinge", off / allowed, k);
   }
 
-  /// Distance of two lines of one direction, a level apart.
+  /// Distance of neighbouring parallel lines, c and c + 1.
   double spacing_m(const Line& line) const {
     return 1 / std::hypot(line.p / m_.scene.cloth.du(), line.q / m_.scene.cloth.dv());
   }
   const Motion& m_;
   Findings& found_;
   std::vector<Place> place_;                             ///< of each vertex
-  std::vector<std::vector<Place>> blocked_;              ///< per frame: hull of what is touched or held
+  std::vector<std::vector<Place>> blocked_;              ///< per frame: hull of the vertices that are touched or held
   std::array<std::vector<V3>, kKept> force_, relative_;  ///< of the last frames: residual acceleration; velocity
-  std::array<std::map<Line, Moment>, kKept> known_;      ///< of the last frames, since spans share moments
+  std::array<std::map<Line, Moment>, kKept> known_;      ///< of the last frames; spans share moments
 };
 
 }  // namespace
 
 void check_hinges(const Motion& m, Bodies& bodies, Findings& found) {
-  // Layers in contact exert forces on each other that positions do not tell.
+  // Positions do not reveal the forces between layers in contact.
   if (m.scene.cloth.mesh || m.scene.cloth.self_collision.thickness_m > 0) return;
   found.define("hinge");
   Hinges(m, bodies, found).run();

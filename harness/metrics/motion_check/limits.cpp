@@ -1,4 +1,4 @@
-// Speed, energy and strain that falls, colliders and attachments can give to the cloth.
+// Speed, energy and strain that falling, colliders and attachments can give the cloth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Membrane stiffness [N/m] above which more is not charged: strain then measures a solver's accuracy.
+/// Membrane stiffness [N/m] at which the charge for stored energy is capped: above, strain shows a solver's accuracy.
 constexpr double kStiffest = 1000, kInextensible = 1e4;
 
 class Limits {
@@ -72,7 +72,7 @@ class Limits {
           k);
   }
 
-  /// The kinetic energy of a frame's chord is a lower bound of the mean within the frame (Jensen's inequality).
+  /// Kinetic energy from a frame's mean velocities is a lower bound of the mean within the frame (Jensen's inequality).
   void energy(std::size_t k) {
     double mean_square = 0;
     for (const Edge& e : m_.edges) mean_square += std::pow(m_.strain(k, e), 2);
@@ -91,7 +91,7 @@ class Limits {
     }
     const double potential = g * height_gained * (m_.gravity.norm() > 0);
     rise(k, kinetic + potential, kinetic, mean_square);
-    // Links without a limit of stiffness store any energy at a start that strains them.
+    // If the scene states no stiffness, links may store any energy in a strained start.
     if (moves_ || (!stiffness_ && mean_square > 0 && !m_.scene.cloth.start.at_rest())) return;
     kinetic_most_ = std::max(kinetic_most_, kinetic);
     const double step = 3 * g * t * std::sqrt(2 * kinetic_most_ * M), noise = 6 * M * std::pow(m_.resolution_m / t, 2);
@@ -99,8 +99,8 @@ class Limits {
     found_.add("energy", (kinetic + potential - start_energy_ - elastic_start_) / allowed, k);
   }
 
-  /// Nothing but what moves gives energy: the cloth has no more than in any earlier frame. Energy that links
-  /// and hinges may store, and energy that a rebound hides for a few frames, count in the earlier frame only.
+  /// Only driven colliders and attachments add energy: otherwise the cloth has at most its energy in any earlier frame.
+  /// The earlier frame's energy includes what links and bending may store and what a rebound hides for a few frames.
   void rise(std::size_t k, double energy, double kinetic, double mean_square) {
     constexpr std::size_t kHides = 4;
     double bent = 0;
@@ -141,7 +141,7 @@ class Limits {
     double charged = 0, compressed = 0, count = static_cast<double>(std::max<std::size_t>(m_.edges.size(), 1));
     const std::vector<bool> held =
         m_.scene.grips.vertices.empty() ? std::vector<bool>(m_.vertices, false) : m_.is_held(k);
-    std::vector<std::array<double, 2>> loose;  // changes of strain in the frame, and the speeds of impacts
+    std::vector<std::array<double, 2>> loose;  // change of strain in the frame, impact speed
     for (const Edge& e : m_.edges) {
       if (!(e.rest_m > 0)) continue;
       const double s = m_.strain(k, e);
@@ -162,10 +162,10 @@ class Limits {
     }
     if (k == 0) charged_start_ = charged, compressed_start_ = compressed;
     const double weight = m_.mass_kg * m_.weight_unit, Y = stiffness_.value_or(kInextensible);
-    // A recoil compresses by the previous stretch, an impact by its speed over the speed of a wave.
+    // A recoil compresses by at most the previous stretch, an impact by its speed divided by the wave speed.
     const double sudden = std::sqrt(tensile_) + scripted_ / wave_speed();
     found_.add("compression", (compressed - compressed_start_) / (0.02 + 2 * weight / (m_.length_m * Y) + sudden), k);
-    // The stiffness of links that should not stretch at all is the solver's own.
+    // Without a stated stiffness, the stiffness of links is the solver's choice.
     if (!stiffness_) return;
     const double pays = m_.mass_kg * (m_.weight_unit * std::max(top_ - lowest_, m_.length_m) + 2 * driven_ * driven_) +
                         Y * area_m2_ * imposed_ * imposed_;
@@ -173,8 +173,8 @@ class Limits {
     found_.add("strain", stored / pays / (scripted_ > 0 ? 3 : 1), k);
   }
 
-  /// Speed [m/s] at which an edge in reach of a collider meets it in the interval before a frame: the collider may stop
-  /// or reverse one end, and the other end goes on. It is the speed of the interval before: no jump excuses itself.
+  /// Speed [m/s] at which an edge in reach of a collider hits it in the interval before frame k: the collider may stop
+  /// or reverse one end while the other moves on. Taken from the interval before that, so that no jump explains itself.
   double impact_speed(std::size_t k, const Edge& e) const {
     double fastest = 0;
     bool in_reach = false;
@@ -198,15 +198,15 @@ class Limits {
   Findings& found_;
   double scripted_, driven_ = 0, area_m2_ = 0;
   bool moves_;
-  /// A whip puts the energy of the sheet into its border, whose vertices have half the mass of the others.
+  /// Bound on a whip's speed: the sheet's energy in its border, whose vertices have half the mass of others.
   double whip_;
   std::optional<double> stiffness_;
-  std::vector<bool> is_held_;  ///< in any frame
+  std::vector<bool> is_held_;  ///< per vertex: attached in any frame
   double top_ = -1e300, lowest_ = 1e300, budget_ = 0, tensile_ = 0;
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
   double imposed_ = 0;  ///< largest strain next to an attachment so far
   std::vector<Edge> bends_;
-  /// Last frames in which nothing gave energy: upper bound of the energy of the cloth, and its kinetic energy [J].
+  /// Of the last frames without a driver: upper bound of the cloth's energy, and its kinetic energy [J].
   std::vector<double> had_, kinetic_;
   double stored_before_ = 0, least_ = std::numeric_limits<double>::infinity();
 };

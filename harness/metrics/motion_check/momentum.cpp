@@ -1,6 +1,6 @@
-// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so no law of the material
-// is needed: what gravity and damping leave must be a force that attachments and colliders in reach can exert. Its
-// distance to their cone: by column generation and non-negative least squares (Lawson & Hanson 1974, 23).
+// Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so no material law is
+// needed: the force beyond gravity and damping must be one that attachments and colliders in reach can exert. Distance
+// from their cone: by column generation and non-negative least squares (Lawson & Hanson 1974, 23).
 #include <algorithm>
 #include <cmath>
 
@@ -11,18 +11,18 @@ namespace {
 
 /// Mean distance [frames] of an impulse from its stored frame, the mean hat weight of a second difference.
 constexpr double kChord = 1.0 / 3;
-/// Tolerance [weights] of a force that lasts, and the share of a tolerance below which distances are not resolved.
+/// Tolerance [weights] of a lasting force; fraction of a tolerance to which distances are computed.
 constexpr double kLasting = 0.05, kResolved = 0.1;
-/// Frames over which mean forces are taken.
+/// Number of intervals over which forces are averaged.
 constexpr std::size_t kWindow = 12;
-/// Slack of friction coefficients: a scene's is met to 10 % and 0.02.
+/// Tolerance of friction coefficients: 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
-/// For cloth that slides steadily on a face: change of the normal force, and what is left over friction [weights].
+/// For steady sliding on a face: change of the normal force, and force in excess of friction [weights].
 constexpr double kSteady = 0.05, kSliding = 0.03, kFrictionShare = 0.05;
-/// Intervals over which sliding is averaged.
+/// Numbers of intervals over which sliding is averaged.
 constexpr std::size_t kSlidingSpans[] = {4, 12};
 
-/// min |w - sum of non-negative multiples of the columns|, with the residual.
+/// Minimum norm of w - sum of non-negative multiples of the columns, with the residual.
 template <class Columns>
 V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multiples) {
   const auto n = static_cast<Eigen::Index>(columns.cols());
@@ -60,7 +60,7 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
   return rest;
 }
 
-/// Unit force of a contact that does most against a direction, or zero. `coulomb`: in friction's cone; else any push.
+/// Unit force of a contact with the largest component along h, or zero. `coulomb`: in friction's cone; else any push.
 V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   if (c.any_force) return h.normalized();
   const double along = h.dot(c.normal);
@@ -72,7 +72,7 @@ V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   return force.dot(h) > 0 ? V3(force.normalized()) : V3(V3::Zero());
 }
 
-/// One contact per direction of force, for which their points do not matter.
+/// One contact for each distinct cone of forces, for tests that ignore points.
 std::vector<Contact> directions_of(std::span<const Contact> contacts) {
   std::vector<Contact> out;
   for (const Contact& c : contacts) {
@@ -91,7 +91,7 @@ class Momentum {
   void run() {
     found_.define("impulse");
     std::vector<double> off(m_.frames, 0), slip(m_.frames, 0);
-    // Only the force: where in a frame a sliding contact acts is not known well enough for moments.
+    // Forces only: the point in time and space at which a sliding contact acts is too uncertain for moments.
     M6 forces_only = M6::Zero();
     forces_only.topLeftCorner<3, 3>().setIdentity();
     all_.resize(m_.frames);
@@ -121,7 +121,7 @@ class Momentum {
       if (now.contact && !attached) {
         slip[k] = outside_cone(forces_only * now.wrench, directions_of(contacts), forces_only, middle,
                                kResolved * allowed, true);
-        // One interval of an impact: a quarter of the force.
+        // An impact within one interval: a quarter of the force is tolerated.
         found_.add("friction", slip[k] / ((k == 0 ? 0.55 : 0.5) + 0.25 * now.wrench.head<3>().norm() + noise(k)), k);
       }
       if (k < 3) continue;
@@ -135,18 +135,18 @@ class Momentum {
   }
 
  private:
-  /// Coulomb's law while all that is in reach is one face, which the cloth neither meets nor leaves.
+  /// State for Coulomb's law while only one face is in reach and the cloth neither lands on it nor leaves it.
   struct Slip {
     bool steady = false;
-    bool slides = false;     ///< all in reach moves along the face by more than friction stops in an interval
+    bool slides = false;     ///< every vertex moves along the face by more than friction can stop in an interval
     V3 across = V3::Zero();  ///< force along the face [weights]
     V3 way = V3::Zero();     ///< mean direction of the motion along the face
-    double spread = 0;       ///< largest distance of a direction from the mean
+    double spread = 0;       ///< largest distance of a vertex's direction from the mean
     double limit = 0;        ///< friction times the normal force [weights]
   };
   struct Interval {
-    V6 wrench = V6::Zero();  ///< without what attachments can exert
-    double hidden = 0;       ///< angular part that chords may hide
+    V6 wrench = V6::Zero();  ///< minus the part that attachments can exert
+    double hidden = 0;       ///< angular part: possible error of the lever arms
     bool judged = true, contact = false;
     Slip slip;
   };
@@ -188,14 +188,14 @@ class Momentum {
     return out;
   }
 
-  /// Distance of a wrench from the cone of what contacts can exert; an upper bound if that is `enough` or less.
+  /// Distance of a wrench from the cone of the contacts' wrenches; an upper bound once it is at most `enough`.
   double outside_cone(const V6& w, const std::vector<Contact>& contacts, const M6& keep, const V3& middle,
                       double enough, bool coulomb = false) const {
     constexpr int kRounds = 60;
     Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 0);
     Eigen::VectorXd multiples;
     V6 rest = w;
-    // Without a projection a unit force has a wrench of at least 1, so that it gains at most its own work.
+    // Without a projection a unit force has a wrench of norm 1 or more, so its gain is at most force.dot(h).
     const bool whole = keep.isIdentity();
     for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
       V6 best = V6::Zero();
@@ -242,7 +242,7 @@ class Momentum {
     out.slides = true;
     std::vector<V3> ways;
     for (std::size_t v = 0; v < m_.vertices; ++v) {
-      // A sheet that lies on the face as a whole; a heap moves inside itself, and its contacts slide in turns.
+      // Only for a sheet that touches the face everywhere: in a heap, layers move and contacts slide one after another.
       if (!bodies_.touched(k, v)) return {};
       for (const V3& way : {V3(m_.at(k, v) - m_.at(k - 1, v)), V3(m_.at(k + 1, v) - m_.at(k, v))}) {
         const V3 along = way - way.dot(up) * up;
@@ -256,7 +256,7 @@ class Momentum {
     return out;
   }
 
-  /// Friction times the normal force drags cloth that slides on a face, no more any other. Means of `span` intervals.
+  /// Coulomb's law averaged over `span` intervals: friction is mu N against the motion of sliding cloth, else less.
   void sliding(std::size_t k, std::size_t span) {
     if (k < span + 1) return;
     V3 across = V3::Zero(), drag = V3::Zero();
@@ -273,7 +273,7 @@ class Momentum {
     found_.add("sliding", off / n / (kSliding + kFrictionShare * limit / n + noise(k) / n), k);
   }
 
-  /// Mean wrench over the last kWindow intervals before k: noise cancels in the sum of second differences.
+  /// Mean wrench over the last kWindow intervals before k: resolution noise cancels in the sum of second differences.
   void window(std::size_t k) {
     if (k < kWindow + 1) return;
     V6 mean = V6::Zero();
@@ -294,7 +294,7 @@ class Momentum {
     if (!(std::sqrt(moved / static_cast<double>(m_.vertices)) < 0.002 * m_.length_m)) return;
     const std::size_t at = k - kWindow / 2;
     const V3 middle = middle_of(at);
-    // Cloth at rest may have been touched later, or only until earlier.
+    // Cloth at rest may have touched a collider only in an earlier or later frame of the window.
     std::vector<Contact> contacts = contacts_round(at);
     for (const std::size_t f : {k - kWindow, k - 1}) {
       const std::span<const Contact> more = bodies_.contacts(f);
@@ -306,8 +306,8 @@ class Momentum {
     found_.add("support", off / allowed, k);
   }
 
-  /// Cloth without attachments that starts flat falls freely until a collider is in reach. An integrator of first order
-  /// with one step per frame is off by half of gravity times a frame times the time.
+  /// Cloth without attachments that starts flat falls freely until a collider is in reach. The tolerance covers a
+  /// first-order integrator with one step per frame, whose error is half of gravity times frame duration times time.
   void free_motion() {
     const Scene& s = m_.scene;
     if (!s.cloth.start.at_rest() || s.cloth.span_m > 0 || s.cloth.drape_radius_m > 0 ||

@@ -14,10 +14,10 @@ using V3 = Eigen::Vector3d;
 
 inline V3 to_v3(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// Share of the cloth's longer side below which nothing is judged.
+/// Fraction of the cloth's longer side below which displacements are not evaluated.
 inline constexpr double kResolution = 1e-4;
 
-/// Free flight with linear damping c around a stored frame; displacements before and after: a1 v + b1 g, a2 v + b2 g.
+/// Free flight with linear damping c around a stored frame. Displacements: before, a1 v + b1 g; after, a2 v + b2 g.
 struct Flight {
   double a1, b1, a2, b2;
   Flight(double before_s, double after_s, double c);
@@ -28,7 +28,7 @@ struct Flight {
   }
 };
 
-/// A stored motion and what the scene says of it.
+/// A stored motion with the scene's data that the checks need.
 class Motion {
  public:
   Motion(const Scene& scene, const Frames& frames);
@@ -45,8 +45,8 @@ class Motion {
   std::vector<Edge> edges;  ///< structural
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<double> start_velocity;  ///< [m/s] xyz interleaved
-  double start_speed = 0;              ///< the highest of them [m/s]
-  double grip_speed = 0;               ///< [m/s] the highest of an attachment between two frames, jumps included
+  double start_speed = 0;              ///< maximum of them [m/s]
+  double grip_speed = 0;               ///< [m/s] maximum of an attachment between two frames, jumps included
 
   V3 at(std::size_t frame, std::size_t vertex) const {
     const float* x = position_.data() + 3 * (frame * vertices + vertex);
@@ -58,7 +58,7 @@ class Motion {
     return frame == 0 ? (frames > 1 ? time_s_[1] - time_s_[0] : scene.time.dt()) : time_s_[frame] - time_s_[frame - 1];
   }
   V3 start_velocity_of(std::size_t vertex) const { return V3::Map(start_velocity.data() + 3 * vertex); }
-  /// Strain of a structural edge; 0 for an edge without length at rest.
+  /// Strain of a structural edge; 0 for an edge whose rest length is 0.
   double strain(std::size_t frame, const Edge& e) const {
     return e.rest_m > 0 ? (at(frame, e.b) - at(frame, e.a)).norm() / e.rest_m - 1 : 0;
   }
@@ -67,9 +67,9 @@ class Motion {
   /// Per vertex, whether held() contains it.
   std::vector<bool> is_held(std::size_t frame) const;
   bool has_attachments() const { return !scene.pins.vertices.empty() || !scene.grips.vertices.empty(); }
-  /// Colliders of a frame, or of the scene's last frame after its end; null if nothing moves but cloth.
+  /// State of colliders and attachments in a frame, constant after the scene's end; null if only cloth moves.
   const FrameMotion* scripted(std::size_t frame) const;
-  /// Acceleration [weights] of the mean of `count` vertices that are off by the resolution.
+  /// Acceleration [weights] from position errors of one resolution, averaged over `count` vertices.
   double noise(std::size_t frame, std::size_t count) const {
     const double t = dt(frame);
     return 15 * resolution_m / std::sqrt(static_cast<double>(count)) / (t * t * weight_unit);
@@ -83,20 +83,20 @@ class Motion {
 using V6 = Eigen::Matrix<double, 6, 1>;
 using M6 = Eigen::Matrix<double, 6, 6>;
 
-/// The wrench of a force: force and moment. An arm of half the cloth's length makes both of one unit.
+/// The wrench of a force: force and moment about the centre over half the cloth's length, so both have one unit.
 inline V6 wrench_of(const V3& force, const V3& arm) {
   V6 w;
   w << force, arm.cross(force);
   return w;
 }
 
-/// Projection on the wrenches about `middle` that no vertex held in a frame or its neighbours can exert.
+/// Projection that removes wrenches about `middle` that vertices held in this frame or its neighbours can exert.
 M6 free_of_attachments(const Motion&, std::size_t frame, const V3& middle);
 
-/// Collects the largest ratio of a statistic.
+/// Keeps the largest ratio of each statistic.
 class Findings {
  public:
-  /// The statistic is defined for the run, though no frame may have a value.
+  /// Lists the statistic for the run even if no frame gives it a value.
   void define(const char* name);
   /// A NaN is kept.
   void add(const char* name, double ratio, std::size_t frame);
@@ -109,12 +109,12 @@ class Findings {
 
 class Bodies;
 
-/// One pass over the frames.
+/// A group of statistics, computed in one pass over the frames.
 struct Part {
   const char* name;
   void (*run)(const Motion&, Bodies&, Findings&);
 };
-/// All of them, in the order of the findings: later ones use the contacts that earlier ones found.
+/// All parts, in the order of the findings: later parts use the contacts that earlier parts found.
 std::span<const Part> parts();
 
 /// first_step, impulse, force, friction, sliding, mean_force, support, free_motion.
@@ -130,19 +130,19 @@ void check_smoothness(const Motion&, Bodies&, Findings&);
 struct Contact {
   V3 point, normal;  ///< of the collider's surface, outwards
   double friction;
-  bool any_force;  ///< the collider moves by much of its own size: no direction is known
+  bool any_force;  ///< the collider moves by much of its size: its force may have any direction
 };
 
 /// The surface within reach of the cloth in one frame.
 struct Face {
   bool any = false;  ///< something is in reach
-  bool flat = true;  ///< all of it is static and has one normal and one friction
+  bool flat = true;  ///< all of it is static, with one normal and one friction coefficient
   V3 normal = V3::Zero();
   double friction = 0;
   void add(const V3& n, double mu);
 };
 
-/// The colliders of the scene, frame after frame; these functions answer for a scene without any.
+/// The colliders of the scene, queried frame by frame. The base class answers for a scene without colliders.
 class Bodies {
  public:
   virtual ~Bodies() = default;
@@ -150,17 +150,17 @@ class Bodies {
   virtual bool any_moves() const { return false; }
   /// Highest speed [m/s] of a collider between two frames, jumps included.
   virtual double speed() const { return 0; }
-  /// Where the cloth of a frame is within reach of a collider, which grows with the displacements next to the frame.
+  /// Contacts in a frame: points of colliders in reach of the cloth. Reach grows with displacements around the frame.
   virtual std::span<const Contact> contacts(std::size_t /*frame*/) { return {}; }
-  /// Whether a vertex, or a triangle at it, was within reach of a collider in a frame, as found by `contacts`.
+  /// Whether a vertex or one of its triangles was within reach of a collider in a frame; call `contacts` first.
   virtual bool touched(std::size_t /*frame*/, std::size_t /*vertex*/) const { return false; }
-  /// Surface in reach in a frame, as found by `contacts`.
+  /// The surface in reach in a frame; call `contacts` first.
   virtual Face face(std::size_t /*frame*/) const { return {}; }
-  /// Largest depth of a frame over its tolerance: of vertices in solids with a signed distance.
+  /// Largest depth in a frame of vertices in solids with a signed distance, divided by its tolerance.
   virtual double depth_ratio(std::size_t /*frame*/) const { return 0; }
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.
   virtual bool near(std::size_t /*frame*/, std::span<const V3>, double /*displacement_m*/) { return false; }
-  /// Points inside colliders that pass the cloth, and vertices that pass a static surface, since the frame before.
+  /// Number of points inside colliders that pass through cloth, or vertices through static surfaces, in a frame.
   virtual int passages(std::size_t /*frame*/) { return 0; }
 };
 std::unique_ptr<Bodies> bodies_of(const Motion&, std::span<const double> contact_offsets_m);

@@ -22,22 +22,22 @@ std::span<const Statistic> statistics() {
       {"attachment", Kinematic, "distance of a pinned or attached vertex from its prescribed position"},
       {"first_step", Dynamic, "force of the first interval that nothing in reach can exert, in weights"},
       {"impulse", Dynamic, "force of one interval that nothing in reach can exert, in weights"},
-      {"force", Dynamic, "the same, held for two of three intervals"},
-      {"friction", Dynamic, "contact force outside Coulomb's cone, held for two of three intervals, in weights"},
+      {"force", Dynamic, "force that nothing in reach can exert, in two of three intervals, in weights"},
+      {"friction", Dynamic, "contact force outside Coulomb's cone, in two of three intervals, in weights"},
       {"sliding", Dynamic,
        "mean force along a face that the cloth rests or slides on, against Coulomb's law, in weights"},
       {"mean_force", Dynamic, "mean force of intervals without contact that no attachment can exert, in weights"},
-      {"hinge", Dynamic, "moment about a line of the cloth that the line cannot exert on the part beyond it"},
-      {"energy", Dynamic, "energy above the energy at the start, where nothing but cloth moves"},
-      {"rise", Dynamic, "energy above an earlier frame's, while nothing that moves can give any"},
+      {"hinge", Dynamic, "unexplained moment about a line across the cloth on the part beyond it"},
+      {"energy", Dynamic, "energy above the energy at the start, if only the cloth moves"},
+      {"rise", Dynamic, "energy above an earlier frame's, while no collider or attachment can add any"},
       {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},
       {"speed_change", Dynamic, "change of velocity in one interval over the speed that the scene can cause"},
       {"strain", Dynamic, "elastic energy over what gravity, colliders and attachments can supply"},
       {"tear", Dynamic, "change of an edge's strain in one interval over the change of the other edges' strain"},
       {"compression", Dynamic, "mean compression of edges over what the weight can cause"},
       {"spike", Dynamic, "displacement of a single vertex for a single frame"},
-      {"freeze", Dynamic, "loss of speed of the whole cloth that the next frame takes back"},
-      {"stuck", Dynamic, "vertices without contact that stand still to the digit while the cloth moves"},
+      {"freeze", Dynamic, "loss of speed of the whole cloth in a single frame"},
+      {"stuck", Dynamic, "vertices without contact at exactly constant positions while the cloth moves"},
       {"crossing", Continuous, "points that pass through the cloth or a surface between two frames"},
       {"depth", Continuous, "depth of a vertex in a collider"},
       {"self_crossing", Continuous, "length over which the cloth crosses itself, beyond the start's"},
@@ -55,7 +55,7 @@ const char* name_of(Check check) {
 
 namespace {
 
-/// When a frame ends [s]; frames after the scene's end are as long as its others.
+/// End time [s] of a frame; frames after the scene's end have the duration of equal frames.
 double time_of(const TimeSpan& t, std::size_t frame) {
   const int k = static_cast<int>(frame), beyond = k - t.frames();
   return beyond > 0 ? t.at(t.frames()) + beyond * t.dt() : t.at(k);
@@ -92,7 +92,7 @@ void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
   }
 }
 
-/// A cloth that meets itself crosses itself by no more than the corner of a cell.
+/// A cloth with self-collision may cross itself only at the corner of a cell.
 void check_self(const Motion& m, Bodies&, Findings& found) {
   if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
   found.define("self_crossing");

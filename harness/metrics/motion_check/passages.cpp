@@ -1,4 +1,4 @@
-// Passages between two stored frames: points deep in a solid through the cloth, vertices through static surfaces.
+// Passages between two stored frames: inner points of solids through the cloth, vertices through static surfaces.
 #include <algorithm>
 #include <cmath>
 
@@ -19,8 +19,8 @@ double weight_of(const ColliderMesh& m, std::size_t vertex, std::size_t joint) {
   return sum;
 }
 
-/// The middle of the flesh round each joint's bone: the mean of its vertices, weighted by skinning weights. The last
-/// point lies half-way on to the tip, where there is flesh up to the fingertip but no next bone.
+/// Centres of the flesh around each joint's bone: means of its vertices, weighted by skinning weights. The last point
+/// lies half-way to the tip: flesh reaches the fingertip, but there is no next bone.
 std::vector<MedialPoint> medial_points(const ColliderMesh& m, std::size_t first, std::size_t last) {
   std::vector<MedialPoint> out;
   for (std::size_t j = first; j <= last; ++j) {
@@ -83,7 +83,7 @@ void add_middle(Body& b) {
   b.middle = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{b.middle_positions, b.middle_triangles});
 }
 
-/// Points deep inside a solid: none of them may pass through the cloth. Their spacing is half a cell.
+/// Points deep inside a solid, at most half a cell apart. None of them may pass through the cloth.
 std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   std::vector<V3> out;
   const auto count = [&](double length) {
@@ -124,7 +124,7 @@ std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   return out;
 }
 
-/// Points that pass the cloth whether they move first, last or evenly with it: stored frames do not say which.
+/// Points that pass the cloth in all three orders of motion: points first, cloth first, both together.
 int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
   Box swept, path;
   for (std::size_t v = 0; v < m.vertices; ++v) {
@@ -159,7 +159,7 @@ int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, con
   return count;
 }
 
-/// Vertices that pass a static surface: once, or in and out through faces that look away from each other.
+/// Vertices that pass a static surface: through it, or in and out through faces that look in opposite directions.
 int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& tree, std::span<const double> positions,
                                std::span<const Corners> triangles) {
   const std::vector<double> was = cloth(frame - 1), now = cloth(frame);

@@ -1,4 +1,4 @@
-// Displacements that no impact leaves: one vertex for one frame, a repeated frame, vertices that hang still.
+// Displacements that no impact causes: a spike of one vertex in one frame, a repeated frame, frozen vertices.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,7 @@ class Smoothness {
   }
 
  private:
-  /// Fourth difference in time over 6 (a spike of one frame keeps its height), minus the mean of the neighbours.
+  /// Fourth difference in time divided by 6 (keeps the height of a one-frame spike) minus the mean of the neighbours.
   Field high_pass(std::size_t k) const {
     Field f(m_.vertices), sum(m_.vertices, V3::Zero());
     for (std::size_t v = 0; v < m_.vertices; ++v)
@@ -48,8 +48,8 @@ class Smoothness {
     return f;
   }
 
-  /// A displacement of one frame leaves 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. The rest of the
-  /// vertex's motion, and the motion of vertices two edges away, is the noise.
+  /// A one-frame spike has the fourth difference 1 -4 6 -4 1, an impact 0 1 -2 1 0 and a jump 0 1 -3 3 -1. Noise is the
+  /// residual of the fit to the first one, and the fits and residuals of the vertices two edges away.
   void spike(std::size_t k, const std::vector<Field>& around) {
     static constexpr std::array kSignature = {1.0 / 6, -2.0 / 3, 1.0, -2.0 / 3, 1.0 / 6};
     constexpr double kSquares = 35.0 / 18;

@@ -11,13 +11,13 @@ namespace {
 using Bounds = StabilityJudge::Bounds;
 
 // Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.
-constexpr double kSpeed = 10;        // F0: times v_char
-constexpr double kGain = 0.1;        // F1: energy gained over M g L
-constexpr double kStrain = 0.10;     // F2: maximum strain beyond the truth, for more than ...
-constexpr int kStrainFrames = 3;     // ... so many frames in a row
+constexpr double kSpeed = 10;        // F0: speed over v_char
+constexpr double kGain = 0.1;        // F1: energy gained, divided by M g L
+constexpr double kStrain = 0.10;     // F2: maximum strain beyond the exact or load strain, for more than ...
+constexpr int kStrainFrames = 3;     // ... this number of consecutive frames
 constexpr double kStrainP99 = 0.05;  // F2: 99th percentile, in any frame
-constexpr double kTorn = 1;          // F2: strain beyond the truth in any frame
-constexpr double kRelaxed = 0.01;    // mean |strain| below which F1 and F2 start to count, where delayed
+constexpr double kTorn = 1;          // F2: maximum strain beyond the exact or load strain, in any frame
+constexpr double kRelaxed = 0.01;    // if delayed: F1 and F2 are evaluated once mean |strain| is below this
 constexpr double kQuantity = 0.02, kQuantityLength = 1e-3;  // F2 at the end: error of the quantity at rest
 
 double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
@@ -30,7 +30,7 @@ double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
 }
 
-/// Greatest strain between two held vertices, one of which at least is an attachment; without `m` between two pins.
+/// Largest strain between two held vertices: attached to attached or pinned ones; if `m` is null, between pins.
 double imposed_strain(const Scene& s, const std::vector<double>& start, const FrameMotion* m) {
   std::vector<std::pair<std::uint32_t, Vec3>> held;
   for (const std::uint32_t v : s.pins.vertices) held.emplace_back(v, vertex_at(start, v));
@@ -61,7 +61,7 @@ double step_of(const FrameMotion& a, const FrameMotion& b, bool hands) {
   return most;
 }
 
-/// Maximum distance of the start from the sheet at rest, and the start's maximum structural strain.
+/// Maximum distance of a start position from the flat rest position, and the start's maximum structural strain.
 std::pair<double, double> start_of(const Scene& s) {
   const std::vector<double> x = initial_positions(s);
   double far = 0, strain = 0;
@@ -75,19 +75,19 @@ std::pair<double, double> start_of(const Scene& s) {
   return {far, strain};
 }
 
-/// Greatest membrane stiffness of the scene [N/m]; 0 = inextensible.
+/// Maximum membrane stiffness in the scene [N/m]; 0 = inextensible.
 double greatest_stiffness(const Scene& s) {
   double most = s.material.membrane_stiffness_N_per_m.value_or(0);
   for (const StiffnessRegion& r : s.material.regions) most = std::max(most, r.membrane_stiffness_N_per_m.value_or(0));
   return most;
 }
 
-/// The bounds of every frame, 0 = the start.
+/// The bounds at every frame; frame 0 is the start.
 ///
-/// Free fall: sqrt(2 g H), H = twice the diagonal for held cloth, g t^2/2 plus the diagonal for free cloth. Waves: a
-/// strain e travels at c = sqrt(Y/rho) with particle speed e c. The static strain is M g/(Y w), w the shorter side, and
-/// twice that for sudden loads. Added to it are 3 v/c for hands (the wave and its first reflections), 2 v/c for
-/// colliders, and v/c for cloth that falls slack and is stopped suddenly.
+/// Free fall: sqrt(2 g H), H = twice the diagonal for pinned or attached cloth, otherwise the diagonal plus g t^2/2.
+/// Waves: a strain e travels at c = sqrt(Y/rho) with particle speed e c. The static strain is M g/(Y w), w the shorter
+/// side; sudden loads double it. Added: 3 v/c for hands (the wave and its first reflections), 2 v/c for colliders, v/c
+/// for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s);
@@ -152,14 +152,14 @@ constexpr unsigned bit(int k) { return 1u << k; }
 
 constexpr unsigned kDegrading = bit(2);
 
-/// Lowest class of a set.
+/// Index of the lowest class in a set.
 int least(unsigned classes) {
   int k = 0;
   while ((classes & bit(k)) == 0) ++k;
   return k;
 }
 
-/// Energy of the diagonals' strain over Y/2: a shear of g strains them by g/2 and stores G g^2/2, G = 3/8 Y.
+/// Elastic energy of the diagonals, divided by Y/2: a shear g strains them by g/2 and stores G g^2/2, G = 3/8 Y.
 double shear_square(const Scene& scene, const std::vector<double>& x) {
   if (!scene.needs.has(Feature::Shear)) return 0;
   double squares = 0;
@@ -176,7 +176,7 @@ StabilityJudge::StabilityJudge(const Scene& scene)
       mass_(vertex_masses(scene_)),
       start_(initial_positions(scene_)),
       edges_(edges(scene_.cloth, EdgeKind::Structural)) {
-  std::erase_if(edges_, [](const Edge& e) { return !(e.rest_m > 0); });  // a strain needs a length
+  std::erase_if(edges_, [](const Edge& e) { return !(e.rest_m > 0); });  // strain needs a positive rest length
   if (auto known = truth::reference_case_of(scene_); known && known->settles) at_rest_ = std::move(known);
   total_mass_ = std::accumulate(mass_.begin(), mass_.end(), 0.0);
   longer_m_ = std::max(scene_.cloth.width_m, scene_.cloth.height_m);
@@ -222,7 +222,7 @@ double StabilityJudge::visible_energy(const ClothState& s) const {
   return energy;
 }
 
-/// F0 and F1, and the frame from which F1 and F2 count.
+/// Evaluates F0 and F1, and finds the frame from which F1 and F2 are evaluated.
 void StabilityJudge::judge_motion(int frame, const ClothState& state, const Strain& strain, StabilityFrame& out) {
   const Bounds& b = bounds_[static_cast<std::size_t>(frame)];
   const auto set_base = [&] {
@@ -260,8 +260,8 @@ bool StabilityJudge::settled(int frame) const {
   return frame == scene_.time.frames() || (from > 0 && scene_.time.at(frame) >= from);
 }
 
-/// F2. A reference case of a motion gives the strain of every edge; one of a shape at rest only once the cloth rests
-/// there. Without a reference case, loads and hands give an upper bound of the true strain.
+/// Evaluates F2. A moving reference case gives the exact strain of every edge; a reference case at rest gives it only
+/// once the cloth rests. Without a reference case, loads and hands give an upper bound of the strain.
 void StabilityJudge::judge_strain(int frame, const Strain& strain, const std::optional<TruthErrors>& truth,
                                   StabilityFrame& out) {
   const StabilityRules& rules = scene_.stability;

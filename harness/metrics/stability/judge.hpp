@@ -8,31 +8,31 @@
 
 namespace clothbench {
 
-/// Judges the frames of one run, in order, by its scene's rules: a pure function of frames, scene and truth.
+/// Classifies the frames of one run, in order, by its scene's rules; depends only on frames, scene and exact solution.
 ///
 /// The energy gain compares visible energy (kinetic and gravitational) with the available energy: the energy at the
-/// start, including elastic energy (from the strain, E = Y A e^2/2), and the maximum work of hands and colliders. The
-/// elastic energy of a solver's model does not count as visible, because solvers without a modulus have none.
+/// start, including elastic energy (from the strain, E = Y A e^2/2), plus the maximum work of hands and colliders. A
+/// solver's elastic energy is not visible energy, because solvers without a modulus define none.
 class StabilityJudge {
  public:
   explicit StabilityJudge(const Scene&);
-  /// `truth`: none where the scene states no truth.
+  /// `truth`: empty if the scene names no exact solution.
   StabilityFrame judge(int frame, const ClothState&, const std::optional<TruthErrors>& truth);
 
-  /// Physical bounds at the end of one frame, computed only from the scene. All bounds are generous by design: a run
-  /// that exceeds them by the factors of judge.cpp is not inaccurate but unstable.
+  /// Physical bounds at the end of one frame, computed only from the scene. All bounds are deliberately generous: a run
+  /// that exceeds them by the factors in judge.cpp is unstable, not only inaccurate.
   struct Bounds {
-    double speed_m_per_s = 0;  ///< v_char: max of free fall, hands, colliders, the start, and strain times wave speed
+    double speed_m_per_s = 0;  ///< v_char: maximum of free fall, hands, colliders, start, strain times wave speed
     double jump_speed_m_per_s =
         0;                ///< of the last jump (a teleport, a start that is not at rest), over its frame; 0: none
-    double strain = 0;    ///< maximum strain that loads, hands and colliders can cause (not a prediction)
+    double strain = 0;    ///< maximum strain that loads, hands and colliders can cause; no prediction
     double work_J = 0;    ///< maximum work that hands and colliders can have done so far
-    bool jumped = false;  ///< something jumped in this frame
+    bool jumped = false;  ///< a hand, a collider or the start jumps in this frame
   };
 
  private:
   struct Strain {
-    double mean, rms, greatest, p99;  ///< mean of |e|; the others signed
+    double mean, rms, greatest, p99;  ///< mean of |e|; the others keep the sign
   };
   Strain strain_of(const std::vector<double>& x) const;
   void judge_motion(int frame, const ClothState&, const Strain&, StabilityFrame&);
@@ -51,7 +51,7 @@ class StabilityJudge {
   double energy_base_J_ = 0, work_base_J_ = 0;
 };
 
-/// The rating of a whole pass.
+/// Result of a complete pass.
 struct StabilityVerdict {
   enum class Grade { Stable, Degraded, Failed };
   Grade grade = Grade::Stable;

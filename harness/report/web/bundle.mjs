@@ -1,5 +1,5 @@
-// Makes the page without data, template.html, what draws its figures by Node, figures.cjs, and template.cpp which holds both.
-// Installs the packages of package-lock.json beside them first; where that fails, template.cpp says why, and the build goes on.
+// Builds the page without data (template.html), the script that draws its figures in Node (figures.cjs), and template.cpp with
+// both. First installs the packages of package-lock.json; if that fails, template.cpp states why, and the build goes on.
 //   node bundle.mjs WEB OUT NPM
 import {execFileSync} from 'node:child_process';
 import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -9,7 +9,7 @@ import {join} from 'node:path';
 const [web, out, npm] = process.argv.slice(2), source = join(web, 'src'), packages = join(out, 'node_modules');
 const read = file => readFileSync(file, 'utf8');
 
-/// Installs the packages, unless they are there. The copy of the lock is written last, so an interrupted fetch is started again.
+/// Installs the packages if they are missing. The copy of the lock is written last, so that an interrupted fetch is repeated.
 function install() {
   const lock = join(web, 'package-lock.json'), fetched = join(out, 'fetched-lock.json');
   if (existsSync(fetched) && read(fetched) === read(lock)) return;
@@ -37,13 +37,13 @@ PageTemplate page_template() {
 try {
   install();
 } catch (error) {
-  console.error(`The report's page is left out: ${error.message}. Once that is mended, delete ${out}/template.cpp and build again.`);
+  console.error(`The report's page is left out: ${error.message}. After fixing that, delete ${out}/template.cpp and build again.`);
   write('', 'npm ci failed when this was built (it needs Node 18 or later)', '');
   process.exit();
 }
 const {build} = createRequire(join(packages, 'x.js'))('esbuild');
 
-/// esbuild already escapes "</script" in strings; what begins a comment is left to us.
+/// esbuild escapes "</script" in strings only; this function does the rest, including "<!--".
 const script_safe = text => text.replaceAll('<!--', '\\x3C!--').replaceAll(/<\/(script)/gi, '<\\/$1');
 
 async function bundled(entry, options) {

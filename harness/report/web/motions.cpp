@@ -1,4 +1,4 @@
-// Motions of the page: which runs have one, in how many frames, and how it is packed.
+// Motions on the page: which runs get one, how many frames it has, and how it is packed.
 #include <zlib.h>
 
 #include <Eigen/Geometry>
@@ -18,11 +18,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostOfScene = 6;  // the viewer shows six side by side
+constexpr std::size_t kMostOfScene = 6;  // the viewer shows at most six side by side
 constexpr std::size_t kMostFrames = 150;
-constexpr double kMostGrowth = 20;  // of a cloth that still shows something
+constexpr double kMostGrowth = 20;  // relative to the cloth's initial extent; larger cloth shows nothing
 
-/// zlib of words, little-endian as on every machine that this is built for, or of a text.
+/// zlib of a text, or of words, which are little-endian on all supported machines.
 template <class Words>
 std::string deflated(const Words& words) {
   const uLong bytes = words.size() * sizeof(words[0]);
@@ -46,7 +46,7 @@ std::string deflated(const StoredArray& a) {
   return deflated(words);
 }
 
-/// The box around the positions of one frame; empty if one is not finite.
+/// Bounding box of the positions of one frame; empty if one is not finite.
 Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
   const Eigen::Matrix3Xd x =
       Eigen::Map<const Eigen::Matrix3Xf>(position, 3, static_cast<Eigen::Index>(vertices)).cast<double>();
@@ -54,9 +54,9 @@ Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
   return {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
 }
 
-/// Rows with a trajectory in the order in which they get a place on the page: the first of the scenes that lead a
-/// report, garments with contact, the other leading scenes, others with contact, the rest, runs without a cloth model;
-/// in each, default settings, then the first run of every solver; at most six of a scene.
+/// Rows with a trajectory, by priority for the page: first leading scene, garments with contact, other leading scenes,
+/// other contact scenes, the rest, runs without a cloth model; within each, default settings first, then first runs of
+/// solvers; at most six per scene.
 std::vector<const Row*> candidates(const RunTable& table) {
   std::vector<std::pair<std::tuple<bool, std::size_t, bool, std::size_t>, const Row*>> order;
   std::map<std::pair<std::string, std::string>, std::size_t> of_solver;
@@ -78,11 +78,11 @@ class Packer {
  public:
   explicit Packer(std::size_t budget_B) : left_B_(budget_B) {}
 
-  /// Adds the motion of a row; false if there is no room for it, or its cloth is not finite from the start.
+  /// Adds the motion of a row; false if the budget is exhausted or the initial cloth is not finite.
   bool add(const Row& r, std::size_t index) {
     const RunRecord& c = *r.run;
     const std::size_t stride = 1 + c.accuracy.time_s.size() / kMostFrames;
-    // Six bytes per vertex, deflated to a twentieth at best: a motion that certainly does not fit is not read.
+    // Six bytes per vertex, compressed to a twentieth at best: a motion that cannot fit is not read.
     if (c.accuracy.time_s.size() / stride * c.header.vertices * 6 / 20 > left_B_) return false;
     const Replay replay = read_replay(c.file, stride);
     const PackedMotion motion = pack_motion(replay);
@@ -149,7 +149,7 @@ class Packer {
   std::size_t left_B_;
   Motions out_;
   std::vector<json> runs_, colliders_;
-  std::map<std::string, std::size_t> scenes_;  ///< index into colliders_ by the hash of a scenario
+  std::map<std::string, std::size_t> scenes_;  ///< hash of a scenario -> index into colliders_
 };
 
 }  // namespace

@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Summary values that a figure shows.
+/// Summary values that figures use.
 constexpr const char* kFigureValues[] = {"fps_median", "free_fall_error", "bandwidth_read_peak_B_per_s",
                                          "device_memory_B"};
 constexpr const char* kParts[] = {"rates", "contact", "generated", "claims", "accuracy", "stability", ""};
 
-/// [p50, low, high, p95, p99, worst] in seconds, of each clock that has frames.
+/// [p50, low, high, p95, p99, worst] in seconds, for each clock with frames.
 void add_times(const Row& r, json& out) {
   const RunTimes& t = *r.times;
   if (t.wall.sorted.empty()) return;
@@ -39,7 +39,7 @@ void add_times(const Row& r, json& out) {
         out[name].push_back(rounded(s));
 }
 
-/// Kind of what touches a scene's cloth: "2 grips", "hand_capsules". Scenes of one kind may differ in its speed.
+/// Kind of the objects that touch a scene's cloth: "2 grips", "hand_capsules". Scenes of a kind may differ in speed.
 std::string kind_of_contact(const json& scenario) {
   std::set<std::string> out;
   for (const json& c : scenario.value("colliders", json::array())) out.insert(c.value("type", ""));
@@ -48,7 +48,7 @@ std::string kind_of_contact(const json& scenario) {
   return joined(out);
 }
 
-/// A run or published value as figures show it. Missing = null.
+/// A run or published value as data for figures. Missing = null.
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
               {"scene", r.scene},
@@ -89,7 +89,7 @@ json figure_row(const Row& r) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
     out["published"] = r.published >= 0;
-    out["width"] = std::sqrt(r.resolution.size());  // vertices along one side of the square with as many
+    out["width"] = std::sqrt(r.resolution.size());  // vertices along a side; for a mesh, of a square with as many
     out["resolution"] = r.resolution.label();
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
     out["fps_low"] = finite_or_null(r.times->wall.rate.low);
@@ -109,13 +109,13 @@ json figure_row(const Row& r) {
   return out;
 }
 
-/// A command as anybody may type it: without folders and device of the machine that ran it.
+/// A command without the folders and the device of the machine that ran it.
 std::string plain_command(const std::string& line) {
   const std::string plain = std::regex_replace(line, std::regex("^\\S*clothbench"), "clothbench");
   return std::regex_replace(plain, std::regex(" (--out|-o|--device)[ =]\\S+| --resume"), "");
 }
 
-/// The study folders of the runs, and which job of its folder each run is.
+/// The study folders of the runs; stores in each row the run's index in its folder.
 json studies_of(const RunTable& table, json& rows) {
   json out = json::array();
   std::map<std::string, std::pair<std::size_t, std::map<std::string, std::size_t>>> folders;
@@ -182,7 +182,7 @@ std::string table_html(const Table& t) {
   return out + "</tbody></table><p class=\"note\">" + escaped(t.note) + "</p>";
 }
 
-/// The part that needs no script: title, facts, warnings, tiles and the first two tables.
+/// The part that works without scripts: title, facts, warnings, tiles and the first two tables.
 std::string head_html(const Page& page) {
   std::string out = "<h1>" + escaped(page.heading.title) +
                     "</h1><p>clothbench runs cloth solvers on the same scenes and reports their speed together with "
@@ -246,7 +246,7 @@ std::string packed(const json&) { return ""; }
 
 std::string write_page(const fs::path& out, const RunTable& table, const Page& page, const PageTemplate& from) {
   if (from.html.empty()) {
-    fs::remove(out / "index.html");  // an older run's page is not this report's
+    fs::remove(out / "index.html");  // remove the page of an earlier report
     return "The interactive page was left out: " + from.missing + ".";
   }
   write_file_atomically(out / "index.html", page_html(from.html, page, page_document(table, page), motions_of(table)));

@@ -20,7 +20,7 @@ constexpr double kAside = 1e-3;              // of a cell; far above float32's r
 /// Why a scene has no tethers, wherever its vertices start; empty: it may have some.
 std::string why_no_tethers(const Scene& scene, bool wanted) {
   if (!wanted) return "setting tethers=false";
-  if (!scene.grips.vertices.empty()) return "hands move what holds the cloth";
+  if (!scene.grips.vertices.empty()) return "hands move the attached vertices";
   // Slack is computed from the weight of an even sheet.
   if (!scene.cloth.mass_factors.empty() && scene.material.membrane_stiffness_N_per_m) return "masses are scaled";
   return scene.pins.vertices.empty() ? "nothing is pinned" : "";

@@ -57,10 +57,10 @@ class Xpbd final : public GpuSolver {
                   " are the maximum per frame; the cloth is overstretched for some frames");
     const ChainCloth cloth = chained ? chain_cloth(scene()) : ChainCloth{};
     if (!cloth.welded.empty() && scene().needs.has(Feature::Bend))
-      throw Error(fmt::format(
-          "solver xpbd: /cloth/mesh: vertex {} is on an edge shorter than a fiftieth of the mean; expected none in a "
-          "cloth that bends",
-          cloth.welded.front()));
+      throw Error(
+          fmt::format("solver xpbd: /cloth/mesh: vertex {} is on an edge shorter than 1/50 of the mean; expected none "
+                      "in a cloth with bending",
+                      cloth.welded.front()));
     const std::vector<float> w = welded(inverse_masses(scene()), cloth);
     if (crumpled_) break_symmetry(scene(), w, start);
     const Vec3 origin = scene().cloth.center_m;
@@ -246,7 +246,7 @@ const std::vector<Tuning>& tunings() {
       {"device_barrier",
        {"auto", "always", "never"},
        "workgroups of a dispatch wait for one another; auto: on discrete GPUs that run all of them at once"},
-      {"bdf2", {"auto", "always"}, "time_order 2; auto: where it is safe, always: in every scene without contact"},
+      {"bdf2", {"auto", "always"}, "time_order 2; auto: if it is safe, always: in every scene without contact"},
       {"tension", {"auto", "always", "never"}, "implicit tension; auto: where it pays, always: without contact"},
       {"splitting_correction", {"auto", "always", "never"}, "of diagonals; auto: in sheets whose modulus needs it"},
       {"vertices_a_thread", {0, 2, 4, 8, 16, 32}, "of a line; 0: by line and device"},

@@ -287,7 +287,7 @@ double free_fall_m(const double* values, double dt_s, double gravity, double vel
 
 const ClothbenchSetting kSettings[] = {
     {"solver_frequency_hz", "solver iterations per second (setSolverFrequency)", 300, 0},
-    {"substeps", "solver iterations per frame, in place of the solver frequency; 0: by the frequency", 0, 1},
+    {"substeps", "solver iterations per frame, instead of the solver frequency; 0: by the frequency", 0, 1},
     {"tethers", "1: geodesic tethers to the pins", 1, 1},
     {"collision_margin_m", "contact offset of all colliders; 0: the scene's margins", 0, 0},
     {"frictionless_triangles", "1: run scenes whose meshes have friction, without it; 0: refuse them", 0, 1}};
@@ -295,4 +295,4 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::nvcloth
 
-CLOTHBENCH_PEER(clothbench::nvcloth, "nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), in centimetres")
+CLOTHBENCH_PEER(clothbench::nvcloth, "nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), lengths in cm")

@@ -1,4 +1,4 @@
-// Stand-in for Android's libandroid: assets from $FAKE_ASSETS, and a note of what was asked for.
+// Stub of Android's libandroid: assets from $FAKE_ASSETS, and a record of the requests.
 #include <android/asset_manager.h>
 #include <android/input.h>
 #include <android/looper.h>
@@ -26,7 +26,7 @@ off64_t AAsset_getLength64(AAsset* asset) {
   std::rewind(file);
   return length;
 }
-// In small pieces, as a compressed asset comes.
+// Returns small pieces, as for a compressed asset.
 int AAsset_read(AAsset* asset, void* to, size_t count) {
   return static_cast<int>(std::fread(to, 1, count < 1000 ? count : 1000, reinterpret_cast<FILE*>(asset)));
 }

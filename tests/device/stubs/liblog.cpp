@@ -1,11 +1,11 @@
-// Stand-in for Android's liblog: one line a call on the stderr the process began with, as logcat prints it.
+// Stub of Android's liblog: one line per call on the process's original stderr, like logcat.
 #include <android/log.h>
 #include <unistd.h>
 
 #include <string>
 
 namespace {
-// The activity sends the process's stdout and stderr to the log; the log must not go there again.
+// The activity redirects the process's stdout and stderr to the log; the log itself must not go there.
 const int kOut = dup(STDERR_FILENO);
 }  // namespace
 

@@ -68,7 +68,7 @@ double stall_s(const Runtime& r, int frames) {
   return 0;
 }
 
-/// A strict display: a frame that took longer than a period is shown after as many whole ones as it took.
+/// A strict display: a frame that took longer than a period is shown after the next whole number of periods.
 XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* out) {
   Runtime& r = *runtime();
   if (!r.running) return r.fault("xrWaitFrame: it does not run", XR_ERROR_SESSION_NOT_RUNNING);
@@ -135,7 +135,7 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   return XR_SUCCESS;
 }
 
-/// Two eyes 63 mm apart that look along -z from where the head was at first.
+/// Two eyes 63 mm apart that look along -z from the head's initial position.
 XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
                                  std::uint32_t* count, XrView* out) {
   Runtime& r = *runtime();

@@ -1,4 +1,4 @@
-// Vulkan: instance, device, swapchains, and a look at what was drawn.
+// Vulkan: instance, device, swapchains, and a check of the rendered images.
 #include "runtime.hpp"
 
 namespace null_xr {

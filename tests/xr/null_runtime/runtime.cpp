@@ -7,7 +7,7 @@
 #include <sstream>
 
 namespace null_xr {
-/// The data that a loader and a runtime exchange (chapter "Loader Design", runtime negotiation).
+/// The data that loader and runtime exchange (chapter "Loader Design", runtime negotiation).
 struct NegotiateLoaderInfo {
   int struct_type = 1;
   std::uint32_t struct_version = 1;
@@ -68,7 +68,7 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
       known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
     if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
   }
-  // The data of an activity that XR_KHR_android_create_instance demands.
+  // The activity's data that XR_KHR_android_create_instance requires.
   const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
   if (android != nullptr &&
       (android->type != cb::kTypeInstanceCreateAndroid || android->vm == nullptr || android->activity == nullptr))

@@ -11,14 +11,14 @@
 
 /// An OpenXR runtime without a headset: a clock that only frames advance, a script instead of a user, real Vulkan
 /// images. Checks every call strictly. $CLOTHBENCH_NULL_XR is a list of `key=value`, separated by commas:
-///   stalls=20:0.02;40:0.03   after so many frames the application counts as so many seconds late
-///   multiple=200   from the sixth frame on, the period that it names is so many of the display's, as after slow frames
-///   hands|capsules|rate=0   leaves an extension out
-///   unseen=10:20   hands are not seen from the 10th frame up to the 20th
-///   blind=1        asks for no pictures, which take lavapipe most of the time
-///   quit=30        the user takes the headset off at that frame
-///   look=25        the pictures of that frame are read and judged
-///   log=FILE       what happened, as JSON, when the instance ends
+///   stalls=20:0.02;40:0.03   after 20 (40) frames the application counts as 0.02 s (0.03 s) late
+///   multiple=200   from the sixth frame on, reports that multiple of the display's period, as after slow frames
+///   hands|capsules|rate=0   omits an extension
+///   unseen=10:20   hands are not tracked from the 10th frame up to the 20th
+///   blind=1        requests no images, which take lavapipe most of the time
+///   quit=30        the user takes off the headset at that frame
+///   look=25        the images of that frame are read and checked
+///   log=FILE       a JSON log, written when the instance ends
 namespace null_xr {
 
 struct Swapchain {
@@ -84,7 +84,7 @@ std::uint64_t number_of(Handle h) {
 XrPosef as_xr(const Pose&);
 Pose from_xr(const XrPosef&);
 
-/// A function of the file that has it; null if it has none of that name.
+/// A function of this file by name; null if there is none.
 #define NULL_XR(text, function) \
   if (name == text) return reinterpret_cast<PFN_xrVoidFunction>(function);
 PFN_xrVoidFunction frame_function(const std::string& name);

@@ -1,5 +1,5 @@
 #pragma once
-// Actions of the null runtime's user, as functions of time; tests compare what reached the solver with these.
+// Actions of the null runtime's user as functions of time; tests compare the solver's input with them.
 #include <array>
 #include <cmath>
 
@@ -33,8 +33,8 @@ struct Pose {
 inline Pose operator*(const Pose& a, const Pose& b) { return {a.q * b.q, a.p + turned(a.q, b.p)}; }
 inline Pose inverse(const Pose& a) { return {conjugate(a.q), turned(conjugate(a.q), -1 * a.p)}; }
 
-/// Palm, in LOCAL: from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second,
-/// through a plane 60 cm before the eyes.
+/// Palm, in LOCAL: moves from the right (left hand: from the left) at 0.6 m/s, and 15 cm forward within half a second,
+/// through a plane 60 cm in front of the eyes.
 inline V palm_at(bool right, double t) {
   const double x = 0.3 - 0.6 * t, forward = t < 0 ? 0 : t < 0.5 ? t / 0.5 : 1;
   return {right ? x : -x, -0.15, -0.5 - 0.15 * forward};
@@ -56,10 +56,10 @@ inline std::array<V, 26> joints(bool right) {
   return j;
 }
 
-/// Orientation of every joint: -z along the fingers, +y out of the hand's back.
+/// Orientation of every joint: -z along the fingers, +y out of the back of the hand.
 inline Q joint_turn() { return {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; }
 
-/// Ends of the 19 capsules, as joints' numbers.
+/// Ends of the 19 capsules, as joint indices.
 inline std::array<std::array<int, 2>, 19> capsule_joints() {
   std::array<std::array<int, 2>, 19> c{};
   std::size_t n = 0;

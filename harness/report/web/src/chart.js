@@ -15,7 +15,7 @@ const kPaperHeight = 311;                             // points: 110 mm
 const kDashes = ['', '6 3', '2 3', '8 3 2 3', '1 2', '12 4', '12 3 2 3 2 3', '5 6'];
 const kSample = 36;     // length of a line in the legend
 const kMostLabels = 4;  // lines of one panel that have their names at their ends; more have them in the legend
-const kMost = 1e4;  // and least 1e-3: beyond, numbers have a power of ten
+const kMost = 1e4;  // the minimum is 1e-3: other numbers are printed with a power of ten
 
 /// "0.0012", "12.5", "4.5·10⁻⁷"; "–" for what is not a number.
 export function number(v, digits = 3) {
@@ -28,7 +28,7 @@ export function number(v, digits = 3) {
   return Number(mantissa) === 1 ? power : `${Number(mantissa)}·${power}`;
 }
 
-/// Ticks of a logarithmic axis: powers of ten, on shorter axes also multiples of them.
+/// Ticks of a logarithmic axis: powers of ten, and on short axes also multiples of them.
 function decades(low, high) {
   const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), step = Math.ceil((last - first) / 8);
   const powers = Array.from({length: Math.floor((last - first) / step) + 1}, (_, k) => first + k * step);
@@ -36,7 +36,7 @@ function decades(low, high) {
   return [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]].map(ticks).find((t, k) => t.length > 3 || k === 2);
 }
 
-/// {at(value), ticks, text(tick)} from an axis, its data and its range in pixels.
+/// {at(value), ticks, text(tick)} of an axis with these data over a range in pixels.
 function scale_of(axis, data, from, to) {
   if (axis.type === 'band') {
     const step = (to - from) / Math.max(axis.values.length, 1), place = new Map(axis.values.map((v, k) => [v, from + (k + 0.5) * step]));
@@ -68,7 +68,7 @@ const kPaths = {
 };
 const px = v => Number(v.toFixed(1));
 
-/// The symbol of a solver: filled, or open with the page behind it.
+/// The symbol of a solver: filled, or as an outline filled with the page's colour.
 export function symbol(look, solver, x, y, open = false, more = '') {
   const colour = look.colour(solver), size = look.symbol_scale;
   return `<path class="mark" d="${kPaths[look.symbol(solver)]}" transform="translate(${px(x)} ${px(y)})${
@@ -81,7 +81,7 @@ const text = (look, x, y, words, {anchor = 'start', colour = 'var(--soft)', bold
 const line = (d, colour, more = '') => `<path d="${d}" style="stroke:${colour};fill:none"${more}/>`;
 const dashed = (look, l) => ` stroke-width="${look.stroke}" stroke-linejoin="round"${l.dash ? ` stroke-dasharray="${kDashes[l.dash % kDashes.length]}"` : ''}`;
 
-/// A filled box; "ignored" has a diagonal, which tells two greys apart.
+/// A filled box; "ignored" also has a diagonal, because its grey resembles another one.
 const toned_box = (tone, x, y, w, h, more = '') =>
     `<rect x="${px(x)}" y="${px(y)}" width="${px(w)}" height="${px(h)}" rx="2" style="fill:var(--${tone})"${more}/>${
         tone === 'ignored' ? line(`M${px(x)} ${px(y + h)}L${px(x + w)} ${px(y)}`, 'var(--soft)', ' pointer-events="none"') : ''}`;
@@ -132,10 +132,10 @@ function draw_rules(look, panel, x, y, {left, right, top, bottom}) {
   return out;
 }
 
-/// Places of a name about the end of its line: side, and rows above or below.
+/// Positions of a name relative to the end of its line: side, and rows above or below.
 const kPlaces = [[1, 0], [1, -1.4], [1, 1.4], [-1, 0], [0, -1.7], [0, 1.8], [1, -2.9], [1, 2.9], [-1, -1.7], [-1, 1.7]];
 
-/// Names at the ends of lines, each at the free place nearest to an end.
+/// Names at the ends of lines, each at the free position nearest to an end.
 function draw_labels(look, lines, taken, {left, right, top, bottom}) {
   let out = '';
   const overlap = (a, list) =>
@@ -212,7 +212,7 @@ function draw_panel(look, panel, box, first, marks) {
   return out + draw_labels(look, placed.length > kMostLabels ? [] : placed, taken, {...box, right: box.right + look.right});
 }
 
-/// Below a picture: on paper solvers with their symbols; meanings of the tones of cells.
+/// Legend below a picture: solvers with their symbols (only on paper), and the meanings of cell tones.
 function draw_legend(look, chart, width, top) {
   const points = chart.panels.flatMap(p => p.marks).filter(m => !m.tone), lines = chart.panels.flatMap(p => (p.lines ?? []).length > kMostLabels ? p.lines : []);
   const items = [
@@ -230,7 +230,7 @@ function draw_legend(look, chart, width, top) {
   return {out, bottom: items.length ? y + look.size : top - 8};
 }
 
-/// {svg, marks, width, height}: the picture as text, and the marks by their `data-i`. `shrink`: of heights.
+/// {svg, marks, width, height}: the picture as SVG text, and its marks by `data-i`. `shrink`: factor on heights.
 export function draw(chart, look_at, width, title, shrink = 1) {
   const {panels} = chart, columns = Math.max(1, Math.min(chart.columns ?? 1, panels.length)), marks = [], {unit} = look_at;
   const banded = panels[0]?.y.type === 'band';
@@ -260,6 +260,6 @@ export function draw(chart, look_at, width, title, shrink = 1) {
   return {marks, width, height, svg: look.paper ? whole.replace(/var\(--([\w-]+)\)/g, (_, name) => look.paper[name]) : whole};
 }
 
-/// A figure on paper: entries choose their layout by a width in pixels of the page.
+/// A figure on paper: entries choose their layout by a width in page pixels.
 export const draw_on_paper = (entry, rows, state, look, width) =>
     draw(entry.chart(rows, state, width / look.unit), look, width, entry.title(state));

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 
-/// A function of time that gives an array's values of one frame, interpolated linearly; `rate`: frames per second.
+/// A function of time that returns an array's values, interpolated linearly between frames; `rate`: frames per second.
 function sampled({shape: [frames], values}, rate) {
   const size = values.length / frames, out = new Float32Array(size);
   return time => {
@@ -12,7 +12,7 @@ function sampled({shape: [frames], values}, rate) {
   };
 }
 
-/// Ends and radius of each capsule at a time: 7 values.
+/// Ends and radii of the capsules at a time: 7 values each.
 function capsules(array, rate) {
   const at = sampled(array, rate), group = new THREE.Group(), up = new THREE.Vector3(0, 1, 0), nearest = new THREE.Vector3(), axis = new THREE.Vector3();
   const parts = Array.from({length: array.shape[1]}, () => ({line: new THREE.Line3()}));
@@ -45,7 +45,7 @@ function capsules(array, rate) {
   };
 }
 
-/// Depth of a point in a convex body: its distance behind the nearest plane of the triangles.
+/// Depth of a point in a convex body: its distance behind the nearest of the triangles' planes.
 function convex_depth(position, corners) {
   const planes = [];
   for (let k = 0; k < corners.length; k += 3) {
@@ -88,7 +88,7 @@ function triangle_mesh(arrays, rate, convex) {
   }
   geometry.computeVertexNormals();
   const ray = new THREE.Ray();
-  /// Does the segment cross the surface?
+  /// Whether the segment crosses the surface.
   const crosses = (a, b) => {
     const length = a.distanceTo(b);
     if (!(length > 0)) return false;
@@ -99,7 +99,7 @@ function triangle_mesh(arrays, rate, convex) {
   return {object: new THREE.Mesh(geometry), move, crosses};
 }
 
-/// Small spheres at the points where hands hold the cloth.
+/// Small spheres at the points where hands grip the cloth.
 function grips(arrays, rate) {
   const target = sampled(arrays.target_m, rate), held = sampled(arrays.held, rate), group = new THREE.Group();
   for (let k = 0; k < arrays.target_m.shape[1]; ++k) group.add(new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
@@ -112,8 +112,8 @@ function grips(arrays, rate) {
   };
 }
 
-/// Objects to draw of a scene's colliders (motion.js, load_colliders), each with `object` and, if defined for
-/// its kind, `move(time)`, `depth(x)` (above 0 inside), `crosses(a, b)`.
+/// Objects that draw a scene's colliders (motion.js, load_colliders). Each has `object` and, if defined for its kind,
+/// `move(time)`, `depth(x)` (above 0 inside), `crosses(a, b)`.
 export function make_colliders(groups) {
   const rate = groups.find(g => g.path === 'colliders')?.attributes.frame_rate_hz ?? 72, out = [];
   for (const g of groups) {
@@ -127,8 +127,8 @@ export function make_colliders(groups) {
   return out;
 }
 
-/// Depth in m at each vertex into `out`: the maximum over the vertex, the middles of its edges and of its triangles, as a
-/// fingertip pokes through between vertices; 0 outside; -1 where an edge of the cloth from it crosses a mesh.
+/// Writes the depth in m at each vertex into `out`: the maximum over the vertex and the midpoints of its edges and
+/// triangles, because a fingertip may pass between vertices; 0 outside; -1 if an edge at the vertex crosses a mesh.
 export function penetration(colliders, edges, triangles, position, out) {
   out.fill(0);
   const x = new THREE.Vector3(), y = new THREE.Vector3();

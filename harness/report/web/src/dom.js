@@ -1,4 +1,4 @@
-/// An element with attributes and children; `on…` attributes are listeners, null children are left out.
+/// An element with attributes and children; `on…` attributes are listeners, null children are skipped.
 export function element(tag, attributes = {}, ...children) {
   const e = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -31,7 +31,7 @@ export function unpacked(id) {
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
 
-/// Announced by screen readers.
+/// Region whose text screen readers announce.
 let live = null;
 export function say(text) {
   live ??= document.body.appendChild(element('div', {class: 'skip', role: 'status', 'aria-live': 'polite'}));

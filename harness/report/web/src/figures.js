@@ -14,11 +14,11 @@ const by_solver = rows => unique(rows.map(r => r.solver)).map(solver => [solver,
 const choice = (label, values, first, text = String) =>
     ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
 
-/// The harness without a cloth model is decades faster than every solver. It is drawn only if no other solver is.
+/// The harness without a cloth model is far faster than every solver. It is drawn only if no other solver is.
 const without_floor = (doc, rows) =>
     rows.every(r => doc.solvers.floor.includes(r.solver)) ? rows : rows.filter(r => !doc.solvers.floor.includes(r.solver));
 
-/// Pareto front: rows that no row of the same solver dominates in both fields, by ascending a.
+/// Pareto front: rows that no other row of their solver dominates in both fields, by ascending a.
 const on_front = (rows, a, b) =>
     rows.filter(p => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])))
         .sort((p, q) => p[a] - q[a]);
@@ -86,7 +86,7 @@ const kRates = {
   memory: {text: 'Device memory per vertex', unit: 'kB per vertex', of: r => 1e-3 * r.device_memory_B / (r.width * r.width)}
 };
 
-/// Runs of one line: solver, setting and sides. Lines of one solver differ by their dash.
+/// Runs on one line: same solver, setting and sides. Lines of one solver differ in dash pattern.
 function lines_of(rows) {
   const name = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
   return by_solver(rows).flatMap(([solver, mine]) => unique(mine.map(name)).map((label, dash) => ({
@@ -109,9 +109,9 @@ function rates(doc) {
     hero: true,
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
-        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the error of free fall is ' +
-        'above 1 %, so the rate has no meaning. Slow frames: among frames with contact, where there are any. Bandwidth: bytes that shaders load and store, counted in a run of the same frames that is not timed, ' +
-        'per second of wall time; the bytes of CPU solvers are not known. Numbers of figures are the article\'s.',
+        'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
+        'above 1 %, so the rate has no meaning. Slow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
+        'per second of wall time; unknown for CPU solvers. Figure numbers are the article\'s.',
     remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
     choices: [
       choice('Scene', families, main), choice('Value', s => Object.keys(kRates).filter(v => of(s).some(has(kRates[v]))), undefined, v => kRates[v].text),
@@ -157,7 +157,7 @@ const kClocks = {
   wall: 'wall time, all frames'
 };
 
-/// Solvers of one scene stand below each other.
+/// Vertical offset that puts the solvers of one scene below each other.
 const shift_of = (solver, all) => all.length > 1 ? (all.indexOf(solver) - (all.length - 1) / 2) / (all.length + 0.6) : 0;
 
 function frame_times(doc) {
@@ -213,7 +213,7 @@ const kVerdicts = {
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
 const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}${expected && `, expected ${expected}`}`) ?? [];
-/// A scene of several studies counts once, by its first run.
+/// Runs with a verdict; a scene of several studies counts once, by its first run.
 const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–' && !r.repeated);
 
 function verdicts(doc) {
@@ -264,14 +264,14 @@ function failure_speed(doc) {
   };
 }
 
-/// 95 % interval of a share: Wilson's score.
+/// 95 % interval of a fraction: Wilson's score.
 export function wilson(passed, all) {
   const z = 1.959964, p = passed / all, d = 1 + z * z / all, middle = (p + z * z / (2 * all)) / d,
         half = z / d * Math.sqrt(p * (1 - p) / all + z * z / (4 * all * all));
   return [Math.max(0, middle - half), Math.min(1, middle + half)];
 }
 
-/// The share of good runs by solver and value of `field`, with its interval; `more`: what the figure adds.
+/// The fraction of good runs by solver and value of `field`, with its interval; `more`: additions by the figure.
 function shares(runs, field, is_good, more) {
   const row = (label, value, mine) => {
     const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
@@ -311,14 +311,14 @@ const forest = doc => shares(judged(doc, 'generated').filter(r => r.status !== '
   id: 'forest',
   section: 'contact',
   title: () => 'Pass rate by kind of generated scene',
-  caption: 'Share of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
+  caption: 'Fraction of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
 const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported'))), 'case', r => r.grade === 0, {
   id: 'stability',
   section: 'stability',
   title: () => 'Stable runs by case',
-  caption: 'Share of runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
+  caption: 'Fraction of the runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
 
 // What the article leaves open ------------------------------------------------
@@ -363,7 +363,7 @@ function claims(doc) {
 export const make_figures = doc =>
     [error_time, verdicts, forest, failure_speed, claims, rates, stability, frame_times].map(make => make(doc)).filter(Boolean);
 
-/// The choices of a figure with their defaults, where `given` has none that fits.
+/// The choices of a figure; default where `given` has no valid value.
 export function settled(figure, given) {
   const state = {};
   for (const {label, options, first} of figure.choices ?? []) {
@@ -373,7 +373,7 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The commands that make runs again: one per study.
+/// The commands that repeat runs: one per study.
 export function command_of(doc, runs) {
   const of = study => {
     const plain = doc.studies[study]?.command ?? '', jobs = runs.filter(r => r.study === study).map(r => r.job);

@@ -1,4 +1,4 @@
-// Builds the page from its document: figures and tables by section, the filter of solvers, contents, theme and motions.
+// Builds the page from its document: figures and tables by section, solver filter, contents, theme and motions.
 import {symbol, unique} from './chart.js';
 import {button, element, say, unpacked} from './dom.js';
 import {make_figures} from './figures.js';
@@ -36,7 +36,7 @@ function chips(doc, look) {
   }));
 }
 
-/// First screen: the first figure, the leading scenes below it, Table 3 beside them; the rest in sections.
+/// First screen: the first figure, the leading scenes below it, Table 3 next to them. All else follows in sections.
 function sections(doc, look, motions) {
   const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
         below = doc.sections[0]?.id === 'overview' ? 1 : 0, links = [['overview', 'Overview']];
@@ -66,7 +66,7 @@ function sections(doc, look, motions) {
   $('contents').append(element('ol', {}, links.map(([id, title]) => element('li', {}, element('a', {href: `#${id}`}, title)))));
 }
 
-/// The viewer is a program of its own, which runs when its section comes near the window.
+/// The viewer is a separate script, which starts when its section comes near the window.
 function start_motions(doc, motions) {
   const load = () => {
     if (document.readyState === 'loading') return addEventListener('DOMContentLoaded', load);  // the motions come last in the file
@@ -78,7 +78,7 @@ function start_motions(doc, motions) {
   window.clothbench.load_viewer = load;
 }
 
-/// Blocks have their heights once they are made: all are, before the page goes to one of them.
+/// Blocks have no height before they are made, so all are made before the page scrolls to one.
 function go_to(id) {
   document.documentElement.classList.add('whole');
   dispatchEvent(new Event('beforeprint'));
@@ -93,7 +93,7 @@ function start_navigation() {
     const now = end ? all.at(-1) : all.findLast(s => s.getBoundingClientRect().top < edge) ?? all[0];
     links.forEach((l, k) => all[k] === now ? l.setAttribute('aria-current', 'true') : l.removeAttribute('aria-current'));
   };
-  addEventListener('scroll', spy, {passive: true});  // at most once in a frame
+  addEventListener('scroll', spy, {passive: true});  // at most once per frame
   addEventListener('resize', bar);
   const open = on => {
     $('contents').classList.toggle('open', on);

@@ -1,4 +1,4 @@
-// Packed motions and colliders back into numbers; layout: harness/report/web/page.hpp.
+// Unpacks motions and colliders into numbers; layout: harness/report/web/page.hpp.
 import {Box3, Vector3} from 'three';
 import {unpacked} from './dom.js';
 
@@ -31,7 +31,7 @@ export class Motion {
     return m;
   }
 
-  /// Index of the last frame at or before `time`, and how far it is to the next, in [0, 1).
+  /// Index of the last frame at or before `time`, and the fraction of the interval to the next one, in [0, 1).
   place(time) {
     const t = this.time_s, f = Math.max(t.findLastIndex(x => x <= time), 0);
     return [f, f + 1 < t.length && time > t[f] ? (time - t[f]) / (t[f + 1] - t[f]) : 0];
@@ -44,7 +44,7 @@ export class Motion {
     return out;
   }
 
-  /// [a, b, length in the first frame in m] of the edges; on a grid, of those along rows and columns.
+  /// [a, b, length in m in the first frame] of each edge; for a grid, of edges along rows and columns.
   edges() {
     const seen = new Set(), out = [], x = this.position, n = this.vertices, columns = this.entry.grid?.[0];
     this.triangles.forEach((a, k) => {
@@ -56,14 +56,14 @@ export class Motion {
     return out;
   }
 
-  /// Place of each vertex in the first frame, along its two longest sides, over the longest.
+  /// Coordinates of each vertex in the first frame along the box's two longest sides, over the longest.
   places() {
     const sides = this.box.getSize(new Vector3()).toArray(), low = this.box.min.toArray();
     const along = [0, 1, 2].sort((a, b) => sides[b] - sides[a]), longest = sides[along[0]] || 1;
     return Array.from({length: 2 * this.vertices}, (_, k) => (this.position[3 * (k >> 1) + along[k % 2]] - low[along[k % 2]]) / longest);
   }
 
-  /// A sentence on what was left out of the motion.
+  /// A sentence on which frames of the motion are missing.
   thinning() {
     const {entry} = this, kept = entry.frames.length;
     return `${kept === entry.frames_stored ? 'every frame' : `${kept} of ${entry.frames_stored} frames`}, positions to ${

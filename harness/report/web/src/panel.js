@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import {make_colliders, penetration} from './colliders.js';
 import {load_colliders, Motion, strain} from './motion.js';
 
-// Viridis at fifths, from its published values; readable with every common colour blindness.
+// Viridis at fifths, from its published values; readable with all common colour-vision deficiencies.
 const kRamp = ['#440154', '#414487', '#2a788e', '#22a884', '#7ad151', '#fde725'].map(c => new THREE.Color(c));
 export const ramp_css = `linear-gradient(to right, ${kRamp.map(c => `#${c.getHexString()}`).join(', ')})`;
 export const crossing_css = '#ff1f8f';
@@ -38,7 +38,7 @@ export class Panel {
     g.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * motion.vertices), 3).setUsage(THREE.DynamicDrawUsage));
     g.setIndex(motion.triangles);
     g.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(motion.places()), 2));
-    // Capsules behind the cloth stay visible. Colours of values are not lit: they equal the colours of the ramp.
+    // Capsules behind the cloth stay visible. Value colours are not lit, so that they equal the ramp's colours.
     const hides = colliders.some(c => c.arrays.capsules);
     const shared = {vertexColors: true, side: THREE.DoubleSide, transparent: hides, opacity: hides ? 0.8 : 1};
     this.lit = new THREE.MeshStandardMaterial({...shared, map: checks(), roughness: 0.85, metalness: 0});
@@ -64,8 +64,8 @@ export class Panel {
     return new Panel(motion, colliders);
   }
 
-  /// The box to view: around the cloth at the start. A cloth that slides off a desk falls for metres; a box around its whole
-  /// path would reduce it to a dot.
+  /// The box to view: around the initial cloth. A cloth that slides off a desk falls for metres; in a box around its whole
+  /// path it would be a dot.
   view_box() {
     const {box} = this.motion;
     return box.clone().expandByScalar(0.25 * Math.max(...box.getSize(new THREE.Vector3()).toArray()));
@@ -80,9 +80,9 @@ export class Panel {
     return [away.x, away.z].map(x => x < -slack ? -1 : 1);
   }
 
-  /// Moves everything to `time` and colours the cloth: by "checks", "strain" (`most`: strain at the ramp's end) or
-  /// "penetration" (`most` in m). Returns the maximum of what the colours show, and the number of vertices on an edge that
-  /// crosses a mesh.
+  /// Moves all objects to `time` and colours the cloth by "checks", "strain" (`most`: strain at the ramp's end) or
+  /// "penetration" (`most` in m). Returns the maximum of the coloured value, and the number of vertices at edges that
+  /// cross a mesh.
   show(time, colouring, most) {
     const {motion, position, value, geometry} = this, colour = new THREE.Color(), out = geometry.attributes.color.array;
     motion.at(time, position);

@@ -1,5 +1,5 @@
-// The element of a figure: drawn when it comes near the window, with a value on hover and by keyboard, controls, a table of
-// its values.
+// The element of a figure, drawn when it comes near the window: values on hover and by keyboard, controls, a table of its
+// values.
 import {draw} from './chart.js';
 import {button, element, say, select} from './dom.js';
 import {command_of, settled} from './figures.js';
@@ -107,10 +107,10 @@ class Figure {
     if (!rows.length) {
       this.marks = [];
       return void this.plot.replaceChildren(
-          element('p', {class: 'note'}, 'No run is left: see the filter of solvers above.'));
+          element('p', {class: 'note'}, 'No runs are left: see the solver filter above.'));
     }
     const drawn = draw(entry.chart(rows, this.state, width), page_look(this.look, width < 560), width, entry.title(this.state));
-    this.plot.innerHTML = drawn.svg;  // text in it is escaped (chart.js)
+    this.plot.innerHTML = drawn.svg;  // chart.js escapes text in it
     this.marks = drawn.marks;
     this.show_values();
   }
@@ -136,7 +136,7 @@ const unpin = () => figures.find(f => f.at >= 0)?.point(-1);
 
 export const figure_block = (doc, look, entry) => new Figure(doc, look, entry).block;
 
-/// Draws figures as they come near the window; again after a change of the filter or the width.
+/// Draws figures as they come near the window, and redraws them after a change of filter or width.
 export function start_figures() {
   document.body.append(tip);
   addEventListener('click', e => e.target.closest?.('#tip button') || unpin());

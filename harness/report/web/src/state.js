@@ -1,4 +1,4 @@
-// What the reader chose, kept in the address: #anchor?off=jolt,paper&Scene=…; and the look of solvers.
+// The reader's choices, stored in the address (#anchor?off=jolt,paper&Scene=…), and the colours and symbols of solvers.
 export const state = {
   off: new Set(),
   values: {}
@@ -11,7 +11,7 @@ export function load_state() {
   return decodeURIComponent(anchor);
 }
 
-/// Writes the address without a new entry of the browser's history.
+/// Writes the address without a new entry in the browser's history.
 export function save_state(anchor = location.hash.slice(1).split('?')[0]) {
   const query = new URLSearchParams(state.values);
   if (state.off.size) query.set('off', [...state.off].join(','));
@@ -31,7 +31,7 @@ export function toggle_solver(solver) {
 
 export const shown = solver => !solver || !state.off.has(solver);
 
-/// One colour and one symbol for each solver, the same in all figures, from solvers.json; others get the spare ones.
+/// One colour and one symbol per solver from solvers.json, equal in all figures; other solvers get the spare ones.
 export function looks(solvers, roles) {
   let spare = 0;
   return Object.fromEntries(solvers.map(s => {
@@ -40,10 +40,10 @@ export function looks(solvers, roles) {
   }));
 }
 
-/// The variables of the colours of solvers, for the style sheet.
+/// Style sheet variables for the colours of solvers.
 export const style_of = all => `:root{${Object.values(all).map((l, k) => `--s${k}:light-dark(${l.light},${l.dark})`).join(';')}}`;
 
-/// How charts look. Every colour is a variable of the style sheet, so a change of theme draws nothing again.
+/// How charts look. Every colour is a variable of the style sheet, so that a change of theme needs no redrawing.
 export const page_look = (all, narrow) => ({
   colour: s => s in all ? `var(--s${Object.keys(all).indexOf(s)})` : 'var(--soft)',
   symbol: s => all[s]?.symbol ?? 'circle',
@@ -61,7 +61,7 @@ const kPaper = {
   'on-pass': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
 };
 
-/// Black on white; sizes are in points, since a picture is as wide as a column of text. `paper`: values of the variables.
+/// Black on white; sizes in points, because a picture is as wide as a text column. `paper`: values of the variables.
 export const paper_look = all => ({
   ...page_look(all),
   size: 7.5,

@@ -1,7 +1,7 @@
-// Draws the figures of a report in Node; bundle.mjs makes figures.cjs of this file.
+// Draws the figures of a report in Node; bundle.mjs makes figures.cjs from this file.
 //   node figures.cjs REPORT/index.html OUT
-// writes OUT/<figure>.svg (84 mm wide) and OUT/<figure>-wide.svg (174 mm), PDF files of both by rsvg-convert, and OUT/figures.md,
-// which shows the wide ones from the folder above. Puts the figure of the first screen into the page, for readers without JavaScript.
+// writes OUT/<figure>.svg (84 mm wide), OUT/<figure>-wide.svg (174 mm), PDF files of both with rsvg-convert, and OUT/figures.md,
+// which shows the wide ones from the parent folder. Puts the first screen's figure into the page for readers without JavaScript.
 import {execFileSync} from 'node:child_process';
 import {readFileSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';
@@ -13,8 +13,8 @@ import {looks, paper_look} from './state.js';
 
 const plain = text => text.replace(/\s+/g, ' ').replace(/[<[\]]/g, c => ({'<': '&lt;', '[': '(', ']': ')'}[c]));
 
-/// A PDF file of every SVG file, or none; returns a sentence on why there is none. A PDF file states when it was made; the same
-/// runs are to give the same file.
+/// Makes a PDF file of every SVG file, or none; returns a sentence on the reason for none. PDF files contain their creation
+/// time, which is fixed here so that equal runs give equal files.
 function convert(pictures) {
   const pdf = svg => svg.replace(/svg$/, 'pdf'), env = {...process.env, SOURCE_DATE_EPOCH: '0'};
   try {

@@ -1,4 +1,4 @@
-// Tables: sorted by a click on a head, folded at 15 rows, filtered by solver, each with an anchor and the command of a row.
+// Tables: sortable by a click on a head, folded at 15 rows, filtered by solver, with an anchor and a command per row.
 import {symbol} from './chart.js';
 import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
@@ -17,14 +17,14 @@ export function copy_command(command) {
   setTimeout(() => note.remove(), 6000);
 }
 
-/// A button that copies the commands of the studies that the runs come from and names their files; null if none is known.
+/// A button that copies the commands of the runs' studies and names their files; null if none is known.
 export function reproduce(doc, title, runs) {
   const studies = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => doc.studies[s]).filter(s => s.command);
   const all = studies.map(s => s.command).join('\n'), files = `\nResult files: ${studies.map(s => `${s.folder}/*.h5`).join(', ')}`;
   return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: all + files}) : null;
 }
 
-/// A head with an anchor; `more`: controls beside it.
+/// A head with an anchor; `more`: controls next to it.
 export const block_head = (id, name, what, more) =>
     element('div', {class: 'head'}, element('h3', {}, name, element('a', {class: 'anchor', href: `#${id}`, 'aria-label': `Link to ${what}`}, '#')), more);
 
@@ -63,7 +63,7 @@ export class ShownTable {
     });
   }
 
-  /// Orders the columns. In a narrow window the first cell also shows the other short keys, and columns with details come last.
+  /// Orders the columns. In a narrow window the first cell also shows the other short keys, and detail columns come last.
   arrange() {
     const {solvers, keys = 1, late = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
     this.columns = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
@@ -71,7 +71,7 @@ export class ShownTable {
     if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
   }
 
-  /// Tells how many columns the box hides on its right. The second key stays in sight if both keys fit into half of the box.
+  /// Shows how many columns are hidden to the right. The second key stays in view if both keys fit into half of the box.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
     const [first = 0, second = Infinity] = heads.map(h => h.offsetWidth), can_hold = this.table.keys > 1 && !kNarrow.matches;
@@ -104,7 +104,7 @@ export class ShownTable {
     return c;
   }
 
-  /// The button that copies the command of a row: of all runs that it is made of.
+  /// The button that copies a row's command, which repeats all of its runs.
   again({cells, runs}) {
     const command = command_of(this.doc, runs.filter(r => !r.published)), label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
     return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, ...runs.map(r => r.file)].filter(Boolean).join('\n')}) : null;
@@ -135,8 +135,7 @@ export function table_block(doc, look, table) {
   return t.block;
 }
 
-/// Makes blocks as they come near the window, and all of them to print; those that are made again after a change of the
-/// filter.
+/// Makes blocks as they come near the window, and all of them for printing; remakes them after a change of the filter.
 export function near_window(list, made, make) {
   const near = new IntersectionObserver(
       entries => list.filter(t => !made(t) && entries.some(e => e.isIntersecting && e.target === t.block)).forEach(make),

@@ -1,4 +1,4 @@
-// The motions of one scene, side by side and in step: one panel per solver, further settings if there is room.
+// The motions of one scene, side by side and synchronised: one panel per solver, further settings if there is room.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
@@ -9,7 +9,7 @@ import {crossing_css, Panel, ramp_css} from './panel.js';
 import {reproduce} from './tables.js';
 
 const kColours = ['checks', 'strain', 'penetration'];
-const kStrains = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1], kDepth_m = 5e-3;  // ends of the ramp
+const kStrains = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1], kDepth_m = 5e-3;  // upper ends of the colour ramp
 const small = v => v > 0 && v < 1e-3 ? '<0.001' : number(v);
 const kReadouts = {
   stretch_max: v => `strain ${small(100 * v)} %`,
@@ -73,7 +73,7 @@ class Viewer {
     this.scene_list.querySelector('select').value = scene;
     const off = window.clothbench.state.off, here = this.motions.runs.filter(m => m.row.scene === scene);
     await this.set(here.filter(m => !off.has(m.row.solver)));
-    // Solvers that no run of the report has, such as an engine that is not installed, are named too.
+    // Solvers without a run in the report, such as engines that are not installed, are listed too.
     const {look, floor, baseline} = window.clothbench.document.solvers, known = Object.keys(look).filter(s => ![...floor, ...baseline].includes(s));
     const absent = unique([...this.rows.filter(r => !r.published).map(r => r.solver), ...known]).filter(s => !here.some(m => m.row.solver === s));
     const why = row => !row ? 'not run' : row.status === 'ok' ? 'its motion is not in this page' : row.status;
@@ -84,7 +84,7 @@ class Viewer {
   async set(entries) {
     const turn = this.turn = (this.turn ?? 0) + 1;
     const panels = await Promise.all(entries.map(m => Panel.load(this.motions, m)));
-    if (turn !== this.turn) return panels.forEach(p => p.dispose());  // the reader chose again meanwhile
+    if (turn !== this.turn) return panels.forEach(p => p.dispose());  // the reader has chosen another scene meanwhile
     this.panels.forEach(p => p.dispose());
     this.panels = panels;
     this.arrange();
@@ -125,7 +125,7 @@ class Viewer {
     this.stale = true;
   }
 
-  /// Looks from the corner in which the cloth is in front of its colliders.
+  /// Views from the corner at which the cloth is in front of its colliders.
   look() {
     const away = 0.9 * this.radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2));
     const tile = this.stage.clientWidth / this.columns / (this.stage.clientHeight / this.rows_of_panels);
@@ -140,7 +140,7 @@ class Viewer {
     this.stale = true;
     this.legend.replaceChildren();
     if (kind === 'checks') return;
-    // The least step that holds nine of ten frames' maximum strain to a half.
+    // The smallest ramp end that is at least half of the 90th percentile of the frames' maximum strains.
     const strains = this.panels.flatMap(p => p.motion.entry.metrics.stretch_max ?? []).filter(v => v !== null).sort((a, b) => a - b);
     const usual = strains[Math.floor(0.9 * strains.length)] ?? 0;
     this.most = kind === 'strain' ? kStrains.find(s => s >= usual / 2) ?? kStrains.at(-1) : kDepth_m;
@@ -192,7 +192,7 @@ class Viewer {
     });
   }
 
-  /// The same picture without WebGL.
+  /// The same picture as SVG, for browsers without WebGL.
   draw_svg(p, width, height) {
     if (!p.svg) {
       p.svg = new SVGRenderer();
@@ -218,7 +218,7 @@ window.clothbench_viewer = (root, motions, rows) => {
   const viewer = new Viewer(root, motions, rows), touching = motions.runs.filter(m => motions.colliders[m.colliders].length);
   const fixed = touching.filter(m => m.row.part === 'contact');
   const first = window.clothbench.document.solvers.leading_scenes.map(word => fixed.find(m => m.row.scene.includes(word))).find(Boolean);
-  // The first picture is of the middle of the motion, where the cloth touches something.
+  // The first picture shows the middle of the motion, where the cloth touches something.
   viewer.ready = viewer.show_scene((first ?? fixed[0] ?? touching[0] ?? motions.runs[0]).row.scene).then(() => viewer.seek(viewer.end / 2));
   return viewer;
 };
