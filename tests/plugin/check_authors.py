@@ -34,11 +34,9 @@ class Authors(PluginTest):
         self.assertIn("XPBD", plugin["summary"])
         report = os.path.join(self.home, "report")
         self.assertEqual(self.command("report", self.out, "-o", report), 0, self.text)
-        for name in ("report.md", "index.html"):
-            page = pathlib.Path(report, name)
-            if page.exists() or name == "report.md":
-                self.assertIn(" is a plugin, version 2", page.read_text(encoding="utf-8"), name)
-                self.assertIn(plugin["sha256"][:16], page.read_text(encoding="utf-8"), name)
+        words = pathlib.Path(report, "report.md").read_text(encoding="utf-8")  # the page has the same notes
+        self.assertIn(" is a plugin, version 2", words)
+        self.assertIn(plugin["sha256"][:16], words)
 
     def test_a_misspelt_solver_of_a_study_is_an_error(self):
         file = self.study(solvers=[{"solver": "ballistic"}, {"solver": "bullet-sofd"}])

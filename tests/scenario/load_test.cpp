@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"axis not of length 1", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[2,0,0]}",
             "/cloth/pose/axis_u", "length 1"},
         Bad{"axes not at right angles", "\"sides\":\"single\"", "\"sides\":\"single\",\"pose\":{\"axis_u\":[0,0,1]}",
-            "/cloth/pose/axis_v", "right angles"},
+            "/cloth/pose/axis_v", "perpendicular"},
         Bad{"collider without type", "\"time\"", "\"colliders\":[{}],\"time\"", "/colliders/0", "\"type\" is missing"},
         Bad{"collider of unknown type", "\"time\"", "\"colliders\":[{\"type\":\"cone\"}],\"time\"", "/colliders/0/type",
             "one of"},

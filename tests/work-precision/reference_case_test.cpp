@@ -134,7 +134,7 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
     EXPECT_PRED2(mentions, refusal([&] { truth::reference_case_of(scene(name, {set})); }), why) << name;
   };
   refused("swing-strip", "material.shear=true", "/truth/case: \"swing-strip\" needs \"shear\": false");
-  refused("swing-strip", "time.duration_s=2", "chaos");
+  refused("swing-strip", "time.duration_s=2", "chaotic");
   refused("swing-strip", "material.damping_per_s=1", "no damping");
   refused("heavy-strip", "material.damping_per_s=0", "damping, to come to rest");
   refused("cantilever-10", "material.membrane_stiffness_N_per_m=1000", "1e-7");

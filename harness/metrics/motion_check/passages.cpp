@@ -1,7 +1,9 @@
 // Passages between two stored frames: inner points of solids through the cloth, vertices through static surfaces.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "base/words.hpp"
 #include "metrics/motion_check/body_state.hpp"
 
 namespace clothbench::motion_check {
@@ -9,6 +11,8 @@ namespace {
 
 /// First and last joints of the fingers, in the order of the WebXR Hand Input module.
 constexpr std::array<std::array<std::size_t, 2>, 5> kFingers = {{{1, 4}, {5, 9}, {10, 14}, {15, 19}, {20, 24}}};
+
+constexpr double kDetour = 1.25;  // length of a path around an edge over the straight one
 
 constexpr std::size_t kHandJoints = 25;  // of the WebXR Hand Input module
 
@@ -166,21 +170,31 @@ int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& t
   Box swept;
   swept.extend(box_of(was)).extend(box_of(now));
   if (!swept.intersects(tree.tree().box())) return 0;
-  const auto crossed = [&](const V3& p, const V3& q, auto note) {
-    tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
-      const Simplex<3>& s = tree.triangles()[static_cast<std::size_t>(t)];
-      if (p != q && contact::crossing<3>(p, q, s) != 0) note(V3((s[1] - s[0]).cross(s[2] - s[0]).normalized()));
-    });
+  const std::vector<Simplex<3>>& faces = tree.triangles();
+  const auto normal = [&](int t) {
+    return V3((faces[t][1] - faces[t][0]).cross(faces[t][2] - faces[t][0]).normalized());
+  };
+  // The straight path cuts a sharp edge that the vertex slid around.
+  const auto cuts_edge = [&](int a, int b, const V3& p, const V3& q) {
+    std::vector<V3> edge;
+    std::copy_if(faces[a].begin(), faces[a].end(), std::back_inserter(edge),
+                 [&](const V3& x) { return contains(faces[b], x); });
+    const auto distance = [&](const V3& x) { return std::sqrt(contact::squared_distance(x, x, edge[0], edge[1])); };
+    return edge.size() == 2 && distance(p) + distance(q) <= kDetour * (q - p).norm();
   };
   int through = 0;
   bool any = false;
   for (std::size_t v = 0; v < m.vertices; ++v) {
-    std::vector<V3> normals;
-    crossed(contact::point_at(was, v), contact::point_at(now, v), [&](const V3& n) { normals.push_back(n); });
-    any = any || !normals.empty();
+    const V3 p = contact::point_at(was, v), q = contact::point_at(now, v);
+    std::vector<int> met;
+    if (p != q)
+      tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
+        if (contact::crossing<3>(p, q, faces[t]) != 0) met.push_back(t);
+      });
+    any = any || !met.empty();
     bool opposed = false;
-    for (const V3& a : normals)
-      for (const V3& b : normals) opposed = opposed || a.dot(b) < -0.5;
+    for (const int a : met)
+      for (const int b : met) opposed = opposed || (normal(a).dot(normal(b)) < -0.5 && !cuts_edge(a, b, p, q));
     through += opposed;
   }
   if (!any) return 0;
