@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace clothbench {
 namespace {
@@ -24,51 +25,28 @@ std::string markdown_cell(const std::string& text) {
   return out;
 }
 
-/// Characters that LaTeX reserves or lacks, and their replacements.
-constexpr std::pair<std::string_view, std::string_view> kCharacters[] = {{"\\", "\\textbackslash{}"},
-                                                                         {"{", "\\{"},
-                                                                         {"}", "\\}"},
-                                                                         {"$", "\\$"},
-                                                                         {"&", "\\&"},
-                                                                         {"#", "\\#"},
-                                                                         {"%", "\\%"},
-                                                                         {"_", "\\_"},
-                                                                         {"~", "\\textasciitilde{}"},
-                                                                         {"^", "\\textasciicircum{}"},
-                                                                         {"<", "$<$"},
-                                                                         {">", "$>$"},
-                                                                         {"|", "$|$"},
-                                                                         {"[", "{[}"},
-                                                                         {"–", "--"},
-                                                                         {"−", "$-$"},
-                                                                         {"…", "\\ldots{}"},
-                                                                         {"×", "$\\times$"},
-                                                                         {"·", "$\\cdot$"},
-                                                                         {"±", "$\\pm$"},
-                                                                         {"≤", "$\\le$"},
-                                                                         {"≥", "$\\ge$"},
-                                                                         {"†", "$^\\dagger$"},
-                                                                         {"µ", "$\\mu$"},
-                                                                         {"ν", "$\\nu$"},
-                                                                         {"°", "$^\\circ$"},
-                                                                         {"²", "$^2$"},
-                                                                         {"³", "$^3$"},
-                                                                         {"⁴", "$^4$"},
-                                                                         {"⁵", "$^5$"},
-                                                                         {"⁶", "$^6$"},
-                                                                         {"⁻", "$^-$"},
-                                                                         {"\u00a0", "~"},
-                                                                         {"\n", " "},
-                                                                         {"\r", " "}};
+/// Characters that LaTeX reserves or lacks, each followed by its replacement.
+constexpr const char* kCharacters = R"(
+\ \textbackslash{}  { \{  } \}  $ \$  & \&  # \#  % \%  _ \_  ~ \textasciitilde{}  ^ \textasciicircum{}
+< $<$  > $>$  | $|$  [ {[}  – --  − $-$  … \ldots{}  × $\times$  · $\cdot$  ± $\pm$  ≤ $\le$  ≥ $\ge$
+† $^\dagger$  µ $\mu$  ν $\nu$  ° $^\circ$  ² $^2$  ³ $^3$  ⁴ $^4$  ⁵ $^5$  ⁶ $^6$  ⁻ $^-$)";
+
+std::vector<std::pair<std::string, std::string>> latex_characters() {
+  std::vector<std::pair<std::string, std::string>> out = {{"\u00a0", "~"}, {"\n", " "}, {"\r", " "}};
+  std::istringstream in(kCharacters);
+  for (std::string character, latex; in >> character >> latex;) out.emplace_back(character, latex);
+  return out;
+}
 
 /// Text for LaTeX; text between backticks becomes typewriter text.
 std::string latex_text(std::string_view text) {
+  static const auto kLatex = latex_characters();
   std::string out;
   bool code = false;
   while (!text.empty()) {
     std::size_t length = 1;
     std::string_view written = text.substr(0, 1);
-    for (const auto& [character, latex] : kCharacters)
+    for (const auto& [character, latex] : kLatex)
       if (text.starts_with(character)) {
         length = character.size();
         written = latex;
