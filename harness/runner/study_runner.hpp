@@ -82,7 +82,7 @@ nlohmann::json execute_plan(const nlohmann::json& request, const WorkerProgress&
 std::optional<RunRecord> finished_run(const RunSpec&, const RunOptions&);
 
 /// Result of checking a run against its scene's criteria: the `expect` of its file, the bounds of its exact solution
-/// (ExactBound), and stability grade 0 if it has a stability block. The last two imply outcome "ok". The motion check
+/// (ExactBound), and stability grade 0 if it has a stability block. The last two need outcome "ok". The motion check
 /// applies to every run whose summary has its statistics.
 struct Judgement {
   /// "pass"; "fail: " and every violated criterion with value and bound; "not measured" if the accuracy pass is shorter

@@ -7,7 +7,7 @@
 
 namespace clothbench::vulkan {
 
-/// A sequence of dispatches and copies, each with its stage, such as a frame. Barriers are placed only where a step
+/// A sequence of dispatches and copies, such as a frame; each has its stage. Barriers are placed only where a step
 /// reads or writes a buffer that an earlier step wrote, or writes one that an earlier step read.
 class Program {
  public:
