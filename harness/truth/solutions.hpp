@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-// Exact solutions of simple motions and shapes, each described once: by formulas or by equations of the scene's mesh.
+// Exact solutions of simple motions and shapes, each given by formulas or by equations of the scene's mesh.
 // Values are in SI units; tensions and loads per unit width. Reference cases check arguments.
 
 namespace clothbench::truth {

@@ -18,7 +18,7 @@ btVector3 to_bullet(const Vec3&);
 ///
 /// Spheres, boxes and capsules are exact. A plane is the top of a large box, like the ground in Bullet's examples; for
 /// soft bodies btStaticPlaneShape is such a slab too. A mesh has a thin body per triangle; triangles of a kinematic
-/// mesh keep their shape at the start.
+/// mesh keep their initial shape.
 class ColliderBodies {
  public:
   /// Adds the bodies to `world`, which must outlive this. Throws Error on a capsule that changes its length.

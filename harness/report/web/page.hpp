@@ -38,9 +38,9 @@ struct Page {
   std::vector<PageSection> sections;
 };
 
-/// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q, q in [0,
-/// 65535]. `bytes`: zlib of q (frame, axis, vertex; 16 bits) minus its prediction, modulo 2^16. The prediction is 2
-/// q(f-1) - q(f-2); in frame 1, q(0); in frame 0, the previous value (0 for the first one).
+/// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q with
+/// 0 ≤ q < 2^16. `bytes`: zlib of q (frame, axis, vertex; 16 bits) minus its prediction, modulo 2^16. The prediction:
+/// 2 q(f-1) - q(f-2); in frame 1, q(0); in frame 0, the previous value (0 for the first one).
 struct PackedMotion {
   std::vector<std::size_t> frames;  ///< frames of the run that are kept
   double step_m = 0;
