@@ -20,6 +20,23 @@ configure() {
   cmake --preset "$@" "${extra[@]}"
 }
 
+# meanwhile COMMAND…: runs COMMAND in the background; `awaited` waits for its end, prints what it printed, and fails as it did.
+meanwhile() {
+  rm -f "$stage_logs/meanwhile.status"
+  { "$@" >"$stage_logs/meanwhile.log" 2>&1 && echo 0 >"$stage_logs/meanwhile.status" || echo $? >"$stage_logs/meanwhile.status"; } &
+}
+awaited() {
+  while [ ! -f "$stage_logs/meanwhile.status" ]; do sleep 0.2; done
+  cat "$stage_logs/meanwhile.log"
+  return "$(cat "$stage_logs/meanwhile.status")"
+}
+# build_targets PRESET TARGET…: first the folders that the page does not concern, because npm, which bundles it, is installed meanwhile.
+build_targets() {
+  cmake --build --preset "$1" -j "$JOBS" --target solvers/all harness/{assets,check,metrics,runner,scenario,truth}/all
+  awaited
+  cmake --build --preset "$1" -j "$JOBS" --target "${@:2}"
+}
+
 budget_rows=()
 over_budget=0
 stage_logs=${CLOTHBENCH_LOGS:-build/log}

@@ -11,14 +11,11 @@ build() {
   local together=()
   [ -f build/release/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
   configure release -DBUILD_TESTING=OFF "${together[@]}"
-  cmake --build --preset release -j "$JOBS" --target clothbench
+  build_targets release clothbench
 }
-# The assets are fetched during the build, because one needs the network and the other the processor.
-fetched=$stage_logs/fetch-assets
-assets() {
-  while [ ! -f "$fetched.status" ]; do sleep 0.2; done
-  cat "$fetched.log"
-  return "$(cat "$fetched.status")"
+# What the compiler does not need comes during the build, because one needs the network and the other the processor.
+rest() {
+  scripts/bootstrap.sh && scripts/fetch-assets.sh "${require[@]}"
 }
 
 study=table3
@@ -29,12 +26,10 @@ fi
 require=() form=()
 [[ " $* " != *' --require-assets '* ]] || require=(--require-assets)
 
-stage set-up 2 scripts/bootstrap.sh
-rm -f "$fetched.status"
-{ scripts/fetch-assets.sh "${require[@]}" >"$fetched.log" 2>&1 && echo 0 >"$fetched.status" || echo $? >"$fetched.status"; } &
+stage set-up 2 scripts/bootstrap.sh --build
+meanwhile rest
 stage build 4 build
-stage assets 1 assets
-tail -1 "$fetched.log"
+tail -1 "$stage_logs/meanwhile.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
 # Times of a software device tell nothing about a GPU, and all sizes take it many minutes.
 build/release/clothbench list devices --json | grep -q '"software": false' || form=(--quick)

@@ -19,7 +19,10 @@ build() {
     *) [ ${#first[@]} -eq 0 ] || first+=(-DCLOTHBENCH_TESTS=quick) ;;
   esac
   configure ci "${first[@]}"
-  cmake --build --preset ci -j "$JOBS" --target "${targets[@]}"
+  build_targets ci "${targets[@]}"
+}
+rest() {
+  scripts/bootstrap.sh "${packages[@]}" && scripts/fetch-assets.sh
 }
 # One job more than cores, because some tests wait for a clock or another program.
 tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
@@ -76,8 +79,8 @@ case ${1:-} in
     ;;
   *) echo "usage: scripts/test.sh [--full | --short]" >&2; exit 2 ;;
 esac
-stage set-up 3 scripts/bootstrap.sh "${packages[@]}"
-stage assets 1 scripts/fetch-assets.sh
+stage set-up 3 scripts/bootstrap.sh --build
+meanwhile rest
 stage build 8 build
 stage --show tests 8 tests
 if [ "$tier" != short ]; then

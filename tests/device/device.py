@@ -26,6 +26,8 @@ def qemu(*command):
     driver = next((ROOT / "usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
     path = f"{LIBRARIES}:{ROOT}/lib/aarch64-linux-gnu:{BUILD}/stubs"
     return ["qemu-aarch64-static", "-L", str(ROOT), "-E", f"LD_LIBRARY_PATH={path}", "-E", f"VK_ICD_FILENAMES={driver}",
+            # Unoptimised shaders: the compiler, which is emulated too, takes longer than the frames.
+            "-E", "GALLIVM_PERF=nopt",
             # Under qemu-user a program cannot start itself again as a worker process.
             "-E", "CLOTHBENCH_IN_PROCESS=1",
             *map(str, command)]
