@@ -6,14 +6,13 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# A unity build takes a third of the time.
 build() {
-  cmake --preset arm64-linux -DCMAKE_UNITY_BUILD=ON
+  cmake --preset arm64-linux
   cmake --build --preset arm64-linux -j "$JOBS" --target clothbench clothbench_quest fake_host clothbench_assets_packed null_xr_runtime
 }
 # Builds the program for this machine, for comparison and for importing results of the device build.
 host() {
-  [ -f build/release/CMakeCache.txt ] || configure release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
+  [ -f build/release/CMakeCache.txt ] || configure release -DBUILD_TESTING=OFF
   cmake --build build/release -j "$JOBS" --target clothbench
 }
 android() {

@@ -47,9 +47,8 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo=(sudo)
 fi
 log=$(mktemp)
-export DEBIAN_FRONTEND=noninteractive
-install() { "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; }
-if ! { "${sudo[@]}" apt-get update && install; } >"$log" 2>&1 9>&-; then
+if ! { "${sudo[@]}" apt-get update &&
+    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 9>&-; then
   tail -20 "$log" >&2
   echo "set-up: apt-get failed (whole output: $log)" >&2
   exit 1

@@ -12,28 +12,25 @@ default_jobs() {
 }
 export JOBS=${JOBS:-$(default_jobs)}
 
-# configure PRESET [arguments of cmake…]: configures, the first time with clang, which compiles faster than g++
+# configure PRESET [arguments of cmake…]: configures, the first time with clang and as a unity build, which compile fastest
 configure() {
-  local extra compilers=
-  [ -f build/release/CMakeCache.txt ] || compilers='-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++'
-  read -ra extra <<<"$compilers ${CLOTHBENCH_CMAKE:-}"
+  local extra first=
+  [ -f build/release/CMakeCache.txt ] || first='-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_UNITY_BUILD=ON'
+  read -ra extra <<<"$first ${CLOTHBENCH_CMAKE:-}"
   cmake --preset "$@" "${extra[@]}"
 }
 
-# meanwhile COMMAND…: runs COMMAND in the background; `awaited` waits for its end, prints what it printed, and fails as it did.
+# meanwhile COMMAND…: runs COMMAND in the background, for `build_targets` to wait for.
 meanwhile() {
   rm -f "$stage_logs/meanwhile.status"
   { "$@" >"$stage_logs/meanwhile.log" 2>&1 && echo 0 >"$stage_logs/meanwhile.status" || echo $? >"$stage_logs/meanwhile.status"; } &
 }
-awaited() {
-  while [ ! -f "$stage_logs/meanwhile.status" ]; do sleep 0.2; done
-  cat "$stage_logs/meanwhile.log"
-  return "$(cat "$stage_logs/meanwhile.status")"
-}
-# build_targets PRESET TARGET…: first the folders that the page does not concern, because npm, which bundles it, is installed meanwhile.
+# build_targets PRESET TARGET…: what does not contain the page comes first, because npm, which bundles it, is installed meanwhile.
 build_targets() {
   cmake --build --preset "$1" -j "$JOBS" --target solvers/all harness/{assets,check,metrics,runner,scenario,truth}/all
-  awaited
+  while [ ! -f "$stage_logs/meanwhile.status" ]; do sleep 0.2; done
+  cat "$stage_logs/meanwhile.log"
+  [ "$(cat "$stage_logs/meanwhile.status")" = 0 ]
   cmake --build --preset "$1" -j "$JOBS" --target "${@:2}"
 }
 
@@ -90,11 +87,9 @@ stage_ticker() {
     sleep "$pause" &
     local sleeping=$!
     wait "$sleeping" || return
-    stage_line "$1" $((SECONDS - from)) "$(stage_progress "$3")"
+    stage_line "$1" $((SECONDS - from)) "$(tail -c 4000 "$3" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true)"  # of ninja
   done
 }
-# Prints the last count that ninja printed; nothing for other programs.
-stage_progress() { tail -c 4000 "$1" 2>/dev/null | grep -oE '\[[0-9]+/[0-9]+\]' | tail -1 || true; }
 
 # side_by_side COMMAND…: runs each in its own process, which ends at an error; fails if one of them fails.
 side_by_side() {

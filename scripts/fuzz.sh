@@ -8,7 +8,7 @@ source scripts/common.sh
 seconds=${1:-10}
 readers=(scene obj gltf room hand track part hdf5)
 [ $# -gt 1 ] && readers=("${@:2}")
-cmake --preset sanitize -DCMAKE_UNITY_BUILD=ON >build/configure-sanitize.log 2>&1 || { tail -30 build/configure-sanitize.log; exit 1; }
+cmake --preset sanitize >build/configure-sanitize.log 2>&1 || { tail -30 build/configure-sanitize.log; exit 1; }
 cmake --build --preset sanitize -j "$JOBS" --target fuzz >build/fuzz.log 2>&1 || { tail -30 build/fuzz.log; exit 1; }
 
 fuzz() {

@@ -6,23 +6,17 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/common.sh
 
-# A first build is a unity build, which takes half the time; an already configured folder keeps its settings.
 build() {
-  local together=()
-  [ -f build/release/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
-  configure release -DBUILD_TESTING=OFF "${together[@]}"
+  configure release -DBUILD_TESTING=OFF
   build_targets release clothbench
 }
 # What the compiler does not need comes during the build, because one needs the network and the other the processor.
-rest() {
-  scripts/bootstrap.sh && scripts/fetch-assets.sh "${require[@]}"
-}
+rest() { scripts/bootstrap.sh && scripts/fetch-assets.sh "${require[@]}"; }
 
-study=table3
-if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
-  study=$1
-  shift
-fi
+case ${1:--} in
+  -*) study=table3 ;;
+  *) study=$1 && shift ;;
+esac
 require=() form=()
 [[ " $* " != *' --require-assets '* ]] || require=(--require-assets)
 

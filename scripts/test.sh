@@ -9,21 +9,11 @@ source scripts/common.sh
 # --short: tests of system-dependent parts: readers of JSON, HDF5 and meshes, exact arithmetic, Bullet, Vulkan, the command.
 short=(assets_test bullet_test check_test cli_test contact_test pbd_gpu_self_contact_test results_test scenario_test truth_test)
 
-# A first build is a unity build, which takes half the time, and omits slow tests that are not run. An already
-# configured folder keeps both settings.
 build() {
-  local first=()
-  [ -f build/release/CMakeCache.txt ] || first=(-DCMAKE_UNITY_BUILD=ON)
-  case $tier in
-    full) first+=(-DCLOTHBENCH_TESTS=slow) ;;
-    *) [ ${#first[@]} -eq 0 ] || first+=(-DCLOTHBENCH_TESTS=quick) ;;
-  esac
-  configure ci "${first[@]}"
+  configure ci "${built[@]}"
   build_targets ci "${targets[@]}"
 }
-rest() {
-  scripts/bootstrap.sh "${packages[@]}" && scripts/fetch-assets.sh
-}
+rest() { scripts/bootstrap.sh "${packages[@]}" && scripts/fetch-assets.sh; }
 # One job more than cores, because some tests wait for a clock or another program.
 tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
 
@@ -67,10 +57,10 @@ if study["crashed"] != 0 or bad or not ours:
 END
 }
 
-tier=quick selection=(-LE '^(slow|ci)$') targets=(all) packages=(--tests)
+tier=quick built=() selection=(-LE '^(slow|ci)$') targets=(all) packages=(--tests)
 case ${1:-} in
   '') ;;
-  --full) tier=full selection=() packages=(--tests --ci) ;;
+  --full) tier=full built=(-DCLOTHBENCH_TESTS=slow) selection=() packages=(--tests --ci) ;;
   --short)
     tier=short packages=(--short)
     targets=(clothbench "${short[@]}")
