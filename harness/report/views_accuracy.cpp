@@ -130,7 +130,7 @@ View reference_cases() {
          "triangle mesh, the reference solution of this mesh. U_ref: uncertainty of the reference solution (two "
          "integrators, three time steps) in the case's quantity, divided by its scale. On a grid, the distance of the "
          "reference solution from the exact solution must be below U_ref; on a triangle mesh it is the error of the "
-         "mesh. Order: observed; 2 is declared. –: all time steps agree.",
+         "mesh. Order: observed; 2 is declared. –: the result does not depend on the time step.",
          in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
