@@ -173,7 +173,7 @@ std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
   // Where the reference solution confirms it, the exact solution has no error, so only the reference's uncertainty
   // counts. Errors below the mesh's are not ranked, so the reference may be as uncertain as the mesh's error.
-  if (!std::isfinite(best_error)) return "no ranked solver has an error";
+  if (!std::isfinite(best_error)) return "no run can be ranked";
   const double least = std::fmax(best_error, space_error);
   if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
   return "";

@@ -126,11 +126,11 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 
 View reference_cases() {
   View v{"accuracy", "Reference cases and their reference solutions",
-         "Space: distance from the continuum's solution, of the exact solution on this grid or of the reference "
-         "solution on this triangle mesh. U_ref: uncertainty of the reference solution (two integrators, three time "
-         "steps) in the reference case's quantity, over its scale. On a grid, the distance of the reference solution "
-         "from the exact one must be below U_ref; on a mesh it is an error of the mesh. Order: observed; 2 is "
-         "declared. –: all time steps agree.",
+         "Space: distance between the continuum's solution and, on a grid, the exact solution of this grid; on a "
+         "triangle mesh, the reference solution of this mesh. U_ref: uncertainty of the reference solution (two "
+         "integrators, three time steps) in the case's quantity, divided by its scale. On a grid, the distance of the "
+         "reference solution from the exact solution must be below U_ref; on a triangle mesh it is the error of the "
+         "mesh. Order: observed; 2 is declared. –: the result does not depend on the time step.",
          in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),

@@ -110,10 +110,10 @@ Cell options_of(const Point& p) {
 View claims() {
   View v{"contact", "Claims of the article, over what it leaves open",
          "Fraction of the box's points at which a claim holds, with Wilson's 95 % interval, also by iterations × "
-         "substeps per frame. Reproduced: holds at every point; reproducible: at some. All: every claim holds at one "
-         "point. Fewest dispatches: the cheapest point, in dispatches per frame of its most expensive claim. Paper, "
-         "best: the command that runs that point again, and its values as options for other scenes, for all claims the "
-         "ones that their scenes share; if the claims hold nowhere together, of the point where most do.",
+         "substeps per frame. Reproduced: the claim holds at every point; reproducible: at some. Row all: every claim "
+         "holds at the same point. Fewest dispatches: per frame, at the cheapest such point, in its most expensive "
+         "scene. Paper, best: the command that repeats the cheapest of the points where the largest number of the "
+         "row's claims hold, and its values as options for other scenes; in row all, the values that all scenes share.",
          [](const Row& r) { return r.part == Part::Claims; }};
   v.keys = {key("solver", &Row::solver, true), {"claim", [](const Row& r) {
                                                   return Keys{r.drawn().value("kind", ""), {"all", true}};
@@ -201,9 +201,9 @@ View work_model() {
   View v{"rates", "Table 3: work per frame",
          "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
          "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
-         "error. C2, C3: ratios of times. Iterations: constraint iterations per frame, and the number that would take "
-         "the published slope on this device, with the range of two standard errors; a headset's GPU is slower, so it "
-         "allows fewer. The published times include rendering.",
+         "error. C2, C3: ratios of times. Iterations: constraint iterations per frame. Iterations at the published "
+         "slope: number that would need the published time per particle on this device, with the range of two standard "
+         "errors. A headset's GPU is slower, so it allows fewer. The published times include rendering.",
          [](const Row& r) {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
                   published_samples().contains({r.sides, r.resolution.grid[0]});

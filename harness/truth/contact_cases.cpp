@@ -89,7 +89,7 @@ ReferenceCase incline(const Strip& s) {
     if (length(tangential) > Strip::kLevel * s.g) return (1 / length(tangential)) * tangential;
     return length(v0) > 0 ? (1 / length(v0)) * v0 : s.along;
   };
-  s.need(std::isfinite(face.gap_m), "a plane, or a box that is all under the sheet");
+  s.need(std::isfinite(face.gap_m), "a plane, or a box under the whole sheet");
   const Vec3 d = downhill();
   Incline slope;
   slope.angle_rad =

@@ -147,7 +147,7 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   refused("cantilever-10-mesh", "pins=[{\"group\":\"u0\"}]", "a line next to it");
   refused("cantilever-10-mesh", "pins=[{\"group\":\"u0\"},{\"nearest_m\":[[-0.08,0,0]]}]", "end of the clamp");
   refused("incline-stick", "colliders.0.margin_m=0.01", "at the collider's margin");
-  refused("incline-stick", "colliders.0.size_m=[0.2,0.1,1]", "all under the sheet");
+  refused("incline-stick", "colliders.0.size_m=[0.2,0.1,1]", "under the whole sheet");
   refused("incline-stop", "colliders.0.size_m=[0.3,0.1,1]", "under the whole path of the sheet");
   refused("incline-slip", "cloth.initial_velocity_m_per_s=[0,0,1]", "straight downhill");
   refused("incline-slip", "material.damping_per_s=1", "no damping");

@@ -222,7 +222,7 @@ bool on_border(const Cloth&, const struct Edge&);
 /// Springs [N/m] in a sheet of uniaxial stiffness Y [N/m]. With shear, the homogenised sheet is isotropic with Poisson
 /// ratio 1/3, the only one that central springs allow (C12 = C66). Cells along x across: Y (9/8 across/along - 3/8
 /// along/across) per inner edge, 3/16 Y (along^2 + across^2)/(along across) per diagonal; square cells: 3/4 Y, 3/8 Y.
-/// Above an aspect ratio of about 1.6 the former is kept at its minimum, a tenth of Y across/along: the sheet is then
+/// An inner edge with along/across above about 1.6 gets the minimum, a tenth of Y across/along: the sheet is then
 /// stiffer than Y. Without shear: Y across/along.
 double grid_spring_N_per_m(double Y_N_per_m, const EdgeCell&, bool shears);
 double diagonal_spring_N_per_m(double Y_N_per_m, const EdgeCell&);

@@ -26,7 +26,7 @@ MetricGroup contact_metrics() {
   using enum SlackUnit;
   using enum Expect;
   static constexpr Gate kAtRest{1e-2, Length, 0.1, true, "a third of an edge of a 32 × 32 cloth"},
-      kImpact{0.1, Length, 0.5, false, "one moment of an impact, three edges"},
+      kImpact{0.1, Length, 0.5, false, "three edges, at a moment of impact"},
       kDepth{5e-4, Length, 0.1, false, "half a millimetre on a cloth of 1 m"}, kPoints{0, One, 0, true, "none"};
   constexpr Needs kInside{"colliders with an inside", has_depth};
   return {{{"contact_length_m", "m", "length of the intersection contour of cloth and colliders", kColliders,

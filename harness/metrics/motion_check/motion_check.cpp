@@ -27,7 +27,7 @@ std::span<const Statistic> statistics() {
       {"sliding", Dynamic,
        "mean force along a face that the cloth rests or slides on, against Coulomb's law, in weights"},
       {"mean_force", Dynamic, "mean force of intervals without contact that no attachment can exert, in weights"},
-      {"hinge", Dynamic, "unexplained moment about a line across the cloth on the part beyond it"},
+      {"hinge", Dynamic, "unexplained moment on the cloth beyond a line, about that line"},
       {"energy", Dynamic, "energy above the energy at the start, if only the cloth moves"},
       {"rise", Dynamic, "energy above an earlier frame's, while no collider or attachment can add any"},
       {"speed", Dynamic, "speed of a vertex over the speed that falls, colliders and strain can cause"},

@@ -54,9 +54,9 @@ Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
   return {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
 }
 
-/// Rows with a trajectory, by priority for the page: first leading scene, garments with contact, other leading scenes,
-/// other contact scenes, the rest, runs without a cloth model; within each, default settings first, then first runs of
-/// solvers; at most six per scene.
+/// Rows with a trajectory, most important for the page first: the first leading scene, garments with contact, other
+/// leading scenes, other scenes with contact, scenes without contact; last, runs without a cloth model. Within each:
+/// default settings first, then one row per solver before any solver's second. At most six rows per scene.
 std::vector<const Row*> candidates(const RunTable& table) {
   std::vector<std::pair<std::tuple<bool, std::size_t, bool, std::size_t>, const Row*>> order;
   std::map<std::pair<std::string, std::string>, std::size_t> of_solver;

@@ -264,7 +264,7 @@ Tethers tethers_of(const Scene& scene, bool wanted) {
 TetherTable tether_table(const Scene& scene, bool wanted) {
   TetherTable t;
   t.reason = why_no_tethers(scene, wanted);
-  if (t.reason.empty() && !scene.material.regions.empty()) t.reason = "its stiffness is not the same everywhere";
+  if (t.reason.empty() && !scene.material.regions.empty()) t.reason = "the cloth's stiffness is not uniform";
   if (!t.reason.empty()) return t;
   const Adjacency edges = adjacency_of(scene);
   std::vector<std::vector<std::uint32_t>> groups = connected_pins(scene, [&](std::uint32_t v, const auto& visit) {

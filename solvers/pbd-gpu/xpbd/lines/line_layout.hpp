@@ -32,8 +32,8 @@ struct LineRequest {
 };
 /// Shape of line_frame, which simulates a frame in one workgroup; threads = 0 if the cloth or the device does not fit.
 LineShape frame_shape(int columns, int rows, const LineRequest&, const LineDevice&);
-/// Shape of line_pass for lines of `length` vertices. On wide devices (an H200) two vertices per thread are fastest up
-/// to a length of 384, and 2 or 4 neighbouring chains side by side above 192. Throws Error past 8192.
+/// Shape of line_pass for lines of `length` vertices. On wide devices (an H200), lines of up to 384 vertices are
+/// fastest with two vertices per thread; lines of over 192, with 2 or 4 chains side by side. Throws Error past 8192.
 LineShape pass_shape(int length, const LineRequest&, const LineDevice&);
 
 /// Rounds of cyclic reduction after which the remaining off-diagonal entries of the bending system are below 1e-7; at
