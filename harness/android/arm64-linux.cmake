@@ -1,13 +1,11 @@
-# Toolchain file: arm64 Linux by Clang on Debian's cross libraries, run under qemu-user. A stand-in for a headset, so that the
-# same sources and the same arm64 code are tested where there is none.
+# Toolchain file: arm64 Linux by Clang on Debian's cross libraries, run under qemu-user: the same sources and arm64 code as on a headset.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER clang)
 set(CMAKE_CXX_COMPILER clang++)
 set(CMAKE_C_COMPILER_TARGET aarch64-linux-gnu)
 set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu)
-# Unpacked by scripts/fetch-arm64-root.sh.
-set(CLOTHBENCH_ARM64_ROOT "${CMAKE_CURRENT_LIST_DIR}/../../build/arm64-root" CACHE PATH "Debian's arm64 packages, unpacked")
+set(CLOTHBENCH_ARM64_ROOT "${CMAKE_CURRENT_LIST_DIR}/../../build/arm64-root" CACHE PATH "Debian's arm64 packages, unpacked by fetch-arm64-root.sh")
 get_filename_component(CLOTHBENCH_ARM64_ROOT "${CLOTHBENCH_ARM64_ROOT}" ABSOLUTE)
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CLOTHBENCH_ARM64_ROOT)
 set(CMAKE_FIND_ROOT_PATH ${CLOTHBENCH_ARM64_ROOT})
