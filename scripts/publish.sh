@@ -114,7 +114,7 @@ mkdir -p "$out"
 [ ! -f "$out/version" ] || [ "$(sources "$out/version")" = "$(sources "$out/version.now")" ] ||
   fail "$out has results of $(cat "$out/version"), this program is $(cat "$out/version.now"); publish results of one state of the sources"
 mv "$out/version.now" "$out/version"
-commit=$(sed -n 's/.*(\([0-9a-f]\{6\}\).*/\1/p' "$out/version")
+commit=$(sed -n 's/.*(\([0-9a-f]\{1,6\}\).*/\1/p' "$out/version")
 seed=$((16#${commit:-1}))
 names=()
 for library in build/peers/*/libclothbench_*.so; do
