@@ -1,14 +1,14 @@
 // The figures of a report without a browser: what they count and omit, sizes on paper, and colours and symbols of
 // solvers (harness/report/solvers.json), which must be distinguishable with all common colour-vision deficiencies.
-//   node figures.mjs ROOT
+//   node figures.mjs ROOT FIGURES.cjs     the script that bundle.mjs makes
 import assert from 'node:assert';
 import {readFileSync} from 'node:fs';
-import {join} from 'node:path';
+import {join, resolve} from 'node:path';
 
 const report = join(process.argv[2], 'harness/report'), roles = JSON.parse(readFileSync(join(report, 'solvers.json'), 'utf8'));
-const {draw_on_paper, number, paper_widths} = await import(join(report, 'web/src/chart.js'));
+const {draw_on_paper} = (await import(resolve(process.argv[3]))).default;
 const {make_figures, settled} = await import(join(report, 'web/src/figures.js'));
-const {looks, paper_look} = await import(join(report, 'web/src/state.js'));
+const {looks, number} = await import(join(report, 'web/src/look.js'));
 
 // Text shows "–" for everything that is not a finite number.
 assert.deepEqual([NaN, Infinity, null, undefined, 0, 12.345, 4.5e-7].map(v => number(v)), ['–', '–', '–', '–', '0', '12.3', '4.5·10⁻⁷']);
@@ -16,7 +16,7 @@ assert.deepEqual([NaN, Infinity, null, undefined, 0, 12.345, 4.5e-7].map(v => nu
 /// Many scenes, solvers and settings of every kind.
 const solvers = Object.keys(roles.look), runs = [];
 for (const [n, solver] of solvers.entries()) {
-  const common = {solver, label: solver, setting: 'default', status: 'ok', wall: [1e-3, 9e-4, 1.1e-3, 2e-3, 3e-3, 0.1], trials: 3, trust: 'alone'};
+  const common = {solver, label: solver, scene: 'a scene', setting: 'default', status: 'ok', wall: [1e-3, 9e-4, 1.1e-3, 2e-3, 3e-3, 0.1], trials: 3, trust: 'alone'};
   for (let k = 0; k < 60; ++k) runs.push({...common, part: 'contact', scene: `scene-with-a-long-name-${k}`, verdict: k % 3 ? 'pass' : 'fail'});
   for (const [speed, verdict] of [[0.5, 'pass'], [2, 'fail'], [8, 'not measured']]) runs.push({...common, part: 'contact', scene: `sweep ${speed}`, kind: 'capsules', speed, verdict});
   for (let k = 0; k < 9; ++k) runs.push({...common, part: 'generated', kind: `kind-${k}`, verdict: k < n ? 'pass' : k === 8 ? 'unsupported' : 'fail', status: k === 8 ? 'unsupported' : 'ok'});
@@ -38,13 +38,13 @@ const stable = rows('stability').find(r => r.case === 'all');
 assert.deepEqual([stable.good, stable.runs], [9, 26]);
 
 // On paper: as wide as one or two columns of text, at most 110 mm high, letters of 7 to 8 points.
-const kPoint = 25.4 / 72, look = paper_look(looks(solvers, roles));
+const kPoint = 25.4 / 72;
 for (const figure of Object.values(figures))
-  for (const width of Object.values(paper_widths)) {
-    const state = settled(figure, {}), {svg} = draw_on_paper(figure, figure.rows(state), state, look, width);
-    const [, wide, tall] = svg.match(/width="([\d.]+)pt" height="([\d.]+)pt"/).map(Number), sizes = [...svg.matchAll(/font-size="([\d.]+)"/g)].map(m => Number(m[1]));
+  for (const width of [238, 493]) {
+    const svg = await draw_on_paper(figure, settled(figure, {}), looks(solvers, roles), width);
+    const [, wide, tall] = svg.match(/width="([\d.]+)pt" height="([\d.]+)pt"/).map(Number), scale = wide / svg.match(/viewBox="0 0 ([\d.]+)/)[1], sizes = [...svg.matchAll(/font-size="([\d.]+)px"/g)].map(m => scale * m[1]);
     assert.ok([84, 174].includes(Math.round(wide * kPoint)) && tall * kPoint < 110.5, `${figure.id}: ${wide * kPoint} x ${tall * kPoint} mm`);
-    assert.ok(sizes.every(s => s >= 7 && s <= 8), `${figure.id}: letters of ${[...new Set(sizes)]} points`);
+    assert.ok(sizes.length > 2 && sizes.every(s => s >= 7 && s <= 8), `${figure.id}: letters of ${[...new Set(sizes)]} points`);
     assert.ok(!/NaN|undefined|var\(/.test(svg), `${figure.id}: ${svg.match(/.{80}(NaN|undefined|var\().{40}/)?.[0]}`);
   }
 

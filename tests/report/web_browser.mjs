@@ -100,18 +100,18 @@ async function check_tables() {
 }
 
 /// Marks are at their values' positions: two marks determine the scales, which must hold for all others.
-async function check_places(id, x_of, y_of) {
-  const marks = await page.evaluate(i => window.clothbench.figures.find(f => f.entry.id === i).marks.map((m, k) => {
-    const at = document.querySelector(`#${i} [data-i="${k}"]`)?.getAttribute('transform')?.match(/translate\(([-\d.]+) ([-\d.]+)\)/);
-    return {kind: m.kind, x: m.x, y: m.y, at: at && [Number(at[1]), Number(at[2])]};
-  }), id);
-  const points = marks.filter(m => m.kind === 'point' && m.at);
-  for (const [name, of, n] of [['x', x_of, 0], ['y', y_of, 1]]) {
-    const v = points.map(m => of(m[name])), low = v.indexOf(Math.min(...v)), high = v.indexOf(Math.max(...v));
+async function check_places(id, fields) {
+  const marks = await page.evaluate((i, fields) => window.clothbench.figures.find(f => f.entry.id === i).marks.map((m, k) => {
+    const at = document.querySelector(`#${i} path[data-i="${k}"]`)?.getAttribute('transform')?.match(/translate\(([-\d.]+),([-\d.]+)\)/);
+    return {values: fields.map(f => m[f]), at: at && [Number(at[1]), Number(at[2])]};
+  }), id, fields);
+  const points = marks.filter(m => m.values.every(v => v > 0) && m.at);
+  for (const [n, name] of fields.entries()) {
+    const v = points.map(m => Math.log(m.values[n])), low = v.indexOf(Math.min(...v)), high = v.indexOf(Math.max(...v));
     if (v[low] === v[high]) continue;
     const scale = (points[high].at[n] - points[low].at[n]) / (v[high] - v[low]);
     const off = Math.max(...points.map((m, k) => Math.abs(points[low].at[n] + scale * (v[k] - v[low]) - m.at[n])));
-    check(off < 0.2, `${id}: ${points.length} marks are ${off.toFixed(2)} px off along ${name}`);
+    check(points.length > 1 && off < 0.2, `${id}: ${points.length} marks are ${off.toFixed(2)} px off along ${name}`);
   }
 }
 
@@ -127,13 +127,13 @@ async function check_figures() {
       await wait(60);
       const [rows, marks, drawn] = await page.evaluate(i => {
         const f = window.clothbench.figures.find(x => x.entry.id === i);
-        return [f.rows.length, f.marks.filter(m => m.kind !== 'none').length, f.plot.querySelectorAll('[data-i]').length];
+        return [f.rows.length, f.marks.length, new Set([...f.plot.querySelectorAll('[data-i]')].map(e => e.dataset.i)).size];
       }, id);
       equal(drawn, marks, `${id} ${option ?? ''}: marks drawn`);
       check(rows > 0, `${id} ${option ?? ''}: ${rows} values`);
     }
   }
-  for (const id of ['rates', 'error-time']) await check_places(id, Math.log, Math.log);
+  for (const [id, fields] of [['rates', ['size', 'value']], ['error-time', ['wall_ms_per_s', 'error']]]) await check_places(id, fields);
   // Every value in the tables of the figures equals its run's stored value.
   const values = await page.evaluate(() => window.clothbench.figures.flatMap(f => {
     const stored = row => window.clothbench.document.runs.find(d => d.file && d.file === row.file) ?? row;
@@ -241,7 +241,7 @@ async function check_without_script() {
 async function check_values() {
   await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'}));
   await wait(200);
-  await (await page.$('#rates .mark[data-i]')).hover();
+  await (await page.$('#rates path[data-i]')).hover();
   const by_pointer = await page.$eval('#tip', e => e.textContent);
   check(/--job \d+/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
   await page.focus('#rates .plot');
@@ -250,7 +250,7 @@ async function check_values() {
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
-  const failed = await page.evaluate(() => window.clothbench.figures.find(f => f.entry.id === 'verdicts').marks.findIndex(m => m.row.violated));
+  const failed = await page.evaluate(() => window.clothbench.figures.find(f => f.entry.id === 'verdicts').marks.findIndex(m => m.violated));
   await (await page.$(`#verdicts [data-i="${failed}"]`)).click();  // in its middle, where its sign is
   await page.mouse.move(5, 5);
   check(/found \S+.*, expected \S/.test(await page.$eval('#tip:has(button)', e => e.textContent)), 'a click keeps what a run violates in view');

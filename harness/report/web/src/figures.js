@@ -1,16 +1,16 @@
-// The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by chart.js. An entry:
-//   {id, section, title(state), caption, choices?, rows(state), chart(rows, state, width), tip(row), columns, stills}
+// The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by draw.js. An entry:
+//   {id, section, title(state), caption, choices?, rows(state), drawn?(row), spec(rows, state, look), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `chart` makes panels of those that the filter of solvers leaves. `columns`: fields of a row, for the table behind it.
-// `stills`: pictures beside the report, [{file, state}]; by default one, named by the id. `hero`: may be the figure of the first
-// screen, for which the first one is taken.
-import {number, span, unique} from './chart.js';
+// solver; `spec`: the Vega-Lite spec of those that are drawn and that the filter of solvers leaves; `look` as in spec.js.
+// `columns`: fields of a row, for the table behind the figure. `stills`: pictures beside the report, [{file, state}]; by
+// default one, named by the id. `hero`: may be the figure of the first screen, for which the first one is taken.
+import {kSymbols, number, unique} from './look.js';
+import {band, by_solver, interval, legend, lines, log, panels, rules, symbols} from './spec.js';
 
 const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
 const kRefresh_Hz = [72, 90];
 const percent = v => v === null || v === undefined ? '–' : `${number(100 * v, 3)} %`;
 const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
-const by_solver = rows => unique(rows.map(r => r.solver)).map(solver => [solver, rows.filter(r => r.solver === solver)]);
 const choice = (label, values, first, text = String) =>
     ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
 
@@ -18,10 +18,8 @@ const choice = (label, values, first, text = String) =>
 const without_floor = (doc, rows) =>
     rows.every(r => doc.solvers.floor.includes(r.solver)) ? rows : rows.filter(r => !doc.solvers.floor.includes(r.solver));
 
-/// Pareto front: rows that no other row of their solver dominates in both fields, by ascending a.
-const on_front = (rows, a, b) =>
-    rows.filter(p => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b])))
-        .sort((p, q) => p[a] - q[a]);
+/// Is the row on the Pareto front of its solver, so that no other row has less of both fields?
+const on_front = (p, rows, a, b) => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b]));
 
 // Error against run time -----------------------------------------------------
 
@@ -31,7 +29,7 @@ function error_rules(runs) {
   const {space_error, reference_uncertainty} = runs[0], least = Math.min(...runs.filter(good).map(r => r.error));
   const floors = [[space_error, 'error of the mesh'], [3 * (reference_uncertainty ?? 0), '3 × uncertainty of the reference']];
   const [floor, words] = floors.filter(([v]) => v > 0).sort((a, b) => b[0] - a[0])[0] ?? [0, ''];
-  return [{x: 1000, text: 'real time'}, ...(floor > 1e-3 * least ? [{y: floor, text: `${words} ${number(floor, 2)}`, zone: true}] : [])];
+  return floor > 1e-3 * least ? [{at: floor, text: `${words} ${number(floor, 2)}`, zone: true}] : [];
 }
 
 function error_time(doc) {
@@ -48,26 +46,26 @@ function error_time(doc) {
         'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
         'area are not distinguished. Crosses on the upper edge: runs that failed.',
     choices: [choice('Scene', scenes, first, v => of(v)[0].refused ? `${v} (refused)` : v)],
-    rows: s => of(s.Scene),
+    rows: s => {
+      const fine = of(s.Scene).filter(good);
+      return of(s.Scene).map(r => ({...r, line: r.solver, best: good(r) && on_front(r, fine, 'wall_ms_per_s', 'error')}));
+    },
+    drawn: r => good(r) || kFailed.includes(r.status),
     remark: s => [of(s.Scene)[0].refused && `No solver is ranked: ${of(s.Scene)[0].refused}.`,
                   ...unique(of(s.Scene).filter(r => r.not_ranked).map(r => `${r.solver} is shown but not ranked: ${r.not_ranked}.`))]
                      .filter(Boolean)
                      .join(' '),
-    chart: (rows, s, width) => {
-      const fine = rows.filter(good), fronts = by_solver(fine).map(([solver, mine]) => [solver, on_front(mine, 'wall_ms_per_s', 'error')]),
-            best = fronts.flatMap(f => f[1]);
+    spec: (rows, s, look) => {
+      const fine = rows.filter(good), best = fine.filter(r => r.best), floors = error_rules(of(s.Scene)), solver = by_solver(rows, look, '!datum.best');
+      const x = log('wall_ms_per_s', 'wall time [ms per simulated second]', [1000, ...rows.map(r => r.wall_ms_per_s)]);
+      const y = log('error', `error: ${rows[0].ranking}`, [...floors.map(f => f.at), ...fine.map(r => r.error)], {titleLimit: look.width - 10});
       return {
-        height: Math.max(260, Math.min(400, 0.62 * width)),
-        panels: [{
-          x: {type: 'log', title: 'wall time [ms per simulated second]'},
-          y: {type: 'log', title: `error: ${rows[0]?.ranking ?? ''}`.slice(0, Math.max(20, width / 7.2 | 0))},
-          rules: rows.length ? error_rules(of(s.Scene)) : [],
-          lines: fronts.map(([solver, front]) => ({solver, label: solver, points: front.map(r => [r.wall_ms_per_s, r.error])})),
-          marks: [
-            ...fine.map(r => ({kind: 'point', x: r.wall_ms_per_s, y: r.error, open: !best.includes(r), row: r})),
-            ...rows.filter(r => kFailed.includes(r.status)).map(r => ({kind: 'failed', x: r.wall_ms_per_s ?? 0, row: r}))
-          ]
-        }]
+        height: look.shrink * Math.max(260, Math.min(400, 0.62 * look.width)),
+        layer: [
+          ...rules(floors, 'y', y), ...rules([{at: 1000, text: 'real time'}], 'x', x), ...lines(best, x, y, solver, look, fine),
+          {...symbols({x, y, ...solver}), transform: [{filter: "datum.status === 'ok'"}]},
+          {...symbols({x: {value: {expr: "datum.wall_ms_per_s > 0 ? scale('x', datum.wall_ms_per_s) : width"}}, y: {value: 0}, stroke: solver.stroke, shape: {value: kSymbols.x}}), transform: [{filter: "datum.status !== 'ok'"}]}
+        ]
       };
     },
     tip: r =>
@@ -86,23 +84,13 @@ const kRates = {
   memory: {text: 'Device memory per vertex', unit: 'kB per vertex', of: r => 1e-3 * r.device_memory_B / (r.width * r.width)}
 };
 
-/// Runs on one line: same solver, setting and sides. Lines of one solver differ in dash pattern.
-function lines_of(rows) {
-  const name = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
-  return by_solver(rows).flatMap(([solver, mine]) => unique(mine.map(name)).map((label, dash) => ({
-    solver,
-    dash,
-    label,
-    points: mine.filter(r => name(r) === label).sort((a, b) => a.size - b.size).map(r => [r.size, r.value])
-  })));
-}
-
 function rates(doc) {
   const all = doc.runs.filter(r => r.family && !r.published && r.fps_median > 0);
   if (!all.length) return null;
   const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
   const is_grid = s => !of(s).some(r => r.resolution.endsWith('vertices')), in_paper = s => of(s).some(r => r.paper_table === 3);
   const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
+  const line = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
   return {
     id: 'rates',
     section: 'rates',
@@ -120,22 +108,21 @@ function rates(doc) {
     rows: s => {
       const mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
             plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
-      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, value: kRates[s.Value].of(r), size: is_grid(s) ? r.width : Math.round(r.width * r.width)}));
+      return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, line: line(r), value: kRates[s.Value].of(r), size: is_grid(s) ? r.width : Math.round(r.width * r.width)}));
     },
-    chart: (rows, s, width) => ({
-      right: 90,
-      height: Math.max(240, Math.min(340, 0.5 * width)),
-      panels: [{
-        x: {type: 'log', title: is_grid(s) ? 'vertices along one side' : 'vertices', ticks: unique(rows.map(r => r.size)).sort((a, b) => a - b), format: t => String(Number(t.toPrecision(4)))},
-        y: {type: 'log', title: kRates[s.Value].unit},
-        rules: kRates[s.Value].is_rate ? [{y: 72, text: '72 Hz', optional: true}] : [],
-        lines: lines_of(rows),
-        marks: rows.map(r => {
-          const interval = kRates[s.Value].is_rate ? {low: r.fps_low, high: r.fps_high} : {};
-          return {kind: 'point', x: r.size, y: r.value, ...interval, along: 'y', open: r.free_fall_error > 0.01, row: r};
-        })
-      }]
-    }),
+    spec: (rows, s, look) => {
+      const sizes = unique(rows.map(r => r.size)).sort((a, b) => a - b), values = rows.map(r => r.value), {is_rate, unit} = kRates[s.Value];
+      const x = log('size', is_grid(s) ? 'vertices along one side' : 'vertices', sizes, {values: sizes, labelExpr: "format(datum.value, '.4~r')"});
+      const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, 'datum.free_fall_error > 0.01');
+      return {
+        height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
+        padding: {left: 2, right: 90, top: 2, bottom: 6},
+        layer: [
+          ...rules(is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : [], 'y', y), ...lines(rows, x, y, solver, look),
+          ...(is_rate ? [interval('fps_low', 'fps_high', {x, y: {...y, field: 'fps_low'}, y2: {field: 'fps_high'}, stroke: solver.stroke})] : []), symbols({x, y, ...solver})
+        ]
+      };
+    },
     tip: r =>
         [`${r.label} at ${r.resolution}${r.sides ? `, ${r.sides}` : ''}`, number(r.value),
          ...(r.fps_low ? [`frames per second, 95 %: ${number(r.fps_low)} to ${number(r.fps_high)}`] : []),
@@ -157,9 +144,6 @@ const kClocks = {
   wall: 'wall time, all frames'
 };
 
-/// Vertical offset that puts the solvers of one scene below each other.
-const shift_of = (solver, all) => all.length > 1 ? (all.indexOf(solver) - (all.length - 1) / 2) / (all.length + 0.6) : 0;
-
 function frame_times(doc) {
   const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));
   if (!clocks.length) return null;
@@ -176,22 +160,20 @@ function frame_times(doc) {
     ],
     rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => {
       const [p50_s, low_s, high_s, p95_s, p99_s, worst_s] = r[s.Time];
-      return {...r, p50_s, low_s, high_s, p95_s, p99_s, worst_s};
+      return {...r, p50_s, low_s, high_s, p95_s, p99_s, worst_s, p50: 1e3 * p50_s, p95: 1e3 * p95_s, p99: 1e3 * p99_s};
     }),
-    chart: rows => {
-      const present = unique(rows.map(r => r.solver)), worst = Math.max(0, ...rows.map(r => 1e3 * r.p99_s));
+    spec: (rows, s, look) => {
+      const present = unique(rows.map(r => r.solver)), scenes = unique(rows.map(r => r.scene)), worst = Math.max(...rows.map(r => r.p99)), solver = by_solver(rows, look);
+      const lines = kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({at: 1e3 / hz, text: `${hz} Hz`})), near = lines.filter(l => worst > l.at / 3);
+      const x = log('p50', 'time per frame [ms]', [...near.map(l => l.at), ...rows.flatMap(r => [r.p50, r.p99])]);
+      const shared = {x, y: band('scene', scenes, look), yOffset: {field: 'solver', scale: {domain: present}}};
+      const to = (high, mark) => interval('p50', high, {mark, ...shared, x2: {field: high}, stroke: solver.stroke});
       return {
-        row: Math.max(22, 13 * present.length + 6),
-        right: 20,
-        panels: [{
-          x: {type: 'log', title: 'time per frame [ms]'},
-          y: {type: 'band', values: unique(rows.map(r => r.scene))},
-          rules: kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({x: 1e3 / hz, text: `${hz} Hz`, optional: worst < 1e3 / hz / 3})),
-          marks: rows.map(r => {
-            const [p50, p95, p99] = [r.p50_s, r.p95_s, r.p99_s].map(s => 1e3 * s), shift = shift_of(r.solver, present);
-            return {kind: 'point', x: p50, y: r.scene, shift, thick: [p50, p95], low: p50, high: p99, along: 'x', row: r};
-          })
-        }]
+        height: look.shrink * scenes.length * Math.max(22, 13 * present.length + 6),
+        layer: [
+          ...rules(lines.filter(l => l.at > x.scale.domain[0] && l.at < x.scale.domain[1]), 'x', x, {y: -6}),
+          to('p95', {strokeWidth: 7, opacity: 0.35}), to('p99'), symbols({...shared, ...solver})
+        ]
       };
     },
     tip: r =>
@@ -203,13 +185,14 @@ function frame_times(doc) {
 
 // Contact and stability ------------------------------------------------------
 
+/// Tone, sign, and the words of both in the legend, by verdict.
 const kVerdicts = {
-  pass: ['pass', '✓'],
-  fail: ['fail', '×'],
-  ignored: ['ignored', '○'],
-  unsupported: ['none', '–'],
-  'not measured': ['none', '·'],
-  missing: ['none', '·']
+  pass: ['pass', 'M-3.5 0L-1 3L4 -3.5', '✓ pass'],
+  fail: ['fail', 'M-3 -3L3 3M-3 3L3 -3', '× fail'],
+  ignored: ['ignored', 'M-3.4 0a3.4 3.4 0 1 0 6.8 0a3.4 3.4 0 1 0 -6.8 0', '○ ignored: no contact'],
+  unsupported: ['none', 'M-3 0H3', '– unsupported, or not measured'],
+  'not measured': ['none', 'M-.5 0H.5', '– unsupported, or not measured'],
+  missing: ['none', 'M-.5 0H.5', '– unsupported, or not measured']
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
 const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}${expected && `, expected ${expected}`}`) ?? [];
@@ -224,17 +207,21 @@ function verdicts(doc) {
     hero: true,
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
-    rows: () => all.map(r => ({...r, criteria: why(r).join('; ')})),
-    chart: (rows, s, width) => {
-      const [across, down] = ['label', 'scene'].map(field => unique(rows.map(r => r[field])));
-      const turned = width >= 740 && down.length >= 12;  // in wide windows many scenes become columns
-      const axes = [{type: 'band', values: across}, {type: 'band', values: down, text: v => v.length > 30 ? `${v.slice(0, 29)}…` : v}];
-      const [x, y] = turned ? axes.reverse() : axes;
-      const cell = r => ({kind: 'cell', x: turned ? r.scene : r.label, y: turned ? r.label : r.scene, tone: tone_of(r)[0], glyph: tone_of(r)[1], row: r});
+    rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
+    spec: (rows, s, look) => {
+      const [solvers, scenes] = ['label', 'scene'].map(field => band(field, unique(rows.map(r => r[field])), look)), {width} = look;
+      const turned = width >= 740 && scenes.scale.domain.length >= 12;  // in wide windows many scenes become columns
+      const [x, y] = turned ? [scenes, solvers] : [solvers, scenes], [tones, words] = [0, 2].map(k => unique(Object.values(kVerdicts).map(v => v[k])));
       return {
-        row: turned ? 24 : 18,
-        tones: [['pass', 'pass'], ['fail', 'fail'], ['ignored', 'ignored: no contact simulated'], ['none', 'unsupported, or not measured']],
-        panels: [{x, y, marks: rows.map(cell)}]
+        width: Math.min(width, 180 + 110 * x.scale.domain.length),
+        height: look.shrink * y.scale.domain.length * (turned ? 24 : 18),
+        layer: [
+          {
+            mark: {type: 'rect', cornerRadius: 2},
+            encoding: {x, y, fill: {field: 'words', scale: {domain: words, range: tones.map(tone => `var(--${tone})`)}, legend: legend(words, look, {symbolType: 'square', symbolSize: 120})}}
+          },
+          {name: 'signs', mark: {type: 'point'}, encoding: {x, y, shape: {field: 'sign', scale: null}, stroke: {value: {expr: "'var(--on-' + datum.tone + ')'"}}, size: {value: {expr: "4 * pow(min(1, bandwidth('x') / 12, bandwidth('y') / 12), 2)"}}}}
+        ]
       };
     },
     tip: r => [`${r.label}, ${r.scene}: ${r.verdict}`, ...why(r), ...(r.message ? [r.message] : [])],
@@ -244,20 +231,16 @@ function verdicts(doc) {
 
 function failure_speed(doc) {
   const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default');
-  const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)), name = r => `${r.kind} · ${r.solver}`;
+  const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)).map(r => ({...r, name: `${r.kind} · ${r.solver}`}));
   return rows.length && {
     id: 'failure-speed',
     section: 'contact',
     title: () => 'Speeds that are passed and failed',
     caption: 'Filled: the run passed at this speed of the hand; hollow: it failed. Runs whose criteria were not measured are not drawn.',
     rows: () => rows,
-    chart: given => ({
-      row: 18,
-      panels: [{
-        x: {type: 'log', title: 'speed [m/s]'},
-        y: {type: 'band', values: unique(given.map(name)).sort()},
-        marks: given.map(r => ({kind: 'point', x: r.speed, y: name(r), open: r.verdict !== 'pass', row: r}))
-      }]
+    spec: (given, s, look) => ({
+      height: 18 * look.shrink * unique(given.map(r => r.name)).length,
+      layer: [symbols({x: log('speed', 'speed [m/s]', given.map(r => r.speed)), y: band('name', unique(given.map(r => r.name)).sort(), look), ...by_solver(given, look, "datum.verdict !== 'pass'")})]
     }),
     tip: r => [`${r.label}, ${r.scene}`, `${number(r.speed)} m/s: ${r.verdict}`, ...why(r)],
     columns: ['scene', 'label', 'speed', 'verdict']
@@ -275,7 +258,7 @@ export function wilson(passed, all) {
 function shares(runs, field, is_good, more) {
   const row = (label, value, mine) => {
     const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
-    return {solver: mine[0].solver, study: mine[0].study, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high};
+    return {solver: mine[0].solver, study: mine[0].study, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high, rate: good / count};
   };
   const rows = unique(runs.map(r => r.label)).flatMap(label => {
     const mine = runs.filter(r => r.label === label), values = unique(mine.map(r => r[field])).sort();
@@ -284,23 +267,20 @@ function shares(runs, field, is_good, more) {
   return rows.length && {
     hero: true,
     rows: () => rows,
-    chart: (given, s, width) => ({
-      row: 18,
-      right: 26,
-      columns: Math.max(2, Math.min(6, Math.floor(width / 125))),
-      panels: unique(given.map(r => r.label)).map(label => {
-        const mine = given.filter(r => r.label === label);
-        return {
-          title: label,
-          solver: mine[0].solver,
-          x: {type: 'linear', domain: [0, 1], ticks: [0, 0.5, 1], format: t => `${100 * t} %`, title: ''},
-          y: {type: 'band', values: unique(rows.map(r => r[field]))},
-          marks: mine.map(
-              r => r.unsupported === r.runs ? {kind: 'none', x: 0.02, y: r[field], note: 'unsupported', row: r} :
-                                              {kind: 'point', x: r.good / r.runs, y: r[field], low: r.low, high: r.high, along: 'x', row: r})
-        };
-      })
-    }),
+    spec: (given, s, look) => {
+      const solver = by_solver(given, look), bands = unique(rows.map(r => r[field])), labels = unique(given.map(r => r.label));
+      const share = {field: 'rate', type: 'quantitative', title: null, scale: {domain: [0, 1]}, axis: {grid: true, values: [0, 0.5, 1], labelExpr: "100 * datum.value + ' %'"}};
+      return panels(labels, 85, bands, look, (label, y) => ({
+        title: {text: label, color: look.solvers[given.find(r => r.label === label).solver].colour},
+        height: 18 * look.shrink * bands.length,
+        transform: [{filter: {field: 'label', equal: label}}],
+        layer: [
+          {...interval('low', 'high', {x: {...share, field: 'low'}, x2: {field: 'high'}, y: {...y, field}, stroke: solver.stroke}), transform: [{filter: 'datum.unsupported < datum.runs'}]},
+          {...symbols({x: share, y: {...y, field}, ...solver}), transform: [{filter: 'datum.unsupported < datum.runs'}]},
+          {mark: {type: 'text', text: 'unsupported', align: 'left'}, encoding: {x: {...share, field: undefined, datum: 0.02}, y: {...y, field}}, transform: [{filter: 'datum.unsupported === datum.runs'}]}
+        ]
+      }));
+    },
     tip: r => [`${r.label}, ${r[field]}`, `${r.good} of ${r.runs} (95 %: ${percent(r.low)} to ${percent(r.high)})`],
     columns: ['label', field, 'good', 'runs', 'unsupported', 'low', 'high'],
     ...more
@@ -323,11 +303,7 @@ const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 
 
 // What the article leaves open ------------------------------------------------
 
-const kClaims = {
-  holds: ['good', 'circle', false],
-  near: ['soft', 'circle', true],
-  fails: ['bad', 'x', false]
-};
+const kClaims = [['holds', 'good', 'circle'], ['near', 'soft', 'circle'], ['fails', 'bad', 'x']];
 
 function claims(doc) {
   const all = doc.runs.filter(r => r.part === 'claims' && r.status !== 'missing');
@@ -339,21 +315,21 @@ function claims(doc) {
     caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
         'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',
     rows: () => all,
-    chart: (rows, s, width) => ({
-      height: 130,
-      right: 30,
-      columns: Math.max(2, Math.min(3, Math.floor(width / 220))),
-      tones: [['good', 'holds'], ['soft', 'near (ring)'], ['bad', 'fails']],
-      panels: unique(rows.map(r => r.kind)).sort().map(kind => ({
-        title: kind,
-        x: {type: 'log', title: 'iterations', domain: span(all.map(r => r.iterations))},
-        y: {type: 'log', domain: span(all.map(r => r.substeps))},
-        marks: rows.filter(r => r.kind === kind).map(r => {
-          const [tone, shape, open] = kClaims[r.claim];
-          return {kind: 'point', x: r.iterations, y: r.substeps, tone, shape, open, row: r};
-        })
-      }))
-    }),
+    spec: (rows, s, look) => {
+      const channel = of => ({field: 'claim', type: 'nominal', scale: {domain: kClaims.map(c => c[0]), range: kClaims.map(of)}, legend: legend(['holds', 'near', 'fails'], look)});
+      return panels(unique(rows.map(r => r.kind)).sort(), 150, ['0000'], look, kind => ({
+        title: {text: kind},
+        height: 130 * look.shrink,
+        transform: [{filter: {field: 'kind', equal: kind}}],
+        layer: [symbols({
+          x: log('iterations', 'iterations', all.map(r => r.iterations)),
+          y: log('substeps', null, all.map(r => r.substeps)),
+          stroke: channel(([, tone]) => `var(--${tone})`),
+          fill: channel(([claim, tone]) => claim === 'near' ? 'var(--back)' : `var(--${tone})`),
+          shape: channel(([, , symbol]) => kSymbols[symbol])
+        })]
+      }));
+    },
     tip: r => [`${r.label}, ${r.kind}: ${r.claim}`, `${number(r.iterations)} iterations × ${number(r.substeps)} substeps, ${number(r.dispatches)} dispatches`, ...why(r)],
     columns: ['kind', 'label', 'iterations', 'substeps', 'dispatches', 'claim']
   };

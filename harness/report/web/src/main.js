@@ -1,9 +1,9 @@
 // Builds the page from its document: figures and tables by section, solver filter, contents, theme and motions.
-import {symbol, unique} from './chart.js';
 import {button, element, say, unpacked} from './dom.js';
 import {make_figures} from './figures.js';
+import {icon, looks, style_of, unique} from './look.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
-import {load_state, looks, page_look, save_state, shown, state, style_of, toggle_solver} from './state.js';
+import {load_state, save_state, shown, state, toggle_solver} from './state.js';
 import {reproduce, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
@@ -30,7 +30,7 @@ function chips(doc, look) {
       chip.setAttribute('aria-pressed', String(shown(s)));
       say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
     }, {'aria-pressed': String(shown(s))});
-    chip.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(look), s, 0, 0)}</svg>`;
+    chip.innerHTML = icon(look[s]);
     chip.append(s);
     return chip;
   }));
@@ -82,7 +82,7 @@ function start_motions(doc, motions) {
 function go_to(id) {
   document.documentElement.classList.add('whole');
   dispatchEvent(new Event('beforeprint'));
-  document.getElementById(id)?.scrollIntoView();
+  setTimeout(() => document.getElementById(id)?.scrollIntoView());  // figures are drawn first
 }
 
 function start_navigation() {

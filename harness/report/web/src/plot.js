@@ -1,9 +1,9 @@
 // The element of a figure, drawn when it comes near the window: values on hover and by keyboard, controls, a table of its
 // values.
-import {draw} from './chart.js';
 import {button, element, say, select} from './dom.js';
+import {view_of} from './draw.js';
 import {command_of, settled} from './figures.js';
-import {page_look, set_value, shown, state} from './state.js';
+import {set_value, shown, state} from './state.js';
 import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
@@ -48,7 +48,7 @@ class Figure {
   }
 
   listen() {
-    const mark_of = e => Number(e.target.closest?.('[data-i]')?.dataset.i ?? -1), leave = () => pinned || this.point(-1);
+    const mark_of = e => Number(e.target.dataset.i ?? -1), leave = () => pinned || this.point(-1);
     this.plot.addEventListener('pointermove', e => pinned || this.point(mark_of(e), e.clientX, e.clientY));
     this.plot.addEventListener('pointerleave', leave);
     this.plot.addEventListener('blur', leave);
@@ -60,8 +60,7 @@ class Figure {
     this.plot.addEventListener('keydown', e => {
       const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
       if (step && this.marks.length) {
-        const at = (this.at + step + this.marks.length) % this.marks.length,
-              box = this.plot.querySelector(`[data-i="${at}"]`)?.getBoundingClientRect();
+        const at = (this.at + step + this.marks.length) % this.marks.length, box = this.elements(at).at(-1)?.getBoundingClientRect();
         this.point(at, box?.right ?? 0, box?.bottom ?? 0);
         say(tip.textContent);
         e.preventDefault();
@@ -71,13 +70,16 @@ class Figure {
     });
   }
 
+  /// What is drawn of a row.
+  elements(at) { return [...this.plot.querySelectorAll(`[data-i="${at}"]`)]; }
+
   point(at, x, y, pin = false) {
     if (at !== this.at) {
-      this.plot.querySelector('.on')?.classList.remove('on');
-      this.plot.querySelector(`[data-i="${at}"]`)?.classList.add('on');
+      for (const e of this.elements(this.at)) e.classList.remove('on');
+      for (const e of this.elements(at)) e.classList.add('on');
     }
     this.at = at;
-    const row = this.marks[at]?.row;
+    const row = this.marks[at];
     this.command = row && command_of(this.doc, [row]);
     pinned = pin && row ? this : null;
     const copy = this.command && button('Copy the command', null, () => copy_command(this.command));
@@ -96,7 +98,7 @@ class Figure {
     return chosen;
   }
 
-  redraw() {
+  async redraw() {
     const {entry} = this;
     this.state = this.settle();
     const rows = this.rows = entry.rows(this.state).filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
@@ -104,15 +106,20 @@ class Figure {
     this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows) ?? '');
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;
-    if (!rows.length) {
-      this.marks = [];
-      return void this.plot.replaceChildren(
-          element('p', {class: 'note'}, 'No runs are left: see the solver filter above.'));
-    }
-    const drawn = draw(entry.chart(rows, this.state, width), page_look(this.look, width < 560), width, entry.title(this.state));
-    this.plot.innerHTML = drawn.svg;  // chart.js escapes text in it
-    this.marks = drawn.marks;
+    this.marks = rows.filter(entry.drawn ?? Boolean);
     this.show_values();
+    this.view?.finalize();
+    this.view = null;
+    if (!this.marks.length) return this.plot.replaceChildren(element('p', {class: 'note'}, 'No runs are left: see the solver filter above.'));
+    const place = element('div', {}), look = {solvers: this.look, font: getComputedStyle(document.body).fontFamily};
+    const view = this.view = view_of(entry, rows, this.state, look, width).initialize(place);
+    await view.runAsync();
+    if (this.view !== view) return;
+    for (const e of place.querySelectorAll('.role-mark:not(.mark-line) > *'))
+      if (e.__data__?.datum?.i >= 0) e.dataset.i = e.__data__.datum.i;  // Vega's item; `i` is from draw.js
+    for (const [name, value] of [['role', 'img'], ['aria-label', entry.title(this.state)]]) place.querySelector('svg').setAttribute(name, value);
+    place.querySelector('svg > g').setAttribute('aria-hidden', 'true');
+    this.plot.replaceChildren(place);
   }
 
   show_values() {

@@ -1,4 +1,4 @@
-// The reader's choices, stored in the address (#anchor?off=jolt,paper&Scene=…), and the colours and symbols of solvers.
+// The reader's choices, stored in the address (#anchor?off=jolt,paper&Scene=…).
 export const state = {
   off: new Set(),
   values: {}
@@ -31,44 +31,3 @@ export function toggle_solver(solver) {
 
 export const shown = solver => !solver || !state.off.has(solver);
 
-/// One colour and one symbol per solver from solvers.json, equal in all figures; other solvers get the spare ones.
-export function looks(solvers, roles) {
-  let spare = 0;
-  return Object.fromEntries(solvers.map(s => {
-    const [symbol, light, dark] = roles.look[s] ?? roles.spare[spare++ % roles.spare.length];
-    return [s, {symbol, light, dark}];
-  }));
-}
-
-/// Style sheet variables for the colours of solvers.
-export const style_of = all => `:root{${Object.values(all).map((l, k) => `--s${k}:light-dark(${l.light},${l.dark})`).join(';')}}`;
-
-/// How charts look. Every colour is a variable of the style sheet, so that a change of theme needs no redrawing.
-export const page_look = (all, narrow) => ({
-  colour: s => s in all ? `var(--s${Object.keys(all).indexOf(s)})` : 'var(--soft)',
-  symbol: s => all[s]?.symbol ?? 'circle',
-  size: narrow ? 11 : 12,
-  small: 11,
-  unit: 1,
-  stroke: 2,
-  symbol_scale: 1,
-  font: 'system-ui, -apple-system, Segoe UI, Roboto, DejaVu Sans, sans-serif'
-});
-
-const kPaper = {
-  ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
-  good: '#0b6b4b', bad: '#b23608', pass: '#8fcab6', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
-  'on-pass': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
-};
-
-/// Black on white; sizes in points, because a picture is as wide as a text column. `paper`: values of the variables.
-export const paper_look = all => ({
-  ...page_look(all),
-  size: 7.5,
-  small: 7,
-  unit: 0.625,  // points for a pixel of the page
-  stroke: 1.1,
-  symbol_scale: 0.55,
-  font: 'DejaVu Sans, Verdana, sans-serif',
-  paper: {...kPaper, ...Object.fromEntries(Object.values(all).map((l, k) => [`s${k}`, l.light]))}
-});

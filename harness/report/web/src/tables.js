@@ -1,8 +1,8 @@
 // Tables: sortable by a click on a head, folded at 15 rows, filtered by solver, with an anchor and a command per row.
-import {symbol} from './chart.js';
 import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
-import {page_look, set_value, shown, state} from './state.js';
+import {icon} from './look.js';
+import {set_value, shown, state} from './state.js';
 
 const kFolded = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)');
 /// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
@@ -99,7 +99,7 @@ export class ShownTable {
     const {text, value, tone} = cells[k], long = k > 0 && text.length > kLong, shape = long ? 'long' : this.numeric[k] ? 'n' : '', more = k === 0 ? this.joined : [];
     const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value});
     if ([k, ...more].includes(this.table.solver_column) && run && !run.published)
-      c.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(this.look), run.solver, 0, 0)}</svg>`;
+      c.innerHTML = icon(this.look[run.solver]);
     c.append(long ? element('div', {tabindex: '0'}, text) : text, ...more.map(j => element('small', {}, cells[j].text)));
     return c;
   }

@@ -3,8 +3,8 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
 
-import {number, unique} from './chart.js';
 import {button, element, say, select} from './dom.js';
+import {number, unique} from './look.js';
 import {crossing_css, Panel, ramp_css} from './panel.js';
 import {reproduce} from './tables.js';
 
