@@ -72,11 +72,10 @@ async function draw_all() {
 
 /// Every cell of every table on the page equals the stored cell.
 async function check_tables() {
-  await page.$$eval('.table button.more:not([hidden])', list => list.forEach(b => b.click()));
   const shown = await page.$$eval('.table', list => Object.fromEntries(list.map(t => [t.querySelector('h3').firstChild.textContent, [...t.querySelectorAll('tr')].map(r => [...r.cells].map(c => [c.textContent.trim(), c.dataset.value ?? '', ['good', 'bad', 'dim'].find(x => c.classList.contains(x)) ?? '']))])));
   let cells = 0;
   for (const t of doc.sections.flatMap(s => s.tables)) {
-    const width = t.rows[0].length, rows = shown[t.title]?.map(r => r.slice(0, width)), wanted = t.rows.map(r => r.map(c => Array.isArray(c) ? [c[0].trim(), String(c[1] ?? ''), c[2]] : [c.trim(), '', '']));
+    const width = t.rows[0].length, heads = shown[t.title]?.[0].map(c => c[0]), rows = shown[t.title]?.map(r => t.rows[0].map(h => r[heads.indexOf(h)])), wanted = t.rows.map(r => r.map(c => Array.isArray(c) ? [c[0].trim(), String(c[1] ?? ''), c[2]] : [c.trim(), '', '']));
     const same = rows?.length === wanted.length && wanted.every((r, k) => r.every((c, n) => String(rows[k][n]) === String(c)));
     if (!same) check(false, `table ${t.title}: ${JSON.stringify(rows?.slice(0, 2))}, expected ${JSON.stringify(wanted.slice(0, 2))}`);
     cells += wanted.length * width;

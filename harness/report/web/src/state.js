@@ -1,8 +1,7 @@
+import {symbol} from './chart.js';
+
 // The reader's choices, stored in the address (#anchor?off=jolt,paper&Scene=…), and the colours and symbols of solvers.
-export const state = {
-  off: new Set(),
-  values: {}
-};
+export const state = {off: new Set(), values: {}};
 
 export function load_state() {
   const [anchor, query = ''] = location.hash.slice(1).split('?'), given = new URLSearchParams(query);
@@ -19,12 +18,12 @@ export function save_state(anchor = location.hash.slice(1).split('?')[0]) {
 }
 
 export function set_value(name, value) {
-  state.values[name] = value;
+  value === null ? delete state.values[name] : state.values[name] = value;
   save_state();
 }
 
-export function toggle_solver(solver) {
-  state.off.has(solver) ? state.off.delete(solver) : state.off.add(solver);
+export function hide_solvers(solvers) {
+  state.off = new Set(solvers);
   save_state();
   dispatchEvent(new Event('solvers'));
 }
@@ -48,12 +47,16 @@ export const page_look = (all, narrow) => ({
   colour: s => s in all ? `var(--s${Object.keys(all).indexOf(s)})` : 'var(--soft)',
   symbol: s => all[s]?.symbol ?? 'circle',
   size: narrow ? 11 : 12,
-  small: 11,
-  unit: 1,
-  stroke: 2,
-  symbol_scale: 1,
+  small: 11, unit: 1, stroke: 2, symbol_scale: 1,
   font: 'system-ui, -apple-system, Segoe UI, Roboto, DejaVu Sans, sans-serif'
 });
+
+/// A solver's symbol beside its name.
+export function icon(all, solver) {
+  const place = document.createElement('template');
+  place.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true">${symbol(page_look(all), solver, 0, 0)}</svg>`;
+  return place.content.firstChild;
+}
 
 const kPaper = {
   ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
@@ -64,11 +67,9 @@ const kPaper = {
 /// Black on white; sizes in points, because a picture is as wide as a text column. `paper`: values of the variables.
 export const paper_look = all => ({
   ...page_look(all),
-  size: 7.5,
-  small: 7,
+  size: 7.5, small: 7,
   unit: 0.625,  // points for a pixel of the page
-  stroke: 1.1,
-  symbol_scale: 0.55,
+  stroke: 1.1, symbol_scale: 0.55,
   font: 'DejaVu Sans, Verdana, sans-serif',
   paper: {...kPaper, ...Object.fromEntries(Object.values(all).map((l, k) => [`s${k}`, l.light]))}
 });
