@@ -11,7 +11,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
-# Columns: table (where the study runs), name (equal up to a "+": reported together), command of clothbench without --out.
+# Columns: table (where the study runs), name (the same before a "+": one report), command of clothbench without --out.
 # PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
 # SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {

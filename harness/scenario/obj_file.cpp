@@ -243,7 +243,7 @@ class Clipping {
     return q > flat_ ? q : 0;
   }
 
-  /// Whether the triangle of a corner has no other corner inside or on its border.
+  /// Whether no other corner lies inside the triangle of corner k and its two neighbours, or on the triangle's border.
   bool is_ear(std::size_t k) const {
     const std::array<std::uint32_t, 3> t = {at(k + left_.size() - 1), at(k), at(k + 1)};
     const Point &a = p_[t[0]], &b = p_[t[1]], &c = p_[t[2]];

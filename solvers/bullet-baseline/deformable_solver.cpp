@@ -102,7 +102,7 @@ struct DeformableWorld {
 
 /// Stiffness of a link [N/m].
 double link_stiffness(const Scene& s, const Edge& e) {
-  // For inextensible cloth, which springs only approximate. The number of explicit substeps grows with its root.
+  // Approximates inextensible cloth. The number of explicit substeps grows with the square root of this stiffness.
   constexpr double kStiff_N_per_m = 1e4;
   if (e.kind != EdgeKind::SkipOne) return spring_N_per_m(s, e, membrane_stiffness(s, e).value_or(kStiff_N_per_m));
   const auto [own, other] = edge_cell(s.cloth, e);
