@@ -53,7 +53,7 @@ class Motion {
     return {x[0], x[1], x[2]};
   }
   double time_s(std::size_t frame) const { return time_s_[frame]; }
-  /// Duration [s] of the interval before a frame; for frame 0 of the one after it.
+  /// Duration [s] of the interval before a frame; for frame 0, the interval after it.
   double dt(std::size_t frame) const {
     return frame == 0 ? (frames > 1 ? time_s_[1] - time_s_[0] : scene.time.dt()) : time_s_[frame] - time_s_[frame - 1];
   }
@@ -130,7 +130,7 @@ void check_smoothness(const Motion&, Bodies&, Findings&);
 struct Contact {
   V3 point, normal;  ///< of the collider's surface, outwards
   double friction;
-  bool any_force;  ///< the collider moves far for its size, so its force may have any direction
+  bool any_force;  ///< the collider moves by over half its radius, so its force may have any direction
 };
 
 /// The surface within reach of the cloth in one frame.
