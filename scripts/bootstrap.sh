@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the missing ones of clothbench's Debian 12 or 13 packages. Run by run.sh and test.sh.
 #   scripts/bootstrap.sh [--build | --short | --tests] [--ci] [--arm64]
-# --build: what compiles the program and its tests; else also what they use when they run, and npm
+# --build: what compiles the program and its tests; otherwise also what they use when they run, and npm
 # --tests: also what only the tests use; --short: what those of test.sh --short use; --ci: what only CI's tests and the slow ones use
 # --arm64: also the cross build and the packaging of the APK
 set -euo pipefail

@@ -7,11 +7,11 @@
 # Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must
 # come from one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH: the program (default:
-# build/release/clothbench, else the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS are included.
+# build/release/clothbench, otherwise the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS are included.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
-# Columns: table (where the study runs), name (equal up to a "+": reported together), command of clothbench without --out.
+# Columns: table (where the study runs), name (the same before a "+": one report), command of clothbench without --out.
 # PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
 # SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {

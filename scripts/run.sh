@@ -10,7 +10,7 @@ build() {
   configure release -DBUILD_TESTING=OFF
   build_targets release clothbench
 }
-# What the compiler does not need comes during the build, because one needs the network and the other the processor.
+# Downloads that the compiler does not need run during the build: they wait for the network, the build for the processor.
 rest() { scripts/bootstrap.sh && scripts/fetch-assets.sh "${require[@]}"; }
 
 case ${1:--} in
@@ -25,7 +25,7 @@ meanwhile rest
 stage build 4 build
 tail -1 "$stage_logs/meanwhile.log"
 out="results/runs/$(basename "$study" .json)-$(date -u +%Y%m%dT%H%M%SZ)"
-# Times of a software device tell nothing about a GPU, and all sizes take it many minutes.
+# A software device's times tell nothing about a GPU, and it needs many minutes for all sizes.
 build/release/clothbench list devices --json | grep -q '"software": false' || form=(--quick)
 stage study 3 build/release/clothbench study "$study" --out "$out" "${form[@]}" "$@"
 stage --show report 1 build/release/clothbench report "$out" -o "$out/report"

@@ -30,7 +30,7 @@ AssetSource locate_assets(bool require);
 Room open_room(const AssetSource&, const std::string& name);
 Hand open_hand(const AssetSource&, Side);
 
-/// A room that needs no file, for use without captures: 5 x 2.5 x 4 m, with two tables (slab and four legs) in place of
+/// A room that needs no file, for use without captures: 5 x 2.5 x 4 m, with two tables (slab and four legs) instead of
 /// the living room's 444c8313 (low) and 1088a241 (desk). It is one closed manifold with normals into free space and
 /// edges of 5 to 25 cm. Its table tops have a roughness of about 5 mm rms, as in scans. Bitwise reproducible on one
 /// machine.

@@ -67,7 +67,7 @@ struct RecordedCapsule {
   float radius_m = 0;
 };
 
-/// Joints of OpenXR: the palm, then those of kJointNames in their order.
+/// Joints of OpenXR: the palm, then the joints of kJointNames in their order.
 inline constexpr std::size_t kRecordedJointCount = kJointCount + 1;
 
 /// A hand at one instant, in the scene's space.

@@ -26,7 +26,7 @@ const double kBaseY = -0.030;
 const std::array<double, 3> kThumbBones = {0.031, 0.033, 0.025};
 const std::array<double, 4> kThumbRadius = {0.019, 0.012, 0.010, 0.009};
 
-/// Bends [degrees] of each finger's three joints, from index to little finger; the thumb's start and the direction of
+/// Angles [degrees] of each finger's three joints, from index to little finger; the thumb's base and the directions of
 /// its bones. In `pinch` the thumb is straight and ends at the tip of the index finger.
 struct Bends {
   const char* name;

@@ -9,7 +9,7 @@
 
 namespace clothbench {
 
-/// Random numbers that are equal on every machine: the standard specifies its engines, but not its distributions.
+/// Random numbers that are the same on every machine: the C++ standard specifies engines, but not distributions.
 class Dice {
  public:
   /// Each pair of a seed and a word gives its own sequence.

@@ -50,7 +50,7 @@ std::string named_data(const DataFolder&);
 /// Folders to search if the variable is not set: in the installed tree, then in the source tree.
 std::vector<std::filesystem::path> usual_places(const DataFolder&, const DataRoots& = data_roots());
 
-/// The variable's folder; if it is not set, the first usual place that exists. Throws Error with all places.
+/// The variable's folder; if it is not set, the first of usual_places() that exists. Throws Error that lists them.
 std::filesystem::path find_data(const DataFolder&, const DataRoots& = data_roots());
 
 }  // namespace clothbench

@@ -21,7 +21,7 @@ class StatusLine {
 };
 
 /// Reserves standard output for a machine-readable summary. While an object of this class exists (at most one), all
-/// other output of this process, including that of plugins, goes to standard error.
+/// other output of this process, its plugins included, goes to standard error.
 class SummaryOutput {
  public:
   SummaryOutput();

@@ -100,10 +100,10 @@ std::string baseline_text(const Baseline&);
 /// results/baselines/baseline.schema.json, compiled in.
 extern const char* const kBaselineSchema;
 
-/// Regression rule of a summary scalar; nullptr: it is not compared. Results of bounds have no tolerance.
+/// Regression rule of a summary scalar; nullptr: it is not compared. Verdicts of bounds have no tolerance.
 const Gate* find_gate(const std::string& name);
 
-/// Whether it is the result of a bound (1 pass, 0 fail). Pass to fail is a failure, fail to pass an improvement.
+/// Whether the scalar is the verdict of a bound: 1 pass, 0 fail. From 1 to 0 is a failure, from 0 to 1 an improvement.
 bool is_verdict(const std::string& name);
 
 std::vector<std::string> gated_names();
@@ -144,7 +144,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// a difference of the builds. True if a start is unknown.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; a whole has its worst part's verdict. Changed: two builds differ (neither is a baseline).
+/// Ordered from good to bad; a whole gets the worst of its parts. Changed: two builds differ (neither is a baseline).
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);

@@ -29,7 +29,7 @@ class ColliderContact {
   virtual ~ColliderContact() = default;
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   virtual SceneContact probe(int frame, const std::vector<double>& positions) = 0;
-  /// Touch and slip in a frame. Call in the order of frames: slip compares with the one before. NaN touches nothing.
+  /// Touch and slip in a frame. Call in the order of frames: slip compares with the previous. NaN touches nothing.
   virtual SceneTouch touch(int frame, const std::vector<double>& positions) = 0;
 };
 

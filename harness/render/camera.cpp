@@ -23,9 +23,8 @@ void look(Camera& c, double azimuth, double elevation) {
   c.up = cross(c.back, c.right);
 }
 
-/// Camera position along one image axis such that every point is within the slope `tangent` on both sides: |x - middle|
-/// <= tangent (distance - z), z towards the viewer. Exact: the intersection of the two outermost lines of slope
-/// `tangent`.
+/// Nearest camera position, along one image axis, with every point in view: |x - middle| <= tangent (distance - z), z
+/// towards the viewer, `tangent` of half the view angle. Exact: the two outermost lines of slope `tangent` meet there.
 struct Stand {
   double middle, distance;
 };

@@ -21,8 +21,8 @@ struct Drawing {
       projection{};  ///< view: from metres relative to SceneRenderer::origin(); projection: to Vulkan's clip space
 };
 
-/// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the owner of the images
-/// (an image file, an eye of a headset) passes a command buffer for the queue of the same device.
+/// Draws one cloth and its colliders with multisampling. It has no window and no frame loop: the caller owns the
+/// images (a file's, a headset's eyes) and passes a command buffer for the queue of the renderer's device.
 ///
 /// Its memory depends only on the scene. set_cloth, set_surfaces and a new image size replace objects that recorded
 /// commands use, so no such command may be in flight then; write_positions overwrites the positions in place.

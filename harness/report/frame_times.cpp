@@ -118,4 +118,16 @@ RunTimes times_of(const RunRecord& c) {
   return out;
 }
 
+std::pair<FrameTimes, FrameTimes> common_times(const RunRecord& a, const RunRecord& b) {
+  const std::vector<bool> of_a = frames_with_contact(a), of_b = frames_with_contact(b);
+  std::size_t frames = SIZE_MAX - 1;
+  for (const RunRecord* c : {&a, &b})
+    for (const TimedTrial& t : c->trials) frames = std::min(frames, t.frame_wall_s.size());
+  std::vector<bool> timed(1 + frames, true), touched = timed;
+  for (std::size_t f = 0; f < timed.size(); ++f) touched[f] = f < of_a.size() && f < of_b.size() && of_a[f] && of_b[f];
+  const std::vector<bool>& which =
+      std::find(touched.begin() + 1, touched.end(), true) == touched.end() ? timed : touched;
+  return {times_by(&TimedTrial::frame_wall_s, a, which), times_by(&TimedTrial::frame_wall_s, b, which)};
+}
+
 }  // namespace clothbench

@@ -21,10 +21,9 @@ constexpr double kFastest = 1e9;     // frames per second: above any real rate
 
 constexpr const char* kRateNote =
     "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
-    "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). The columns after the "
-    "resolutions are for the largest mesh. × bullet-soft: ratio of the rates, with the extreme ratios of both "
-    "intervals. Rank: among "
-    "rows with the same sides, on which the cloth would have contact. ";
+    "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). All other columns are for "
+    "the largest mesh. × bullet-soft, the baseline: ratio of the rates, with the extreme ratios of both intervals. "
+    "Rank: among rows with the same sides, on which the cloth would have contact. ";
 /// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
@@ -61,7 +60,7 @@ Cell rate_cell(const Row& r) {
 Cell rate_ratio_cell(const Row& r) {
   const double fps = r.value("fps_median");
   if (!r.baseline || !std::isfinite(fps)) return {};
-  return ratio_cell(fps, r.times->wall.rate, r.baseline->value("fps_median"), r.baseline->times->wall.rate);
+  return ratio_cell(r, fps, r.times->wall.rate, r.baseline->value("fps_median"), r.baseline->times->wall.rate);
 }
 
 /// Notes: the errors of these runs, the source of the published rows, and solvers that wrap a published engine.
@@ -70,10 +69,14 @@ std::string about_rates(const Group& runs) {
     return std::any_of(runs.begin(), runs.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
   };
   Texts out;
-  if (any("free_fall_error")) out.push_back("A free-fall error above 1 % (!) makes a rate meaningless.");
+  if (const std::string scene = scenario_of(*runs.front()->run).value("why", ""); !scene.empty()) out.push_back(scene);
+  if (any("free_fall_error"))
+    out.push_back(
+        "Free-fall error: distance from the solver's own integrator, not accuracy; above 1 % (!) a rate "
+        "means nothing.");
   if (any("stretch_max_last_second"))
     out.push_back("Stretch: structural edges, last second; edges shorter than at rest count as 0 in the mean.");
-  if (out.empty())
+  if (!any("free_fall_error") && !any("stretch_max_last_second"))
     out.push_back("These runs have no comparable error; runs of `clothbench study work-precision` have one.");
   if (runs.front()->paper_table != 3) return joined(out, " ");
   const json published = published_table3();
@@ -91,8 +94,8 @@ std::string about_rates(const Group& runs) {
 View speed_and_error(bool paper) {
   View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
          [paper](const Row& r) {
-           const bool other_setting = paper && r.setting != "default" && r.setting != "best" && !r.is_best;
-           return r.part == Part::Rates && (r.paper_table == 3) == paper && !other_setting && !is_floor(r.solver);
+           return r.part == Part::Rates && (r.paper_table == 3) == paper && (!paper || r.is_main()) &&
+                  !is_floor(r.solver);
          }};
   if (!paper) v.each = [](const Row& r) { return "Frame rates: " + r.family; };
   v.order = [](const Group& g) {  // by sides, the fastest first; published values last
@@ -111,16 +114,16 @@ View speed_and_error(bool paper) {
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
               [](const Group& g, const Keys&) { return rate_cell(*g.front()); },
               [](const Row& r) { return r.resolution.size(); }, 1};
-  v.columns = {at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
-               at_largest("× " + time_baseline(), rate_ratio_cell),
+  v.columns = {at_largest("× " + time_baseline(), rate_ratio_cell),
                at_largest("rank", rank_cell),
-               at_largest("free-fall error",
+               at_largest("free-fall error [g T²/2]",
                           [](const Row& r) {
                             const double e = r.value("free_fall_error");
                             if (!std::isfinite(e)) return Cell();
                             return e > kFallLimit ? Cell(fmt::format("{:.1e} !", e), e, "bad")
                                                   : Cell(fmt::format("{:.1e}", e), e);
                           }),
+               at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
                at_largest("stretch, mean / maximum [%]",
                           [](const Row& r) {
                             const auto percent = [&](auto* name) { return std::round(1e5 * r.value(name)) / 1e3; };
@@ -128,6 +131,7 @@ View speed_and_error(bool paper) {
                                                2);
                           }),
                at_largest("trials", trials_cell)};
+  for (std::size_t k = 0; k < 3; ++k) v.columns[k].leads = true;
   add_tail_columns(v, largest);
   v.more = about_rates;
   v.timed = true;
@@ -141,6 +145,11 @@ struct Entry {
   std::string title, value, interval;
 };
 
+/// "not a and b" for one or two scenes.
+std::string except(const Texts& scenes) {
+  return scenes.empty() || scenes.size() > 2 ? "" : "not " + joined(scenes, " and ");
+}
+
 /// Rates on the largest mesh of the paper's Table 3; without it, on that of the first family with times.
 std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
@@ -148,60 +157,69 @@ std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   for (const Row* r : rows)
     if (r->part == Part::Rates && r->paper_table == 3 && std::isfinite(r->value("fps_median"))) family = r->family;
   for (const Row* r : rows) {
-    if (r->part != Part::Rates || !r->largest || r->sides.starts_with("double") || r->setting != "default" ||
-        r->repeat > 1 || r->status() != "ok" || !std::isfinite(r->value("fps_median")) ||
-        r->value("free_fall_error") > kFallLimit || (!family.empty() && r->family != family))
+    if (r->part != Part::Rates || !r->largest || r->sides.starts_with("double") || !r->is_main() || r->repeat > 1 ||
+        r->status() != "ok" || !std::isfinite(r->value("fps_median")) || r->value("free_fall_error") > kFallLimit ||
+        (!family.empty() && r->family != family))
       continue;
     family = r->family;
     const std::string trials = std::to_string(r->run->trials.size());
     Texts more = {rate_interval(*r), trials + (trials == "1" ? " trial" : " trials"), r->frames_mark(),
                   environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : ""};
     std::erase(more, "");
-    out.push_back({r->solver, r->times->wall.uncertain() ? 0 : r->value("fps_median"),
+    out.push_back({r->label(), r->times->wall.uncertain() ? 0 : r->value("fps_median"),
                    "Frames per second at " + r->resolution.label(), rate_text(r->value("fps_median")),
                    joined(more, ", ")});
   }
   return out;
 }
 
+/// In how many scenes with an exact solution a solver has the smallest error; errors at the floor are equal.
 std::vector<Entry> errors(const std::vector<const Row*>& rows) {
-  std::vector<Entry> out;
-  std::string scene;
+  std::map<std::string, std::map<std::string, double>> scenes;  // smallest error by solver
+  std::map<std::string, Texts> lost;
   for (const Row* r : rows) {
-    if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() || r->times->wall.uncertain() ||
-        !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms) || (!scene.empty() && r->scene != scene))
+    if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() || !r->not_ranked().empty() ||
+        r->times->wall.uncertain() || !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms))
       continue;
-    scene = r->scene;
-    const double floor = r->truth->rank_floor();
-    const bool at_floor = r->error() <= floor;
-    out.push_back({r->solver, -r->error(), "Smallest error within 1 ms per frame",
-                   fmt::format("{}{:.2g} %", at_floor ? "≤ " : "", 100 * std::max(floor, r->error())),
-                   r->scene + (at_floor ? ", at the floor" : "")});
+    double& least = scenes[r->scene].try_emplace(r->solver, INFINITY).first->second;
+    least = std::min(least, std::max(r->truth->rank_floor(), r->error()));
+    lost[r->solver];
   }
+  for (const auto& [scene, errors] : scenes) {
+    double least = INFINITY;
+    for (const auto& [unused, error] : errors) least = std::min(least, error);
+    for (auto& [solver, names] : lost)
+      if (!errors.contains(solver) || errors.at(solver) > least) names.push_back(scene);
+  }
+  std::vector<Entry> out;
+  for (const auto& [solver, names] : lost)
+    out.push_back({solver, -static_cast<double>(names.size()), "Scenes with the smallest error within 1 ms per frame",
+                   fmt::format("{}/{}", scenes.size() - names.size(), scenes.size()), except(names)});
   return out;
 }
 
 /// For each solver, passed or stable runs as a fraction of the runs with a verdict.
 std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const char* title) {
-  std::map<std::string, std::pair<std::size_t, Group>> solvers;
+  std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of those that are not good
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
-    if (r->part != part || (r->setting != "default" && !r->is_best) || r->repeat > 1 || r->status() == "missing" ||
-        !judged)
-      continue;
-    Group& mine = solvers[r->label()].second;
-    solvers[r->label()].first += stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass";
-    mine.push_back(r);
+    if (r->part != part || !r->is_main() || r->repeat > 1 || r->status() == "missing" || !judged) continue;
+    auto& [runs, bad] = solvers[r->label()];
+    runs.push_back(r);
+    if (!(stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass")) bad.push_back(r->scene);
   }
   std::vector<Entry> out;
   for (const auto& [solver, share] : solvers) {
-    const auto& [good, runs] = share;
+    const auto& [runs, bad] = share;
+    const std::size_t good = runs.size() - bad.size();
     const Interval i = wilson_95(good, runs.size());
     const auto all = static_cast<double>(runs.size());  // of equal fractions, the one of more runs comes first
     const std::string offset = part == Part::Stability ? "" : offset_of(runs);
+    Texts more = {fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high),
+                  offset.empty() ? "" : "contact offset " + offset + " mm", except(bad)};
+    std::erase(more, "");
     out.push_back({solver, static_cast<double>(good) / all + 1e-9 * all, title, fmt::format("{}/{}", good, runs.size()),
-                   fmt::format("{:.0f}–{:.0f} %{}", 100 * i.low, 100 * i.high,
-                               offset.empty() ? "" : ", contact offset " + offset + " mm")});
+                   joined(more)});
   }
   return out;
 }
@@ -212,6 +230,9 @@ bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) =
 std::string fact(const RunRecord& c, const std::string& key) {
   const std::string value = environment_text(c, key.c_str());
   if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
+  if (key == "cpu" && environment_of(c, "cpu_threads").is_number())
+    return fmt::format("{} ({} threads)", value, environment_of(c, "cpu_threads").dump());
+  if (key == "protocol" && (value == "full" || value == "run")) return "";  // as usual
   if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
   if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
   return key == "created" ? value.substr(0, 10) : value;
@@ -227,9 +248,9 @@ std::vector<Tile> tiles_of(const RunTable& table) {
   for (const Row& r : table.rows())
     if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
   std::vector<Tile> out;
-  for (std::vector<Entry> entries :
-       {shares(rows, Part::Generated, "Random scenes passed"), shares(rows, Part::Contact, "Contact scenes passed"),
-        errors(rows), rates(rows), shares(rows, Part::Stability, "Hard cases stable")}) {
+  for (std::vector<Entry> entries : {shares(rows, Part::Generated, "Random scenes passed"),
+                                     shares(rows, Part::Contact, "Scenes with colliders or attachments passed"),
+                                     errors(rows), rates(rows), shares(rows, Part::Stability, "Hard cases stable")}) {
     if (entries.empty() || out.size() == kMostTiles) continue;
     std::stable_sort(entries.begin(), entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
     const Entry& best = entries.front();
@@ -237,7 +258,7 @@ std::vector<Tile> tiles_of(const RunTable& table) {
     for (const Entry& e : entries) {
       if (contains(solvers, e.solver) || others.size() == kMostOthers) continue;
       solvers.push_back(e.solver);
-      others.push_back(fmt::format("{} {} ({})", e.solver, e.value, e.interval));
+      others.push_back(e.solver + " " + e.value + in_brackets(e.interval));
     }
     out.push_back({best.title + ", " + best.solver, best.value, best.interval, joined(others, " · ")});
   }
@@ -262,11 +283,13 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
     const bool span = std::string(key) == "created" && values.size() > 1;
     h.facts.emplace_back(name, span ? *values.begin() + " to " + *values.rbegin() : joined(values));
   }
-  std::set<std::string> trials;
+  std::map<std::string, std::set<std::string>> trials;  // folders by number of trials
   for (const RunRecord& c : table.runs())
     if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
-      trials.insert(withheld ? "withheld" : std::to_string(c.trials.size()));
-  h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials));
+      trials[withheld ? "withheld" : std::to_string(c.trials.size())].insert(
+          std::filesystem::path(c.file).parent_path().filename().string());
+  const auto text = [&](const auto& t) { return t.first + (trials.size() > 1 ? in_brackets(joined(t.second)) : ""); };
+  h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials, ", ", text));
   if (studies.size() > 1) h.facts.emplace_back("studies", joined(studies));
   h.title = fmt::format("Cloth solvers on {}{}", device.empty() ? "an unknown machine" : device,
                         studies.size() == 1 ? ": " + studies.front() : "");
@@ -303,7 +326,7 @@ std::vector<std::string> notes_of(const RunTable& table) {
   }
   std::vector<std::string> out(plugins.begin(), plugins.end());
   if (const VerdictCounts n = count_verdicts(table.runs()); n.runs > 0)
-    out.push_back("Runs whose scene has acceptance criteria: " + n.text() + ".");
+    out.push_back("All runs with acceptance criteria, also other settings: " + n.text() + ".");
   return out;
 }
 

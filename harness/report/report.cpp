@@ -40,8 +40,10 @@ std::vector<std::string> names_of(const std::vector<fs::path>& results) {
   std::vector<std::string> out;
   for (const fs::path& result : results)
     if (fs::exists(result / "study.json"))
-      if (std::string name = read_manifest(result).study; !name.empty() && !contains(out, name))
-        out.push_back(std::move(name));
+      if (std::string name = read_manifest(result).study; !name.empty()) {
+        if (name == "run") name = fs::absolute(result).lexically_normal().filename().string();
+        if (!contains(out, name)) out.push_back(std::move(name));
+      }
   return out;
 }
 
@@ -61,7 +63,8 @@ std::string head_markdown(const Page& page) {
   out += facts_of(page.heading) + "\n\n";
   for (const std::string& n : page.notes) out += n + "\n\n";
   for (const Tile& t : page.tiles)
-    out += fmt::format("- {}: **{}** ({}){}\n", t.title, t.value, t.interval, t.others.empty() ? "" : "; " + t.others);
+    out += fmt::format("- {}: **{}**{}{}\n", t.title, t.value, in_brackets(t.interval),
+                       t.others.empty() ? "" : "; " + t.others);
   return out + (page.tiles.empty() ? "" : "\n");
 }
 

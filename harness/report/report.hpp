@@ -26,16 +26,12 @@ struct Heading {
   std::vector<std::pair<std::string, std::string>> facts;
 };
 Heading heading_of(const RunTable&, const std::vector<std::string>& studies);
-
 /// Sentences on the whole report: a software device, invalid measurements, withheld times.
 std::vector<std::string> warnings_of(const RunTable&);
-
 /// Sentences about the plugins and the number of runs that passed.
 std::vector<std::string> notes_of(const RunTable&);
-
 /// One row per run: ending, stretch, frame times, ratio to time_baseline(), rank. No rows if there are no runs.
 Table in_short_table(const RunTable&);
-
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
 std::string runs_csv(const RunTable&);
 /// Everything except frames: outcome, summary (missing = null), environment.
@@ -44,12 +40,10 @@ nlohmann::json runs_json(const std::vector<RunRecord>& runs);
 std::string series_csv(const RunTable&);
 /// One row per timed trial: frames, mean, percentiles and maximum of the frame times.
 std::string trials_csv(const RunTable&);
-
 /// Writes report.md, tables.tex, runs.csv, runs.json, series.csv and trials.csv into `out`. Writes the page index.html
 /// if this program was built with Node, and its figures as images (draw_pictures) if Node is installed; otherwise
 /// prints the reason. Throws Error if a file cannot be read or written.
 void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
-
 /// Prints head, failures, two tables and the location of the rest on the terminal. With few runs, the first table has
 /// one row per run.
 void print_console_report(const std::vector<std::filesystem::path>& results);

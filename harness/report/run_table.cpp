@@ -80,11 +80,11 @@ void choose_leading(std::vector<Row>& rows) {
   leading.erase(leading_scenes().size());
   while (leading.size() > kMost) leading.erase(std::prev(leading.end()));
   for (Row& r : rows)
-    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.setting == "default");
+    for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.is_main());
 }
 
-/// A run's rank is one more than the number of runs whose whole interval is below its own, so that ranks are no finer
-/// than the intervals.
+/// A run's rank is one more than the number of main runs whose whole interval is below its own, so that ranks are no
+/// finer than the intervals, and tables of main runs lack none.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)
@@ -104,7 +104,7 @@ void compare_times(std::vector<Row>& all) {
     for (Row* r : rows) r->baseline = baseline;
     for (Row* r : ranked)
       r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
-                  return other->times->wall.median.high < r->times->wall.median.low;
+                  return other->is_main() && other->times->wall.median.high < r->times->wall.median.low;
                 }));
   }
 }
@@ -289,9 +289,9 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+  mark_best_points(rows_);
   choose_leading(rows_);
   compare_times(rows_);
-  mark_best_points(rows_);
 }
 
 void RunTable::add_published() {

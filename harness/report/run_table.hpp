@@ -21,10 +21,8 @@ nlohmann::json scenario_of(const RunRecord&);
 nlohmann::json environment_of(const RunRecord&, const char* key);
 /// The environment's text for `key`; empty if missing.
 std::string environment_text(const RunRecord&, const char* key);
-
 /// Engine that the run's plugin wraps, as the plugin declares: "NvCloth"; empty if it declares none, or for no plugin.
 std::string engine_of(const RunRecord&);
-
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
 extern const char* const kSolverRoles;      ///< solvers.json
 
@@ -39,13 +37,10 @@ inline std::string time_baseline() { return solver_roles().at("times_relative_to
 /// Parts of scene names that come first in a report, in order; the index of the part that a scene's name contains.
 inline const nlohmann::json& leading_scenes() { return solver_roles().at("leading_scenes"); }
 std::size_t place_of_scene(const std::string& scene);
-
 /// NaN if there are no values.
 double median(std::vector<double>);
-
 /// Quantile of a sorted list by the nearest rank; NaN if it is empty.
 double nearest_rank(const std::vector<double>& sorted, double q);
-
 /// "diverged at 12" (the failed frame), or only the status if no frame failed.
 std::string ending(const Outcome&);
 /// "diverged (F1)"; only the status if there is no class.
@@ -58,16 +53,12 @@ inline std::string in_brackets(const std::string& text) { return text.empty() ? 
 inline std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
-
 /// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as expected.
 std::vector<std::string> violated_bounds(const RunRecord&);
-
 inline constexpr const char* kNoVerdict = "–";
-
 /// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds are met
 /// but the solver ignores all of the scene's contact, so that the result proves nothing; its ending if it is not ok.
 std::string verdict(const RunRecord&);
-
 /// Number of bounds on a run: those of its scene, and the motion check. A sole `"outcome": "ok"` counts as none.
 std::size_t bounds_of(const RunRecord&);
 
@@ -121,7 +112,8 @@ struct RunTimes {
 /// Intervals use kIntervalMethod with a fixed seed; fewer than 6 frames give none. Frames in one block depend on each
 /// other, so a block is resampled as a whole.
 RunTimes times_of(const RunRecord&);
-
+/// Wall times of two runs in the frames that both timed; of these, only frames with contact in both, if there are any.
+std::pair<FrameTimes, FrameTimes> common_times(const RunRecord&, const RunRecord&);
 /// The method of the intervals, as a sentence for the notes of tables.
 extern const char* const kIntervalMethod;
 
@@ -164,8 +156,10 @@ struct Row {
   const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene
   /// One of many settings of a sweep, which are listed under "Error against run time" only.
   bool in_sweep() const { return part == Part::Truth && setting.find('=') != std::string::npos; }
+  /// One of the settings that first tables, tiles and ranks are about.
+  bool is_main() const { return setting == "default" || setting == "best" || is_best; }
   bool is_best = false;  ///< has the settings of the cheapest point of `reproduction` at which most claims hold
-  int rank = 0;          ///< by wall time among the runs of the scene; 0: not ranked (RunTable)
+  int rank = 0;          ///< by wall time, 1 + number of faster runs of the scene that are main; 0: not ranked
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
@@ -194,10 +188,8 @@ struct Row {
 
 /// Sets Row::is_best. Rows must not move after this.
 void mark_best_points(std::vector<Row>&);
-
 /// True if the run's scene has colliders or hands that grip the cloth.
 bool has_contact(const RunRecord&);
-
 /// results/paper-table3.json as of build time.
 inline nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
 
@@ -207,7 +199,6 @@ class RunTable {
   explicit RunTable(std::vector<RunRecord> runs);
   RunTable(const RunTable&) = delete;
   RunTable& operator=(const RunTable&) = delete;
-
   const std::vector<RunRecord>& runs() const { return runs_; }
   /// In the order of tables: scenes by first appearance; then by solver, setting and sides, and by ascending
   /// resolution. If a run has paper_table 3, the published values follow its scene's runs.
@@ -215,7 +206,6 @@ class RunTable {
 
  private:
   void add_published();
-
   std::vector<RunRecord> runs_;
   std::deque<RunRecord> published_;
   std::vector<Row> rows_;

@@ -12,6 +12,7 @@ namespace clothbench {
 namespace {
 
 constexpr std::size_t kMostAgain = 32;  // maximum number of runs that a row's command repeats
+const Cell kNotRun("not run", kMissing, "dim");
 
 /// A row of a table before its cells are computed.
 struct TableRow {
@@ -101,6 +102,8 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     std::vector<Cell> cells;
     for (const TableRow& r : rows) cells.emplace_back(r.keys[k].text);
+    const auto same = [&](const Cell& cell) { return cell.text == cells.front().text; };
+    if (k > 0 && v.keys[k].if_differs && std::all_of(cells.begin(), cells.end(), same)) continue;
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
       t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
@@ -112,11 +115,13 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
     std::string solver;
     for (const TableRow& r : rows) {
       const auto at = r.across.find(across[n]);
-      cells.push_back(at == r.across.end() ? Cell() : v.across->cell(at->second, r.keys));
-      any = any || !cells.back().is_missing();
+      const bool found = at != r.across.end();
+      cells.push_back(found ? v.across->cell(at->second, r.keys) : v.across->key.is_solver ? kNotRun : Cell());
+      any = any || (found && !cells.back().is_missing());
       if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
     }
-    if (across.size() - n > v.across->leading) t.late.push_back(t.rows[0].size());
+    if (v.across->leading < SIZE_MAX)
+      (across.size() - n > v.across->leading ? t.late : t.lead).push_back(t.rows[0].size());
     add_column(t, across[n], cells, true, solver);
   }
   for (const ViewColumn& c : v.columns) {
@@ -125,7 +130,9 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
     std::set<std::string> texts;
     for (const Cell& cell : cells)
       if (!cell.is_missing()) texts.insert(cell.text);
-    any = ((!c.if_differs || texts.size() > 1) && add_column(t, c.head, cells, false)) || any;
+    const bool added = (!c.if_differs || texts.size() > 1) && add_column(t, c.head, cells, false);
+    if (added && c.leads) t.lead.push_back(t.rows[0].size() - 1);
+    any = any || added;
   }
   if (!any && (!v.timed || withheld_note(runs).empty())) t.rows.resize(1);
   return t;

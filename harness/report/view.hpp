@@ -29,10 +29,8 @@ struct Cell {
 Cell number_cell(double v, int digits);
 /// "12.3 / 4.50", sorted by the first.
 Cell paired_cell(double a, double b, int digits);
-
 /// Passed runs with Wilson's 95 % interval: "53/58 (81–96 %)". Empty if there are no runs.
 Cell share_cell(std::size_t passed, std::size_t all);
-
 /// The verdict on a run; how it ended.
 Cell verdict_cell(const RunRecord&);
 Cell ending_cell(const RunRecord&);
@@ -41,7 +39,6 @@ Cell ending_cell(const RunRecord&);
 struct KeyValue {
   bool all = false;
   std::string text;
-
   KeyValue(std::string t, bool stands_for_all = false) : all(stands_for_all), text(std::move(t)) {}
   auto operator<=>(const KeyValue&) const = default;
 };
@@ -51,11 +48,11 @@ using Keys = std::vector<KeyValue>;
 struct Key {
   std::string head;
   std::function<Keys(const Row&)> of;
-  bool is_solver = false;  ///< the page's solver filter applies to its values
+  bool is_solver = false;   ///< the page's solver filter applies to its values
+  bool if_differs = false;  ///< omitted if all rows have the same value; not the first key
 };
 /// A key with one value per run.
 Key key(std::string head, std::function<std::string(const Row&)> of, bool is_solver = false);
-
 /// The scene; the solver with its setting and the number of a repeated run; the sides.
 Key scene_key();
 Key solver_key();
@@ -66,22 +63,23 @@ struct ViewColumn {
   std::string head;
   std::function<Cell(const Group&, const Keys& keys)> cell;
   bool if_differs = false;  ///< omitted if all rows have the same value
+  bool leads = false;       ///< on the page it stands before the columns that depend on the runs
 };
 using Pick = std::function<const Row*(const Group&)>;
 inline const Row* first_of(const Group& g) { return g.front(); }
 /// A column about the run that `pick` returns; empty if it returns none.
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
                   Pick pick = first_of);
-
-/// The ratio of two values, with the minimum and maximum ratio of values within both intervals.
-Cell ratio_cell(double value, const Interval&, double by, const Interval& of_by);
+/// The ratio of a run's value to another one's, with the minimum and maximum ratio of values within both intervals,
+/// marked if the run or time_baseline() timed fewer frames than others; for time_baseline(), where it ran.
+Cell ratio_cell(const Row&, double value, const Interval&, double by, const Interval& of_by);
 /// The number of timed trials; the rank by wall time; how many times as fast as time_baseline() the median frame is.
 Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
 
-/// Columns that depend on the runs: one per value of `key`, ascending by `order`. In a narrow window only the last
-/// `leading` of them stay in place; the others move behind all other columns.
+/// Columns that depend on the runs: one per value of `key`, ascending by `order`. On the page the last `leading` of
+/// them come first, and in a narrow window the others last.
 struct Across {
   Key key;
   std::function<Cell(const Group&, const Keys& keys)> cell;
@@ -114,6 +112,7 @@ struct ViewTable : Table {
   std::vector<const Row*> runs = {};          ///< the first run of each row
   std::vector<Group> again = {};              ///< by row: the runs that its command repeats; none for a sum
   std::size_t keys = 0;                       ///< number of columns that identify a row
+  std::vector<std::size_t> lead = {};         ///< columns that come first on the page, after the keys
   std::vector<std::size_t> late = {};         ///< columns that come last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
   std::vector<std::vector<Cell>> cells = {};  ///< of the rows below the head; empty: text only
@@ -123,13 +122,10 @@ struct ViewTable : Table {
 /// Adds columns about the run that `pick` returns: median wall time per frame with its interval, tails, missed
 /// deadlines, real-time factor, GPU times; also precision, device and threads if rows differ in them.
 void add_tail_columns(View&, const Pick& pick);
-
 /// The tables of a view that have rows and values; none if no run belongs to it.
 std::vector<ViewTable> tables_of(const View&, const RunTable&);
-
 /// All views, in the order of report.md.
 const std::vector<View>& views();
-
 /// Limit of a criterion in the scene of a run, and the value found, with units.
 std::string expected_of(const Row&, const std::string& criterion);
 Cell found_of(const Row&, const std::string& criterion);
@@ -151,7 +147,6 @@ struct ClaimPoint {
   bool is_near() const { return ended && bounds > 1 && unmet == 1; }
 };
 ClaimPoint claim_point(const Row&);
-
 /// Table 4: features by solver, from the environments of these runs (describe_features); "not built" for a solver that
 /// a build lacks.
 View feature_view();

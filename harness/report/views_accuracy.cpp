@@ -119,8 +119,8 @@ View work() {
 ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}") {
   return {head, [=](const Group& g, const Keys&) {
             const auto at = std::find_if(g.begin(), g.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
-            return at == g.end() ? Cell()
-                                 : Cell(fmt::format(fmt::runtime(form), (*at)->value(name)), (*at)->value(name));
+            const double found = at == g.end() ? kMissing : (*at)->value(name);
+            return at == g.end() ? Cell() : Cell(found == 0 ? "0" : fmt::format(fmt::runtime(form), found), found);
           }};
 }
 
@@ -145,6 +145,8 @@ View reference_cases() {
   return v;
 }
 
+const std::string kClasses =
+    "F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, crash or device.";
 constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 bool in_stability(const Row& r) { return r.part == Part::Stability; }
@@ -169,12 +171,12 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
 }
 
 View robustness() {
-  View v{
-      "stability", "Robustness",
-      "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
-      "(F2). Failed: any other class. Unsupported counts as not stable. Classes: F0 not finite or out of all bounds, "
-      "F1 energy gained, F2 strain, F3 budget, crash or device.",
-      in_stability};
+  View v{"stability", "Robustness",
+         std::string(
+             "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
+             "(F2). Failed: any other class. Unsupported counts as not stable. Classes: ") +
+             kClasses,
+         in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
@@ -188,8 +190,7 @@ std::string status_of(const Row& r) {
 }
 
 View failed() {
-  View v{"failed", "Runs that failed",
-         "In brackets: the class of a failure (section Stability), and the first frame with it.",
+  View v{"failed", "Runs that failed", "In brackets: the first frame of a failure, and its class: " + kClasses,
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
   v.keys = {solver_key(), key("status", status_of),
             key("message", [](const Row& r) { return r.run->outcome.message; })};
@@ -203,10 +204,12 @@ View failed() {
   return v;
 }
 
-/// " m"; empty for a value without a unit.
-std::string unit_of(const std::string& name) {
+/// Unit in which tables show a criterion, and its number per SI unit.
+std::pair<std::string, double> unit_of(const std::string& name) {
   const Scalar* s = find_scalar(name);
-  return s == nullptr || s->units == "1" ? "" : " " + s->units;
+  if (name.starts_with("stretch_")) return {" %", 100};
+  if (s != nullptr && s->units == "m" && !name.starts_with("lowest_height")) return {" mm", 1e3};
+  return {s == nullptr || s->units == "1" ? "" : " " + s->units, 1};
 }
 
 /// One row per violated criterion. A failed verdict without a violated criterion is a row with its own text.
@@ -221,47 +224,16 @@ View violated() {
          "Motion: whether forces, collisions and attachments explain the positions. Without settings sweeps.",
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
-  v.columns = {{"expected", [](const Group& g, const Keys& k) { return Cell(expected_of(*g.front(), k[2].text)); }},
-               {"found",
-                [](const Group& g, const Keys& k) {
-                  return k[2].all ? Cell("fail", kMissing, "bad") : found_of(*g.front(), k[2].text);
+  const auto is_text = [](const KeyValue& criterion) { return criterion.all || criterion.text == "motion"; };
+  v.columns = {{"found",
+                [=](const Group& g, const Keys& k) {
+                  return is_text(k[2]) ? Cell("fail", kMissing, "bad") : found_of(*g.front(), k[2].text);
                 }},
-               {"meaning", [](const Group&, const Keys& k) {
+               {"expected", [](const Group& g, const Keys& k) { return Cell(expected_of(*g.front(), k[2].text)); }},
+               {"meaning", [=](const Group& g, const Keys& k) {
                   const Scalar* s = find_scalar(k[2].text);
-                  return Cell(s == nullptr ? "" : s->doc);
+                  return Cell(s != nullptr ? s->doc : k[2].text == "motion" ? found_of(*g.front(), "motion").text : "");
                 }}};
-  return v;
-}
-
-constexpr std::pair<const char*, const char*> kStated[] = {{"gpu", "GPU"},
-                                                           {"gpu_is_software", "GPU is software"},
-                                                           {"device_profile", "device profile"},
-                                                           {"driver", "driver"},
-                                                           {"cpu", "CPU"},
-                                                           {"shader_compiler", "shader compiler"},
-                                                           {"clock_policy", "clocks"},
-                                                           {"protocol", "protocol"},
-                                                           {"git_commit", "commit"},
-                                                           {"git_dirty", "local changes"},
-                                                           {"source_sha256", "sources"},
-                                                           {"build_type", "build"},
-                                                           {"assets", "assets"}};
-
-View environment() {
-  View v{"environment", "Machines of the runs", "As stated in each result file.",
-         [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
-  for (const auto& [name, head] : kStated)
-    v.keys.push_back(key(head, [name = name](const Row& r) -> std::string {
-      const json e = environment_of(*r.run, name);
-      if (e.is_boolean()) return e.get<bool>() ? "Yes" : "No";
-      return e.is_null() ? "" : e.is_string() ? e.get<std::string>() : e.dump();
-    }));
-  v.columns = {{"runs", [](const Group& g, const Keys&) {
-                  std::map<std::string, int> runs;
-                  for (const Row* r : g) ++runs[r->solver];
-                  return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });
-                }}};
-  v.in_full = true;
   return v;
 }
 
@@ -269,6 +241,38 @@ std::string words(std::string_view text) {
   std::string name(text);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
+}
+
+constexpr const char* kStated[] = {"gpu",         "gpu_is_software", "device_profile", "driver",   "cpu",
+                                   "cpu_threads", "shader_compiler", "clock_policy",   "protocol", "git_commit",
+                                   "git_dirty",   "source_sha256",   "build_type",     "assets"};
+
+std::string stated(const Row& r, const char* name) {
+  const json e = environment_of(*r.run, name);
+  if (e.is_boolean()) return e.get<bool>() ? "yes" : "no";
+  return e.is_null() ? "" : e.is_string() ? e.get<std::string>() : e.dump();
+}
+
+View environment() {
+  View v{"environment", "Machines of the runs", "As stated in each result file.",
+         [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
+  for (const char* name : kStated)
+    v.keys.push_back({words(name), [=](const Row& r) { return Keys{stated(r, name)}; }, false, true});
+  v.columns = {{"runs", [](const Group& g, const Keys&) {
+                  std::map<std::string, int> runs;
+                  for (const Row* r : g) ++runs[r->solver];
+                  return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });
+                }}};
+  v.more = [](const Group& g) {
+    Texts equal;
+    for (const char* name : kStated)
+      if (const auto is = [=](const Row* r) { return stated(*r, name); };
+          std::all_of(g.begin(), g.end(), [&](auto* r) { return is(r) == is(g[0]); }))
+        if (name != kStated[0] && !is(g[0]).empty()) equal.push_back(words(name) + " " + is(g[0]));
+    return equal.empty() ? "" : "Equal in all runs: " + joined(equal, "; ") + ".";
+  };
+  v.in_full = true;
+  return v;
 }
 
 /// The first run's declaration that exists.
@@ -294,22 +298,29 @@ Cell declared(const Group& g, const Keys& keys) {
 }  // namespace
 
 std::string expected_of(const Row& r, const std::string& name) {
+  const auto [unit, per_si] = unit_of(name);
   if (const double exact = r.value(name + kBound); std::isfinite(exact))
-    return fmt::format("at most {:.3g}{}", exact, unit_of(name));
+    return fmt::format("at most {:.3g}{}", exact * per_si, unit);
   const json e = r.scenario.value("expect", json::object()).value(name, json());
   if (e.is_string()) return e.get<std::string>();
   std::string text;
   for (const auto& [bound, words] : {std::pair{"at_least", "at least "}, std::pair{"at_most", "at most "}})
     if (e.is_object() && e.contains(bound))
-      text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", words, e[bound].dump(), unit_of(name));
+      text += fmt::format("{}{}{:.6g}{}", text.empty() ? "" : ", ", words, e[bound].get<double>() * per_si, unit);
   return text;
 }
 
 Cell found_of(const Row& r, const std::string& name) {
   if (name == "outcome") return ending_cell(*r.run);
-  if (name == "motion") return Cell(r.run->outcome.expect);  // names the violated law
+  if (name == "motion") {  // names the violated laws; criteria, which follow, have rows of their own
+    const std::string& all = r.run->outcome.expect;
+    std::size_t end = all.size();
+    for (const std::string& criterion : violated_bounds(*r.run)) end = std::min(end, all.find("; " + criterion + " "));
+    return Cell(all.substr(0, end));
+  }
   const double found = r.value(name);
-  return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found, unit_of(name)), found) : Cell();
+  const auto [unit, per_si] = unit_of(name);
+  return std::isfinite(found) ? Cell(fmt::format("{:.4g}{}", found * per_si, unit), found) : Cell();
 }
 
 std::string case_of(const Row& r) {

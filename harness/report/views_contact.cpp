@@ -37,10 +37,11 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
 
 View verdicts() {
   View v{"contact", "Verdict on the acceptance criteria of each scene",
-         "Pass: the run meets every criterion of the scene's `expect`. Ignored: the criteria are met, but the solver "
-         "handles no contact. –: not run, or the scene has no criteria. All: number of passed scenes of those run, "
-         "with the 95 % interval of the probability (Wilson); unsupported counts as not passed. A scene of several "
-         "studies counts once, by its first run. Contact offsets differ between solvers: see the next table.",
+         "Pass: the run meets every acceptance criterion of the scene. Ignored: the criteria are met, but the solver "
+         "handles no contact. –: the scene has no criteria. All: number of passed scenes of those run, with the 95 % "
+         "interval of the probability (Wilson); unsupported counts as not passed. A scene of several studies counts "
+         "once, by its first run. Contact offsets differ between solvers: see the next table; scenes without an offset "
+         "have attachments, but no collider.",
          [](const Row& r) { return in_contact(r) && r.repeat == 1; }};
   v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
@@ -51,17 +52,15 @@ View verdicts() {
 }
 
 View contact() {
-  View v{"contact", "Contact",
-         "Contact offset: distance at which the solver keeps the cloth from colliders; compare solvers at equal "
-         "offsets. Crossings: how often cloth and colliders pass through each other between two frames, the maximum of "
-         "all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in "
-         "the last 0.5 s. Depth: maximum depth of the cloth in a collider, not counting the contact offset. Popping: "
-         "maximum "
-         "displacement of a vertex within 1/36 s that its neighbours, colliders and grips do not explain. Strain: of "
-         "structural edges. Times are in the section Frame times. Paper, best: scenes of study `reproduction` at the "
-         "cheapest "
-         "point at which most claims hold.",
-         [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
+  View v{
+      "contact", "Contact",
+      "Contact offset: distance at which the solver keeps the cloth from colliders; it differs between solvers. "
+      "Crossings: how often cloth and colliders pass through each other between two frames, the maximum of "
+      "all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in "
+      "the last 0.5 s. Depth: maximum depth of the cloth in a collider, not counting the contact offset. Popping: "
+      "maximum displacement of a vertex within 1/36 s that its neighbours, colliders and attachments do not explain. "
+      "Strain: of structural edges. Times are in the section Frame times.",
+      [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
       column("verdict", [](const Row& r) { return verdict_cell(*r.run); }),
@@ -74,6 +73,11 @@ View contact() {
       values("popping [mm]", {"pop_max_m"}, 1e3),
       values("strain, max / end [%]", {"stretch_max", "stretch_max_end"}, 100),
       values("error of maximum strain, max / RMS [of v0/c]", {"truth_quantity_error_max", "truth_quantity_error"})};
+  v.more = [](const Group& g) -> std::string {
+    return std::none_of(g.begin(), g.end(), [](const Row* r) { return r->is_best; })
+               ? ""
+               : "Best: settings of the cheapest point of the study `reproduction` at which most claims hold.";
+  };
   v.in_full = true;
   return v;
 }

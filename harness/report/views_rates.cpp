@@ -1,4 +1,6 @@
 // Tables of frame rates, times and memory.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "report/report.hpp"
@@ -35,9 +37,12 @@ Cell median_cell(const Row& r, const FrameTimes& t) {
           t.at(0.5)};
 }
 
-/// "2.00 / 3.00 / 4.00"
+/// "2.00 / 3.00 / 4.00"; a percentile that is the worst frame, because there are too few, is "–".
 Cell tails_cell(const FrameTimes& t) {
-  return {milliseconds(t.at(0.95)) + " / " + milliseconds(t.at(0.99)) + " / " + milliseconds(t.at(1)), t.at(0.95)};
+  const auto text = [&](double q) {
+    return static_cast<double>(t.sorted.size()) * (1 - q) < 1 - 1e-9 ? "–" : milliseconds(t.at(q));
+  };
+  return {text(0.95) + " / " + text(0.99) + " / " + milliseconds(t.at(1)), t.at(0.95)};
 }
 
 /// A run and the times that a row shows; null if there are none.
@@ -76,19 +81,21 @@ void add_conditions(View& v, const Pick& pick) {
 }
 
 View frame_times() {
-  View v{
-      "time", "Time per frame [ms]",
-      std::string("Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
-                  "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
-                  "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank. "
-                  "Missed: frames longer than one refresh period of the display. Real-time factor: simulated time over "
-                  "the median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for "
-                  "each frame. Load: once, before the first frame. × bullet-soft: ratio of the medians, with the "
-                  "extreme ratios of both intervals. Rank 1: no ranked run of the scene is certainly faster (has its "
-                  "whole interval below the run's); runs that failed, and cloths with an edge longer than twice its "
-                  "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
-          kIntervalMethod,
-      [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
+  View v{"time", "Time per frame [ms]",
+         std::string(
+             "Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
+             "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
+             "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank; –: "
+             "too few frames. (2): another result of the same run. Missed: frames longer than one refresh period of "
+             "the display. Real-time factor: simulated time over "
+             "the median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for "
+             "each frame. Load: once, before the first frame. × bullet-soft: ratio of the medians over the frames "
+             "that both runs timed, with contact if both have any, with the extreme ratios of both intervals. Rank 1: "
+             "no ranked run of the scene is certainly faster (has its whole interval below the run's); runs that "
+             "failed, and cloths with an edge longer than twice its "
+             "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
+             kIntervalMethod,
+         [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
     const auto clock =
@@ -123,17 +130,17 @@ View memory() {
          "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
            return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
-                  std::isfinite(r.value("device_memory_B"));
+                  r.status() != "unsupported" && std::isfinite(r.value("device_memory_B"));
          }};
   v.keys = {scene_key(), solver_key(), sides_key()};
-  v.columns = {column("kB per frame, read / written",
-                      [](const Row& r) { return bytes(r, "read_B_per_frame", "write_B_per_frame", 1e-3); }),
+  v.columns = {column("MB per frame, read / written",
+                      [](const Row& r) { return bytes(r, "read_B_per_frame", "write_B_per_frame", 1e-6); }),
                column("peak bandwidth, read / written [GB/s]",
                       [](const Row& r) {
                         return bytes(r, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s", 1e-9);
                       }),
                column("window [s]", [](const Row& r) { return number_cell(r.value("bandwidth_window_s"), 2); }),
-               column("memory [kB]", [](const Row& r) { return number_cell(1e-3 * r.value("device_memory_B"), 4); }),
+               column("memory [MB]", [](const Row& r) { return number_cell(1e-6 * r.value("device_memory_B"), 3); }),
                column("dispatches", [](const Row& r) { return number_cell(r.value("dispatches"), 1); }),
                column("trials", trials_cell)};
   v.in_full = true;
@@ -146,8 +153,10 @@ View in_short(std::function<bool(const Row&)> where) {
       "overview", "In short",
       "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
       "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
-      "the 95 % interval of the median; with contact: of the frames in which something touches the cloth. Not "
-      "ranked: runs that failed, cloths with an edge longer than twice its rest length, and medians whose interval is "
+      "the 95 % interval of the median; with contact: of the frames in which something touches the cloth; –: too few "
+      "frames for a percentile. × bullet-soft: over the frames that both runs timed, with contact if both have any. "
+      "Not ranked: runs that failed, cloths with an edge longer than twice its rest length, and medians whose interval "
+      "is "
       "wider than 20 % (~).",
       std::move(where)};
   v.keys = {scene_key(), solver_key()};
@@ -173,16 +182,22 @@ View in_short(std::function<bool(const Row&)> where) {
 
 }  // namespace
 
-Cell ratio_cell(double value, const Interval& i, double by, const Interval& of_by) {
+Cell ratio_cell(const Row& r, double value, const Interval& i, double by, const Interval& of_by) {
+  if (&r == r.baseline) {
+    const double n = r.times->threads;
+    const std::string used = n > 0 ? fmt::format(", {} thread{}", n, n == 1 ? "" : "s") : "";
+    return {"1.00" + in_brackets(short_name(environment_text(*r.run, "gpu")) + used), 1};
+  }
   const double low = i.low / of_by.high, high = i.high / of_by.low;
-  const std::string span = significant(low, 3) + "–" + significant(high, 3);
-  return {significant(value / by, 3) + (std::isfinite(low) && &i != &of_by ? in_brackets(span) : ""), value / by};
+  const std::string span = std::isfinite(low) ? significant(low, 3) + "–" + significant(high, 3) : "";
+  const Row& shorter = r.frames() < r.baseline->frames() ? r : *r.baseline;
+  return {significant(value / by, 3) + in_brackets(span) + in_brackets(shorter.frames_mark()), value / by};
 }
 
 Cell times_as_fast_cell(const Row& r) {
   if (!r.baseline || r.times->wall.sorted.empty()) return {};
-  const FrameTimes &mine = r.times->wall, &other = r.baseline->times->wall;
-  return ratio_cell(other.at(0.5), other.median, mine.at(0.5), mine.median);
+  const auto [mine, other] = common_times(*r.run, *r.baseline->run);
+  return ratio_cell(r, other.at(0.5), other.median, mine.at(0.5), mine.median);
 }
 
 void add_tail_columns(View& v, const Pick& pick) {

@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kPublished = "published: PBD";
+constexpr double kUnfit = 25;  // residual [%] above which times are not a straight line over particles
 
 /// A point of the box of settings, with the numbers of claims that were run and that hold there.
 struct Point {
@@ -201,9 +202,10 @@ View work_model() {
   View v{"rates", "Table 3: work per frame",
          "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
          "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
-         "error. C2, C3: ratios of times. Iterations: constraint iterations per frame. Iterations at the published "
-         "slope: number that would need the published time per particle on this device, with the range of two standard "
-         "errors. A headset's GPU is slower, so it allows fewer. The published times include rendering.",
+         "error; residual: !, the fit means nothing; incomplete: a cloth was not run, or is unsupported. C2, C3: "
+         "claims of the article on ratios of times. Iterations: constraint iterations per frame. Iterations at the "
+         "published slope: number that would need the published time per particle on this device, with the range of "
+         "two standard errors. A headset's GPU is slower, so it allows fewer. The published times include rendering.",
          [](const Row& r) {
            return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
                   published_samples().contains({r.sides, r.resolution.grid[0]});
@@ -213,7 +215,7 @@ View work_model() {
   const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {
     v.columns.push_back({std::move(head), [cell](const Group& g, const Keys& keys) {
                            const Samples s = samples_of(g, keys);
-                           return s.empty() ? Cell() : cell(s);
+                           return s.empty() ? Cell("incomplete", kMissing, "dim") : cell(s);
                          }});
   };
   add("fixed [ms]", [](auto& s) { return number_cell(1e3 * fit_of(s).fixed_s, 3); });
@@ -221,7 +223,10 @@ View work_model() {
     const WorkFit f = fit_of(s);
     return Cell(paired(1e6 * f.slope_s, 1e6 * f.slope_error_s, " (", 3) + ")", f.slope_s);
   });
-  add("max residual [%]", [](auto& s) { return number_cell(100 * fit_of(s).residual, 2); });
+  add("max residual [%]", [](auto& s) {
+    const Cell c = number_cell(100 * fit_of(s).residual, 2);
+    return c.value > kUnfit ? Cell(c.text + " !", c.value, "bad") : c;
+  });
   const auto add_ratio = [&](const char* head, const Samples::key_type& of, const Samples::key_type& to) {
     add(head, [=](auto& s) { return number_cell(s.at(of) / s.at(to), 3); });
   };
@@ -229,7 +234,8 @@ View work_model() {
   add_ratio("C3: doubled / single at 64²", {"double-duplicated", 64}, {"single", 64});
   add_ratio("C3: doubled / single at 128²", {"double-duplicated", 128}, {"single", 128});
   v.columns.push_back({"iterations", [](const Group& g, const Keys& keys) {
-                         return keys.front().text == kPublished ? Cell() : number_cell(iterations_of(*g.front()), 3);
+                         const double n = keys.front().text == kPublished ? kMissing : iterations_of(*g.front());
+                         return std::isfinite(n) ? Cell(fmt::format("{:g}", n), n) : Cell();
                        }});
   v.columns.push_back({"iterations at the published slope", allowed_iterations});
   v.columns.push_back({"trials", [](const Group& g, const Keys& keys) {

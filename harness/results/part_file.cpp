@@ -153,8 +153,8 @@ Bytes item(const char* kind, json body) {
   return json::to_cbor(j);
 }
 
-/// End of the CBOR item at `at`; `bytes.size() + 1` if it is incomplete or of a kind not written here (tags, indefinite
-/// lengths, nesting beyond 64), because the library decodes by recursion.
+/// End of the CBOR item at `at`; `bytes.size() + 1` if it is incomplete or has a form not written here: a tag, an
+/// indefinite length or more than 64 levels, which the library would decode recursively.
 std::size_t end_of_item(const std::string& bytes, std::size_t at) {
   const std::size_t size = bytes.size(), none = size + 1;
   std::vector<std::uint64_t> left = {1};  // items that remain, by depth

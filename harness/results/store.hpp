@@ -156,9 +156,9 @@ class DeviceSamples {
 
   /// Stores samples as /device_samples, from 5 s before the run's first trial to 5 s after its last (all samples if
   /// trials have no times), each with the trial that contains its whole period. Samples within trials give `sampled_…`
-  /// in the summary. `distrusted_trials` of the environment: by trial index, reasons not to trust its times.
+  /// in the summary. `distrusted_trials` of the environment: by trial index, reasons to distrust the times.
   void attach_to(RunRecord&);
-  /// Reasons against trials, over all runs so far.
+  /// Reasons to distrust trials, over all runs so far.
   const std::set<std::string>& reasons() const { return reasons_; }
 
  private:

@@ -206,7 +206,7 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (c.grid != "[17,33]" && (is("capstan") || is("self-fold")))
     overrides.back() = c.grid == "[2,2]" ? "cloth.grid=[17,2]" : "cloth.grid=[17,7]";
   if (load_scene(c.scene).cloth.mesh) overrides.pop_back();  // a mesh has one size,
-  if (is("garments/"))                                       // but of garments there is a small one
+  if (is("garments/"))                                       // but garments have a small version
     overrides.push_back("cloth.mesh.file=assets" + c.scene.substr(c.scene.rfind('/')) + "-small.obj");
   const bool bends = solver == "reference" || solver == "xpbd";
   return c.mesh ? as_mesh(load_scene(c.scene, overrides), bends) : load_scene(c.scene, overrides);

@@ -19,7 +19,7 @@ class FrameDrawer {
 
 /// Makes drawers in studies that time rendering; both functions are empty in other studies.
 struct Rendering {
-  /// Text for the result file: what is drawn, and from where positions come.
+  /// Text for the result file: what is drawn, and where positions come from.
   std::function<std::string(const SolverInfo&)> describe;
   /// Makes a drawer for a loaded solver; the drawer reads the solver, which must outlive it.
   std::function<std::unique_ptr<FrameDrawer>(const Scene&, const ClothSolver&, const DeviceOptions&)> make;

@@ -16,7 +16,7 @@
 namespace clothbench {
 
 /// Planned runs, in groups. The trials of a group are interleaved, so that a change of the machine's speed affects all
-/// its runs alike.
+/// its runs equally.
 struct RunPlan {
   std::vector<std::vector<RunSpec>> groups;
   TrialRules rules;

@@ -46,7 +46,7 @@ void check_numbers(const Words& words, std::size_t least, std::size_t most, cons
   }
 }
 
-/// Checks corners: 1, 1/2, 1//3 or 1/2/3. Of other words the library would read the start, or overflow.
+/// Checks corners: 1, 1/2, 1//3 or 1/2/3. The library reads only the start of other words, or overflows.
 void check_corners(const Words& words, const std::string& source, std::uint32_t line) {
   constexpr std::size_t kMostDigits = 9;
   if (words.size() < 4) refuse_line(source, line, "expected at least three corners in a face");
@@ -76,7 +76,7 @@ Statements statements_of(std::string_view text, const std::string& source) {
   for (std::uint32_t number = 1, first = 1; std::getline(in, line); ++number) {
     if (statement.empty()) first = number;
     for (std::size_t at = line.find('#'); at != std::string::npos; at = line.find('#', at + 1))
-      if (at == 0 || std::isspace(static_cast<unsigned char>(line[at - 1])) != 0) line.resize(at);  // else of a name
+      if (at == 0 || std::isspace(static_cast<unsigned char>(line[at - 1])) != 0) line.resize(at);  // else a name's
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
     const bool goes_on = line.ends_with('\\');
     if (goes_on) line.back() = ' ';
@@ -243,7 +243,7 @@ class Clipping {
     return q > flat_ ? q : 0;
   }
 
-  /// Whether the triangle of a corner has no other corner inside or on its border.
+  /// Whether no other corner lies inside the triangle of corner k and its two neighbours, or on the triangle's border.
   bool is_ear(std::size_t k) const {
     const std::array<std::uint32_t, 3> t = {at(k + left_.size() - 1), at(k), at(k + 1)};
     const Point &a = p_[t[0]], &b = p_[t[1]], &c = p_[t[2]];

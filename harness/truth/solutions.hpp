@@ -151,7 +151,7 @@ double greatest_overhang_m(const Capstan&, double light_overhang_m);
 
 /// The strip sliding from rest. At speed v, pressure times R is T + rho g R sin phi - rho v^2, and
 ///   v' [l2 + E l1 + R (E - 1)/mu] = g (l2 - greatest_overhang(l1)) + v^2 (E - 1),   l1, l2 = current overhangs,
-/// with E = e^{mu pi}. The inertia is the smooth strip's for any `turns`. A strip that does not slip stays static.
+/// with E = e^{mu pi}. The inertia is the smooth strip's, whatever `turns`. A strip that does not slip stays at rest.
 /// Throws Error for a time at which the light end has reached the axis. Expects light_overhang_m <= heavy_overhang_m.
 /// Integrated as above, tolerance 1e-12.
 std::vector<SlideState> slide_over(const Capstan&, double light_overhang_m, double heavy_overhang_m,

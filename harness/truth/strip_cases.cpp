@@ -34,7 +34,7 @@ std::vector<double> narrowed(const Strip& s, const HeavyStrip& strip, const Colu
   return out;
 }
 
-/// Width [m] of the pinned part of a mesh at edge u0. Throws Error if other vertices are pinned, or only the edge.
+/// Width [m] of a mesh's clamp at edge u0. Throws Error if only the edge is pinned, or any vertex outside the clamp.
 double clamp_of_mesh_m(const Strip& s) {
   const Cloth& c = s.scene.cloth;
   double width_m = 0;

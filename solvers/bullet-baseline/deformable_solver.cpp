@@ -19,11 +19,11 @@ namespace {
 /// Vector from a link's first end to its second, at the positions where Bullet evaluates forces.
 btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
-/// btDeformableMassSpringForce with a stiffness for each link. Bullet's has two in all. An isotropic grid needs one
-/// along each direction, half of each on the borders, one on the diagonals and one for bending.
+/// btDeformableMassSpringForce with a stiffness for each link. Bullet's class has two in all; an isotropic grid needs
+/// one along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, hence indefinite if a link is compressed.
-/// It has no damping: Bullet's acts relative to neighbours; the scenes' does not.
+/// It has no damping: Bullet's damps motion relative to neighbours; a scene's damps all motion.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness [N/m] of each link of the only body to which this force is added.
@@ -102,7 +102,7 @@ struct DeformableWorld {
 
 /// Stiffness of a link [N/m].
 double link_stiffness(const Scene& s, const Edge& e) {
-  // For inextensible cloth, which springs only approximate. The number of explicit substeps grows with its root.
+  // Approximates inextensible cloth. The number of explicit substeps grows with the square root of this stiffness.
   constexpr double kStiff_N_per_m = 1e4;
   if (e.kind != EdgeKind::SkipOne) return spring_N_per_m(s, e, membrane_stiffness(s, e).value_or(kStiff_N_per_m));
   const auto [own, other] = edge_cell(s.cloth, e);

@@ -120,11 +120,11 @@ TEST(InShort, HasOutcomeTimesRatioAndRankOfEachRun) {
   using Cells = std::vector<std::string>;
   EXPECT_EQ(t.rows[0], (Cells{"scene", "solver", "outcome", "p50: × bullet-soft", "rank", "trials", "frame p50 [ms]",
                               "p95 / p99 / worst [ms]", "missed 72 / 90 Hz [%]"}));
-  EXPECT_EQ(t.rows[1], (Cells{"drop", "bullet-soft", "ok", "1.00", "2", "1", "4.00 (4.00–4.00)", "4.00 / 4.00 / 4.00",
-                              "0.00 / 0.00"}));
+  EXPECT_EQ(t.rows[1],
+            (Cells{"drop", "bullet-soft", "ok", "1.00", "2", "1", "4.00 (4.00–4.00)", "– / – / 4.00", "0.00 / 0.00"}));
   EXPECT_EQ(t.rows[2], (Cells{"drop", "none", "crashed at 7", "–", "–", "–", "–", "–", "–"}));
   EXPECT_EQ(t.rows[3], (Cells{"drop", "quick", "ok", "2.00 (2.00–2.00)", "1", "3", "2.00 (2.00–2.00)",
-                              "2.00 / 2.00 / 2.00", "0.00 / 0.00"}));
+                              "2.00 / – / 2.00", "0.00 / 0.00"}));
   EXPECT_EQ(t.rows[4][2] + " " + t.rows[4][4], "fail –");
 }
 

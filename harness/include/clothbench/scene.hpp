@@ -75,7 +75,7 @@ struct Cloth {
   double areal_density_kg_per_m2 = 0;
   Sides sides = Sides::Single;
   Vec3 center_m{}, axis_u{}, axis_v{};
-  /// If above 0, the sheet starts as an arc along u, bent towards axis_u x axis_v; distance between u0 and u1.
+  /// Distance between u0 and u1 if the sheet starts as an arc along u, bent towards axis_u x axis_v; 0: no arc.
   double span_m = 0;
   /// If drape_radius_m is above 0, the sheet starts draped over a cylinder along axis_v through center_m. Where the
   /// sheet touches, its rows are at that distance from the axis; elsewhere they hang along axis_u x axis_v. The middle

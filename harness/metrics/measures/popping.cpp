@@ -10,7 +10,7 @@ namespace clothbench {
 namespace {
 
 /// The eye sums light over some 30 ms (Barlow 1958, daylight): within it a viewer sees a jump, not a motion. At least
-/// two whole frames, since a snap shorter than a frame's duration may straddle a frame.
+/// two whole frames, because a snap shorter than a frame's duration may straddle a frame.
 double window_s(const Scene& scene) {
   constexpr double kRounding = 1e-9;
   return std::max(2.0, std::ceil(1.0 / 36 / scene.time.dt() - kRounding)) * scene.time.dt();

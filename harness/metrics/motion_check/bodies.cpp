@@ -11,7 +11,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Radius [m] of a finger. If a skinned hand moves by much of it in a frame, the direction of its force is unknown.
+/// Radius [m] of a finger. If a skinned hand moves over half of it in a frame, its force may have any direction.
 constexpr double kFinger_m = 0.01;
 /// Frames whose contacts are kept: a window and its neighbours.
 constexpr std::size_t kFramesKept = 16;

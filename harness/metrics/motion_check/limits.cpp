@@ -206,7 +206,7 @@ class Limits {
   double start_energy_ = 0, kinetic_most_ = 0, elastic_start_ = 0, charged_start_ = 0, compressed_start_ = 0;
   double imposed_ = 0;  ///< largest strain next to an attachment so far
   std::vector<Edge> bends_;
-  /// Of the last frames without a driver: upper bound of the cloth's energy, and its kinetic energy [J].
+  /// Upper bound of the cloth's energy, and its kinetic energy [J], in the last frames without a driver.
   std::vector<double> had_, kinetic_;
   double stored_before_ = 0, least_ = std::numeric_limits<double>::infinity();
 };

@@ -41,7 +41,7 @@ class Motion {
   double cell_m = 0;        ///< the longer mean edge
   double resolution_m = 0;  ///< kResolution of the longer side
   V3 gravity{};             ///< [m/s2]
-  double weight_unit = 0;   ///< |gravity| [m/s2]; 9.81 where the scene has none
+  double weight_unit = 0;   ///< |gravity| [m/s2]; 9.81 if the scene has none
   std::vector<Edge> edges;  ///< structural
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<double> start_velocity;  ///< [m/s] xyz interleaved
@@ -53,7 +53,7 @@ class Motion {
     return {x[0], x[1], x[2]};
   }
   double time_s(std::size_t frame) const { return time_s_[frame]; }
-  /// Duration [s] of the interval before a frame; for frame 0 of the one after it.
+  /// Duration [s] of the interval before a frame; for frame 0, the interval after it.
   double dt(std::size_t frame) const {
     return frame == 0 ? (frames > 1 ? time_s_[1] - time_s_[0] : scene.time.dt()) : time_s_[frame] - time_s_[frame - 1];
   }
@@ -130,7 +130,7 @@ void check_smoothness(const Motion&, Bodies&, Findings&);
 struct Contact {
   V3 point, normal;  ///< of the collider's surface, outwards
   double friction;
-  bool any_force;  ///< the collider moves by much of its size: its force may have any direction
+  bool any_force;  ///< the collider moves by over half its radius, so its force may have any direction
 };
 
 /// The surface within reach of the cloth in one frame.
@@ -160,7 +160,7 @@ class Bodies {
   virtual double depth_ratio(std::size_t /*frame*/) const { return 0; }
   /// Whether `points` [m], moved by at most `displacement_m`, may touch a collider in a frame.
   virtual bool near(std::size_t /*frame*/, std::span<const V3>, double /*displacement_m*/) { return false; }
-  /// Number of points inside colliders that pass through cloth, or vertices through static surfaces, in a frame.
+  /// Passages in a frame: inner points of colliders through the cloth, and vertices through static surfaces.
   virtual int passages(std::size_t /*frame*/) { return 0; }
 };
 std::unique_ptr<Bodies> bodies_of(const Motion&, std::span<const double> contact_offsets_m);

@@ -157,9 +157,9 @@ json table_json(const ViewTable& t, const RunTable& table) {
     again.push_back(json::array());
     for (const Row* r : g) again.back().push_back(r - table.rows().data());
   }
-  return {{"title", t.title},    {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs},
-          {"again", again},      {"keys", t.keys}, {"late", t.late},       {"solver_column", t.solver_column},
-          {"solvers", t.solvers}};
+  return {{"title", t.title},     {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs},
+          {"again", again},       {"keys", t.keys}, {"late", t.late},       {"solver_column", t.solver_column},
+          {"solvers", t.solvers}, {"lead", t.lead}};
 }
 
 std::string escaped(const std::string& text) {

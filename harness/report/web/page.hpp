@@ -19,7 +19,6 @@ struct PageTemplate {
 };
 
 PageTemplate page_template();
-
 /// Draws the figures of `out`/index.html into `out`/figures with Node (src/stills.js), after removing an earlier
 /// report's images. Returns a sentence on why there are no images (empty if there are), and Markdown that shows them.
 std::pair<std::string, std::string> draw_pictures(const std::filesystem::path& out, const PageTemplate&);
@@ -62,19 +61,14 @@ struct Motions {
 
 /// Reads trajectories from the runs' files by priority, at most 150 frames each, until the base64 reaches this size.
 Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
-
 /// Base64 of zlib of the text.
 std::string packed(const nlohmann::json&);
-
 /// Rounded to six digits; null if not finite.
 nlohmann::json rounded(double);
-
 /// The document of the page: tables, one object per run, study folders; neither series nor motions.
 nlohmann::json page_document(const RunTable&, const Page&);
-
 /// One self-contained HTML page. `html` has the placeholders of bundle.mjs.
 std::string page_html(const std::string& html, const Page&, const nlohmann::json& document, const Motions&);
-
 /// Writes `index.html`. If it cannot be made, removes an older one and returns the reason; otherwise returns "". Throws
 /// Error if a file cannot be read or written.
 std::string write_page(const std::filesystem::path& out, const RunTable&, const Page&, const PageTemplate&);

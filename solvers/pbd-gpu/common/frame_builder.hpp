@@ -29,8 +29,8 @@ struct FrameKernel {
 std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint64_t all_B, std::uint64_t largest_B,
                         std::uint64_t memory_B);
 
-/// What a solver and its parts build for a scene: buffers, stages, kernels, the frame that is submitted repeatedly, and
-/// its plan. With the setting `count_bytes`, kernels count the bytes that they load and store.
+/// Buffers, stages, kernels, plan, and the repeatedly submitted frame that a solver and its parts build for a scene.
+/// With the setting `count_bytes`, kernels count the bytes that they load and store.
 class FrameBuilder {
  public:
   FrameBuilder(const nlohmann::json& settings, const DeviceOptions& device);

@@ -276,7 +276,7 @@ class Solver : public peer::Adapter {
     return made(settings);
   }
 
-  /// Kinematic colliders reach the frame's poses at its end. Meshes get a new shape per frame: the engine's are rigid.
+  /// Moves kinematic colliders to their poses at the end of the frame. Meshes get a new shape: the engine's are rigid.
   void move_colliders(const ClothbenchFrame& frame) {
     JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) {

@@ -84,8 +84,8 @@ struct Cooked {
 };
 
 /// Makes the fabric of the sheet at rest. `NvClothExt`'s cooker sorts constraints into phases: vertical and horizontal
-/// edges, diagonals, and pairs two edges apart for bending; tethers lead to pins. Phases without a spring of the scene
-/// are omitted. The stiffness of a constraint is the fraction of its error that one iteration removes, W k h^2 /
+/// edges, diagonals, and pairs two edges apart for bending; tethers lead to pins. Phases that no spring of the scene
+/// needs are omitted. The stiffness of a constraint is the fraction of its error that one iteration removes, W k h^2 /
 /// (1 + W k h^2), W: sum of inverse masses, k: spring stiffness. Each iteration here is a whole step of h, so this is
 /// equivalent to compliance 1 / k (Macklin et al., XPBD, 2016, eq. 18 with lambda = 0).
 Cooked cook(nv::cloth::Factory& factory, const ClothbenchScene& s, const std::vector<double>& inverse_mass,

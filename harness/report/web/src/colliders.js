@@ -103,26 +103,21 @@ function triangle_mesh(arrays, rate, convex) {
 function grips(arrays, rate) {
   const target = sampled(arrays.target_m, rate), held = sampled(arrays.held, rate), group = new THREE.Group();
   for (let k = 0; k < arrays.target_m.shape[1]; ++k) group.add(new THREE.Mesh(new THREE.SphereGeometry(0.012, 16, 12)));
-  return {
-    object: group,
-    move: time => group.children.forEach((ball, k) => {
-      ball.position.fromArray(target(time), 3 * k);
-      ball.visible = held(time)[k] > 0;
-    })
-  };
+  const move = time => group.children.forEach((ball, k) => {
+    ball.position.fromArray(target(time), 3 * k);
+    ball.visible = held(time)[k] > 0;
+  });
+  return {object: group, move};
 }
 
 /// Objects that draw a scene's colliders (motion.js, load_colliders). Each has `object` and, if defined for its kind,
 /// `move(time)`, `depth(x)` (above 0 inside), `crosses(a, b)`.
 export function make_colliders(groups) {
   const rate = groups.find(g => g.path === 'colliders')?.attributes.frame_rate_hz ?? 72, out = [];
-  for (const g of groups) {
-    if (g.path === 'colliders/grips')
-      out.push(grips(g.arrays, rate));
-    else if (g.arrays.capsules)
-      out.push(capsules(g.arrays.capsules, rate));
-    else if (g.arrays.position_m)
-      out.push(triangle_mesh(g.arrays, rate, g.attributes.convex));
+  for (const {path, arrays, attributes} of groups) {
+    if (path === 'colliders/grips') out.push(grips(arrays, rate));
+    else if (arrays.capsules) out.push(capsules(arrays.capsules, rate));
+    else if (arrays.position_m) out.push(triangle_mesh(arrays, rate, attributes.convex));
   }
   return out;
 }

@@ -3,22 +3,18 @@ export function element(tag, attributes = {}, ...children) {
   const e = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
-    if (name.startsWith('on'))
-      e.addEventListener(name.slice(2), value);
-    else
-      e.setAttribute(name, value === true ? '' : value);
+    if (name.startsWith('on')) e.addEventListener(name.slice(2), value);
+    else e.setAttribute(name, value === true ? '' : value);
   }
   e.append(...children.flat().filter(c => c !== null && c !== undefined));
   return e;
 }
 
-export const button = (words, label, clicked, more = {}) =>
-    element('button', {type: 'button', 'aria-label': label, onclick: clicked, ...more}, words);
+export const button = (words, label, clicked, more = {}) => element('button', {type: 'button', 'aria-label': label, onclick: clicked, ...more}, words);
 
 export function select(label, options, value, changed) {
-  const list = element(
-      'select', {onchange: () => changed(list.value)},
-      options.map(o => element('option', {value: o.value, selected: o.value === value}, o.text)));
+  const items = options.map(o => element('option', {value: o.value, selected: o.value === value}, o.text));
+  const list = element('select', {onchange: () => changed(list.value)}, items);
   return element('label', {}, label, list);
 }
 

@@ -42,6 +42,9 @@ export function looks(solvers, roles) {
 /// Style sheet variables for the colours of solvers.
 export const style_of = all => `:root{${Object.values(all).map((l, k) => `--s${k}:light-dark(${l.light},${l.dark})`).join(';')}}`;
 
-/// The symbol of a solver next to its name.
-export const icon = ({symbol, colour}) =>
-    `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true"><path d="${kSymbols[symbol]}" style="stroke:${colour};fill:${colour};stroke-width:1.6"/></svg>`;
+/// A solver's symbol beside its name.
+export function icon(all, solver) {
+  const place = document.createElement('template'), {symbol = 'circle', colour = 'var(--soft)'} = all[solver] ?? {};
+  place.innerHTML = `<svg class="icon" viewBox="-7 -7 14 14" aria-hidden="true"><path d="${kSymbols[symbol]}" style="stroke:${colour};fill:${colour};stroke-width:1.6"/></svg>`;
+  return place.content.firstChild;
+}

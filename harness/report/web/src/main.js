@@ -3,7 +3,7 @@ import {button, element, say, unpacked} from './dom.js';
 import {make_figures} from './figures.js';
 import {icon, looks, style_of, unique} from './look.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
-import {load_state, save_state, shown, state, toggle_solver} from './state.js';
+import {hide_solvers, load_state, save_state, shown, state} from './state.js';
 import {reproduce, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
@@ -13,10 +13,7 @@ function start_theme() {
   const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
   const dark = () => root.style.colorScheme ? root.style.colorScheme === 'dark' : system.matches;
   const tell = () => $('theme').setAttribute('aria-pressed', String(dark()));
-  $('theme').addEventListener('click', () => {
-    root.style.colorScheme = dark() ? 'light' : 'dark';
-    tell();
-  });
+  $('theme').addEventListener('click', () => (root.style.colorScheme = dark() ? 'light' : 'dark', tell()));
   system.addEventListener('change', tell);
   tell();
 }
@@ -24,16 +21,17 @@ function start_theme() {
 function chips(doc, look) {
   const known = Object.keys(doc.solvers.look), place = s => known.includes(s) ? known.indexOf(s) : known.length;
   const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b));
-  $('chips').append(...solvers.map(s => {
-    const chip = button('', null, () => {
-      toggle_solver(s);
-      chip.setAttribute('aria-pressed', String(shown(s)));
-      say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`);
-    }, {'aria-pressed': String(shown(s))});
-    chip.innerHTML = icon(look[s]);
-    chip.append(s);
-    return chip;
-  }));
+  const list = solvers.map(s => {
+    const toggle = () => (hide_solvers(shown(s) ? [...state.off, s] : [...state.off].filter(o => o !== s)), say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`));
+    return button([icon(look, s), s], null, toggle, {title: 'Click: hide or show. Double click: only this solver.', ondblclick: () => hide_solvers(solvers.filter(o => o !== s))});
+  });
+  const all = button('all', 'Show all solvers', () => hide_solvers([])), tell = () => {
+    list.forEach((b, k) => b.setAttribute('aria-pressed', String(shown(solvers[k]))));
+    all.hidden = !state.off.size;
+  };
+  $('chips').append(...list, all);
+  addEventListener('solvers', tell);
+  tell();
 }
 
 /// First screen: the first figure, the leading scenes below it, Table 3 next to them. All else follows in sections.
@@ -52,8 +50,8 @@ function sections(doc, look, motions) {
       $('method-tables').append(...blocks);
     } else if (blocks.length) {
       const again = reproduce(doc, `section ${s.title}`, s.tables.flatMap(t => t.runs.map(k => doc.runs[k])));
-      const head = element('div', {class: 'head'}, element('h2', {id: `${s.id}-title`}, s.title), again);
-      $('sections').append(element('section', {id: s.id, 'aria-labelledby': `${s.id}-title`}, head, blocks));
+      const id = `${s.id}-title`, head = element('div', {class: 'head'}, element('h2', {id}, s.title), again);
+      $('sections').append(element('section', {id: s.id, 'aria-labelledby': id}, head, blocks));
       links.push([s.id, s.title]);
     }
   }
@@ -81,7 +79,7 @@ function start_motions(doc, motions) {
 /// Blocks have no height before they are made, so all are made before the page scrolls to one.
 function go_to(id) {
   document.documentElement.classList.add('whole');
-  dispatchEvent(new Event('beforeprint'));
+  dispatchEvent(new Event('whole'));
   setTimeout(() => document.getElementById(id)?.scrollIntoView());  // figures are drawn first
 }
 
@@ -123,8 +121,7 @@ async function start() {
   chips(doc, look);
   sections(doc, look, motions);
   $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
-  $('commands')
-      .append(...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));
+  $('commands').append(...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));
   start_figures();
   start_tables();
   start_navigation();

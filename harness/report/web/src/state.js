@@ -1,8 +1,5 @@
 // The reader's choices, stored in the address (#anchor?off=jolt,paper&Scene=…).
-export const state = {
-  off: new Set(),
-  values: {}
-};
+export const state = {off: new Set(), values: {}};
 
 export function load_state() {
   const [anchor, query = ''] = location.hash.slice(1).split('?'), given = new URLSearchParams(query);
@@ -19,12 +16,12 @@ export function save_state(anchor = location.hash.slice(1).split('?')[0]) {
 }
 
 export function set_value(name, value) {
-  state.values[name] = value;
+  value === null ? delete state.values[name] : state.values[name] = value;
   save_state();
 }
 
-export function toggle_solver(solver) {
-  state.off.has(solver) ? state.off.delete(solver) : state.off.add(solver);
+export function hide_solvers(solvers) {
+  state.off = new Set(solvers);
   save_state();
   dispatchEvent(new Event('solvers'));
 }

@@ -1,10 +1,11 @@
-// Tables: sortable by a click on a head, folded at 15 rows, filtered by solver, with an anchor and a command per row.
+// Tables: sortable by a click on a head, filtered by solver and words, with an anchor and a command per row.
 import {button, element, file_name, say} from './dom.js';
 import {command_of} from './figures.js';
 import {icon} from './look.js';
 import {set_value, shown, state} from './state.js';
 
-const kFolded = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)');
+const kFew = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)'), kMedium = matchMedia('(max-width: 1180px)');
+const kPaper = 132, kWrap = 24;  // characters across a printed page; longer cells break
 /// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
 const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
 
@@ -30,21 +31,17 @@ export const block_head = (id, name, what, more) =>
 
 export class ShownTable {
   constructor(doc, look, table, id) {
-    Object.assign(this, {doc, look, table, id, open: false});
+    Object.assign(this, {doc, look, table, id});
     this.head = table.rows[0];
     this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]], runs: table.again[k].map(n => doc.runs[n])}));
     this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
     this.hidden_columns = button('', null, () => this.place.scrollBy(0.6 * this.place.clientWidth, 0), {class: 'quiet', hidden: true});
     new ResizeObserver(() => this.tell_hidden()).observe(this.place);
-    this.find = element('input', {type: 'search', placeholder: 'filter rows', 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFolded, oninput: () => this.fill()});
-    this.more = button('Show all rows', null, () => {
-      this.open = !this.open;
-      this.fill();
-    }, {class: 'more'});
+    this.find = element('input', {type: 'search', placeholder: `filter ${this.body.length} rows`, 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFew, oninput: () => this.fill()});
     this.block = element(
-        'div', {class: 'table', id},
-        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, element('div', {class: 'bar small'}, this.more),
+        'div', {class: 'table', id, style: `contain-intrinsic-size: auto ${Math.min(this.body.length, 24) * 27 + 110}px`},
+        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place,
         table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
   }
 
@@ -52,7 +49,8 @@ export class ShownTable {
     const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'),
                    k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
     this.sort = {k, down: way === 'down'};
-    const words = this.find.value.toLowerCase().split(' '), has = r => words.every(w => r.cells.some(c => c.text.toLowerCase().includes(w)));
+    const words = this.find.value.toLowerCase().match(/"[^"]+"|[^\s"]+/g) ?? [];
+    const has = r => words.every(w => r.cells.some(c => w[0] === '"' ? `"${c.text.toLowerCase()}"` === w : c.text.toLowerCase().includes(w)));
     const left = this.body.filter(r => (!r.run || table.solver_column < 0 || shown(r.run.solver)) && has(r));
     if (k < 0) return left;
     const sign = way === 'down' ? -1 : 1;
@@ -65,27 +63,45 @@ export class ShownTable {
 
   /// Orders the columns. In a narrow window the first cell also shows the other short keys, and detail columns come last.
   arrange() {
-    const {solvers, keys = 1, late = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
-    this.columns = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
-    this.joined = kNarrow.matches && keys <= kMostKeys ? this.columns.filter(k => k > 0 && k < keys && short(k)) : [];
-    if (kNarrow.matches) this.columns = this.columns.filter(k => !this.joined.includes(k)).sort((a, b) => late.includes(a) - late.includes(b));
+    const {solvers, keys = 1, late = [], lead = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
+    const joins = !this.prints && keys <= kMostKeys && (kNarrow.matches || (keys > 2 && kMedium.matches));
+    const rank = k => k < keys ? 0 : lead.includes(k) ? 1 : kNarrow.matches && late.includes(k) ? 3 : 2, all = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
+    this.joined = joins ? all.filter(k => k > 0 && k < keys && short(k)) : [];
+    this.columns = all.filter(k => !this.joined.includes(k)).sort((a, b) => rank(a) - rank(b));
   }
 
-  /// Shows how many columns are hidden to the right. The second key stays in view if both keys fit into half of the box.
+  /// The columns in parts that fit a page; each part repeats the keys.
+  parts() {
+    if (!this.prints) return [this.columns];
+    const {keys = 1} = this.table, out = [[]];
+    const width = k => 2 + Math.max(...this.head[k].split(' ').map(w => w.length), ...this.body.map(r => Math.min(kWrap, r.cells[k].text.length)));
+    const fixed = this.columns.filter(k => k < keys), free = kPaper - fixed.reduce((sum, k) => sum + width(k), 0);
+    for (const k of this.columns.filter(k => k >= keys)) {
+      if (out.at(-1).length && [...out.at(-1), k].reduce((sum, c) => sum + width(c), 0) > free) out.push([]);
+      out.at(-1).push(k);
+    }
+    return out.map(part => [...fixed, ...part]);
+  }
+
+  /// Shows how many columns are hidden to the right. The first three keys stay in view if they fit into half of the box, or two.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
-    const [first = 0, second = Infinity] = heads.map(h => h.offsetWidth), can_hold = this.table.keys > 1 && !kNarrow.matches;
-    this.place.classList.toggle('held', can_hold && first + second <= this.place.clientWidth / 2);
-    this.place.style.setProperty('--second', `${first}px`);
+    const widths = heads.map(h => h.offsetWidth), keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, until = n => widths.slice(0, n).reduce((a, b) => a + b, 0);
+    for (const [n, name] of [[2, 'held'], [3, 'held-three']]) {
+      this.place.classList.toggle(name, keys >= n && until(n) <= this.place.clientWidth * 0.55);
+      this.place.style.setProperty(`--until-${n}`, `${until(n - 1)}px`);
+    }
     const count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
     this.hidden_columns.textContent = `${count} more ${count === 1 ? 'column' : 'columns'} →`;
     this.hidden_columns.hidden = !count;
   }
 
   head_cell(h, k) {
-    const on = this.sort.k === k, next = on ? (this.sort.down ? 'up' : 'down') : this.numeric[k] ? 'down' : 'up';
+    if (this.prints) return element('th', {scope: 'col', class: this.numeric[k] && 'n'}, h);
+    const on = this.sort.k === k, [first, second] = this.numeric[k] ? ['down', 'up'] : ['up', 'down'];
+    const next = !on ? first : this.sort.down === (first === 'down') ? second : null;  // the third click restores the order
     const sort = () => {
-      set_value(`${this.id}.sort`, `${k}.${next}`);
+      set_value(`${this.id}.sort`, next && `${k}.${next}`);
       this.fill();
       this.place.querySelectorAll('thead button')[this.columns.indexOf(k)]?.focus();
     };
@@ -97,11 +113,22 @@ export class ShownTable {
 
   cell(cells, k, run) {
     const {text, value, tone} = cells[k], long = k > 0 && text.length > kLong, shape = long ? 'long' : this.numeric[k] ? 'n' : '', more = k === 0 ? this.joined : [];
-    const c = element(k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value});
-    if ([k, ...more].includes(this.table.solver_column) && run && !run.published)
-      c.innerHTML = icon(this.look[run.solver]);
-    c.append(long ? element('div', {tabindex: '0'}, text) : text, ...more.map(j => element('small', {}, cells[j].text)));
-    return c;
+    const parts = j => [
+      j === this.table.solver_column && run && cells[j].text.startsWith(run.solver) && !run.published ? icon(this.look, run.solver) : null,
+      ...cells[j].text.split(more.length ? /(?<=_)/ : /(?<= )(?=\((?:first|CPU))/).flatMap((part, n) => more.length ? [n ? element('wbr') : null, part] : [n ? element('small', {}, part) : part])
+    ];
+    const content = (text === 'fail' && this.criteria(cells, k, run)) || (long && !this.prints ? element('div', {tabindex: '0'}, text) : parts(k));
+    return element(
+        k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value}, content,
+        ...more.map(j => element('small', {}, ...parts(j).filter(p => p !== null))));
+  }
+
+  /// A link from a failed run to the criteria that it violates; null if this table lists them, or none does.
+  criteria(cells, k, run) {
+    const failed = this.table.solvers[k] ? this.doc.runs.find(r => r.scene === cells[0].text && r.label === this.head[k]) : run;
+    const list = tables.find(t => t.table.title.startsWith('Acceptance criteria')), has = r => r.run.scene === failed?.scene && r.run.label === failed.label;
+    if (!list || list === this || !list.body.some(has)) return null;
+    return element('a', {href: `#${list.id}`, title: 'Show the criteria that it violates', onclick: () => (Object.assign(list.find, {hidden: false, value: `"${failed.scene}" "${failed.label}"`}), list.fill())}, cells[k].text);
   }
 
   /// The button that copies a row's command, which repeats all of its runs.
@@ -111,16 +138,16 @@ export class ShownTable {
   }
 
   fill() {
-    const rows = this.sorted(), {head} = this, buttons = rows.map(r => this.again(r)), any = buttons.some(Boolean);
+    const rows = this.sorted(), {head} = this, buttons = rows.map(r => this.prints ? null : this.again(r)), any = buttons.some(Boolean);
     this.arrange();
-    const titles = [this.columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
-    const body = (this.open ? rows : rows.slice(0, kFolded)).map(({cells, run}, n) => {
-      const last = any ? element('td', {}, buttons[n] ?? '') : null;
-      return element('tr', {class: run?.published && 'published'}, this.columns.map(k => this.cell(cells, k, run)), last);
-    });
-    this.place.replaceChildren(element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body)));
-    this.more.hidden = rows.length <= kFolded;
-    this.more.textContent = this.open ? `Show ${kFolded} rows` : `Show all ${rows.length} rows`;
+    this.place.replaceChildren(...this.parts().map(columns => {
+      const titles = [columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
+      const body = rows.map(({cells, run}, n) => {
+        const last = any ? element('td', {}, buttons[n] ?? '') : null;
+        return element('tr', {class: run?.published && 'published'}, columns.map(k => this.cell(cells, k, run)), last);
+      });
+      return element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body));
+    }));
     this.filled = true;
     this.tell_hidden();
   }
@@ -142,10 +169,19 @@ export function near_window(list, made, make) {
       {rootMargin: '500px'});
   list.forEach(t => near.observe(t.block));
   addEventListener('solvers', () => list.filter(made).forEach(make));
-  addEventListener('beforeprint', () => list.filter(t => !made(t)).forEach(make));
+  for (const event of ['whole', 'beforeprint']) addEventListener(event, () => list.filter(t => !made(t)).forEach(make));
 }
 
 export function start_tables() {
+  const fill = () => tables.filter(t => t.filled).forEach(t => t.fill());
   near_window(tables, t => t.filled, t => t.fill());
-  kNarrow.addEventListener('change', () => tables.filter(t => t.filled).forEach(t => t.fill()));
+  for (const width of [kNarrow, kMedium]) width.addEventListener('change', fill);
+  const print = on => (tables.forEach(t => t.prints = on), fill());
+  addEventListener('beforeprint', () => print(true));
+  addEventListener('afterprint', () => print(false));
+  const idle = window.requestIdleCallback ?? (next => setTimeout(next, 30)), rest = () => {
+    const t = tables.find(t => !t.filled);
+    if (t) t.fill(), idle(rest);
+  };
+  idle(rest);  // all rows become text that the browser can find
 }

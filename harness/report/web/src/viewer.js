@@ -11,11 +11,8 @@ import {reproduce} from './tables.js';
 const kColours = ['checks', 'strain', 'penetration'];
 const kStrains = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1], kDepth_m = 5e-3;  // upper ends of the colour ramp
 const small = v => v > 0 && v < 1e-3 ? '<0.001' : number(v);
-const kReadouts = {
-  stretch_max: v => `strain ${small(100 * v)} %`,
-  contact_length_m: v => `contour ${small(1e3 * v)} mm`,
-  depth_m: v => `depth ${small(1e3 * v)} mm`
-};
+const mm = (name, v) => `${name} ${small(1e3 * v)} mm`;
+const kReadouts = {stretch_max: v => `strain ${small(100 * v)} %`, contact_length_m: v => mm('contour', v), depth_m: v => mm('depth', v)};
 
 class Viewer {
   constructor(root, motions, rows) {
@@ -23,20 +20,15 @@ class Viewer {
     Object.assign(this, {root, motions, rows, panels: [], time: 0, end: 0, playing: false, colouring: 'checks', most: 1, last: 0, stale: true});
     this.build();
     const context = this.canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
-    if (context)
-      this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context, alpha: true});
-    else
-      this.root.prepend(element('p', {class: 'warning'}, 'This browser has no WebGL: motions are drawn slowly, coloured by the direction of the surface.'));
+    if (context) this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context, alpha: true});
+    else this.root.prepend(element('p', {class: 'warning'}, 'This browser has no WebGL: motions are drawn slowly, coloured by the direction of the surface.'));
     this.renderer?.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => this.stale = true);
     addEventListener('solvers', () => this.show_scene(this.scene));
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    const loop = now => {
-      this.tick(now);
-      requestAnimationFrame(loop);
-    };
+    const loop = now => (this.tick(now), requestAnimationFrame(loop));
     requestAnimationFrame(loop);
   }
 
@@ -46,23 +38,13 @@ class Viewer {
     this.overlay = element('div', {class: 'panels'});
     this.stage = element('div', {id: 'stage'}, this.canvas, this.overlay);
     this.play_button = button('▶ Play', null, () => this.play(!this.playing));
-    this.scrub = element('input', {
-      id: 'scrub',
-      type: 'range',
-      min: '0',
-      'aria-label': 'Time',
-      oninput: () => {
-        this.play(false);
-        this.seek(this.times[Number(this.scrub.value)]);
-      }
-    });
+    const go = () => (this.play(false), this.seek(this.times[Number(this.scrub.value)]));
+    this.scrub = element('input', {id: 'scrub', type: 'range', min: '0', 'aria-label': 'Time', oninput: go});
     this.clock = element('output', {id: 'clock'});
     this.legend = element('span', {class: 'bar'});
     this.scene_list = select('Scene', options(scenes), scenes[0], s => this.show_scene(s));
     this.root.append(
-        element(
-            'div', {class: 'bar'}, this.scene_list,
-            select('Colour', options(kColours), 'checks', v => this.colour(v)), this.legend),
+        element('div', {class: 'bar'}, this.scene_list, select('Colour', options(kColours), 'checks', v => this.colour(v)), this.legend),
         this.stage, this.absent = element('p', {class: 'note'}), element('div', {class: 'bar'}, this.play_button, this.scrub, this.clock),
         reproduce(window.clothbench.document, 'the motions', this.motions.runs.map(m => m.row)) ?? '',
         this.notes = element('ul', {class: 'note'}));
@@ -209,8 +191,7 @@ class Viewer {
     return [
       row.status === 'ok' ? null : row.verdict, ...Object.entries(kReadouts).map(([name, text]) => metrics[name]?.[f] >= 0 ? text(metrics[name][f]) : null),
       this.colouring === 'penetration' && shown.crossing ? `${shown.crossing} vertices on a crossing edge` : null
-    ].filter(Boolean)
-        .join(' · ');
+    ].filter(Boolean).join(' · ');
   }
 }
 

@@ -20,7 +20,7 @@ void run() {
   frame_state.active_pair_count[0] = frame_state.active_pair_count[1] = 0u;
 }
 
-#elif defined(BROAD_PHASE)  // once per frame and fraction of the motion bounds, one thread per primitive
+#elif defined(BROAD_PHASE)  // once per frame for each of kFractions, one thread per primitive
 #include "xpbd/contact/broad_phase/contact_broad_phase.glsl"
 void run() {
   if (p.level > 0u && frame_state.counted[p.level - 1u] <= CAPACITY) return;
@@ -109,7 +109,7 @@ void run() {
 #include "xpbd/contact/broad_phase/self_aabbs.glsl"
 void run() { make_self_aabbs(); }
 
-#elif defined(SELF_BROAD_PHASE)  // once per frame and fraction of the motion bounds, one subgroup per triangle
+#elif defined(SELF_BROAD_PHASE)  // once per frame for each of kFractions, one subgroup per triangle
 #include "xpbd/contact/broad_phase/self_broad_phase.glsl"
 void run() {
   if (p.level > 0u && frame_state.self_counted[p.level - 1u] <= SELF_CAPACITY) return;

@@ -6,7 +6,7 @@
 // solves these in `rounds` rounds (log2(LANES): exactly): through shared memory until each subgroup has a separate
 // system, then by shuffles. RIGHT becomes the solution, `before` the solution of the row before the thread's first.
 
-/// Reduces one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below that of the row before.
+/// Reduces one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the previous row's.
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
   MATRIX f, a_below, c_below, a_above, c_above;
   VECTOR d_above;

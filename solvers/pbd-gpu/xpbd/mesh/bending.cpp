@@ -100,7 +100,7 @@ class Patch {
   }
 
   /// Derivative across the edge at its middle, to the left and per edge length, of the least-squares quadratic through
-  /// the vertices. Vertices of the edge's own triangles weigh most. If several quadratics fit alike: of the smallest.
+  /// the vertices. Vertices of the edge's own triangles weigh most. If several fit equally well, uses the smallest.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;

@@ -18,7 +18,7 @@ layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEn
 layout(std430, binding = BIND_CHAIN_COLOURS) readonly buffer Ranges { ChainRange ranges[]; };
 layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
 layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
-// Each one per vertex: right sides, steps of odd iterations, steps of even ones; with MEMBRANE also positions.
+// One entry per vertex: right sides, steps of odd iterations, steps of even ones; with MEMBRANE also positions.
 layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "xpbd/time/substep.glsl"

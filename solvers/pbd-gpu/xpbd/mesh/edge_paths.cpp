@@ -72,7 +72,7 @@ void add_ring(EdgePath ring, std::vector<EdgePath>& out) {
   out.push_back(std::move(over));
 }
 
-/// Pairs, at every vertex, the edges that continue each other straightest. A sequence of paired edges is an edge path.
+/// Pairs the edges at every vertex that continue each other straightest. A sequence of paired edges is an edge path.
 std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
   const std::size_t n = m.vertices.size(), count = m.edges.size();

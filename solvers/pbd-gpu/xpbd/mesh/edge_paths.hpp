@@ -10,7 +10,7 @@ namespace clothbench::pbd_gpu {
 /// True if the links of a cloth are not uniform, so that Chains solve it instead of Lines.
 bool needs_chain_solver(const Scene&);
 
-/// Factor on the substeps for equal links: short links rotate faster, by the root of the length ratio. 1 if the
+/// Factor on the substeps for equal links: short links rotate faster, by the square root of the length ratio. 1 if the
 /// shortest link that is not welded has at least half of the mean length.
 double substeps_for_short_links(const Scene&);
 

@@ -16,7 +16,7 @@ struct BendingMatrix {
   double max_per_s2 = 0;  ///< upper bound of the eigenvalues of (diagonal of masses)^-1 K [1/s^2], no vertex held
 };
 
-/// By Morley's element (xpbd/mesh/README.md). Exact for quadratic deflections on any mesh, in energy and in force.
+/// Uses Morley's element (xpbd/mesh/README.md). Exact for quadratic deflections on any mesh, in energy and in force.
 /// `reference` solves for the derivatives across edges instead.
 BendingMatrix bending_matrix(const Scene&);
 

@@ -49,7 +49,7 @@ std::array<std::array<double, 3>, 3> block_norms(const TriangleStiffness& k, con
   return out;
 }
 
-/// Trace of a triangle's matrix at rest. The kernel limits that of the deformed triangle to kMaxTrace times as much.
+/// Trace of a triangle's matrix at rest. The kernel limits the deformed triangle's trace to kMaxTrace times as much.
 double trace(const TriangleStiffness& k, const std::array<Vec3, 3>& rest) {
   const auto g = directions(rest);
   double sum = 0;

@@ -52,7 +52,7 @@ inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Atta
 inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
 // Chains of a mesh are less accurate than grid lines (garments under capsules)
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
-// Contact-free frames after a collider has strained the cloth: with those of free cloth 6 of 68 random runs fail
+// Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
 inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the cloth hits the collider at once
 // A strip has no diagonals to strain (capstan, incline)

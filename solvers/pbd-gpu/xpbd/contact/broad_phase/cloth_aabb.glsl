@@ -9,7 +9,7 @@ void empty_box() {
   cloth_high[thread] = kHighNone;
 }
 
-/// Grows the box [from, to] to contain the ball around bound.xyz of radius bound.w.
+/// Grows the box [from, to] to contain the sphere around bound.xyz of radius bound.w.
 void widen(inout uvec3 from, inout uvec3 to, vec4 bound) {
   for (uint c = 0u; c < 3u; ++c) {
     from[c] = min(from[c], ordered(bound[c] - bound.w));

@@ -34,7 +34,7 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
     } \
   }
 
-/// Lower bound on the distance of two triangles at the frame's start: that of their boxes without the inflation.
+/// Lower bound on the distance of two triangles at the frame's start: the distance of their boxes before inflation.
 float min_distance(SelfAabb a, SelfAabb b) {
   vec3 apart = max(a.low_0.xyz - b.high_0.xyz, b.low_0.xyz - a.high_0.xyz) + (THICKNESS_M + 2.0 * drift_m());
   return kRoundingFactor * length(max(apart, 0.0));
