@@ -148,6 +148,7 @@ function frame_times(doc) {
   const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));
   if (!clocks.length) return null;
   const few = unique(all.map(r => r.scene)).length <= 8;
+  const runs_of = s => all.filter(r => r.solver === s).length, solvers = unique(without_floor(doc, all).map(r => r.solver)).sort((a, b) => runs_of(b) - runs_of(a));
   return {
     id: 'frame-times',
     section: 'time',
@@ -156,7 +157,7 @@ function frame_times(doc) {
     caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
     choices: [
       choice('Time', clocks, clocks.includes('contact_wall') ? 'contact_wall' : 'wall', c => kClocks[c]),
-      choice('Solver', s => [...(few ? ['all'] : []), ...unique(without_floor(doc, all.filter(r => r[s.Time])).map(r => r.solver))])
+      choice('Solver', s => [...(few ? ['all'] : []), ...solvers.filter(v => all.some(r => r.solver === v && r[s.Time]))])
     ],
     rows: s => all.filter(r => r[s.Time] && (s.Solver === 'all' || r.solver === s.Solver)).map(r => {
       const [p50_s, low_s, high_s, p95_s, p99_s, worst_s] = r[s.Time];

@@ -24,7 +24,7 @@ export const band = (field, values, {width}) => ({field, type: 'nominal', title:
 
 /// A legend with as many columns as there is room for.
 export function legend(names, look, more) {
-  const sum = list => list.reduce((a, b) => a + b, 0), room = (_, k) => 28 + 6.3 * Math.max(...names.filter((_, n) => n % columns === k).map(n => n.length));
+  const sum = list => list.reduce((a, b) => a + b, 0), room = (_, k) => 36 + 7.2 * Math.max(...names.filter((_, n) => n % columns === k).map(n => n.length));
   let columns = names.length;
   while (columns > 1 && sum(names.slice(0, columns).map(room)) > look.width) --columns;
   return {columns, ...more};
