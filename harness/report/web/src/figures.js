@@ -318,7 +318,7 @@ function claims(doc) {
     rows: () => all,
     spec: (rows, s, look) => {
       const channel = of => ({field: 'claim', type: 'nominal', scale: {domain: kClaims.map(c => c[0]), range: kClaims.map(of)}, legend: legend(['holds', 'near', 'fails'], look)});
-      return panels(unique(rows.map(r => r.kind)).sort(), 150, ['0000'], look, kind => ({
+      return panels(unique(rows.map(r => r.kind)).sort(), Math.max(150, look.width / 4), ['0000'], look, kind => ({
         title: {text: kind},
         height: 130 * look.shrink,
         transform: [{filter: {field: 'kind', equal: kind}}],
