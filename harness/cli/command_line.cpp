@@ -91,12 +91,12 @@ int run_command_line(const std::vector<std::string>& words) {
   app.footer(
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
-      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help\nTerms: clothbench list "
-      "terms\nExit codes: 0 ok, 1 a "
-      "check or a solver failed, 2 bad input, 3 no device, 130 interrupted.");
+      "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help, or clothbench help "
+      "COMMAND\nTerms: clothbench list terms\nExit codes: 0 ok, 1 a check failed or a solver finished none of its "
+      "runs, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   console.command_line = "clothbench " + joined(words, " ");
-  app.add_flag("--json", console.json, "Print a machine-readable summary");
+  app.add_flag("--json", console.json, "Print a machine-readable summary; also after the command");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
   // Before the words are parsed, because parsing loads plugins.
@@ -106,17 +106,15 @@ int run_command_line(const std::vector<std::string>& words) {
   app.fallthrough();
 
   for (AddCommand* add : kCommands) add(app, console);
+  const bool helps = !words.empty() && words.front() == "help";  // help, help run
+  const std::vector<std::string> asked(words.begin() + (helps ? 1 : 0), words.end());
   try {
-    // CLI11 expects the words in reverse order.
-    std::vector<std::string> given(words.rbegin(), words.rend());
-    if (!given.empty() && given.back() == "help") {  // help, help run
-      given.pop_back();
-      given.insert(given.begin(), "--help");
-    }
+    std::vector<std::string> given(asked.rbegin(), asked.rend());  // CLI11 expects the words in reverse order
+    if (helps) given.insert(given.begin(), "--help");
     app.parse(given);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
-    const std::string unknown = unknown_word(app, words);
+    const std::string unknown = unknown_word(app, asked);
+    if (e.get_exit_code() == 0 && (unknown.empty() || !helps)) return app.exit(e);
     console.json = contains(words, "--json");  // parsing may have stopped before it
     return report_error(console, (unknown.empty() ? e.what() : unknown) + "; --help explains", ExitCode::BadInput);
   } catch (const Error& e) {

@@ -121,7 +121,7 @@ void add_study(CLI::App& app, Console& console) {
   add_solvers(*cmd, "--solver", a.only,
               "Only these solvers. One that the study does not name is added with its default settings; a plugin with "
               "settings substeps or iterations takes part in settings sweeps");
-  cmd->add_option("--set", a.set, "Override a scene key in every run: cloth.size_m=[0.5,0.5]");
+  cmd->add_option("--set", a.set, "Override a scene key (no solver setting) in every run: cloth.size_m=[0.5,0.5]");
   cmd->add_option("--out", a.run.out, "Folder for the result files; default results/runs/<study>-<UTC>");
   cmd->add_flag("--resume", a.run.resume, "Continue the interrupted study in the folder of --out");
   cmd->add_option(

@@ -60,7 +60,7 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
   EXPECT_EQ(a.code, 2) << a.text;
   EXPECT_NE(a.text.find("bad.json"), std::string::npos) << a.text;
   EXPECT_EQ(command("run no-such-scene").code, 2);
-  for (const char* arguments : {"frobnicate", "run", "run paper/gravity --frob", "compare a b --allow frob"}) {
+  for (const char* arguments : {"frob", "help frob", "run", "run paper/gravity --frob", "compare a b --allow frob"}) {
     const Answer answer = command(std::string(arguments) + " --json", Streams::Out);
     EXPECT_EQ(answer.code, 2) << answer.text;
     EXPECT_EQ(nlohmann::json::parse(answer.text).at("exit_code"), 2) << answer.text;
