@@ -54,7 +54,6 @@ MetricGroup roughness_metrics() {
             {},
             "variation of the surface's Laplacian between neighbouring vertices, RMS, over the mean edge, at the end",
             roughness, "1"),
-        .expect = Expect::Yes,
         .present = [](const RunView& r) { return !r.scene.colliders.empty(); }}}};
 }
 
