@@ -68,8 +68,7 @@ TEST(Popping, OfASnapIsItsWayAndLessTheLongerItTakes) {
   for (const double way_m : {0.01, 0.03, 0.1}) {
     for (const auto& [frames, share] : {std::pair{1, 1.0}, {2, 1.0}, {3, 1.0 / 3}, {10, 0.0}})
       for (const auto& vertices : {std::vector{kMiddle}, {kCorner}, patch})
-        EXPECT_NEAR(pop_of(scene, snapped(way_m, frames / 72.0, vertices)), share * way_m, kRounding_m)
-            << way_m << " m in " << frames << " frames";
+        EXPECT_NEAR(pop_of(scene, snapped(way_m, frames / 72.0, vertices)), share * way_m, kRounding_m);
     double before = way_m;
     for (int frames = 1; frames <= 10; ++frames) {
       const double now = pop_of(scene, snapped(way_m, frames / 72.0));
@@ -77,9 +76,7 @@ TEST(Popping, OfASnapIsItsWayAndLessTheLongerItTakes) {
       before = now;
     }
   }
-  const auto fails = [&](double way_m, int frames) {
-    return !(pop_of(scene, snapped(way_m, frames / 72.0)) <= bound_m());
-  };
+  const auto fails = [&](double m, int n) { return !(pop_of(scene, snapped(m, n / 72.0)) <= bound_m()); };
   EXPECT_TRUE(fails(0.03, 1) && fails(0.1, 1) && fails(0.1, 3) && fails(0.012, 1));
   EXPECT_FALSE(fails(0.009, 1) || fails(0.01, 3) || fails(0.01, 10) || fails(0.03, 10) || fails(0.1, 10));
 }
@@ -92,8 +89,7 @@ TEST(Popping, OfAReleasedSpringFollowsFromItsSpeed) {
     const Motion springs_back = [&](std::size_t v, double t) {
       return Vec3{v == kCorner ? kStretched_m * std::exp(-std::max(0.0, t - kStart_s) / time_s) : 0, 0, 0};
     };
-    EXPECT_NEAR(pop_of(scene, springs_back), std::max(0.0, kStretched_m * (1 - left) * (1 - 2 * left)), kRounding_m)
-        << speed << " m/s";
+    EXPECT_NEAR(pop_of(scene, springs_back), std::max(0.0, kStretched_m * (1 - left) * (1 - 2 * left)), kRounding_m);
   }
 }
 
@@ -118,12 +114,8 @@ TEST(Popping, IsNoneInAFallAndWhereASheetStopsOnAPlane) {
     const Scene scene = scene_of(rate);
     const auto fallen = [](double t) { return -5 * t - 9.81 / 2 * t * t; };
     EXPECT_NEAR(pop_of(scene, [&](std::size_t, double t) { return Vec3{0, fallen(t), 0}; }), 0, kRounding_m) << rate;
-    EXPECT_NEAR(pop_of(scene,
-                       [&](std::size_t, double t) {
-                         return Vec3{0, std::max(fallen(t), -0.9), 0};
-                       }),
-                0, kRounding_m)
-        << rate;
+    const auto stopped = [&](std::size_t, double t) { return Vec3{0, std::max(fallen(t), -0.9), 0}; };
+    EXPECT_NEAR(pop_of(scene, stopped), 0, kRounding_m) << rate;
   }
 }
 
@@ -183,12 +175,8 @@ TEST(Popping, OfOneFrameIsTheSameAtEveryFrameRate) {
     EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 1 / rate)), 0.05, kRounding_m) << rate;
   for (const double rate : {60.0, 90.0, 120.0}) {
     EXPECT_NEAR(pop_of(scene_of(rate), snapped(0.05, 0.2)), 0, kRounding_m) << rate;
-    EXPECT_NEAR(pop_of(scene_of(rate),
-                       [](std::size_t, double t) {
-                         return Vec3{0, 0, 0.3 * std::sin(2 * std::numbers::pi * t)};
-                       }),
-                0, kRounding_m)
-        << rate;
+    const auto waved = [](std::size_t, double t) { return Vec3{0, 0, 0.3 * std::sin(2 * std::numbers::pi * t)}; };
+    EXPECT_NEAR(pop_of(scene_of(rate), waved), 0, kRounding_m) << rate;
   }
 }
 
@@ -233,6 +221,18 @@ TEST(Popping, OfAPositionThatIsNoNumberIsNotKnown) {
       EXPECT_TRUE(std::isnan(pop_of(scene, pass))) << at;
     }
   }
+}
+
+/// Rows at heights a and -a: the Laplacian is 4a/3 long, its mean over the neighbours 4a/9 the other way.
+TEST(Roughness, OfRowsUpAndDownIsItsClosedForm) {
+  const Scene scene = scene_of(72);
+  constexpr double kHeight_m = 1e-4, kEdge_m = 0.075 * (144 + 64 * std::numbers::sqrt2) / 208;
+  const auto roughness = [&](double height_m) {
+    const auto rows = [=](std::size_t v, double) { return Vec3{0, v / 9 % 2 ? height_m : -height_m, 0}; };
+    return scalars_of({scene, moved(scene, rows)}, "rough").at("roughness_end");
+  };
+  EXPECT_NEAR(roughness(0), 0, 1e-6);
+  EXPECT_NEAR(roughness(kHeight_m), 16.0 / 9 * kHeight_m / kEdge_m, 1e-5);
 }
 
 }  // namespace
