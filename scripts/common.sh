@@ -91,15 +91,16 @@ stage_ticker() {
   done
 }
 
-# side_by_side COMMAND…: runs each in its own process, which ends at an error; fails if one of them fails.
+# side_by_side COMMAND…: runs each in its own process, which ends at an error; if one fails, fails and prints the end of its output again.
 side_by_side() {
-  local command processes=() process
+  local command processes=() k failed=()
   for command in "$@"; do
-    "$command" &
+    (set -euo pipefail; "$command" 2>&1 | tee "$stage_logs/$command.log") &
     processes+=($!)
   done
   trap wait EXIT
-  for process in "${processes[@]}"; do wait "$process"; done
+  for k in "${!processes[@]}"; do wait "${processes[k]}" || failed+=("$stage_logs/${*:k + 1:1}.log"); done
+  [ ${#failed[@]} -eq 0 ] || { tail -v -n 60 "${failed[@]}"; return 1; }
 }
 
 # Prints the time of every stage. With `enforce`, in CI, a stage that took three times its budget fails. The factor is this large

@@ -45,7 +45,7 @@ def done(folder):
 
 with Folder() as top:
     environment = {**os.environ, "FAKE_ASSETS": str(BUILD / "packed-assets")}
-    call = lambda command: must(command, env=environment, timeout=240)
+    call = lambda command: must(command, env=environment, timeout=600)
 
     # One life cycle without disturbances; arguments come from an intent extra.
     f = fresh(top, "plain")
@@ -65,7 +65,7 @@ with Folder() as top:
 
     # Paused and resumed; destroyed during a run; created again in the same process.
     f = fresh(top, "lives")
-    text = call(host(f, ARGS, "create", "resume", "150", "pause", "100", "resume", "200", "destroy"))
+    text = call(host(f, ARGS, "create", "resume", "150", "pause", "100", "resume", "200", "destroy", "result"))
     result_of(text)
     assert "paused" in text, text
     text = call(host(f, ARGS + " --resume", "create", "pause", "destroy", "create", "resume", "finish", "pause", "resume", "destroy"))

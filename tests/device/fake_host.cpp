@@ -1,7 +1,8 @@
 // A fake Android around the activity's library: loads it, passes it an ANativeActivity with the few JNI calls it makes,
 // and executes a sequence of life-cycle steps.
 //   fake_host LIBRARY FILES INTERNAL ARGS STEP...
-// STEP: create | resume | pause | destroy | finish (wait until the activity asks to end) | <number> (wait, ms)
+// STEP: create | resume | pause | destroy | finish (wait until the activity asks to end) |
+//       result (wait until it logs a result) | <number> (wait, ms)
 #include <android/native_activity.h>
 #include <dlfcn.h>
 #include <jni.h>
@@ -14,7 +15,7 @@
 #include <string>
 #include <thread>
 
-extern "C" std::atomic<int> fake_finishes;
+extern "C" std::atomic<int> fake_finishes, fake_results;
 
 namespace {
 
@@ -93,8 +94,9 @@ int main(int argc, char** argv) {
       callbacks.onPause(&activity);
     } else if (step == "destroy") {
       callbacks.onDestroy(&activity);
-    } else if (step == "finish") {
-      while (fake_finishes.exchange(0) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    } else if (step == "finish" || step == "result") {
+      while ((step == "finish" ? fake_finishes : fake_results).exchange(0) == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
     } else {
       std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(step.c_str())));
     }

@@ -2,6 +2,7 @@
 #include <android/log.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <string>
 
 namespace {
@@ -9,7 +10,13 @@ namespace {
 const int kOut = dup(STDERR_FILENO);
 }  // namespace
 
-extern "C" int __android_log_write(int, const char* tag, const char* text) {
+extern "C" {
+std::atomic<int> fake_results{0};
+
+int __android_log_write(int, const char* tag, const char* text) {
   const std::string line = std::string("I ") + tag + ": " + text + "\n";
-  return static_cast<int>(write(kOut, line.data(), line.size()));
+  const ssize_t written = write(kOut, line.data(), line.size());
+  if (line.find(": RESULT ") != std::string::npos) ++fake_results;
+  return static_cast<int>(written);
+}
 }
