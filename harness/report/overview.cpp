@@ -199,7 +199,7 @@ std::vector<Entry> errors(const std::vector<const Row*>& rows) {
 }
 
 /// For each solver, passed or stable runs as a fraction of the runs with a verdict.
-std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const char* title) {
+std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const std::string& title) {
   std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of those that are not good
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
@@ -247,10 +247,17 @@ std::vector<Tile> tiles_of(const RunTable& table) {
   std::vector<const Row*> rows;
   for (const Row& r : table.rows())
     if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
+  std::map<std::string, std::vector<const Row*>> random;  // by study
+  for (const Row* r : rows)
+    if (r->part == Part::Generated) random[r->drawn().value("study", "?")].push_back(r);
+  std::vector<std::vector<Entry>> tiles = {shares(rows, Part::Contact, "Scenes with colliders or attachments passed"),
+                                           errors(rows), rates(rows),
+                                           shares(rows, Part::Stability, "Hard cases stable")};
+  for (const auto& [study, of] : random)
+    tiles.insert(study == random.begin()->first ? tiles.begin() : tiles.end(),
+                 shares(of, Part::Generated, "Random scenes of " + study + " passed"));
   std::vector<Tile> out;
-  for (std::vector<Entry> entries : {shares(rows, Part::Generated, "Random scenes passed"),
-                                     shares(rows, Part::Contact, "Scenes with colliders or attachments passed"),
-                                     errors(rows), rates(rows), shares(rows, Part::Stability, "Hard cases stable")}) {
+  for (std::vector<Entry>& entries : tiles) {
     if (entries.empty() || out.size() == kMostTiles) continue;
     std::stable_sort(entries.begin(), entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
     const Entry& best = entries.front();

@@ -174,8 +174,8 @@ struct Row {
   double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }
-  /// The run is ok and has an error and a time.
-  bool counts() const { return status() == "ok" && std::isfinite(error()) && std::isfinite(wall_ms_per_s()); }
+  /// The run is ok and has an error.
+  bool counts() const { return status() == "ok" && std::isfinite(error()); }
   /// Why this run is not ranked: the scene depends on a stiffness that the solver does not control. Empty if ranked.
   std::string not_ranked() const;
   /// Minimum and maximum contact offset [m]: the solver's own, otherwise the scene's margin; NaN without colliders.

@@ -24,8 +24,9 @@ using Measure = double (Row::*)() const;
 const Row* best(const Group& g, Measure by, double error, double frame_ms = INFINITY) {
   const Row* out = nullptr;
   for (const Row* r : g)
-    if (r->counts() && r->error() <= error && r->wall_ms_per_s() / r->frame_rate_hz() <= frame_ms &&
-        std::isfinite((r->*by)()) && (out == nullptr || (r->*by)() < (out->*by)()))
+    if (r->counts() && r->error() <= error && std::isfinite((r->*by)()) &&
+        (std::isinf(frame_ms) || r->wall_ms_per_s() / r->frame_rate_hz() <= frame_ms) &&
+        (out == nullptr || (r->*by)() < (out->*by)()))
       out = r;
   return out;
 }
@@ -60,7 +61,7 @@ Cell failed_cell(const Group& g) {
   for (const Row* r : g) {
     if (r->status() == "over_budget")
       ++over_budget;
-    else if (!r->counts() && !r->run->withheld.contains("frame_wall_median_s"))
+    else if (!r->counts())
       ++failed;
     able += r->status() != "unsupported" && r->status() != "missing";
   }

@@ -94,6 +94,9 @@ View pass_rates() {
          "at first contact; in brackets the 95 % interval of the probability (Wilson). Unsupported and timed out count "
          "as not passed. Contact offset: distance at which the solver keeps the cloth from colliders.",
          [](const Row& r) { return r.part == Part::Generated; }};
+  v.each = [](const Row& r) {
+    return fmt::format("Random scenes of {}: pass rate by speed [m/s]", r.drawn().value("study", "?"));
+  };
   v.keys = {{"solver",
              [](const Row& r) {
                const bool judged = r.status() != "missing" && verdict(*r.run) != kNoVerdict;

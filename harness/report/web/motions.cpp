@@ -55,8 +55,8 @@ Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
 }
 
 /// Rows with a trajectory, most important for the page first: the first leading scene, garments with contact, other
-/// leading scenes, other scenes with contact, scenes without contact; last, runs without a cloth model. Within each:
-/// default settings first, then one row per solver before any solver's second. At most six rows per scene.
+/// leading scenes, other and random scenes with contact, scenes without contact; last, runs without a cloth model.
+/// Within each: default settings first, then one row per solver before any solver's second. At most six rows per scene.
 std::vector<const Row*> candidates(const RunTable& table) {
   std::vector<std::pair<std::tuple<bool, std::size_t, bool, std::size_t>, const Row*>> order;
   std::map<std::pair<std::string, std::string>, std::size_t> of_solver;
@@ -64,7 +64,8 @@ std::vector<const Row*> candidates(const RunTable& table) {
   for (const Row& r : table.rows()) {
     if (r.run->file.empty() || r.run->accuracy.time_s.empty()) continue;
     const bool contact = r.contact && r.part != Part::Truth, garment = r.resolution.grid[0] == 0;
-    const std::size_t place = !contact ? 2 * leading_scenes().size() + 1 : garment ? 1 : 2 * place_of_scene(r.scene);
+    const std::size_t scenes = leading_scenes().size(), at = r.drawn().is_null() ? place_of_scene(r.scene) : scenes;
+    const std::size_t place = !contact ? 2 * scenes + 1 : garment ? 1 : 2 * at;
     order.push_back({{is_floor(r.solver), place, r.setting != "default", of_solver[{r.scene, r.solver}]++}, &r});
   }
   std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first < b.first; });

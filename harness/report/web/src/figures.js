@@ -35,7 +35,7 @@ function error_rules(runs) {
 function error_time(doc) {
   const all = doc.runs.filter(r => r.part === 'accuracy');
   if (!all.some(good)) return null;
-  const scenes = unique(all.map(r => r.scene)), of = scene => all.filter(r => r.scene === scene);
+  const of = scene => all.filter(r => r.scene === scene), scenes = unique(all.map(r => r.scene)).filter(v => of(v).some(good));
   const first = [...scenes].sort((a, b) => of(b).filter(good).length - of(a).filter(good).length)[0];
   return {
     id: 'error-time',
