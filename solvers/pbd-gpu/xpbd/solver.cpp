@@ -272,7 +272,7 @@ SolverInfo xpbd_info() {
                    Feature::Friction, Feature::DoubleSided, Feature::Spin,         Feature::UnevenGrid,
                    Feature::Regions,  Feature::ClothMesh,   Feature::SelfCollision};
   info.settings = {{"quality", "\"default\"",
-                    "fast, default or accurate: selects the number of substeps, by resolution and attachments"},
+                    "fast, default, accurate: substeps for the resolution, material, contact, attachments"},
                    {"substeps", "0", "substeps per frame; 0: by quality"},
                    {"time_order", "2", "2: BDF2 in scenes without contact where that is safe; 1: backward Euler"},
                    {"tethers", "true",
