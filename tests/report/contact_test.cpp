@@ -166,7 +166,8 @@ TEST(Penetration, TablesStateTheContactOffset) {
 constexpr const char* kRates = "Random scenes: pass rate by speed [m/s]";
 
 RunRecord generated(const std::string& solver, const std::string& kind, int seed, double speed,
-                    const std::string& ending, double contour = 0, const std::string& assets = "npm") {
+                    const std::string& ending, double contour = 0, const std::string& assets = "npm",
+                    const std::string& study = "contact") {
   RunRecord c;
   c.header.solver = solver;
   c.header.setting = "default";
@@ -176,8 +177,7 @@ RunRecord generated(const std::string& solver, const std::string& kind, int seed
       nlohmann::json{
           {"name", c.header.scene},
           {"seed", seed},
-          {"drawn",
-           {{"study", "contact"}, {"kind", kind}, {"assets", assets}, {"speed_m_per_s", speed}, {"values", {}}}}}
+          {"drawn", {{"study", study}, {"kind", kind}, {"assets", assets}, {"speed_m_per_s", speed}, {"values", {}}}}}
           .dump();
   const bool ended = ending == "pass" || ending == "fail";
   c.outcome.status = ended ? "ok" : ending;
@@ -211,6 +211,8 @@ TEST(PassRates, CountRunsThatDidNotEndAsNotPassed) {
   EXPECT_EQ(rate("paper", "all", "all").substr(0, 3), "1/3") << "one unsupported, one crashed";
   EXPECT_EQ(table_of({generated("xpbd", "desk", 1, 1, "pass", 0, "procedural")}, kRates).rows[1][1],
             "desk (procedural)");
+  const RunRecord other = generated("xpbd", "desk", 1, 1, "pass", 0, "npm", "physics");
+  EXPECT_EQ(tables_titled({sample()[0], other}, kRates).size(), 2u) << "studies are not added up";
   EXPECT_EQ(t.note.find("missing"), std::string::npos);
   std::vector<RunRecord> runs = sample();
   runs.front().outcome.status = "missing";

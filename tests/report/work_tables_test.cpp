@@ -53,6 +53,7 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(value(runs, kWork, "a", "failed"), "1 of 5");
   EXPECT_EQ(value(runs, kWork, "b", "best error"), "≤ 0.002 (tiny)") << "no solver is better than the mesh itself";
   EXPECT_EQ(value(runs, kWork, "b", "failed"), "1 of 2");
+  EXPECT_EQ(value({run("a", "x", NAN, 5e-3)}, kWork, "a", "best error"), "0.005 (x)") << "it has no time";
   EXPECT_EQ(refused(runs), "")
       << "the best error is below 3 U_ref, and so below the mesh's own: no solver is ranked there";
 }
