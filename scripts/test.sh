@@ -66,7 +66,7 @@ case ${1:-} in
     tier=short packages=(--short)
     targets=(clothbench "${short[@]}")
     # Without slow cases that show nothing new on a different system, and without tests of speed.
-    selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|Draw|DropNoPair|PenetrationHas|OwnOverhead|PartEveryPair|RepeatBitForBit|FrictionHolds|Of200Seeds|ManyThreadsDraw|FalseAlarms|TwoCommandsAtOnce|AThinSheet|AShortList|TriangleMesh')
+    selection=(-LE '^(slow|ci)$' -R "^($(IFS='|'; echo "${short[*]}"))\\." -E 'EveryShippedFileLoads|Draw|DropNoPair|PenetrationHas|OwnOverhead|RepeatBitForBit|FrictionHolds|Of200Seeds|FalseAlarms|TwoCommandsAtOnce|AThinSheet|AShortList|TriangleMesh')
     ;;
   *) echo "usage: scripts/test.sh [--ci | --full | --short]" >&2; exit 2 ;;
 esac

@@ -58,8 +58,7 @@ with Folder() as top:
     assert verdict == "PASS", text
     assert "runs ok" in text, "what the command prints stands in the log:\n" + text
     assert len(trials(out)) == 4 and set(trials(out).values()) == {3}, trials(out)
-    if HOST_COMMAND.exists():
-        assert len(must([HOST_COMMAND, "import", out]).split()) == 4
+    assert len(must([HOST_COMMAND, "import", out]).split()) == 4
 
     # A command that fails.
     f = fresh(top, "wrong")
@@ -83,7 +82,6 @@ with Folder() as top:
             time.sleep(0.01)
         child.kill()
         child.wait()
-    before = done(f)
     verdict = result_of(text := call(host(f, ARGS + " --resume", "create", "resume", "finish", "destroy")))
     assert verdict == "PASS" and set(trials(f / "files/runs/small").values()) == {3}, text
 
