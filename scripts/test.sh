@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the tests.
-#   scripts/test.sh [--ci | --full | --short]     --ci: instead what CI runs besides; --full: all tests; --short: a named few programs
+#   scripts/test.sh [--ci | --full | --short]     --ci: instead CI's other tests and studies; --full: all tests; --short: a named few programs
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."

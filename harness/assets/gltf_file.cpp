@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-// The header with its definitions. Undefined below, so that the next file of a unity build does not get them again.
+// Includes the definitions, too. The #undef keeps the next file of a unity build from including them again.
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION

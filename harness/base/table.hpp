@@ -25,7 +25,7 @@ struct Table {
 /// A number with `digits` significant digits and no exponent; "–" for a missing value.
 std::string significant(double v, int digits);
 
-/// Two numbers as by `significant`, separated by `between`; "–" if both are missing.
+/// Two results of `significant`, separated by `between`; "–" if both are missing.
 std::string paired(double a, double b, const std::string& between, int digits);
 
 /// Width [characters] of UTF-8 text that has no combining or double-width characters.

@@ -126,9 +126,9 @@ typedef struct ClothbenchScene {
   double frame_rate_hz;
   uint32_t frames;
   const double *position_m, *velocity_m_per_s, *mass_kg; /* at the start; one mass per vertex */
-  /* 3 vertices each. Those of a grid are all wound alike: counter-clockwise seen from the side that the cross product
-   * of the direction of growing i and that of growing j points to. Cell (i, j) has two, (i, j) (i+1, j) (i+1, j+1) and
-   * (i, j) (i+1, j+1) (i, j+1). Those of a mesh are as in its file, neighbours wound alike. */
+  /* 3 vertices each. In a grid all are counter-clockwise seen from the side to which u x v points, with u and v the
+   * directions of growing i and j. Cell (i, j) has two, (i, j) (i+1, j) (i+1, j+1) and (i, j) (i+1, j+1) (i, j+1). In
+   * a mesh they are as in its file, neighbours wound alike. */
   uint32_t triangle_count;
   const uint32_t* triangles;
   uint32_t structural_count, shear_count, skip_count;

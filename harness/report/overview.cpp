@@ -114,23 +114,23 @@ View speed_and_error(bool paper) {
   v.across = {key("", [](const Row& r) { return r.resolution.label(); }),
               [](const Group& g, const Keys&) { return rate_cell(*g.front()); },
               [](const Row& r) { return r.resolution.size(); }, 1};
-  v.columns = {at_largest("× " + time_baseline(), rate_ratio_cell),
-               at_largest("rank", rank_cell),
-               at_largest("free-fall error [g T²/2]",
-                          [](const Row& r) {
-                            const double e = r.value("free_fall_error");
-                            if (!std::isfinite(e)) return Cell();
-                            return e > kFallLimit ? Cell(fmt::format("{:.1e} !", e), e, "bad")
-                                                  : Cell(fmt::format("{:.1e}", e), e);
-                          }),
-               at_largest("95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
-               at_largest("stretch, mean / maximum [%]",
-                          [](const Row& r) {
-                            const auto percent = [&](auto* name) { return std::round(1e5 * r.value(name)) / 1e3; };
-                            return paired_cell(percent("stretch_mean_last_second"), percent("stretch_max_last_second"),
-                                               2);
-                          }),
-               at_largest("trials", trials_cell)};
+  v.columns = {
+      at_largest("× " + time_baseline(), rate_ratio_cell),
+      at_largest("rank", rank_cell),
+      at_largest("free-fall error [g T²/2]",
+                 [](const Row& r) {
+                   const double e = r.value("free_fall_error");
+                   if (!std::isfinite(e)) return Cell();
+                   return e > kFallLimit ? Cell(fmt::format("{:.1e} !", e), e, "bad")
+                                         : Cell(fmt::format("{:.1e}", e), e);
+                 }),
+      at_largest("rate: 95 % interval", [](const Row& r) { return Cell(rate_interval(r), r.times->wall.rate.low); }),
+      at_largest("stretch, mean / maximum [%]",
+                 [](const Row& r) {
+                   const auto percent = [&](auto* name) { return std::round(1e5 * r.value(name)) / 1e3; };
+                   return paired_cell(percent("stretch_mean_last_second"), percent("stretch_max_last_second"), 2);
+                 }),
+      at_largest("trials", trials_cell)};
   for (std::size_t k = 0; k < 3; ++k) v.columns[k].leads = true;
   add_tail_columns(v, largest);
   v.more = about_rates;

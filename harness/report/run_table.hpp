@@ -170,7 +170,7 @@ struct Row {
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined if the solver supports it.
   double wall_ms_per_s() const;
-  /// Wall time [ms] per simulated second from submission to fence, waiting for each frame; then by the device's clock.
+  /// Wall time [ms] per simulated second of calls that wait for the frame; then by the device's clock.
   double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }

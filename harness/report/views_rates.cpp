@@ -83,8 +83,8 @@ void add_conditions(View& v, const Pick& pick) {
 View frame_times() {
   View v{"time", "Time per frame [ms]",
          std::string(
-             "Over all trials, without rendering. Wall: from submission to fence. GPU: first to last timestamp of "
-             "the frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
+             "Over all trials, without rendering. Wall: one call of the solver. GPU: first to last timestamp of the "
+             "frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
              "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank; –: "
              "too few frames. (2): another result of the same run. Missed: frames longer than one refresh period of "
              "the display. Real-time factor: simulated time over "

@@ -62,7 +62,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
     out.index.push_back(k);
     out.time_unix_s.push_back(t);
     out.trial.push_back(-1);
-    // A sample covers the period before it. A late state line covers up to two periods.
+    // A sample covers the period before it. In a state log, a late one covers up to two.
     const double since = k > 0 ? std::max(t - 2 * period, group["time_unix_s"][k - 1].get<double>()) : t - period;
     for (const TimedTrial& trial : r.trials) {
       if (t - period >= trial.start_unix_s && t <= trial.end_unix_s) out.trial.back() = trial.index;

@@ -83,7 +83,8 @@ class SolverRun {
   /// For a caller with its own frame loop; null unless alive.
   ClothSolver* solver() { return solver_.get(); }
 
-  /// Adopts the stored outcome of an earlier process's untimed pass. False unless that pass ended with this duration.
+  /// Adopts the stored outcome of an earlier process's untimed pass. False if that pass has no outcome, was ok with
+  /// another duration, or timed out on a GPU.
   bool take_over(const RunRecord& before, double duration_s);
   /// Runs the untimed pass: positions and metrics of every frame, frame 0 = initial state. `after_frame` gets the
   /// frames so far, without metrics.

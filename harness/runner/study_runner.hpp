@@ -47,9 +47,8 @@ struct RunResult {
   std::vector<std::string> faults;           ///< violated rules of the harness: stages, counts, validation
 };
 
-/// Decides the exit code of every command that runs solvers: one sentence per solver of which no run finished because
-/// all crashed, hung, diverged, lost the device or could not be created. Runs that the solver does not support, or that
-/// were skipped for time, do not count; a run that ends as its scene expects counts as finished.
+/// One sentence for each solver that finished none of its runs, except unsupported ones and those skipped for time. If
+/// there is any, `run` and `study` exit with 1. A run that ends as its scene expects is finished.
 std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 
 /// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name. Throws

@@ -105,7 +105,7 @@ struct Face {
   std::uint32_t line;
 };
 
-/// Receives the library's output. An index counts from 1, or if negative backwards from the last item so far.
+/// Receives the library's output. An index counts from 1; a negative one counts back from the last item so far.
 struct Reader {
   const std::string& source;
   const Statements& statements;

@@ -17,7 +17,7 @@ struct Face {
   double gap_m = std::numeric_limits<double>::infinity();
 };
 
-/// The face of a collider under the sheet. Box: a face below all four corners at the start and after `displacement`.
+/// A collider's face under the sheet. Box: a face below the sheet's corners at the start and after `displacement`.
 Face face_of(const Strip& s, const Collider& c, const Vec3& displacement) {
   const Cloth& cloth = s.scene.cloth;
   const auto from = [&](const Vec3& normal, const Vec3& point) {
@@ -149,8 +149,8 @@ ReferenceCase capstan(const Strip& s) {
   const int m = static_cast<int>(std::lround(turns));
   const double first = middle - (m - 1) / 2.0, light = std::round(first);
   s.need(std::abs(turns - m) <= 1e-6 && std::abs(first - light) <= 1e-6,
-         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for an integer m, and a matching offset in "
-         "half cells");
+         "rows that lie evenly on the cylinder: cells of 2 R sin(pi / 2m) for an integer m, and an offset that "
+         "centres m rows on it");
   const double heavy = s.links - (m - 1) - light;
   s.need(light >= 1 && heavy >= 1, "ends that hang");
   s.need(heavy >= light, "an offset towards u1, or none");

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-// Exact solutions of simple motions and shapes, each given by formulas or by equations of the scene's mesh.
-// Values are in SI units; tensions and loads per unit width. Reference cases check arguments.
+// Exact solutions of simple motions and shapes: formulas, or equations, some of them for the scene's mesh.
+// Values are in SI units; tensions and loads per unit width. Callers check the arguments.
 
 namespace clothbench::truth {
 

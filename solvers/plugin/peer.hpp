@@ -111,7 +111,7 @@ inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const doub
 constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
                                      CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
 
-/// All features except self-collision and a duplicated layer. An engine's `obstacle` gives its further limits.
+/// All features except self-collision and a duplicated layer. An engine's function `obstacle` refuses more scenes.
 constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
                                     CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | kColliders | CLOTHBENCH_FRICTION |
                                     CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |

@@ -131,10 +131,10 @@ MetricGroup truth_metrics() {
             [](const RunView& r) { return max_or_nan(0, greatest_of(whole_series(r, "energy_rise"))); }, "1"),
         No, nullptr, with_energy},
        of_the_study("truth_value", "exact quantity of the analytic test case, in SI units"),
-       of_the_study(
-           "truth_space_error",
-           "error of the mesh itself: distance of its exact solution from the continuum, measured as truth_error",
-           &kErrorGate),
+       of_the_study("truth_space_error",
+                    "error of the discretisation itself: distance of its exact or finest solution from the continuum, "
+                    "measured as truth_error",
+                    &kErrorGate),
        of_the_study("truth_dependence_*", "change of truth_error with the logarithm of a modulus"),
        of_the_study("reference_*",
                     "quantity of the analytic test case as computed by the reference solver, and its uncertainty")}};

@@ -1,5 +1,5 @@
-// Cloth bends freely about a straight line across it: links cross the line in points on it, so except for bending
-// rigidity they exert no moment about it. Gravity by itself must explain how a part beyond it without contact rotates.
+// Cloth bends freely about a straight line across it: links that cross the line pull at points on it, so only bending
+// rigidity exerts a moment about it. Gravity must explain how a free part beyond the line rotates.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>

@@ -44,7 +44,7 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(10, uint, TETHER_1, 0u) C(11, uint, TETHER_1_LAST, 0u) C(12, uint, TETHER_2, 0u) C(13, uint, TETHER_2_LAST, 0u) \
   C(14, uint, TETHER_3, 0u) C(15, uint, TETHER_3_LAST, 0u) C(16, uint, SUBGROUP, 1u) C(17, uint, BESIDE, 1u) \
   C(18, bool, EXACT, false) C(19, uint, GRIPS, 0u) C(24, bool, PERSISTENT, false)
-// Chain kernel of `xpbd`. TETHERS: entries per vertex.
+// Chain kernel of `xpbd`. TETHERS: `tether_ends` per vertex.
 #define CHAIN_CONSTANTS(C) \
   C(1, uint, THREADS, 64u) C(2, uint, FEATURES, 0u) C(3, uint, TETHERS, 0u) C(4, bool, PERSISTENT, false)
 // Contact of `xpbd`: its passes and the fused frame. PLANES: number of half-spaces. MAX_POINTS: of a convex shape.

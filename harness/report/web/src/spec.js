@@ -30,7 +30,7 @@ export function legend(names, look, more) {
   return {columns, ...more};
 }
 
-/// Channels of rows by solver. `hollow`: condition for an outline. On paper a legend replaces the page's list of solvers.
+/// Stroke, fill and shape by solver. `hollow`: condition for an outline. On paper and beyond four lines with a legend.
 export function by_solver(rows, look, hollow = 'false') {
   const solvers = unique(rows.map(r => r.solver)), key = look.paper || has_many(rows) ? legend(solvers, look) : null;
   const channel = of => ({field: 'solver', type: 'nominal', scale: {domain: solvers, range: solvers.map(s => of(look.solvers[s]))}, legend: key});

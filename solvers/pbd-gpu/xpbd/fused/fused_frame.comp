@@ -1,8 +1,8 @@
 #version 450
 // Simulates one frame in a single dispatch (xpbd/fused/README.md) with the functions of the path with one kernel per
 // pass. Grid barriers per substep: 9 with kinematic shapes, 8 otherwise. CONTACT_FREE: dispatched first. Runs the broad
-// phase; if no collider is within the cloth's motion bound, it simulates the frame with constraints only and sets
-// frame_state.contact_free, so that the kernel with contact exits.
+// phase; if the cloth is slow and no collider is within its motion bound, it simulates the frame with constraints only
+// and sets frame_state.contact_free, so that the kernel with contact exits.
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
