@@ -34,11 +34,12 @@ def lines_of(path):
 
 
 def wrong_includes():
+    early = re.search(r"harness/{(.*)}/all", (ROOT / "scripts/common.sh").read_text())[1].split(",")
+    yield from (f"scripts/common.sh: {r} contains the page, which npm bundles; build it later" for r in early if ROOMS.index(r) >= ROOMS.index("report"))
     for path in files("harness/*.cpp", "harness/*.hpp", "harness/*.in", "solvers/*.cpp", "solvers/*.hpp"):
         top, room = path.split("/")[:2]
         for line in lines_of(path):
-            match = re.match(r'#include "([^/"]+)/', line)
-            other = match[1] if match else None
+            other = (re.match(r'#include "([^/"]+)/', line) or [0, None])[1]
             if other not in ROOMS:
                 continue
             if top == "solvers" and other not in SOLVERS_MAY_INCLUDE:
