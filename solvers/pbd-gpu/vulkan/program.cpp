@@ -7,10 +7,6 @@
 namespace clothbench::vulkan {
 namespace {
 
-bool meet(const std::set<const Buffer*>& a, const std::set<const Buffer*>& b) {
-  return std::any_of(a.begin(), a.end(), [&](const Buffer* x) { return b.count(x) != 0; });
-}
-
 constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
@@ -30,17 +26,14 @@ Program::~Program() {
 }
 
 Program::Touched Program::touched(const Step& s) {
-  Touched t;
-  if (s.kernel == nullptr) {
-    t.read.insert(s.from);
-    t.written.insert(s.to);
-    return t;
+  const auto bit = [&](auto* b) { return Buffers().set(numbers_.try_emplace(b, numbers_.size()).first->second); };
+  if (s.kernel == nullptr) return {bit(s.from), bit(s.to)};
+  const auto [known, is_new] = touched_by_.try_emplace(s.kernel);
+  for (const Binding& b : is_new ? s.kernel->bindings() : std::vector<Binding>()) {
+    if (b.access != Access::Write) known->second.read |= bit(b.buffer);
+    if (b.access != Access::Read) known->second.written |= bit(b.buffer);
   }
-  for (const Binding& b : s.kernel->bindings()) {
-    if (b.access != Access::Write) t.read.insert(b.buffer);
-    if (b.access != Access::Read) t.written.insert(b.buffer);
-  }
-  return t;
+  return known->second;
 }
 
 void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written,
@@ -54,12 +47,12 @@ void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, V
 }
 
 void Program::barrier_if_needed(const Touched& next, Touched& since) {
-  if (meet(since.written, next.read) || meet(since.written, next.written) || meet(since.read, next.written)) {
+  if (((since.written & (next.read | next.written)) | (since.read & next.written)).any()) {
     barrier(kWork, kWork, kWrites, kAll);
     since = {};
   }
-  since.read.insert(next.read.begin(), next.read.end());
-  since.written.insert(next.written.begin(), next.written.end());
+  since.read |= next.read;
+  since.written |= next.written;
 }
 
 void Program::timestamp(VkQueryPool queries, std::uint32_t query) {
@@ -117,10 +110,12 @@ void Program::record_steps(Copy& copy) {
   }
   if (!time_stages_) timestamp(copy.queries, 1);
   // Makes writes to host buffers visible before the host reads them.
-  const bool for_host = std::any_of(steps_.begin(), steps_.end(), [](const Step& s) {
-    const Touched t = touched(s);
-    return std::any_of(t.written.begin(), t.written.end(),
-                       [](const Buffer* b) { return b->place() == Buffer::Place::Host; });
+  const auto is_for_host = [](const Buffer* b) { return b->place() == Buffer::Place::Host; };
+  const bool for_host = std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+    if (step.kernel == nullptr) return is_for_host(step.to);
+    const std::vector<Binding>& all = step.kernel->bindings();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Binding& b) { return b.access != Access::Read && is_for_host(b.buffer); });
   });
   if (for_host) barrier(kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");

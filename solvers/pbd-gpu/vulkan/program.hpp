@@ -1,6 +1,7 @@
 #pragma once
+#include <bitset>
 #include <cstring>
-#include <set>
+#include <map>
 #include <vector>
 
 #include "vulkan/kernel.hpp"
@@ -64,10 +65,11 @@ class Program {
     std::vector<std::uint8_t> constants;
     const Buffer *from, *to;
   };
+  using Buffers = std::bitset<128>;  ///< by number
   struct Touched {
-    std::set<const Buffer*> read, written;
+    Buffers read, written;
   };
-  static Touched touched(const Step&);
+  Touched touched(const Step&);
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   /// `since`: accesses of the steps since the last barrier.
   void barrier_if_needed(const Touched& next, Touched& since);
@@ -84,6 +86,8 @@ class Program {
 
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
+  std::map<const Buffer*, std::size_t> numbers_;
+  std::map<const Kernel*, Touched> touched_by_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
   std::vector<Copy> copies_;
   std::size_t recorded_copies_ = 0;  ///< this many of the first copies hold the last recording

@@ -95,6 +95,7 @@ class Xpbd final : public GpuSolver {
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
+    contact_free_substeps_ = contact_free_substeps(scene(), settings());
     plan_.substeps = substeps_in(scene().time.dt());
     if (adapts) reads_back_ = true;
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
@@ -136,7 +137,7 @@ class Xpbd final : public GpuSolver {
 
   /// Steps of a contact-free frame; `most`: its substeps if it has contact.
   FusedFrame::Steps contact_free_steps(double dt_s, int most) const {
-    const int substeps = std::min(most, in_frames(contact_free_substeps(scene(), settings()), dt_s));
+    const int substeps = std::min(most, in_frames(contact_free_substeps_, dt_s));
     return {substeps, time_step(uses_bdf2_, dt_s / substeps, 0, scene().material.damping_per_s)};
   }
 
@@ -221,7 +222,7 @@ class Xpbd final : public GpuSolver {
   }
 
   SubstepController controller_;
-  int recorded_substeps_ = 0, recorded_lists_ = 1;
+  int recorded_substeps_ = 0, recorded_lists_ = 1, contact_free_substeps_ = 0;
   double last_dt_s_ = 0;  ///< of the last frame; 0: none
 
   bool crumpled_ = false;
@@ -242,7 +243,7 @@ struct Tuning {
 
 const std::vector<Tuning>& tunings() {
   static const std::vector<Tuning> all = {
-      {"contact_frame", {"auto", "always", "never"}, "a frame with contact in one dispatch; auto: on GPUs"},
+      {"contact_frame", {"auto", "always", "never"}, "contact frames in one dispatch; auto: where that is faster"},
       {"device_barrier",
        {"auto", "always", "never"},
        "workgroups of a dispatch wait for one another; auto: on discrete GPUs that run all of them at once"},

@@ -4,33 +4,33 @@
 
 namespace clothbench::pbd_gpu {
 
-/// The number of threads per workgroup is a multiple of this, so that every cluster of lanes is complete.
-constexpr std::uint32_t kThreadsTogether = 32;
 /// Minimum workgroups; those without lines process only pairs and vertices. With 1, capsule sweeps take a sixth longer
 /// and a desk three times as long; 64 costs 6 % on a desk and 9 % in a whole room, 256 costs 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
 /// Maximum number of groups of shapes: nearby_groups has one bit each, in 4 KiB of shared memory.
 constexpr std::uint32_t kMaxGroups = 1u << 15;
+/// Maximum vertices of cloth on static colliders, which has contact in most frames. Above, one kernel per pass takes
+/// less GPU time: by a third with 96 x 96, by half with 128 x 128 (p95 on a ball, H200).
+constexpr std::uint32_t kMaxOnStaticShapes = 64 * 64;
 
 std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
   const std::string wanted = frame.tuning()["contact_frame"];
   if (wanted == "never" || contact.with_itself() || !frame.scene().cloth.mass_factors.empty() ||
       contact.specialization().GROUPS > kMaxGroups)
     return nullptr;
+  const bool is_large = !contact.has_kinematic_shapes() && frame.scene().cloth.vertex_count() > kMaxOnStaticShapes;
   // A software device takes seconds to compile the kernel, and runs each workgroup on one CPU core.
-  if (wanted == "auto" && frame.device()->is_software()) return nullptr;
+  if (wanted == "auto" && (is_large || frame.device()->is_software())) return nullptr;
   std::unique_ptr<FusedFrame> made(new FusedFrame(frame, lines, contact));
   if (made->add_kernels()) return made;
   if (wanted == "always")
-    throw Error(
-        "solver xpbd: setting tuning.contact_frame=always: expected a device that runs all workgroups of "
-        "fused_frame at once");
+    throw Error("solver xpbd: tuning.contact_frame=always: expected a device that runs all its workgroups at once");
   return nullptr;
 }
 
 bool FusedFrame::add_kernels() {
   const LineShape shape = lines_.shape_with_contact();
-  if (shape.threads % kThreadsTogether != 0) return false;
+  if (shape.threads % 32 != 0) return false;  // not all clusters of lanes are complete
   LineSpecialization lines = lines_.persistent_specialization(shape);
   groups_ = lines_.groups_of(shape);
   const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();

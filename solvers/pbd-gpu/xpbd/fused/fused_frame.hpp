@@ -10,8 +10,8 @@ namespace clothbench::pbd_gpu {
 /// per pass. Also moves attached vertices.
 class FusedFrame {
  public:
-  /// Null with self-collision, scaled masses or too many shapes, if the settings forbid it, or if the device does not
-  /// run all workgroups at once.
+  /// Null with self-collision, scaled masses, too many shapes or vertices, if the settings forbid it, or if the device
+  /// does not run all workgroups at once.
   static std::unique_ptr<FusedFrame> make(FrameBuilder& frame, Lines& lines, XpbdContact& contact);
 
   struct Steps {
