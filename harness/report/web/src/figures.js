@@ -130,7 +130,7 @@ function rates(doc) {
     columns: ['label', 'sides', 'resolution', 'fps_median', 'fps_low', 'fps_high', 'free_fall_error', 'value'],
     stills: [
       ...Object.entries(kRates).filter(([, v]) => v.still).map(([Value, v]) => ({file: v.still, state: {Scene: main, Value}})),
-      ...unique(all.filter(r => r.part === 'contact').map(r => r.family)).map(f => ({file: `scale-${f}`, state: {Scene: f, Value: 'tail'}}))
+      ...unique(all.filter(r => r.part === 'contact').map(r => r.family)).map(f => ({file: `scale-${f.replace(/ .(\d+)./, '-$1')}`, state: {Scene: f, Value: 'tail'}}))
     ]
   };
 }
