@@ -30,8 +30,8 @@ struct ConformanceCase {
   std::string relation = {};
 };
 
-/// Cases of one scene; `profiles` adds device classes that emulate small devices, for solvers on a GPU. Relations come
-/// before the whole scene; only scenes of the folder "conformance" have relations.
+/// Cases of one scene; `profiles` adds device classes that emulate small devices, for solvers on a GPU. Cases of
+/// relations precede the whole scene; only scenes of the folder "conformance" have them.
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
 
 /// The scene of a case. Scenes for which two or three grid lines are too few get the smallest grid that works. A mesh

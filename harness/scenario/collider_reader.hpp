@@ -34,8 +34,8 @@ std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 ColliderPose capsules_pose(const std::array<assets::Capsule, assets::kCapsuleCount>&, const assets::Vector& offset_m);
 ColliderPose mesh_pose(const assets::Hand&, const assets::JointFrames&, const assets::Vector& offset_m);
 
-/// Motion of a bar or a capsule. The speed rises as sin^2(pi t / 2 ramp_s), then stays constant until `stop_s`. Each
-/// jump is added within the frame that contains its time.
+/// Motion of a bar or a capsule. The speed rises as sin^2(pi t / 2 ramp_s), then stays constant until `stop_s`. A
+/// jump adds its `by_m` to the displacement in the frame that contains its time.
 struct Path {
   Vec3 velocity_m_per_s{};
   double ramp_s = 0, start_s = 0;

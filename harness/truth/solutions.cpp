@@ -214,7 +214,7 @@ std::vector<std::vector<double>> pull(const PulledChain& c, std::span<const doub
   const auto n = static_cast<std::size_t>(c.links);
   const double cell = c.length_m / c.links;
   const double speed = std::sqrt(c.membrane_stiffness_N_per_m / c.areal_density_kg_per_m2);
-  // Time in units of a/c. State: displacements of the inner nodes, then their speeds.
+  // Time in units of cell/speed. State: displacements of the inner nodes, then their speeds.
   const double per_second = speed / cell;
   State state(2 * (n - 1), 0);
   std::vector<State> out;

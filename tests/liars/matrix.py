@@ -1,4 +1,4 @@
-"""Many lies and right motions, some at once: `matrix.py run LIARS RESULT`, then `matrix.py table RESULT`.
+"""Judges lies and right motions in parallel: `matrix.py run LIARS RESULT`, then `matrix.py table RESULT`.
 
 RESULT has a line of JSON for every judged motion and one for every seed that is done, so that a call goes on where the
 last one was stopped. `liars` finds scenes by CLOTHBENCH_SCENARIOS and CLOTHBENCH_ASSETS."""

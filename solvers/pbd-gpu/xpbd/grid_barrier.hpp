@@ -12,8 +12,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Maximum polls of a grid barrier before it times out, while loading (about 10 ms) and in a frame (about 1 s). A poll
-/// takes about 0.5 us on a GPU and 3 ns on a CPU.
+/// Maximum polls of a grid barrier before it times out, while loading (GPU about 10 ms, CPU 50 ms) and in a frame (1 s,
+/// 3 s). A poll takes about 0.5 us on a GPU and 3 ns on a CPU.
 struct TimeoutPolls {
   std::uint32_t at_loading, in_a_frame;
 };
