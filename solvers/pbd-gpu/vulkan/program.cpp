@@ -29,11 +29,13 @@ Program::Touched Program::touched(const Step& s) {
   const auto bit = [&](auto* b) { return Buffers().set(numbers_.try_emplace(b, numbers_.size()).first->second); };
   if (s.kernel == nullptr) return {bit(s.from), bit(s.to)};
   const auto [known, is_new] = touched_by_.try_emplace(s.kernel);
-  for (const Binding& b : is_new ? s.kernel->bindings() : std::vector<Binding>()) {
-    if (b.access != Access::Write) known->second.read |= bit(b.buffer);
-    if (b.access != Access::Read) known->second.written |= bit(b.buffer);
+  Touched& t = known->second;
+  if (!is_new) return t;
+  for (const Binding& b : s.kernel->bindings()) {
+    if (b.access != Access::Write) t.read |= bit(b.buffer);
+    if (b.access != Access::Read) t.written |= bit(b.buffer);
   }
-  return known->second;
+  return t;
 }
 
 void Program::barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written,
@@ -91,11 +93,13 @@ void Program::record_steps(Copy& copy) {
   // Waits for all accesses of earlier submissions. Host writes before a submission are visible to it without a barrier.
   barrier(kWork, kWork, kWrites, kAll);
   timestamp(copy.queries, 0);
-  Touched since;
+  Touched since, all;
   const Kernel* bound = nullptr;
   for (std::uint32_t k = 0; k < steps_.size(); ++k) {
     const Step& s = steps_[k];
-    barrier_if_needed(touched(s), since);
+    const Touched t = touched(s);
+    barrier_if_needed(t, since);
+    all.written |= t.written;
     if (s.kernel != nullptr) {
       if (bound != s.kernel) s.kernel->bind(commands_);
       bound = s.kernel;
@@ -110,12 +114,8 @@ void Program::record_steps(Copy& copy) {
   }
   if (!time_stages_) timestamp(copy.queries, 1);
   // Makes writes to host buffers visible before the host reads them.
-  const auto is_for_host = [](const Buffer* b) { return b->place() == Buffer::Place::Host; };
-  const bool for_host = std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
-    if (step.kernel == nullptr) return is_for_host(step.to);
-    const std::vector<Binding>& all = step.kernel->bindings();
-    return std::any_of(all.begin(), all.end(),
-                       [&](const Binding& b) { return b.access != Access::Read && is_for_host(b.buffer); });
+  const bool for_host = std::any_of(numbers_.begin(), numbers_.end(), [&](const auto& n) {
+    return all.written[n.second] && n.first->place() == Buffer::Place::Host;
   });
   if (for_host) barrier(kWork, VK_PIPELINE_STAGE_HOST_BIT, kWrites, VK_ACCESS_HOST_READ_BIT);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");

@@ -87,8 +87,8 @@ class Program {
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
   std::map<const Buffer*, std::size_t> numbers_;
-  std::map<const Kernel*, Touched> touched_by_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< being recorded
+  std::map<const Kernel*, Touched> touched_by_;  ///< kernels stay the same
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;    ///< being recorded
   std::vector<Copy> copies_;
   std::size_t recorded_copies_ = 0;  ///< this many of the first copies hold the last recording
   std::uint32_t query_count_ = 0;

@@ -95,7 +95,7 @@ class Xpbd final : public GpuSolver {
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
-    contact_free_substeps_ = contact_free_substeps(scene(), settings());
+    if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());
     plan_.substeps = substeps_in(scene().time.dt());
     if (adapts) reads_back_ = true;
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
