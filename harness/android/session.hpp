@@ -36,8 +36,8 @@ class Session {
 
   void pause();
   void resume();
-  /// Stops the run and waits for it, but no longer than the system lets an activity's main thread wait; a solver that
-  /// is still loading then ends later.
+  /// Stops the run and waits for its end, but no longer than the system lets an activity's main thread wait. If the
+  /// solver is still loading, the run ends later.
   void destroy();
 
   /// State shared by the session and its thread, so that the thread may outlive the session.

@@ -96,7 +96,7 @@ int run_command_line(const std::vector<std::string>& words) {
       "runs, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   console.command_line = "clothbench " + joined(words, " ");
-  app.add_flag("--json", console.json, "Print a machine-readable summary; also after the command");
+  app.add_flag("--json", console.json, "Print a machine-readable summary; may also follow the command");
   app.add_flag("--in-process", console.arguments<bool>(),
                "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
   // Before the words are parsed, because parsing loads plugins.

@@ -83,8 +83,8 @@ void choose_leading(std::vector<Row>& rows) {
     for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.is_main());
 }
 
-/// A run's rank is one more than the number of main runs whose whole interval is below its own, so that ranks are no
-/// finer than the intervals, and tables of main runs lack none.
+/// A run's rank is one more than the number of main runs whose whole interval is below its own. So ranks are no finer
+/// than the intervals, and runs that a table omits leave no gap in its ranks.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)

@@ -51,10 +51,10 @@ nlohmann::json frame_to_json(const AccuracyPass&, std::size_t k);
 nlohmann::json to_json(const std::vector<StoredGroup>&);
 
 /// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
-/// device without HDF5 this is the final form. The first item is "header"; "replay", "frame" (one per frame of the
-/// untimed pass, whose metrics and end follow as "accuracy" and "outcome") and "trial" (one per trial) follow as they
-/// are made; the last is "outcome". A later item replaces an earlier one of its kind (a trial: of its index); frame 0
-/// restarts the pass. Numeric series are little-endian byte strings, as in memory.
+/// device without HDF5 this is the final form. In order: "header"; "replay"; one "frame" per frame of the untimed pass;
+/// its metrics as "accuracy" and its end as "outcome"; one "trial" per trial; "outcome" of the whole run. If an item
+/// occurs twice, the later one holds (of trials: with the same index); frame 0 restarts the pass. Numeric series are
+/// little-endian byte strings, as in memory.
 
 /// Creates the file with its header, completely or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);

@@ -265,7 +265,7 @@ std::string trajectory_fault(const std::filesystem::path& path) {
     if (std::string fault = fault_of_values(pass, r.header.vertices); !fault.empty()) return fault;
   const std::string &stored = r.outcome.trajectory_sha256, found = trajectory_sha256(pass);
   if (stored == found) return "";
-  return fmt::format("its positions are not its outcome's motion (SHA-256 {}, stored {})", found.substr(0, 12),
+  return fmt::format("the positions do not match the outcome (their SHA-256: {}, stored: {})", found.substr(0, 12),
                      stored.empty() ? "none" : stored.substr(0, 12));
 }
 

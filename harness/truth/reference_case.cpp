@@ -50,8 +50,8 @@ std::vector<double> rest_uv(const Cloth& c) {
   return out;
 }
 
-/// Converts a case for a flat rectangle of triangles: the continuum's solution at its vertices. Columns are means over
-/// rows of the material lattice, as for a run, so that interpolation in triangles does not count as an error.
+/// Adapts a case to a flat rectangle of triangles. `vertices` becomes the continuum's solution at the mesh's vertices,
+/// `columns` its means over the rows of the material points, as for a run: interpolation in triangles is no error.
 ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   known.vertices = [s, continuum = known.continuum](int frame) {
     const Cloth& c = s.scene.cloth;

@@ -10,19 +10,9 @@ namespace {
 
 constexpr double kMargin_m = 0.02;  // the solvers' default collision_margin_m
 
-Collider plane(Vec3 normal = {0, 1, 0}) {
-  Collider c;
-  c.shape = Collider::Shape::Plane;
-  c.normal = normal;
-  return c;
-}
+Collider plane(Vec3 normal = {0, 1, 0}) { return {.shape = Collider::Shape::Plane, .normal = normal}; }
 
-Collider sphere(double radius_m) {
-  Collider c;
-  c.shape = Collider::Shape::Sphere;
-  c.radius_m = radius_m;
-  return c;
-}
+Collider sphere(double radius_m) { return {.shape = Collider::Shape::Sphere, .radius_m = radius_m}; }
 
 Collider box(double half_m) {
   Collider c;

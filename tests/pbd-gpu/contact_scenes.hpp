@@ -6,14 +6,10 @@
 
 namespace clothbench::pbd_gpu {
 
-inline constexpr double kContactFriction = 0.3;
+inline constexpr double kContactFriction = 0.3, kMargin_m = 0.02;
 
 inline Collider touching(Collider::Shape shape, double friction) {
-  Collider c;
-  c.shape = shape;
-  c.margin_m = 0.02;
-  c.friction = friction;
-  return c;
+  return {.shape = shape, .margin_m = kMargin_m, .friction = friction};
 }
 
 inline Scene with_collider(Scene s, const Collider& c) {
@@ -38,17 +34,13 @@ inline Scene doubled(Scene s) {
 }
 
 inline Collider sphere(Vec3 center, double radius, double friction = 0) {
-  Collider c = touching(Collider::Shape::Sphere, friction);
-  c.center_m = center;
-  c.radius_m = radius;
-  return c;
+  using enum Collider::Shape;
+  return {.shape = Sphere, .margin_m = kMargin_m, .friction = friction, .center_m = center, .radius_m = radius};
 }
 
 inline Collider half_space(Vec3 point, Vec3 normal, double friction) {
-  Collider c = touching(Collider::Shape::Plane, friction);
-  c.center_m = point;
-  c.normal = normal;
-  return c;
+  using enum Collider::Shape;
+  return {.shape = Plane, .margin_m = kMargin_m, .friction = friction, .center_m = point, .normal = normal};
 }
 
 /// Rotated about two axes, so that no face is horizontal.

@@ -12,6 +12,7 @@ constexpr int kSubsteps = 6;
 
 struct FrameRun {
   ClothState end;
+  std::vector<double> height_m;  // of a corner after each frame
   std::vector<double> counts;
   long dispatches = 0;
   std::size_t recorded = 0, most_recorded = 0;  // commands: before the first frame; maximum in any frame
@@ -40,9 +41,10 @@ class FusedFrames : public Gpu {
     r.recorded = solver->frame_program().recorded().size();
     for (int f = 0; f < frames && !r.timed_out; ++f) {
       r.timed_out = solver->step({f, (f + 1) * s.time.dt(), s.time.dt(), s.motion_after(f)}) == StepStatus::TimedOut;
+      solver->read_state(r.end);
+      r.height_m.push_back(r.end.position[1]);
       r.most_recorded = std::max(r.most_recorded, solver->frame_program().recorded().size());
     }
-    solver->read_state(r.end);
     for (const SolverCount& c : solver->counts()) r.counts.push_back(c.count);
     return r;
   }
@@ -113,6 +115,17 @@ TEST_F(FusedFrames, OfFastClothTakeALongerFrameInParts) {
   const FrameRun phases = run(s, "never", 8, "never", 0), one = run(s, "always", 8, "always", 0);
   expect_same(one, phases);
   EXPECT_GT(one.most_recorded, one.recorded);
+}
+
+/// Frames before the contact have fewer substeps, in fused frames also contact-free ones; all fall alike.
+TEST_F(FusedFrames, FallAlikeWithAnyNumberOfSubsteps) {
+  Scene s = two_sided(with_collider(sheet(17, 13), sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)));
+  s.cloth.center_m = {0, 0.6, 0};
+  for (const char* in_one : {"always", "never"}) {
+    const std::vector<double> y = run(s, in_one, 8, in_one, 0).height_m;
+    for (std::size_t f = 2; f < y.size(); ++f)
+      EXPECT_NEAR((y[f] - 2 * y[f - 1] + y[f - 2]) / (s.time.dt() * s.time.dt()), -9.81, 0.02) << in_one << f;
+  }
 }
 
 TEST_F(FusedFrames, AreRefusedWhereTheyCannotBe) {

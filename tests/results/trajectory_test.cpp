@@ -1,4 +1,4 @@
-// A file whose positions are not its outcome's motion is found, whatever its summary says.
+// A file whose positions do not match the outcome is found, whatever its summary says.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <unistd.h>
@@ -84,18 +84,18 @@ TEST_F(Trajectory, AnotherMotionIsFound) {
   std::vector<float> x = run_.accuracy.position;
   x[5] += 1e-6f;
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "do not match the outcome");
   run_.outcome.status = "diverged";
   write();
   overwrite("trajectory/position", H5T_NATIVE_FLOAT, x);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "do not match the outcome");
 }
 
 TEST_F(Trajectory, OtherTimesAreFound) {
   std::vector<double> t = run_.accuracy.time_s;
   for (double& v : t) v *= 2;
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
-  EXPECT_PRED2(mentions, trajectory_fault(file()), "not its outcome's motion");
+  EXPECT_PRED2(mentions, trajectory_fault(file()), "do not match the outcome");
   t[3] = t[2];
   overwrite("metrics/time_s", H5T_NATIVE_DOUBLE, t);
   EXPECT_PRED2(mentions, trajectory_fault(file()), "the time of frame 3");

@@ -67,7 +67,8 @@ TEST_P(ReferenceCases, AgreeWithTheScene) {
   for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(first[k], start[k], 1e-12);
 }
 
-/// Order 2 in cell size. The lattice's points are nodes of 32 cells but not of 16, which adds to the coarse error.
+/// The error is of order 2 in cell size. With 16 cells it also contains an interpolation error, because some of the
+/// material points then lie between vertices; with 32 cells all are vertices.
 TEST(SpaceError, FallsWithTheRun) {
   const double coarse = TruthJudge(scene("swing-strip", {"cloth.grid=[17,3]"})).space_error(),
                fine = TruthJudge(scene("swing-strip")).space_error();

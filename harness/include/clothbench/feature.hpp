@@ -8,7 +8,7 @@
 namespace clothbench {
 
 /// A property of scenes that solvers must support, one per row of feature_table.hpp. Only the loader (`derive_needs`)
-/// derives features from the scenario. A run fails unless its stages serve exactly these (`check_stages`).
+/// derives features from the scenario. `check_stages` compares them with the features that a run's stages serve.
 enum class Feature : std::uint8_t {
 #define FEATURE(id, ...) id,
 #include "clothbench/feature_table.hpp"

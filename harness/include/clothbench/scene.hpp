@@ -78,7 +78,7 @@ struct Cloth {
   /// Distance between u0 and u1 if the sheet starts as an arc along u, bent towards axis_u x axis_v; 0: no arc.
   double span_m = 0;
   /// If drape_radius_m is above 0, the sheet starts draped over a cylinder along axis_v through center_m. Where the
-  /// sheet touches, its rows are at that distance from the axis; elsewhere they hang along axis_u x axis_v. The middle
+  /// sheet touches, its rows are `drape_radius_m` from the axis; elsewhere they hang along axis_u x axis_v. The middle
   /// of the sheet is `drape_offset_m` from the top, towards u1.
   double drape_radius_m = 0, drape_offset_m = 0;
   Vec3 initial_velocity_m_per_s{};
@@ -206,8 +206,8 @@ std::vector<std::optional<double>> triangle_stiffnesses(const Scene&);
 std::vector<std::optional<double>> edge_stiffnesses(const Scene&);
 
 /// Sides [m] of the cell that a structural or shear edge stands for: along the edge (along u for a diagonal) and across
-/// it. For an edge along v the side across is the mean of the two columns. A border edge of a grid carries half of the
-/// cell. For an edge of a mesh (border included): edge length, and area of its triangles over edge length. Then Y
+/// it. For an edge along v the side across is the mean of the two columns. On a grid's border the spring is halved, not
+/// the cell. For an edge of a mesh (border included): edge length, and area of its triangles over edge length. Then Y
 /// across/along is the spring of Van Gelder 1998 ("Approximate simulation of elastic membranes by triangulated spring
 /// meshes"); equilateral triangles give a sheet with exactly Y and Poisson ratio 1/3.
 struct EdgeCell {

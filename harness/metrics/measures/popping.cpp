@@ -16,8 +16,8 @@ double window_s(const Scene& scene) {
   return std::max(2.0, std::ceil(1.0 / 36 / scene.time.dt() - kRounding)) * scene.time.dt();
 }
 
-// A body that is hit leaves at up to twice the speed of what hits it. A wave that arrives at a free edge moves it at
-// twice the wave's speed, because wave and reflection add up; at a corner, two edges reflect it.
+// A body that is hit leaves at up to twice the speed of what hits it. A wave moves a free edge twice as fast
+// as the vertices inside, because wave and reflection add up. At a corner, two edges reflect the wave.
 constexpr double kDoubled = 2, kAtCorner = 4;
 
 /// A time within a run: `share` is the fraction of the interval from frame `before` to the next.

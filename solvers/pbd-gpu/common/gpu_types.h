@@ -149,6 +149,7 @@ struct LineConstants {
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
   float history_weight;     // fraction of the last substep's change that is predicted
+  float kick_scale;         // of TimeStep, in the first substep; in fused_frame computed from ContactFrameState::last_h
   float frame_s;            // frame_s and bound_m of ContactConstants, only in fused_frame and its contact-free kernel
   float bound_m;
 };

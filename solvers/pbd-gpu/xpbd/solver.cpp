@@ -34,7 +34,7 @@ class Xpbd final : public GpuSolver {
   void reset() override {
     GpuSolver::reset();
     if (contact_) contact_->clear_diagnostics();
-    last_dt_s_ = 0;
+    last_dt_s_ = last_h_s_ = 0;
     controller_.reset();
   }
 
@@ -153,13 +153,17 @@ class Xpbd final : public GpuSolver {
     // The recorded commands keep the last frame's numbers of substeps and lists, also after a reset.
     const int lists = lists_in(dt_s), substeps = controller_.substeps();
     const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
-    return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists;
+    const double last_h_s = std::exchange(last_h_s_, length_of(dt_s));
+    // Fused frames keep the last length on the device, where contact-free frames have other substeps.
+    const bool same_start = fused_frame_ || std::exchange(recorded_last_h_s_, last_h_s) == last_h_s;
+    return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists || !same_start;
   }
 
-  TimeStep time_step_of(double dt_s, double last_dt_s) const {
-    const double last_h = last_dt_s > 0 ? last_dt_s / substeps_in(last_dt_s) : 0;
-    return time_step(uses_bdf2_, dt_s / substeps_in(dt_s), last_h, scene().material.damping_per_s);
+  TimeStep time_step_after(double last_h_s, double dt_s) const {
+    return time_step(uses_bdf2_, length_of(dt_s), last_h_s, scene().material.damping_per_s);
   }
+  /// Length [s] of a substep in a frame of dt_s; 0 for 0.
+  double length_of(double dt_s) const { return dt_s > 0 ? dt_s / substeps_in(dt_s) : 0; }
 
   /// Records substeps [first, first + count) in as few dispatches as the kernels allow.
   void record_lines(int first, int count, int substeps, double dt_s, const TimeStep& step) {
@@ -173,7 +177,8 @@ class Xpbd final : public GpuSolver {
   void record_frame(double dt_s, double last_dt_s) override {
     const int substeps = substeps_in(dt_s);
     // The first substep differs if the last frame's substeps had a different length, or if there was no last frame.
-    const TimeStep start = time_step_of(dt_s, last_dt_s), step = time_step_of(dt_s, dt_s);
+    const TimeStep start = time_step_after(uses_bdf2_ ? length_of(last_dt_s) : recorded_last_h_s_, dt_s),
+                   step = time_step_after(length_of(dt_s), dt_s);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_shapes(dt_s, substeps);
@@ -223,7 +228,8 @@ class Xpbd final : public GpuSolver {
 
   SubstepController controller_;
   int recorded_substeps_ = 0, recorded_lists_ = 1, contact_free_substeps_ = 0;
-  double last_dt_s_ = 0;  ///< of the last frame; 0: none
+  double last_dt_s_ = 0;                         ///< of the last frame; 0: none
+  double last_h_s_ = 0, recorded_last_h_s_ = 0;  ///< of the last substep, and the one before the recorded frame
 
   bool crumpled_ = false;
   bool second_solve_ = false;       ///< chains are solved again between the response rounds

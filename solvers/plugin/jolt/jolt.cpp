@@ -325,8 +325,8 @@ double free_fall_m(const double* values, double dt_s, double gravity, double vel
 }
 
 const ClothbenchSetting kSettings[] = {
-    {"iterations", "iterations per step (mNumIterations): each is a step in time with one pass over the constraints", 5,
-     1},
+    {"iterations",
+     "iterations per collision step (mNumIterations): each is a time step with one pass over the constraints", 5, 1},
     {"substeps", "collision steps per frame (the second argument of PhysicsSystem::Update)", 1, 1},
     {"collision_margin_m", "radius of vertices; 0: the largest margin of the scene", 0, 0}};
 

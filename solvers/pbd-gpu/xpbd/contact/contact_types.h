@@ -56,6 +56,7 @@ struct ContactFrameState {
   uint contact_possible;  // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
   uint max_displacement;  // maximum of a vertex in this frame [m], a float's bits; the last frame's until it is reset
   uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
+  float last_h;                                          // length of the last substep in a fused frame [s]; 0: none
   float drift[3];  // velocity of the centres of self-contact's motion bounds [m/s]: half of the cloth's mean velocity
 };
 

@@ -109,6 +109,7 @@ bool solve_lines(uint substep) {
     uint i = lane * K + k;
     if (on_chain(i)) end_lines(index_of(vertex(i)), vec4(pos[k], w[k]));
   }
+  kick_scale = 1.0;
   GRID_BARRIER_OR_FAIL;  // wait for vertices before pairs or the next substep read them
   return true;
 }
@@ -120,8 +121,11 @@ bool move_grips(uint s) {
   return true;
 }
 
-/// Called by one thread: stores the displacement from which the host chooses the next frame's substeps.
-void end_frame() { diagnostics.max_displacement = frame_state.max_displacement; }
+/// Called by one thread: stores what the next frame starts from, and what the host chooses its substeps by.
+void end_frame() {
+  frame_state.last_h = p.h;
+  diagnostics.max_displacement = frame_state.max_displacement;
+}
 
 #ifdef CONTACT_FREE
 bool substep_with(uint s) {
@@ -218,6 +222,7 @@ void main() {
 #ifndef CONTACT_FREE
   if (frame_state.contact_free != 0u) return;  // the contact-free dispatch has simulated the frame
 #endif
+  kick_scale = kick_scale_after(frame_state.last_h);
   if (!frame()) return;
   if (global_thread < 3u) {
     frame_state.cloth_low[global_thread] = kLowNone;

@@ -145,6 +145,7 @@ LineConstants Lines::constants(double dt_s, int substeps, const TimeStep& step) 
   const double h = step.implicit_h_s, du = cloth.du(), dv = cloth.dv();
   const auto f = [](double x) { return static_cast<float>(x); };
   auto c = step_constants<LineConstants>(frame_, step);
+  c.kick_scale = f(step.kick_scale);
   c.tether_stretch = f(tethers_.stretch);
   c.rest_u = f(du);
   c.rest_v = f(dv);

@@ -167,8 +167,10 @@ vec3 direction[K], direction_below;  // unit vectors along the links; 0: no link
 float w_above;                       // inverse mass of the vertex after the thread's
 float link_length[K], pull[K];  // pull: tension over length with which the solve starts
 
-/// Compliance of the chain's links, divided by h'^2 k [1/kg] (TimeStep).
-float compliance() { return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border(); }
+/// Compliance of the chain's links, divided by h'^2 and all factors of forces [1/kg] (TimeStep).
+float compliance() {
+  return (colour == 0u ? p.alpha_u : colour == 1u ? p.alpha_v : p.alpha_d) * border() / kick_scale;
+}
 
 /// Sets up one system for all links of the chain (Macklin, Mueller & Chentanez 2016, eq. 18):
 /// (G M^-1 G^T + alpha) dlambda = -C - alpha lambda. `smallest`: minimum ratio of alpha to inverse mass.

@@ -155,10 +155,14 @@ void main() {
   [[unroll]] for (uint k = 0u; k < K; ++k) rest_pos[k] = rest_vel[k] = last_pos[k] = last_vel[k] = vec3(0.0);
 #ifdef CONTACT_FREE
   if (!cannot_reach_any_collider()) return;
+  const float last_h = frame_state.last_h;
 #endif
   load();
   barrier();  // wait for load() before threads read the state
   for (uint s = 0u; s < p.substeps; ++s) {
+#ifdef CONTACT_FREE
+    kick_scale = kick_scale_after(s == 0u ? last_h : p.h);
+#endif
     if (GRIPS > 0u) move_held(s);
     for (uint turn = 0u; turn < colours; ++turn) {
       colour = colours - 1u - turn;
@@ -178,6 +182,7 @@ void main() {
   if (thread == 0u) {
     frame_state.contact_free = 1u;
     frame_state.contact_possible = 0u;
+    frame_state.last_h = p.h;
   }
 #endif
   colour = colours - 1u;  // the colour to whose chains the compensation terms belong

@@ -20,6 +20,7 @@ void main() {
     if (PERSISTENT && n > p.first_pass && !grid_barrier()) return;
     uint turn = n % colours;
     colour = colours - 1u - turn;
+    kick_scale = p.kick_scale;
     pass(n / colours, turn == 0u);
   }
   if (PERSISTENT) leave_grid_barrier();

@@ -105,12 +105,14 @@ vulkan::Groups Chains::all_groups() const {
 }
 
 void Chains::record(int count, const TimeStep& step, bool again) {
-  auto c = step_constants<ChainConstants>(frame_, step);
-  c.per_force_scale = static_cast<float>(1 / step.force_scale);
+  const double forces = step.force_scale * step.kick_scale;
+  auto c = step_constants<ChainConstants>(
+      frame_, {step.implicit_h_s, step.history_weight, step.kick_scale * step.damping_fraction, forces, 1});
+  c.per_force_scale = static_cast<float>(1 / forces);
   c.colours = membrane_ ? 0 : static_cast<std::uint32_t>(colours_.size());
   c.again = again ? 1 : 0;
   if (solves_together()) {
-    const double square = step.implicit_h_s * step.implicit_h_s * step.force_scale, largest = square * max_per_s2_;
+    const double square = step.implicit_h_s * step.implicit_h_s * forces, largest = square * max_per_s2_;
     c.bending_iterations = bending_iterations(largest);
     c.vertices = static_cast<std::uint32_t>(scene_.cloth.vertex_count());
     c.bending_step = static_cast<float>(square);

@@ -19,9 +19,10 @@ struct TimeStep {
   double history_weight;    ///< fraction of the last substep's change that the prediction repeats
   double damping_fraction;  ///< fraction of velocity that damping removes
   double force_scale;       ///< factor of all forces: 1 for backward Euler, 1 - damping fraction for BDF2
+  double kick_scale;  ///< of forces and damping, without BDF2: (1 + h_last/h)/2, the mean of both steps' lengths over h
 };
-/// A substep of h_s after one of last_h_s. Without BDF2: backward Euler with explicit damping. With BDF2: implicit
-/// damping; backward Euler if last_h_s is 0 (no substep before) or less than half of h_s.
+/// A substep of h_s after one of last_h_s (0: none). Without BDF2: backward Euler with explicit damping. With BDF2:
+/// implicit damping; backward Euler if last_h_s is 0 or less than half of h_s.
 TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_per_s);
 
 /// Whether a scene is integrated by BDF2.

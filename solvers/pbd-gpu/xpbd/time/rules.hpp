@@ -24,8 +24,8 @@ inline constexpr double kMaxStepRatio = 2;
 inline constexpr double kMaxWaveOfCloth = 0.6;
 // [h'^2 T / (m l)] Above, explicit tension throws a line aside (xpbd/time/README.md)
 inline constexpr double kMaxExplicitTension = 1.0 / 3;
-// [relative increase of the attachments' distance] Above, links of a sheet overshoot the converged stretch by 12 %; by
-// 3 % at order 1 (two-hand-stretch-10mps)
+// [relative increase of the attachments' distance] Above, links of a sheet overshoot the converged stretch: by 12 % at
+// order 2, 3 % at order 1 (two-hand-stretch-10mps)
 inline constexpr double kMaxGripStrain = 0.5;
 // [cells a wave crosses in h'] Above, a sheet's modulus drifts: if the square is 100, within seconds; 52, within a
 // minute; 47, never (modulus of a patch of 65 x 17 vertices)

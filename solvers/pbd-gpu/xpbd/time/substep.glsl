@@ -9,13 +9,17 @@ void two_sum(vec3 a, vec3 b, out vec3 sum, out vec3 rest) {
   rest = left;
 }
 
+float kick_scale = 1.0;  // of this substep (TimeStep)
+/// kick_scale of a substep of p.h after one of `last_h`, or after none (0).
+float kick_scale_after(float last_h) { return last_h > 0.0 ? 0.5 + 0.5 * (last_h / p.h) : 1.0; }
+
 const bool kUsesBdf2 = (FEATURES & LINES_BDF2) != 0u;
 
-/// Prediction: v += g h - (1 - e^{-c h}) v, x += h v, both in compensated sums: with thousands of substeps per second
-/// the increments fall below the last bit of x and v, and plain sums would freeze or drift. `rest_`: rounding errors of
-/// the last sums. `last_`: state before the last substep; becomes the state before this one. BDF2 also adds a fraction
-/// of the last substep's change; a difference of close numbers is exact, and the rounding errors that it leaves out
-/// cancel from substep to substep.
+/// Prediction: v += kick_scale (g h - (1 - e^{-c h}) v), x += h v, both in compensated sums: with thousands of substeps
+/// per second the increments fall below the last bit of x and v, and plain sums would freeze or drift. `rest_`: rounding
+/// errors of the last sums. `last_`: state before the last substep; becomes the state before this one. BDF2 also adds a
+/// fraction of the last substep's change; a difference of close numbers is exact, and the rounding errors that it leaves
+/// out cancel from substep to substep.
 void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, inout vec3 rest_velocity,
           inout vec3 last_position, inout vec3 last_velocity) {
   vec3 gain = p.gravity_h.xyz, sum, rest, history = vec3(0.0);
@@ -27,7 +31,7 @@ void fall(inout vec3 position, inout vec3 velocity, inout vec3 rest_position, in
     last_velocity = velocity;
     last_position = position;
   } else {
-    gain -= p.damping_fraction * velocity;
+    gain = kick_scale * (gain - p.damping_fraction * velocity);
   }
   two_sum(velocity, gain + rest_velocity, sum, rest);
   velocity = sum;

@@ -1,6 +1,7 @@
-// Once per frame, one thread per triangle: the triangle's boxes at the frame's start (fraction 0) and inflated by its
-// vertices' motion bounds (fraction 1), both also by half of the thickness and the drift; the group's at fraction 1. A
-// group is SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together.
+// Once per frame, one thread per triangle. A triangle has two boxes: at the frame's start (fraction 0), and inflated by
+// its vertices' motion bounds (fraction 1). Both are also inflated by the drift plus half of the thickness. A group is
+// SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together; its box contains their boxes at
+// fraction 1.
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;

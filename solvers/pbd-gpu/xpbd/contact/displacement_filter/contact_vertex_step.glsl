@@ -1,5 +1,9 @@
 // Passes per vertex: prediction at a substep's start, and the clamp to the motion bound after the constraint solve.
 
+#ifndef FUSED_FRAME
+const float kick_scale = 1.0;
+#endif
+
 /// Limit of a vertex's displacement in the substep [m]: that to `to`, and room for corrections by contact.
 float max_displacement(uint i, vec3 to) {
   return distance(to, starts[i].xyz) + p.substep_part * frame_state.max_shape_displacement + MARGIN_M;
@@ -28,7 +32,7 @@ void predict(uint i) {
   vec4 at = x[i];
   vec3 vel = v[i].xyz;
   at.w = mass_of(i, at.w);
-  if (at.w > 0.0) at.xyz += p.h * (vel + p.gravity_h.xyz - p.damping_fraction * vel);
+  if (at.w > 0.0) at.xyz += p.h * (vel + kick_scale * (p.gravity_h.xyz - p.damping_fraction * vel));
   y[i] = at;
   starts[i].w = max_displacement(i, at.xyz);
 }
