@@ -66,7 +66,7 @@ TEST_F(Gpu, ASheetHeldByOneCornerComesToRest) {
   for (int f = 0; f < frames; ++f) {
     const ClothState state = after_frame(*solver, s, f);
     const double energy = spring_energy(s, state.position);
-    if (f >= 4 * second && f < 5 * second) early += energy / second;
+    if (f >= 7 * second && f < 8 * second) early += energy / second;  // it hardly swings any more
     if (f >= frames - second) late += energy / second;
   }
   EXPECT_LE(late, 1.02 * early);
