@@ -11,16 +11,13 @@ namespace {
 constexpr double kMargin_m = 0.02;  // the solvers' default collision_margin_m
 
 Collider plane(Vec3 normal = {0, 1, 0}) { return {.shape = Collider::Shape::Plane, .normal = normal}; }
-
 Collider sphere(double radius_m) { return {.shape = Collider::Shape::Sphere, .radius_m = radius_m}; }
 
 Collider box(double half_m) {
-  Collider c;
-  c.shape = Collider::Shape::Box;
-  c.half_extent_m = {half_m, half_m, half_m};
   const double r = std::sqrt(0.5);
-  c.axes = {{{r, 0, -r}, {0, 1, 0}, {r, 0, r}}};
-  return c;
+  return {.shape = Collider::Shape::Box,
+          .half_extent_m = {half_m, half_m, half_m},
+          .axes = {{{r, 0, -r}, {0, 1, 0}, {r, 0, r}}}};
 }
 
 /// An open square in y = 0, made of two triangles.
