@@ -42,7 +42,7 @@ struct ColliderMesh {
 struct Collider {
   enum class Shape : std::uint8_t { Plane, Sphere, Box, Capsules, Mesh };
   Shape shape = Shape::Plane;
-  std::string name;      ///< for tables and messages: "living_room/444c8313", "right-hand-sweep"
+  std::string name{};    ///< for tables and messages: "living_room/444c8313", "right-hand-sweep"
   double margin_m = 0;   ///< contact offset [m]: distance from the surface at which contact stops the cloth
   double friction = 0;   ///< Coulomb coefficient between cloth and collider
   Vec3 center_m{};       ///< plane: a point on it; sphere, box: centre
@@ -50,8 +50,8 @@ struct Collider {
   double radius_m = 0;   ///< sphere
   Vec3 half_extent_m{};  ///< box, along `axes`
   std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< box: orthonormal, in world coordinates
-  std::vector<Capsule> capsules;                                ///< their number is constant during a run
-  std::shared_ptr<const ColliderMesh> mesh;
+  std::vector<Capsule> capsules{};                              ///< their number is constant during a run
+  std::shared_ptr<const ColliderMesh> mesh{};
   bool recorded = false;  ///< a user's hand, recorded or live: its speed is not known in advance
 
   /// The feature that a solver must support to collide with it.
