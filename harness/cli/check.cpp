@@ -51,8 +51,8 @@ void add_check(CLI::App& app, Console& console) {
   cmd->add_flag("--github", a.github, "Also print failures as annotations of GitHub Actions, on stderr")
       ->excludes(rewrite);
   cmd->footer(
-      "Exit codes: 0 every run is as in the baseline or better, 1 a finding fails (harness/check/README.md has "
-      "all), 2 bad input, or runs measured under conditions different from the baseline's.\nExample: "
+      "Exit codes: 0 every run is as in the baseline or better, 1 a finding fails (harness/check/README.md "
+      "lists them), 2 bad input, or runs measured under conditions different from the baseline's.\nExample: "
       "clothbench check results/runs/mine --baseline results/baselines/penetration.json --junit check.xml");
   cmd->callback([&console, &a] {
     if (!a.junit.empty() && fs::is_regular_file(a.junit))

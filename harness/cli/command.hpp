@@ -27,8 +27,8 @@ struct Console {
   std::string command_line;
   ExitCode exit_code = ExitCode::Ok;
 
-  /// Storage for a command's arguments, new for every command line, because one process may run several (an app's
-  /// session does). It lives as long as the console.
+  /// Storage for a command's arguments, new for every command line, because one process may run several command lines
+  /// (the headset app does). It lives as long as the console.
   template <class Arguments>
   Arguments& arguments() {
     auto made = std::make_shared<Arguments>();
@@ -40,7 +40,7 @@ struct Console {
   static void print(const nlohmann::json& j) {
     SummaryOutput::write(j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
-  /// Prints the requested form only; the other one is not computed.
+  /// Prints only the requested form, and does not compute the other one.
   template <class Json, class Text>
   void print(Json&& as_json, Text&& as_text) const {
     json ? print(as_json()) : fmt::print("{}", as_text());
@@ -83,14 +83,14 @@ struct SolverFlags {
 struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>
   bool resume = false;
-  bool part = false;  ///< some runs of the study only: the folder's report is not made at the end
+  bool part = false;  ///< the plan has only some runs of the study: no report is printed at the end
   int jobs = 1;
   std::string eye = {};  ///< size of the images that the plan renders
   DeviceFlags device = {};
 };
 
-/// Creates the folder of a plan and executes the plan in worker processes; calls `before_runs` in between, if the
-/// folder is usable. Prints faults, tables and summary, and sets the exit code.
+/// Creates the folder of a plan, calls `before_runs` if the folder is usable, and executes the plan in worker
+/// processes. Prints faults, tables and summary, and sets the exit code.
 void execute_study(const RunPlan&, StudyManifest, const RunFlags&, Console&,
                    const std::function<void()>& before_runs = {});
 
@@ -98,7 +98,7 @@ void execute_study(const RunPlan&, StudyManifest, const RunFlags&, Console&,
 CLI::Option* add_solvers(CLI::App&, const std::string& option, std::vector<std::string>& names,
                          const std::string& help);
 
-/// --require-assets: stand-ins for rooms and hands are an Error.
+/// --require-assets: procedural rooms or hands are an Error.
 void add_require_assets(CLI::App&, bool& required);
 inline Assets asset_policy(bool required) { return required ? Assets::Required : Assets::MayBeProcedural; }
 

@@ -59,7 +59,7 @@ struct Help : CLI::Formatter {
   }
 };
 
-/// Message about the first word that is no command or no option of its command, with the nearest known word; or empty.
+/// Message about an unknown command or the first unknown option, with the nearest known word; empty if all are known.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   std::vector<std::string> commands, options;
@@ -98,7 +98,7 @@ int run_command_line(const std::vector<std::string>& words) {
   console.command_line = "clothbench " + joined(words, " ");
   app.add_flag("--json", console.json, "Print a machine-readable summary; may also follow the command");
   app.add_flag("--in-process", console.arguments<bool>(),
-               "Run solvers in this process, for a debugger; a crash of a solver then ends the program");
+               "Run solvers in this process, so that a debugger sees them; a solver's crash then ends the program");
   // Before the words are parsed, because parsing loads plugins.
   if (contains(words, "--in-process")) run_solvers_in_process();
   std::optional<SummaryOutput> summary_alone;

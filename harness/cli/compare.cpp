@@ -13,7 +13,7 @@ struct CompareArguments {
 
 namespace fs = std::filesystem;
 
-/// `given` itself if it is a folder of results; if it contains only such folders, these by name.
+/// The folders in `given`, by name, if it contains only folders and no study.json; otherwise `given` itself.
 std::vector<fs::path> folders_of(const fs::path& given) {
   std::vector<fs::path> inside;
   if (!fs::is_directory(given) || fs::exists(given / "study.json")) return {given};
@@ -46,8 +46,8 @@ void add_compare(CLI::App& app, Console& console) {
       "compare",
       "Compare two builds on the same runs: which runs are faster or slower beyond noise, and which results differ");
   const std::string several = fmt::format(
-      "Results of one build: a study folder or result file. To compare times, give {} or more (A,B,C,D,E or their "
-      "folder), each from its own process, run in random order",
+      "Results of one build: a study folder or result file. To compare times, give {} or more, separated by commas, or "
+      "a folder that contains them; each from its own process, run in random order",
       kMinProcesses);
   cmd->add_option("a", given.a, several)->required();
   cmd->add_option("b", given.b, "Results of the other build, likewise")->required();

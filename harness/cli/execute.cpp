@@ -65,7 +65,7 @@ nlohmann::json summary_of(const std::vector<std::string>& faults, const std::vec
           {"runs", figures_of(runs)}};
 }
 
-/// `part`: no report was printed, so a short list of the runs follows.
+/// `part`: no report was printed, so the text starts with a short table of the runs.
 std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::path& out, bool part) {
   const VerdictCounts verdicts = count_verdicts(runs);
   const Ends ends(runs);
@@ -73,7 +73,7 @@ std::string text_of(const std::vector<RunRecord>& runs, const std::filesystem::p
   if (ends.stable + ends.degraded + ends.unstable > 0)
     text += fmt::format("; {} stable, {} degraded, {} failed ({} of them crashed or hung)", ends.stable, ends.degraded,
                         ends.unstable, ends.crashed);
-  if (verdicts.runs > 0) text += "; with a bound: " + verdicts.text();
+  if (verdicts.runs > 0) text += "; criteria: " + verdicts.text();
   text += fmt::format("; results in {}\n", out.string());
   if (ends.over_budget > 0)
     text += fmt::format("not run: {} settings, because settings with less work had timed out (over_budget)\n",

@@ -22,6 +22,6 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, on_signal);
   const int code = clothbench::run_command_line({argv + (argc > 0 ? 1 : 0), argv + argc});
   std::fflush(stdout);
-  dup2(STDERR_FILENO, STDOUT_FILENO);  // keeps what plugins print on unloading out of a summary
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // plugins may print while they unload; the summary must not contain that
   return code;
 }

@@ -35,7 +35,7 @@ void print_jobs(const std::vector<std::string>& names, const Console& console) {
   for (std::size_t k = 0; k < names.size(); ++k) fmt::print("{}\t{}\n", k, names[k]);
 }
 
-/// Prints one line per generated scene; for a study with many scenes none, because the result files contain them.
+/// Prints one line per generated scene; nothing if there are many, because the result files contain them.
 void print_drawn(const Study& study) {
   constexpr std::size_t kFew = 24;
   std::set<std::string> names;

@@ -70,7 +70,7 @@ std::vector<bool> frames_with_contact(const RunRecord& c) {
   return out;
 }
 
-/// The finite times of all trials. If `contact` is not empty, only of frames with contact.
+/// The finite times of all trials; if `contact` is not empty, only times of frames with contact.
 FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::vector<bool>& contact = {}) {
   FrameTimes out;
   std::vector<Series> trials;

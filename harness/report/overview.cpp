@@ -90,7 +90,7 @@ std::string about_rates(const Group& runs) {
   return joined(out, " ");
 }
 
-/// Speed and error in the scene of the paper's Table 3, or in every other scene.
+/// Speed and error: in the scene of the paper's Table 3 if `paper`, otherwise in every other scene.
 View speed_and_error(bool paper) {
   View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
          [paper](const Row& r) {
@@ -150,7 +150,7 @@ std::string except(const Texts& scenes) {
   return scenes.empty() || scenes.size() > 2 ? "" : "not " + joined(scenes, " and ");
 }
 
-/// Rates on the largest mesh of the paper's Table 3; without it, on that of the first family with times.
+/// Rates on the largest mesh of the paper's Table 3; without such runs, of the first family with times.
 std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   std::vector<Entry> out;
   std::string family;
@@ -173,7 +173,7 @@ std::vector<Entry> rates(const std::vector<const Row*>& rows) {
   return out;
 }
 
-/// In how many scenes with an exact solution a solver has the smallest error; errors at the floor are equal.
+/// For each solver, in how many scenes with an exact solution its error is smallest; errors below the floor are equal.
 std::vector<Entry> errors(const std::vector<const Row*>& rows) {
   std::map<std::string, std::map<std::string, double>> scenes;  // smallest error by solver
   std::map<std::string, Texts> lost;
@@ -200,7 +200,7 @@ std::vector<Entry> errors(const std::vector<const Row*>& rows) {
 
 /// For each solver, passed or stable runs as a fraction of the runs with a verdict.
 std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const std::string& title) {
-  std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of those that are not good
+  std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of the runs that are not good
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
     if (r->part != part || !r->is_main() || r->repeat > 1 || r->status() == "missing" || !judged) continue;
@@ -213,7 +213,7 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
     const auto& [runs, bad] = share;
     const std::size_t good = runs.size() - bad.size();
     const Interval i = wilson_95(good, runs.size());
-    const auto all = static_cast<double>(runs.size());  // of equal fractions, the one of more runs comes first
+    const auto all = static_cast<double>(runs.size());  // between equal fractions, the one with more runs wins
     const std::string offset = part == Part::Stability ? "" : offset_of(runs);
     Texts more = {fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high),
                   offset.empty() ? "" : "contact offset " + offset + " mm", except(bad)};

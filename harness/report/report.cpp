@@ -22,7 +22,6 @@ constexpr std::pair<const char*, const char*> kSections[] = {
     {"failed", "Failures"},        {"features", "Features"},
     {"environment", "Environment"}};
 
-/// The sections with tables.
 std::vector<PageSection> filled_sections(const RunTable& table) {
   std::vector<PageSection> out;
   for (const auto& [id, title] : kSections) {

@@ -17,7 +17,7 @@ struct Tile {
   std::string title, value, interval, others;
 };
 
-/// At most four tiles, in this order, as far as there are runs: generated contact, contact, error, rate, stability.
+/// The first four tiles that have runs, in this order: generated contact, contact, error, rate, stability.
 std::vector<Tile> tiles_of(const RunTable&);
 
 /// Title of a report, and device, commit, date and trials as its runs state them.
@@ -34,7 +34,7 @@ std::vector<std::string> notes_of(const RunTable&);
 Table in_short_table(const RunTable&);
 /// One row per run with every summary value, as the shortest text that reads back exactly; missing = empty.
 std::string runs_csv(const RunTable&);
-/// Everything except frames: outcome, summary (missing = null), environment.
+/// Everything except values per frame: outcome, summary (missing = null), environment.
 nlohmann::json runs_json(const std::vector<RunRecord>& runs);
 /// The plotted metrics of runs with contact, one row per frame, six digits; missing = empty.
 std::string series_csv(const RunTable&);

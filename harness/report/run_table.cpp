@@ -35,7 +35,7 @@ Part part_of(const RunRecord& c, const json& scenario) {
   return touches(scenario) ? Part::Contact : Part::Rates;
 }
 
-/// Fills columns from the scenario; returns the text that scenes of one family have in common.
+/// Fills the row's members from the scenario; returns the text that scenes of one family have in common.
 std::string read_scenario(Row& row) {
   const RunRecord& c = *row.run;
   row.scene = row.name = c.header.scene;
@@ -83,8 +83,8 @@ void choose_leading(std::vector<Row>& rows) {
     for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.is_main());
 }
 
-/// A run's rank is one more than the number of main runs whose whole interval is below its own. So ranks are no finer
-/// than the intervals, and runs that a table omits leave no gap in its ranks.
+/// A run's rank is one more than the number of main runs whose whole interval lies below its own interval. Only
+/// main runs count, so tables that omit other runs have no gap in their ranks.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)
@@ -171,11 +171,11 @@ std::string Resolution::label() const {
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
-  // Where the reference solution confirms it, the exact solution has no error, so only the reference's uncertainty
-  // counts. Errors below the mesh's are not ranked, so the reference may be as uncertain as the mesh's error.
+  // The reference solution confirms the exact solution only to within its uncertainty. Errors below the mesh's error
+  // are not ranked, so 3 U_ref need only be below the larger of the best error and the mesh's error.
   if (!std::isfinite(best_error)) return "no run can be ranked";
   const double least = std::fmax(best_error, space_error);
-  if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below the best error {:.1e}", floor(), least);
+  if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below {:.1e} (best or mesh error)", floor(), least);
   return "";
 }
 
@@ -274,7 +274,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
-    // If no solver was timed on a pulled strip, it is listed with the scenes with contact.
+    // A pulled strip on which no solver was timed is listed with the scenes with contact.
     if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
     if (r.part != Part::Truth) continue;

@@ -21,7 +21,7 @@ nlohmann::json scenario_of(const RunRecord&);
 nlohmann::json environment_of(const RunRecord&, const char* key);
 /// The environment's text for `key`; empty if missing.
 std::string environment_text(const RunRecord&, const char* key);
-/// Engine that the run's plugin wraps, as the plugin declares: "NvCloth"; empty if it declares none, or for no plugin.
+/// Engine that the run's plugin wraps, as the plugin declares: "NvCloth"; empty if there is no plugin or it names none.
 std::string engine_of(const RunRecord&);
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
 extern const char* const kSolverRoles;      ///< solvers.json
@@ -34,8 +34,9 @@ inline bool is_floor(const std::string& solver) { return contains(solver_roles()
 inline bool is_baseline(const std::string& solver) { return contains(solver_roles().at("baseline"), solver); }
 /// The solver to which times are relative, whichever solvers are present.
 inline std::string time_baseline() { return solver_roles().at("times_relative_to"); }
-/// Parts of scene names that come first in a report, in order; the index of the part that a scene's name contains.
+/// Words in the names of scenes that come first in a report, in order of priority.
 inline const nlohmann::json& leading_scenes() { return solver_roles().at("leading_scenes"); }
+/// Index of the first of these words that the scene's name contains; their number if it contains none.
 std::size_t place_of_scene(const std::string& scene);
 /// NaN if there are no values.
 double median(std::vector<double>);
@@ -59,7 +60,7 @@ inline constexpr const char* kNoVerdict = "–";
 /// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds are met
 /// but the solver ignores all of the scene's contact, so that the result proves nothing; its ending if it is not ok.
 std::string verdict(const RunRecord&);
-/// Number of bounds on a run: those of its scene, and the motion check. A sole `"outcome": "ok"` counts as none.
+/// Number of bounds on a run: the scene's bounds and the motion check, without the criterion `outcome`.
 std::size_t bounds_of(const RunRecord&);
 
 /// Counts by `verdict` of the runs whose scenes have bounds. Missing runs are not counted.
@@ -99,7 +100,7 @@ struct FrameTimes {
   double at(double q) const;
   /// Fraction of the frames that are longer than one refresh period of a display.
   double missed(double rate_hz) const;
-  /// True if the median's interval is wider than 20 % of it: the run is marked and, if for wall time, not ranked.
+  /// True if the median's interval is wider than 20 % of the median; tables mark such times and do not rank them.
   bool uncertain() const;
 };
 
@@ -109,8 +110,8 @@ struct RunTimes {
   double threads = kMissing;  ///< CPU time over wall time of a CPU solver's median frame, rounded
 };
 
-/// Intervals use kIntervalMethod with a fixed seed; fewer than 6 frames give none. Frames in one block depend on each
-/// other, so a block is resampled as a whole.
+/// Intervals by kIntervalMethod with a fixed seed; none with fewer than 6 frames. Successive frames are correlated, so
+/// blocks of frames are resampled as a whole.
 RunTimes times_of(const RunRecord&);
 /// Wall times of two runs in the frames that both timed; of these, only frames with contact in both, if there are any.
 std::pair<FrameTimes, FrameTimes> common_times(const RunRecord&, const RunRecord&);
@@ -129,7 +130,8 @@ struct TruthFacts {
   double floor() const { return 3 * uncertainty; }  ///< uncertainty floor; NaN if unknown
   /// Errors below this are not distinguished: the larger of floor() and space_error, if known; 0 if neither is.
   double rank_floor() const { return std::fmax(0, std::fmax(floor(), space_error)); }
-  /// Why the scene ranks no solver: no reference, or 3 U_ref is not below the best error. Empty if it ranks them.
+  /// Why the scene ranks no solver: no reference solution, no run to rank, or both best error and space error within
+  /// 3 U_ref. Empty if it ranks solvers.
   std::string refused() const;
 };
 
@@ -140,7 +142,7 @@ struct Row {
   Part part = Part::Rates;
   std::string scene = {};   ///< with the labels of axes
   std::string name = {};    ///< from the scene's file, without the labels of axes
-  std::string family = {};  ///< common name of runs whose scenes differ only in resolution and sides; "x (2)" if taken
+  std::string family = {};  ///< common to scenes that differ only in resolution and sides; "x (2)" if x is taken
   std::string solver = {}, setting = {}, sides = {};
   bool contact = false;  ///< the scene has colliders or hands that grip the cloth
   bool leads = false;    ///< this scene with contact is on the first screen
@@ -156,10 +158,10 @@ struct Row {
   const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene
   /// One of many settings of a sweep, which are listed under "Error against run time" only.
   bool in_sweep() const { return part == Part::Truth && setting.find('=') != std::string::npos; }
-  /// One of the settings that first tables, tiles and ranks are about.
+  /// Has a setting that the first tables and the tiles show, and by which ranks are counted.
   bool is_main() const { return setting == "default" || setting == "best" || is_best; }
-  bool is_best = false;  ///< has the settings of the cheapest point of `reproduction` at which most claims hold
-  int rank = 0;          ///< by wall time, 1 + number of faster runs of the scene that are main; 0: not ranked
+  bool is_best = false;  ///< has the cheapest settings that meet the largest number of claims in study `reproduction`
+  int rank = 0;          ///< by wall time: 1 + number of the scene's main runs that are faster; 0: not ranked
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
@@ -170,7 +172,7 @@ struct Row {
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined if the solver supports it.
   double wall_ms_per_s() const;
-  /// Wall time [ms] per simulated second of calls that wait for the frame; then by the device's clock.
+  /// Time [ms] per simulated second if each call waits for its frame: by wall clock, and by the device's clock.
   double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }
@@ -200,8 +202,8 @@ class RunTable {
   RunTable(const RunTable&) = delete;
   RunTable& operator=(const RunTable&) = delete;
   const std::vector<RunRecord>& runs() const { return runs_; }
-  /// In the order of tables: scenes by first appearance; then by solver, setting and sides, and by ascending
-  /// resolution. If a run has paper_table 3, the published values follow its scene's runs.
+  /// In the order of tables: scenes by first appearance, then solver, setting, sides and ascending resolution. If a
+  /// scene has paper_table 3, the published values follow its runs.
   const std::vector<Row>& rows() const { return rows_; }
 
  private:

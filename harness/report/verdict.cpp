@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// True if the solver declares to ignore all contact and grips of the scene: met bounds then prove nothing.
+/// True if the solver declares that it ignores attachments and every kind of collider: met bounds then prove nothing.
 bool touches_nothing(const RunRecord& c) {
   const json features = environment_of(c, "solver_features");
   if (!features.is_object() || !features.contains("ignores")) return false;
@@ -23,7 +23,7 @@ bool touches_nothing(const RunRecord& c) {
   return all;
 }
 
-/// By name: 1 met, 0 violated, NaN not measured.
+/// The run's criteria by name: 1 met, 0 violated, NaN not measured.
 std::map<std::string, double> bounds(const RunRecord& c) {
   std::map<std::string, double> out;
   for (const auto& [name, v] : c.summary)
@@ -56,7 +56,7 @@ std::size_t bounds_of(const RunRecord& c) {
   const json scenario = scenario_of(c);
   if (const json expect = scenario.value("expect", json()); expect.is_object())
     found = std::max(found, expect.size() - expect.count("outcome"));
-  // The motion of every cloth is checked, and a run that is not ok has no motion that passes.
+  // A run that is not ok has at least one bound, the motion check of every cloth, which it did not pass.
   return found == 0 && c.outcome.status != "ok" && scenario.contains("cloth") ? 1 : found;
 }
 

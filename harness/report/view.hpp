@@ -31,7 +31,7 @@ Cell number_cell(double v, int digits);
 Cell paired_cell(double a, double b, int digits);
 /// Passed runs with Wilson's 95 % interval: "53/58 (81–96 %)". Empty if there are no runs.
 Cell share_cell(std::size_t passed, std::size_t all);
-/// The verdict on a run; how it ended.
+/// The verdict on a run, and how a run ended.
 Cell verdict_cell(const RunRecord&);
 Cell ending_cell(const RunRecord&);
 
@@ -49,16 +49,15 @@ struct Key {
   std::string head;
   std::function<Keys(const Row&)> of;
   bool is_solver = false;   ///< the page's solver filter applies to its values
-  bool if_differs = false;  ///< omitted if all rows have the same value; not the first key
+  bool if_differs = false;  ///< omitted if all rows have the same value; the first key is never omitted
 };
 /// A key with one value per run.
 Key key(std::string head, std::function<std::string(const Row&)> of, bool is_solver = false);
-/// The scene; the solver with its setting and the number of a repeated run; the sides.
+/// Keys: the scene; the solver with its setting and the number of a repeated run; the sides.
 Key scene_key();
 Key solver_key();
 Key sides_key();
 
-/// A column of a table.
 struct ViewColumn {
   std::string head;
   std::function<Cell(const Group&, const Keys& keys)> cell;
@@ -70,10 +69,10 @@ inline const Row* first_of(const Group& g) { return g.front(); }
 /// A column about the run that `pick` returns; empty if it returns none.
 ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool if_differs = false,
                   Pick pick = first_of);
-/// The ratio of a run's value to another one's, with the minimum and maximum ratio of values within both intervals,
-/// marked if the run or time_baseline() timed fewer frames than others; for time_baseline(), where it ran.
+/// `value` / `by`, with the extreme ratios of values in both intervals, and a mark if the run or its baseline timed
+/// fewer frames than other runs. For the run of time_baseline(): 1.00 and the device on which it ran.
 Cell ratio_cell(const Row&, double value, const Interval&, double by, const Interval& of_by);
-/// The number of timed trials; the rank by wall time; how many times as fast as time_baseline() the median frame is.
+/// The number of timed trials; the rank by wall time; the baseline's median frame time over the run's.
 Cell trials_cell(const Row&);
 Cell rank_cell(const Row&);
 Cell times_as_fast_cell(const Row&);
@@ -87,8 +86,8 @@ struct Across {
   std::size_t leading = SIZE_MAX;
 };
 
-/// One column per band of `value`; `lows`: lower ends, ascending. Names show the next band's lower end minus `gap`,
-/// which is 1 for integers.
+/// One column per band of `value`; `lows`: lower ends, ascending. A column's name shows both ends of its band; the
+/// upper end is the next band's lower end minus `gap` (1 for integers).
 Across by_bands(const std::vector<double>& lows, std::function<double(const Row&)> value,
                 std::function<Cell(const Group&, const Keys&)> cell, double gap = 0, const char* unit = "");
 
@@ -99,7 +98,7 @@ struct View {
   std::vector<Key> keys = {};            ///< one row per combination of their values; the first columns
   std::vector<ViewColumn> columns = {};  ///< omitted if no row has a value
   std::optional<Across> across = {};
-  std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, with it as title
+  std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, which becomes its title
   std::function<std::string(const Group&)> more = nullptr;  ///< an additional sentence for the note
   std::function<double(const Group&)> order = nullptr;      ///< rows are sorted by it, ascending
   bool by_key = false;   ///< rows in the order of their keys; otherwise in the order of the runs
@@ -110,7 +109,7 @@ struct View {
 /// A table with its runs, for the page's filters and commands.
 struct ViewTable : Table {
   std::vector<const Row*> runs = {};          ///< the first run of each row
-  std::vector<Group> again = {};              ///< by row: the runs that its command repeats; none for a sum
+  std::vector<Group> again = {};              ///< by row: the runs that its command repeats; none for a row of totals
   std::size_t keys = 0;                       ///< number of columns that identify a row
   std::vector<std::size_t> lead = {};         ///< columns that come first on the page, after the keys
   std::vector<std::size_t> late = {};         ///< columns that come last in a narrow window
@@ -126,7 +125,7 @@ void add_tail_columns(View&, const Pick& pick);
 std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
 const std::vector<View>& views();
-/// Limit of a criterion in the scene of a run, and the value found, with units.
+/// A criterion's limit in the scene of a run, and the value that the run reached, with units.
 std::string expected_of(const Row&, const std::string& criterion);
 Cell found_of(const Row&, const std::string& criterion);
 /// Contact offset [mm] of these runs, "3.5 to 20" if they differ; empty without colliders.

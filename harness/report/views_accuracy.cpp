@@ -20,7 +20,7 @@ constexpr std::array kBudgets_ms = {0.1, 1.0, 13.9};
 bool in_truth(const Row& r) { return r.part == Part::Truth; }
 using Measure = double (Row::*)() const;
 
-/// Of the rows with at most this error and wall time per frame, the one with the smallest `by`; null if there is none.
+/// The row with the smallest `by` among those with at most this error and wall time per frame; null if there is none.
 const Row* best(const Group& g, Measure by, double error, double frame_ms = INFINITY) {
   const Row* out = nullptr;
   for (const Row* r : g)
@@ -31,7 +31,7 @@ const Row* best(const Group& g, Measure by, double error, double frame_ms = INFI
   return out;
 }
 
-/// Shortest time to an error of at most `most`, measured by `clock`.
+/// Shortest time, measured by `clock`, in which a setting reaches an error of at most `most`.
 ViewColumn time_to(const char* head, double most, Measure clock) {
   const auto text = [=](const Row& r) {
     return Cell(fmt::format("{:.3g} ({})", (r.*clock)(), r.setting), (r.*clock)());
@@ -116,7 +116,7 @@ View work() {
   return v;
 }
 
-/// The value of the scene's first run that has it.
+/// A scalar of the scene, taken from the first run that has it.
 ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}") {
   return {head, [=](const Group& g, const Keys&) {
             const auto at = std::find_if(g.begin(), g.end(), [&](auto* r) { return std::isfinite(r->value(name)); });
@@ -184,7 +184,7 @@ View robustness() {
   return v;
 }
 
-/// Status, or "failed" for a complete run whose motion failed.
+/// Status, or "ended, but …" with the grade for a run that is complete but not stable.
 std::string status_of(const Row& r) {
   const Outcome& o = r.run->outcome;
   return o.status == "ok" ? fmt::format("ended, but {} ({})", kGrades[grade_of(r)], o.klass) : status_with_class(o);
@@ -276,7 +276,7 @@ View environment() {
   return v;
 }
 
-/// The first run's declaration that exists.
+/// Support of a feature, as declared in the first run that contains a declaration.
 Cell declared(const Group& g, const Keys& keys) {
   json features;
   for (const Row* r : g)
@@ -313,7 +313,7 @@ std::string expected_of(const Row& r, const std::string& name) {
 
 Cell found_of(const Row& r, const std::string& name) {
   if (name == "outcome") return ending_cell(*r.run);
-  if (name == "motion") {  // names the violated laws; criteria, which follow, have rows of their own
+  if (name == "motion") {  // only the violated laws; the criteria after them have rows of their own
     const std::string& all = r.run->outcome.expect;
     std::size_t end = all.size();
     for (const std::string& criterion : violated_bounds(*r.run)) end = std::min(end, all.find("; " + criterion + " "));

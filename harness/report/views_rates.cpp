@@ -37,7 +37,7 @@ Cell median_cell(const Row& r, const FrameTimes& t) {
           t.at(0.5)};
 }
 
-/// "2.00 / 3.00 / 4.00"; a percentile that is the worst frame, because there are too few, is "–".
+/// "2.00 / 3.00 / 4.00"; a percentile is "–" if there are so few frames that it would be the worst frame.
 Cell tails_cell(const FrameTimes& t) {
   const auto text = [&](double q) {
     return static_cast<double>(t.sorted.size()) * (1 - q) < 1 - 1e-9 ? "–" : milliseconds(t.at(q));

@@ -24,7 +24,7 @@ struct Point {
   double dispatches = 0;
   Group runs = {};
 };
-/// The points in a row of the table. The row for all claims has only points at which every claim was run.
+/// The points behind a row of the table. The row for all claims has only points at which every claim was run.
 std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
   std::map<std::string, Point> out;
   const std::size_t wanted = keys.back().all ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
@@ -58,7 +58,7 @@ std::string reading(const Group& g, const Keys& keys) {
   return held == all ? "reproduced" : held > 0 ? "reproducible" : "not reproduced in the box";
 }
 
-/// The cheapest point at which most of the group's claims hold; null if none holds anywhere.
+/// The cheapest of the points at which the largest number of the group's claims hold; null if none holds anywhere.
 std::optional<Point> best_of(const Group& g, const Keys& keys) {
   std::optional<Point> out;
   for (const auto& [settings, p] : points_of(g, keys))
@@ -88,7 +88,7 @@ Cell command_of(const Point& p) {
                      first.drawn().value("assets", "") == "procedural" ? " --procedural" : "");
 }
 
-/// Values of the point as options of `clothbench run`; for all claims, only values that their scenes share.
+/// Values of the point as options of `clothbench run`; in the row for all claims, only values that all scenes share.
 Cell options_of(const Point& p) {
   const std::string& solver = p.runs.front()->solver;
   std::vector<std::string> out;
@@ -173,7 +173,7 @@ const Samples& published_samples() {
   return all;
 }
 
-/// The times of a row: the published ones, or the group's at the same resolutions and sides; empty if one is missing.
+/// A row's times: published, or measured at the same resolutions and sides; empty if one of these was not measured.
 Samples samples_of(const Group& g, const Keys& keys) {
   if (keys.front().text == kPublished) return published_samples();
   Samples out;

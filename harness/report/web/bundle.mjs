@@ -9,7 +9,7 @@ import {join} from 'node:path';
 const [web, out, npm] = process.argv.slice(2), source = join(web, 'src'), packages = join(out, 'node_modules');
 const read = file => readFileSync(file, 'utf8');
 
-/// Installs the packages if they are missing. The copy of the lock is written last, so that an interrupted fetch is repeated.
+/// Installs the packages if they are missing. The copy of the lock file is written last, so that an interrupted download is repeated.
 function install() {
   const lock = join(web, 'package-lock.json'), fetched = join(out, 'fetched-lock.json');
   if (existsSync(fetched) && read(fetched) === read(lock)) return;
@@ -43,7 +43,7 @@ try {
 }
 const {build} = createRequire(join(packages, 'x.js'))('esbuild');
 
-/// esbuild escapes "</script" in strings only; this function does the rest, including "<!--".
+/// esbuild escapes "</script" only in strings; this function escapes it elsewhere, and "<!--".
 const script_safe = text => text.replaceAll('<!--', '\\x3C!--').replaceAll(/<\/(script)/gi, '<\\/$1');
 
 async function bundled(entry, options) {

@@ -56,7 +56,7 @@ Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
 
 /// Rows with a trajectory, most important for the page first: the first leading scene, garments with contact, other
 /// leading scenes, other and random scenes with contact, scenes without contact; last, runs without a cloth model.
-/// Within each: default settings first, then one row per solver before any solver's second. At most six rows per scene.
+/// Within each group: default settings first; each solver's first row before any second row. At most six per scene.
 std::vector<const Row*> candidates(const RunTable& table) {
   std::vector<std::pair<std::tuple<bool, std::size_t, bool, std::size_t>, const Row*>> order;
   std::map<std::pair<std::string, std::string>, std::size_t> of_solver;

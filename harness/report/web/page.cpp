@@ -39,7 +39,7 @@ void add_times(const Row& r, json& out) {
         out[name].push_back(rounded(s));
 }
 
-/// Kind of the objects that touch a scene's cloth: "2 grips", "hand_capsules". Scenes of a kind may differ in speed.
+/// Kinds of the objects that touch a scene's cloth: "2 grips", "hand_capsules". Their speeds do not count.
 std::string kind_of_contact(const json& scenario) {
   std::set<std::string> out;
   for (const json& c : scenario.value("colliders", json::array())) out.insert(c.value("type", ""));
@@ -89,7 +89,7 @@ json figure_row(const Row& r) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
     out["published"] = r.published >= 0;
-    out["width"] = std::sqrt(r.resolution.size());  // vertices along a side; for a mesh, of a square with as many
+    out["width"] = std::sqrt(r.resolution.size());  // vertices per side; for a mesh, of a square grid with as many
     out["resolution"] = r.resolution.label();
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
     out["fps_low"] = finite_or_null(r.times->wall.rate.low);
@@ -115,7 +115,7 @@ std::string plain_command(const std::string& line) {
   return std::regex_replace(plain, std::regex(" (--out|-o|--device)[ =]\\S+| --resume"), "");
 }
 
-/// The study folders of the runs; stores in each row the run's index in its folder.
+/// The study folders of the runs. Also stores in each row the index of its folder and of the run in the study.
 json studies_of(const RunTable& table, json& rows) {
   json out = json::array();
   std::map<std::string, std::pair<std::size_t, std::map<std::string, std::size_t>>> folders;
@@ -140,7 +140,7 @@ json studies_of(const RunTable& table, json& rows) {
   return out;
 }
 
-/// The head, then rows of cells: a text, or [text, value or null, tone].
+/// The head, then rows of cells. A cell is a text, or [text, value or null, tone].
 json rows_json(const ViewTable& t) {
   json out = t.rows;
   for (std::size_t r = 0; r < t.cells.size(); ++r)

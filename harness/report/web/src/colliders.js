@@ -45,7 +45,7 @@ function capsules(array, rate) {
   };
 }
 
-/// Depth of a point in a convex body: its distance behind the nearest of the triangles' planes.
+/// Function that returns a point's depth in a convex body: the distance behind the nearest of its triangles' planes.
 function convex_depth(position, corners) {
   const planes = [];
   for (let k = 0; k < corners.length; k += 3) {
@@ -122,8 +122,8 @@ export function make_colliders(groups) {
   return out;
 }
 
-/// Writes the depth in m at each vertex into `out`: the maximum over the vertex and the midpoints of its edges and
-/// triangles, because a fingertip may pass between vertices; 0 outside; -1 if an edge at the vertex crosses a mesh.
+/// Writes the depth [m] at each vertex into `out`: 0 outside; -1 if an edge at the vertex crosses a mesh; otherwise the
+/// maximum over the vertex and the midpoints of its edges and triangles, because a fingertip may pass between vertices.
 export function penetration(colliders, edges, triangles, position, out) {
   out.fill(0);
   const x = new THREE.Vector3(), y = new THREE.Vector3();

@@ -18,7 +18,7 @@ export function select(label, options, value, changed) {
   return element('label', {}, label, list);
 }
 
-/// The buffer behind base64 of zlib.
+/// Decodes the text of an element (base64 of zlib) into a buffer.
 export function unpacked(id) {
   const packed = Uint8Array.from(atob(document.getElementById(id).textContent), c => c.charCodeAt(0));
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
@@ -27,7 +27,7 @@ export function unpacked(id) {
 /// "Table 3: frames…" -> "table-3-frames"
 export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
 
-/// Region whose text screen readers announce.
+/// The element whose text screen readers announce.
 let live = null;
 export function say(text) {
   live ??= document.body.appendChild(element('div', {class: 'skip', role: 'status', 'aria-live': 'polite'}));

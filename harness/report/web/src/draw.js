@@ -1,4 +1,4 @@
-// The one drawing of all figures, on the page and on paper: Vega-Lite compiles an entry's spec, Vega draws it.
+// Draws every figure, on the page and on paper: Vega-Lite compiles an entry's spec, Vega draws it.
 import {expressionFunction, parse, textMetrics, View} from 'vega';
 import {compile} from 'vega-lite';
 
@@ -31,7 +31,7 @@ function config({font, paper}, width) {
 }
 
 const kAnchors = ['right', 'top-right', 'bottom-right', 'left', 'top', 'bottom', 'top-left', 'bottom-left'];
-/// Vega's labels without overlap, for the layer "names", which Vega-Lite cannot ask for.
+/// Vega's transform that places labels without overlap, for the layer "names"; Vega-Lite specs cannot contain it.
 const placed = right => ({
   type: 'label',
   size: {signal: `[width + ${right}, height]`},

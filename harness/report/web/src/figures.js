@@ -1,9 +1,9 @@
 // The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by draw.js. An entry:
 //   {id, section, title(state), caption, choices?, rows(state), drawn?(row), spec(rows, state, look), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `spec`: the Vega-Lite spec of those that are drawn and that the filter of solvers leaves; `look` as in spec.js.
-// `columns`: fields of a row, for the table behind the figure. `stills`: pictures beside the report, [{file, state}]; by
-// default one, named by the id. `hero`: may be the figure of the first screen, for which the first one is taken.
+// solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers; `look` as in spec.js.
+// `columns`: fields of a row, for the table behind the figure. `stills`: image files of the report, [{file, state}]; by
+// default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`.
 import {kSymbols, number, unique} from './look.js';
 import {band, by_solver, interval, legend, lines, log, panels, rules, symbols} from './spec.js';
 
@@ -14,11 +14,11 @@ const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
 const choice = (label, values, first, text = String) =>
     ({label, options: s => (typeof values === 'function' ? values(s) : values).map(value => ({value, text: text(value)})), first: () => first});
 
-/// The harness without a cloth model is far faster than every solver. It is drawn only if no other solver is.
+/// A solver without a cloth model is far faster than all others, and is drawn only if there are no others.
 const without_floor = (doc, rows) =>
     rows.every(r => doc.solvers.floor.includes(r.solver)) ? rows : rows.filter(r => !doc.solvers.floor.includes(r.solver));
 
-/// Is the row on the Pareto front of its solver, so that no other row has less of both fields?
+/// True if the row is on its solver's Pareto front of fields a and b, where smaller is better.
 const on_front = (p, rows, a, b) => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b]));
 
 // Error against run time -----------------------------------------------------
@@ -186,7 +186,7 @@ function frame_times(doc) {
 
 // Contact and stability ------------------------------------------------------
 
-/// Tone, sign, and the words of both in the legend, by verdict.
+/// By verdict: tone, path of the sign, and text of the legend.
 const kVerdicts = {
   pass: ['pass', 'M-3.5 0L-1 3L4 -3.5', '✓ pass'],
   fail: ['fail', 'M-3 -3L3 3M-3 3L3 -3', '× fail'],
@@ -197,7 +197,7 @@ const kVerdicts = {
 };
 const tone_of = r => kVerdicts[r.verdict] ?? kVerdicts.fail;
 const why = r => r.violated?.map(([name, found, expected]) => `${name}: found ${found}${expected && `, expected ${expected}`}`) ?? [];
-/// Runs with a verdict; a scene of several studies counts once, by its first run.
+/// Runs with a verdict; repeated runs (a scene in several studies) do not count.
 const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict !== '–' && !r.repeated);
 
 function verdicts(doc) {
@@ -255,7 +255,7 @@ export function wilson(passed, all) {
   return [Math.max(0, middle - half), Math.min(1, middle + half)];
 }
 
-/// The fraction of good runs by solver and value of `field`, with its interval; `more`: additions by the figure.
+/// The fraction of good runs by solver and value of `field`, with its interval; `more`: the figure's other keys.
 function shares(runs, field, is_good, more) {
   const row = (label, value, mine) => {
     const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
@@ -340,7 +340,7 @@ function claims(doc) {
 export const make_figures = doc =>
     [error_time, verdicts, forest, failure_speed, claims, rates, stability, frame_times].map(make => make(doc)).filter(Boolean);
 
-/// The choices of a figure; default where `given` has no valid value.
+/// A figure's choices: from `given` if valid, otherwise the default.
 export function settled(figure, given) {
   const state = {};
   for (const {label, options, first} of figure.choices ?? []) {

@@ -1,7 +1,7 @@
 // Numbers as text, and the colours and symbols of solvers, which are equal in all figures and tables.
 export const unique = list => [...new Set(list)];
 
-const kMost = 1e4;  // the minimum is 1e-3: other numbers are printed with a power of ten
+const kMost = 1e4;  // numbers from 1e-3 up to this are printed without a power of ten
 
 /// "0.0012", "12.5", "4.5·10⁻⁷"; "–" for what is not a number.
 export function number(v, digits = 3) {

@@ -34,7 +34,7 @@ function chips(doc, look) {
   tell();
 }
 
-/// First screen: the first figure, the leading scenes below it, Table 3 next to them. All else follows in sections.
+/// The first screen has the first figure, below it the leading scenes, and next to them Table 3. All else follows in sections.
 function sections(doc, look, motions) {
   const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
         below = doc.sections[0]?.id === 'overview' ? 1 : 0, links = [['overview', 'Overview']];

@@ -56,7 +56,7 @@ export class Motion {
     return out;
   }
 
-  /// Coordinates of each vertex in the first frame along the box's two longest sides, over the longest.
+  /// Coordinates of each vertex in the first frame along the box's two longest sides, divided by the longest side.
   places() {
     const sides = this.box.getSize(new Vector3()).toArray(), low = this.box.min.toArray();
     const along = [0, 1, 2].sort((a, b) => sides[b] - sides[a]), longest = sides[along[0]] || 1;

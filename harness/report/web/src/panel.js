@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import {make_colliders, penetration} from './colliders.js';
 import {load_colliders, Motion, strain} from './motion.js';
 
-// Viridis at fifths, from its published values; readable with all common colour-vision deficiencies.
+// Six equally spaced colours of Viridis; readable with all common colour-vision deficiencies.
 const kRamp = ['#440154', '#414487', '#2a788e', '#22a884', '#7ad151', '#fde725'].map(c => new THREE.Color(c));
 export const ramp_css = `linear-gradient(to right, ${kRamp.map(c => `#${c.getHexString()}`).join(', ')})`;
 export const crossing_css = '#ff1f8f';
@@ -45,7 +45,7 @@ export class Panel {
     this.unlit = new THREE.MeshBasicMaterial(shared);
     this.cloth = new THREE.Mesh(g, this.lit);
     this.cloth.frustumCulled = false;
-    const behind = {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};  // a cloth on the surface is visible
+    const behind = {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};  // keeps cloth on the surface visible
     this.solid = new THREE.MeshStandardMaterial({color: 0xb9a58c, side: THREE.DoubleSide, roughness: 1, metalness: 0, ...behind});
     this.colliders = make_colliders(colliders);
     for (const c of this.colliders) {

@@ -1,5 +1,5 @@
-// The element of a figure, drawn when it comes near the window: values on hover and by keyboard, controls, a table of its
-// values.
+// A figure on the page: values on hover and by keyboard, controls, a table of its values. It is drawn when it comes near the
+// window.
 import {button, element, say, select} from './dom.js';
 import {view_of} from './draw.js';
 import {command_of, settled} from './figures.js';
@@ -70,7 +70,7 @@ class Figure {
     });
   }
 
-  /// What is drawn of a row.
+  /// The SVG elements that draw a row.
   elements(at) { return [...this.plot.querySelectorAll(`[data-i="${at}"]`)]; }
 
   point(at, x, y, pin = false) {

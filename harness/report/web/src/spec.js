@@ -2,7 +2,7 @@
 import {kSymbols, unique} from './look.js';
 
 const kDashes = [[1, 0], [6, 3], [2, 3], [8, 3, 2, 3], [1, 2], [12, 4], [12, 3, 2, 3, 2, 3], [5, 6]];
-/// More lines have their names in the legend instead of at their ends.
+/// True if there are so many lines that the legend shows their names, instead of texts at their ends.
 const has_many = rows => unique(rows.map(r => r.line)).length > 4;
 
 /// Ticks of a logarithmic axis: powers of ten, and on short axes also multiples of them.
@@ -30,7 +30,7 @@ export function legend(names, look, more) {
   return {columns, ...more};
 }
 
-/// Stroke, fill and shape by solver. `hollow`: condition for an outline. On paper and beyond four lines with a legend.
+/// Stroke, fill and shape by solver. `hollow`: condition for an outline. Has a legend on paper, and for more than four lines.
 export function by_solver(rows, look, hollow = 'false') {
   const solvers = unique(rows.map(r => r.solver)), key = look.paper || has_many(rows) ? legend(solvers, look) : null;
   const channel = of => ({field: 'solver', type: 'nominal', scale: {domain: solvers, range: solvers.map(s => of(look.solvers[s]))}, legend: key});
@@ -52,7 +52,7 @@ export const rules = (list, channel, axis, more) => list.flatMap(({at, text, zon
   ];
 });
 
-/// Lines through rows of the same `line`, with names that avoid all rows and lines.
+/// Lines through the rows with the same `line`, and their names, placed so that they cover no mark or line.
 export function lines(rows, x, y, {stroke, fill: {condition, ...fill}}, look, all = rows) {
   const names = unique(rows.map(r => r.line)), of = name => rows.filter(r => r.line === name).sort((a, b) => a[x.field] - b[x.field]);
   const solver = name => rows.find(r => r.line === name).solver, few = !has_many(rows), dash = name => names.filter(n => solver(n) === solver(name)).indexOf(name);

@@ -12,14 +12,14 @@ import {make_figures, settled} from './figures.js';
 import {looks, unique} from './look.js';
 
 const kWidths = {'': 238, '-wide': 493}, kMostHeight = 311;  // points: 84 mm for one column of text, 174 mm for two; 110 mm
-const kPoint = 0.625;                                        // points for a pixel of the page: its letters become 7.5 points high
+const kPoint = 0.625;                                        // points per pixel of the page; letters become 7.5 points high
 const kPaper = {
   ink: '#000000', soft: '#222222', line: '#dddddd', back: '#ffffff',
   good: '#0b6b4b', bad: '#b23608', pass: '#8fcab6', fail: '#cc4a1b', none: '#eeeeee', ignored: '#d5d9de',
   'on-pass': '#000000', 'on-fail': '#ffffff', 'on-none': '#555555', 'on-ignored': '#000000'
 };
 
-/// A figure in black on white, as SVG of this width in points; `paper`: values of the style sheet's variables.
+/// A figure for white paper, as SVG of this width in points; `paper`: values of the style sheet's variables.
 export async function draw_on_paper(figure, state, solvers, width) {
   const paper = {...kPaper, ...Object.fromEntries(Object.values(solvers).map((l, k) => [`s${k}`, l.light]))}, look = {solvers, paper, font: 'DejaVu Sans, Verdana, sans-serif'};
   for (let shrink = 1;;) {
@@ -33,8 +33,8 @@ export async function draw_on_paper(figure, state, solvers, width) {
 
 const plain = text => text.replace(/\s+/g, ' ').replace(/[<[\]]/g, c => ({'<': '&lt;', '[': '(', ']': ')'}[c]));
 
-/// Makes a PDF file of every SVG file, or none; returns a sentence on the reason for none. PDF files contain their creation
-/// time, which is fixed here so that equal runs give equal files.
+/// Makes a PDF file of every SVG file, or of none; if none, returns a sentence with the reason. PDF files contain their
+/// creation time, which is fixed here so that equal runs give equal files.
 function convert(pictures) {
   const pdf = svg => svg.replace(/svg$/, 'pdf'), env = {...process.env, SOURCE_DATE_EPOCH: '0'};
   try {

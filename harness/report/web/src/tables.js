@@ -5,7 +5,7 @@ import {icon} from './look.js';
 import {set_value, shown, state} from './state.js';
 
 const kFew = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)'), kMedium = matchMedia('(max-width: 1180px)');
-const kPaper = 132, kWrap = 24;  // characters across a printed page; longer cells break
+const kPaper = 132, kWrap = 24;  // characters across a printed page; characters at which a cell wraps
 /// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
 const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
 
@@ -83,7 +83,7 @@ export class ShownTable {
     return out.map(part => [...fixed, ...part]);
   }
 
-  /// Shows how many columns are hidden to the right. The first three keys stay in view if they fit into half of the box, or two.
+  /// Shows how many columns are hidden to the right. The first key stays in view; the next two do if half of the box is enough.
   tell_hidden() {
     const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
     const widths = heads.map(h => h.offsetWidth), keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, until = n => widths.slice(0, n).reduce((a, b) => a + b, 0);
@@ -123,7 +123,7 @@ export class ShownTable {
         ...more.map(j => element('small', {}, ...parts(j).filter(p => p !== null))));
   }
 
-  /// A link from a failed run to the criteria that it violates; null if this table lists them, or none does.
+  /// A link from a failed run to the criteria that it violates; null if this table lists them, or no table does.
   criteria(cells, k, run) {
     const failed = this.table.solvers[k] ? this.doc.runs.find(r => r.scene === cells[0].text && r.label === this.head[k]) : run;
     const list = tables.find(t => t.table.title.startsWith('Acceptance criteria')), has = r => r.run.scene === failed?.scene && r.run.label === failed.label;
@@ -183,5 +183,5 @@ export function start_tables() {
     const t = tables.find(t => !t.filled);
     if (t) t.fill(), idle(rest);
   };
-  idle(rest);  // all rows become text that the browser can find
+  idle(rest);  // fills all tables, so that the browser's search finds every row
 }

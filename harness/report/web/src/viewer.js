@@ -1,4 +1,4 @@
-// The motions of one scene, side by side and synchronised: one panel per solver, further settings if there is room.
+// The motions of one scene, side by side and synchronised: one panel per run.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
@@ -174,11 +174,11 @@ class Viewer {
     });
   }
 
-  /// The same picture as SVG, for browsers without WebGL.
+  /// Draws a panel as SVG, for browsers without WebGL.
   draw_svg(p, width, height) {
     if (!p.svg) {
       p.svg = new SVGRenderer();
-      p.lit = new THREE.MeshNormalMaterial({side: THREE.DoubleSide});  // its lights leave one side of a cloth dark
+      p.lit = new THREE.MeshNormalMaterial({side: THREE.DoubleSide});  // SVGRenderer's lights leave one side of a cloth dark
       for (const c of p.colliders) c.object.traverse(o => o.material &&= new THREE.MeshBasicMaterial({color: p.solid.color}));
     }
     p.svg.setSize(width, height);
