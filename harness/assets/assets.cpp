@@ -67,7 +67,7 @@ std::string fetching_script() {
   return script;
 }
 
-/// Folders to search, in order: the installed or source tree's own, then the user's.
+/// Folders to search, in order: in the installed tree, in the source tree, in the user's data.
 std::vector<fs::path> asset_places() {
   std::vector<fs::path> places = usual_places(kAssetFolder);
   if (const fs::path own = user_data(); !own.empty()) places.push_back(own / kAssetFolder.installed);

@@ -14,8 +14,8 @@ namespace clothbench::assets {
 enum class Side { Left, Right };
 constexpr std::string_view name_of(Side s) { return s == Side::Left ? "left" : "right"; }
 
-/// Joints of the WebXR Hand Input module, in its order. A joint's -z points along its bone to the tip, its +y out of
-/// the back of the hand.
+/// Joints of the WebXR Hand Input module, in its order. A joint's -z axis points along its bone to the tip; its +y axis
+/// points out of the back of the hand.
 inline constexpr std::array<std::string_view, 25> kJointNames = {"wrist",
                                                                  "thumb-metacarpal",
                                                                  "thumb-phalanx-proximal",

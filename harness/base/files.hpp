@@ -5,7 +5,7 @@
 
 namespace clothbench {
 
-/// Stands between a file's name and the id of the writing process in a temporary name.
+/// Separates a file's name from the id of the writing process in a temporary name.
 inline constexpr char kTemporaryMark[] = ".tmp.";
 
 /// `<path>.tmp.<pid>`: name of an incomplete file.

@@ -77,7 +77,7 @@ std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& i
   std::string message;
   if (!added.empty()) message = "not in the baseline: " + added;
   if (!gone.empty()) message += (message.empty() ? "" : "; ") + ("missing: " + gone);
-  if (message.empty()) message = "the same stages, order or number differs";
+  if (message.empty()) message = "the same stages in another order or number";
   return {{Verdict::Failed, "stages", fmt::format("{} stages", was.stages.size()),
            fmt::format("{} stages", is.stages.size()), "", message}};
 }

@@ -140,8 +140,8 @@ typedef struct ClothbenchScene {
   uint32_t collider_count;
   const ClothbenchCollider* colliders;
   const ClothbenchPose* poses;            /* one per collider, at the start */
-  double self_thickness_m, self_friction; /* distance between two layers of the cloth in contact, 0: no
-                                             self-collision; Coulomb coefficient of cloth on cloth */
+  double self_thickness_m, self_friction; /* distance between two layers in contact (0: no self-
+                                             collision); Coulomb coefficient of cloth on cloth */
 
   /* 3 per vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent,
    * folded or scattered (position_m). This shape defines the rest lengths of edges. */

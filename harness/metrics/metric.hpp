@@ -19,7 +19,7 @@ struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;
   const nlohmann::json&
-      settings;  ///< complete; only for the solver's free_fall_m, as no metric may depend on a setting by name
+      settings;  ///< complete; only for the solver's free_fall_m, because no metric may use a setting by name
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 

@@ -74,7 +74,7 @@ class ColliderReader {
   /// JSON pointer of the object.
   const std::string& pointer() const { return at_; }
 
-  std::function<ColliderPose(double time_s)> pose;  ///< of a dynamic collider
+  std::function<ColliderPose(double time_s)> pose;  ///< of a kinematic collider
   struct RoundTable {
     assets::Table table;
     ColliderMesh mesh;

@@ -37,7 +37,7 @@ struct Strip {
     need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
          "even cells and no spin");
     need(may_shear || !scene.needs.has(Feature::Shear),
-         "\"shear\": false in its material: so that rows are independent");
+         "\"shear\": false in its material, so that rows are independent");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 

@@ -13,7 +13,7 @@
 
 namespace clothbench {
 
-/// One setting of a solver. `default_json` is a JSON literal and fixes the type.
+/// One setting of a solver. `default_json` is a JSON literal, whose type is the type of the setting.
 struct SettingSpec {
   std::string name, default_json, doc;
 };
@@ -183,7 +183,7 @@ const std::vector<std::string>& solver_names_of_tree();
 /// Prefix of a shared library's path on the command line; prefix and path make up the plugin's SolverInfo::folder.
 inline constexpr char kPluginPrefix[] = "plugin:";
 /// The solver in a shared library (clothbench_plugin.h). `name`: "plugin:PATH", or the name of a plugin that this
-/// process or its parent has loaded; otherwise null. Throws Error if the library is not a solver.
+/// process or its parent has loaded. Null for another name. Throws Error if the library is not a solver.
 const SolverEntry* external_solver(const std::string& name);
 inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
 /// Finds a solver by name or "plugin:PATH". Throws Error that suggests the most similar known name.

@@ -174,7 +174,7 @@ struct Capsule {
   double radius_m;
 };
 
-/// Parameter on the axis of its point nearest to p, from 0 at a to 1 at b; 0 for a sphere.
+/// Parameter of the axis point nearest to p, from 0 at a to 1 at b; 0 for a sphere.
 double axis_share(const Point<3>& p, const Capsule&);
 
 /// Signed distance [m] to the surface, negative inside; exact.
@@ -201,7 +201,7 @@ struct Nearest {
   Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest point of a union of capsules. `before`: the capsules one frame earlier; no capsule spins about its axis.
+/// Nearest point of a union of capsules. `before`: the capsules one frame earlier; assumes no spin about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
 /// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.

@@ -30,7 +30,7 @@ double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
 }
 
-/// Largest strain between two held vertices: attached to attached or pinned ones; if `m` is null, between pins.
+/// Largest strain between two held vertices, at least one of them attached; if `m` is null, between two pinned ones.
 double imposed_strain(const Scene& s, const std::vector<double>& start, const FrameMotion* m) {
   std::vector<std::pair<std::uint32_t, Vec3>> held;
   for (const std::uint32_t v : s.pins.vertices) held.emplace_back(v, vertex_at(start, v));
