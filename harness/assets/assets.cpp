@@ -57,7 +57,7 @@ fs::path user_data() {
   return {};
 }
 
-/// Path of fetch-assets.sh as a user of this build can call it.
+/// Path by which a user of this build can call fetch-assets.sh.
 std::string fetching_script() {
   const char* const script = "scripts/fetch-assets.sh";
   const DataRoots roots = data_roots();

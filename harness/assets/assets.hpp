@@ -36,7 +36,7 @@ Hand open_hand(const AssetSource&, Side);
 /// machine.
 Room procedural_room();
 
-/// A hand that needs no file: a right hand (or its mirror image) with rounded sizes, all kJointNames and kPoseNames.
+/// A hand that needs no file: a right hand (or its mirror image) with rounded sizes, and with all joints and poses.
 /// Its mesh is five overlapping closed tubes, one per finger from the metacarpal on. The mesh is closed, so winding
 /// numbers separate inside and outside, but it is not one surface: its volume counts the overlap in the palm twice.
 Hand procedural_hand(Side);

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-// tiny_gltf.h then includes its definitions. The #undef keeps the next file of a unity build from including them again.
+// Makes tiny_gltf.h include its definitions. The #undef keeps the next file of a unity build from including them again.
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION

@@ -188,8 +188,8 @@ std::vector<Block> solids_of(const Plan& p) {
   return blocks;
 }
 
-/// Coordinates of grid lines along one axis: every block face, and lines between the faces. Gaps are at most `kFine`
-/// if a horizontal axis crosses a block there, otherwise at most `kCoarse`.
+/// Coordinates of grid lines along one axis: every block face, and lines between the faces. On a
+/// horizontal axis, gaps over a block are at most `kFine`; all other gaps are at most `kCoarse`.
 std::vector<double> grid_lines(int axis, double low, double high, const std::vector<Block>& blocks) {
   std::vector<double> faces = {low, high};
   for (const Block& b : blocks) faces.insert(faces.end(), {b.low[axis], b.high[axis]});

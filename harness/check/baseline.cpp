@@ -105,7 +105,7 @@ BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
   return c;
 }
 
-constexpr Gate kVerdict{};  // its tolerance is in the scene
+constexpr Gate kVerdict{};  // the scene's bound includes the tolerance
 
 }  // namespace
 

@@ -61,7 +61,7 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds the conditions that differ between A's first run and the others. A different order only forbids time verdicts.
+/// Adds the conditions that differ between A's first run and the other runs. The order of A and B affects only times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);

@@ -78,7 +78,7 @@ bool lock(int file, std::size_t first, int count) {
   range.l_type = F_WRLCK;
   range.l_start = static_cast<off_t>(first);
   range.l_len = count;
-  return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // true if unsupported
+  return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // true without lock support
 }
 
 /// Record of a planned run without a result; its name is "<scene>__<solver>__<setting>".
@@ -148,7 +148,7 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
         header.settings.dump()));
   has_replay_ = !before.replay.empty();
   fs::resize_file(part_, complete_B);  // removes an incomplete item
-  // The header states the machine's condition at the load before the trials.
+  // The header describes the machine as it was when the run was loaded, before the trials.
   if (before.trials.empty()) append_to_part(part_, "header", header_to_json(header));
 }
 

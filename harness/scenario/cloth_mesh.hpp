@@ -42,7 +42,7 @@ std::vector<std::uint32_t> listed_vertices(const Cloth&, const nlohmann::json& l
                                            const std::string& pointer);
 
 /// All vertices that an object of the scene selects: "corners", "edge" and "clamp" of a grid; "group" and "nearest_m"
-/// of a mesh (nearest to points in the mesh's frame; of several at equal distance, the first); "vertices" of either.
+/// of a mesh (the vertices nearest to points in its frame; the first if equally near); "vertices" of either.
 /// Throws Error at `pointer` of the scene if it selects none, or something that the cloth does not have.
 std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&, const std::string& source,
                                              const std::string& pointer);
@@ -67,7 +67,7 @@ struct DrawnSheet {
 /// equal mesh.
 ClothMesh drawn_mesh(const DrawnSheet&);
 
-/// Reads `cloth.mesh.drawn`: such a sheet with its centre at the origin. Throws Error with the JSON pointer if the
+/// Reads `cloth.mesh.drawn`: a DrawnSheet with its centre at the origin. Throws Error with the JSON pointer if the
 /// sheet would have more than 20 000 vertices, or all copies more than 2 000 000.
 ClothMesh read_drawn_mesh(const nlohmann::json& drawn, const std::string& source);
 

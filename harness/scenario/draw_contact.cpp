@@ -122,7 +122,7 @@ double draw_fold(json& scene, DrawnValues& draw) {
 /// size have no natural scale.
 bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
 
-/// Samples each range; its name is a dotted key of the scene.
+/// Samples each range; the range's name is a dotted key of the scene.
 double draw_keys(json& scene, DrawnValues& draw) {
   for (const auto& [key, unused] : draw.ranges().items()) {
     const auto [low, high] = draw.bounds(key);
@@ -185,7 +185,7 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
     for (const auto& [key, range] : ranges.items()) {
       const json value = at_point(range, point.next(), false, draw.at() + "/" + key);
       draw.note(key, value);
-      // A square of this side.
+      // The value is the side of a square.
       apply_override(scene, key + "=" + (key == "cloth.size_m" ? json{value, value} : value).dump(), draw.at());
     }
 }

@@ -13,8 +13,8 @@ namespace {
 /// Width [cells] that grid line `i` of `n` stands for: 1, or 0.5 at the border.
 double share(int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; }
 
-/// Angle between neighbouring chords of an arc of n equal chords whose ends are `span` chords apart:
-/// sin(n d/2) / sin(d/2) = span, which falls from n at d = 0 to 0 at d = 2 pi/n.
+/// Angle d between neighbouring chords of an arc of n equal chords if the arc's ends are `span` chords apart. Solves
+/// sin(n d/2) / sin(d/2) = span; the left side falls from n at d = 0 to 0 at d = 2 pi/n.
 double chord_angle(int n, double span) {
   double low = 0, high = 2 * std::numbers::pi / n;
   for (int k = 0; k < 200 && low < high; ++k) {

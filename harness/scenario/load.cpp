@@ -341,7 +341,7 @@ void complete_expect(nlohmann::json& expect, const Scene& scene, const std::stri
       expect[b.scalar] = {{"at_most", b.at_most}};
     } else if (!(upper_bound(expect[b.scalar]) <= b.at_most) && !expect[b.scalar].contains("why")) {
       refuse(source, std::string("/expect/") + b.scalar,
-             fmt::format("\"why\", the reason for a bound looser than the strict one (at most {:g})", b.at_most));
+             fmt::format("expected \"why\", the reason for a bound looser than the strict one ({:g})", b.at_most));
     }
   }
 }

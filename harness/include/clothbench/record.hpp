@@ -54,7 +54,7 @@ struct TimedTrial {
   /// CPU time [s] of the process in each timed frame, summed over its threads (CLOCK_PROCESS_CPUTIME_ID). Empty for a
   /// GPU solver.
   std::vector<double> frame_cpu_s = {};
-  /// System times [s since 1970 UTC] of the start of the first timed frame and the end of the last, for device logs.
+  /// System times [s since 1970 UTC] of the first timed frame's start and the last one's end, to match device logs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }

@@ -26,7 +26,7 @@ struct Start {
   int folds = 0;        ///< layers of a folded sheet
   double noise_m = 0;   ///< standard deviation of the noise on every coordinate
   std::uint64_t seed = 0;
-  std::vector<std::vector<std::uint32_t>> merged;  ///< vertices of a list, also pinned ones, start at its first
+  std::vector<std::vector<std::uint32_t>> merged;  ///< vertices of a list, also pinned ones, start at the first one
   struct Move {
     std::vector<std::uint32_t> vertices;
     Vec3 by_m{};
@@ -188,7 +188,7 @@ struct Scene {
 };
 
 /// Lumped vertex masses [kg], size vertex_count. A grid vertex has a quarter of each adjacent cell ("quad-lumped":
-/// interior rho*du*dv, edge half, corner quarter) times its mass factor; a mesh vertex has a third of each triangle.
+/// interior rho*du*dv, edge half, corner quarter), a mesh vertex a third of each triangle; times its mass factor.
 std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.

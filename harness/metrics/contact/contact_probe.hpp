@@ -13,9 +13,9 @@ struct ContactSample {
   double depth_max_m;       ///< of the cloth in the object, between vertices too; NaN for an object without inside
 };
 
-/// Contact with a mesh. The contour is exact (`contour`). The depth is the largest distance from the surface of
-/// vertices, edge midpoints and centroids inside it; vertices only would miss a finger that rises through the middle of
-/// a triangle. A mesh with an inside is closed, with outward normals. `links`: edges_of the cloth.
+/// Contact with a mesh. The contour is exact (`contour`). The depth is the largest distance to the mesh's surface, over
+/// the cloth's vertices, edge midpoints and centroids inside; vertices only would miss a finger that rises through the
+/// middle of a triangle. A mesh with an inside is closed, with outward normals. `links`: edges_of the cloth.
 ContactSample mesh_contact(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh,
                            bool has_inside);
 

@@ -41,8 +41,8 @@ inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 /// Point `i` of coordinates, xyz interleaved.
 inline Point<3> point_at(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
-/// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from the
-/// side the normal points to. Triangles may be degenerate, and vertices may be repeated instead of shared.
+/// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, counter-clockwise seen from the
+/// side to which the normal points. Triangles may be degenerate, and vertices may be repeated instead of shared.
 struct TriangleMeshView {
   std::span<const double> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;

@@ -74,7 +74,7 @@ class Paths {
   std::vector<double> path_m_;  ///< of each frame's vertices
 };
 
-/// Path length [m] by the end of each frame, summed over the fastest collider or grip of each frame.
+/// Path length [m] up to each frame's end: the sum of the displacements of the fastest collider or grip in each frame.
 std::vector<double> driven_m(const RunView& r) {
   const std::vector<double> speeds = driving_speeds_m_per_s(r.scene);
   std::vector<double> way(r.pass.time_s.size(), 0);

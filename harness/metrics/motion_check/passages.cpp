@@ -128,7 +128,7 @@ std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   return out;
 }
 
-/// Number of points that pass the cloth whichever moves first: the points, the cloth, or both together.
+/// Number of points that pass the cloth in all three orders of motion: points first, cloth first, both at once.
 int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
   Box swept, path;
   for (std::size_t v = 0; v < m.vertices; ++v) {
