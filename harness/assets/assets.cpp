@@ -57,7 +57,7 @@ fs::path user_data() {
   return {};
 }
 
-/// Path of fetch-assets.sh as a user of this build can call it.
+/// Path by which a user of this build can call fetch-assets.sh.
 std::string fetching_script() {
   const char* const script = "scripts/fetch-assets.sh";
   const DataRoots roots = data_roots();
@@ -67,7 +67,7 @@ std::string fetching_script() {
   return script;
 }
 
-/// Folders to search, in order: the installed or source tree's own, then the user's.
+/// Folders to search, in order: in the installed tree, in the source tree, in the user's data.
 std::vector<fs::path> asset_places() {
   std::vector<fs::path> places = usual_places(kAssetFolder);
   if (const fs::path own = user_data(); !own.empty()) places.push_back(own / kAssetFolder.installed);

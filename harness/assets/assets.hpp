@@ -31,12 +31,12 @@ Room open_room(const AssetSource&, const std::string& name);
 Hand open_hand(const AssetSource&, Side);
 
 /// A room that needs no file, for use without captures: 5 x 2.5 x 4 m, with two tables (slab and four legs) instead of
-/// the living room's 444c8313 (low) and 1088a241 (desk). It is one closed manifold with normals into free space and
-/// edges of 5 to 25 cm. Its table tops have a roughness of about 5 mm rms, as in scans. Bitwise reproducible on one
+/// the living room's tables 444c8313 (low) and 1088a241 (desk). It is one closed manifold with normals into free space
+/// and edges of 5 to 25 cm. Its table tops have a roughness of about 5 mm rms, as in scans. Bitwise reproducible on one
 /// machine.
 Room procedural_room();
 
-/// A hand that needs no file: a right hand (or its mirror image) with round-number sizes, the same joints and poses.
+/// A hand that needs no file: a right hand (or its mirror image) with rounded sizes, and with all joints and poses.
 /// Its mesh is five overlapping closed tubes, one per finger from the metacarpal on. The mesh is closed, so winding
 /// numbers separate inside and outside, but it is not one surface: its volume counts the overlap in the palm twice.
 Hand procedural_hand(Side);

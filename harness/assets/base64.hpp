@@ -15,7 +15,7 @@ namespace clothbench::assets {
 
 inline constexpr std::string_view kBase64Digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// RFC 4648 section 4, padded, no line breaks.
+/// Base64 of RFC 4648, section 4: padded, without line breaks.
 inline std::string encode_base64(const std::uint8_t* bytes, std::size_t count) {
   std::string text;
   text.reserve((count + 2) / 3 * 4);
@@ -41,7 +41,7 @@ inline std::vector<std::uint8_t> decode_base64(const std::string& text, const st
   int held = 0;
   for (std::size_t i = 0; i < digits; ++i) {
     const std::size_t v = kBase64Digits.find(text[i]);
-    if (v == kBase64Digits.npos) refuse(source, pointer, fmt::format("character {} is not of the base64 alphabet", i));
+    if (v == kBase64Digits.npos) refuse(source, pointer, fmt::format("character {} is not in the base64 alphabet", i));
     bits = (bits << 6 | static_cast<std::uint32_t>(v)) & 0xffffffu;
     held += 6;
     if (held >= 8) {
@@ -54,7 +54,7 @@ inline std::vector<std::uint8_t> decode_base64(const std::string& text, const st
   return out;
 }
 
-/// The bytes, copied unchanged into items.
+/// Decodes base64 and copies the bytes unchanged into items.
 template <class Item>
 std::vector<Item> decode_items(const std::string& text, const std::string& source, const std::string& pointer) {
   static_assert(std::is_trivially_copyable_v<Item> && std::endian::native == std::endian::little);

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-// Includes the definitions, too. The #undef keeps the next file of a unity build from including them again.
+// Makes tiny_gltf.h include its definitions. The #undef keeps the next file of a unity build from including them again.
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 #undef TINYGLTF_IMPLEMENTATION
@@ -21,7 +21,7 @@
 namespace clothbench::assets::gltf {
 namespace {
 
-/// Types of all values of a glTF 2.0 file that the readers use, because tinygltf skips values of a wrong type.
+/// Schema for all values of a glTF 2.0 file that the readers use, because tinygltf skips values of a wrong type.
 constexpr char kSchema[] =
 #include "gltf.schema.inc"
     ;
@@ -225,7 +225,7 @@ class MeshReader {
   std::set<std::size_t> active_nodes() const {
     const auto count = static_cast<int>(model_.scenes.size());
     if (model_.defaultScene < 0 && count > 1)
-      fail(source_, fmt::format("/scene: missing; expected the index of the one of its {} scenes to read", count));
+      fail(source_, fmt::format("/scene: missing; expected the index of one of the {} scenes", count));
     std::vector<int> todo;
     if (count > 0)
       todo = gltf::pick(model_.scenes, std::max(model_.defaultScene, 0), source_, "scenes").nodes;
@@ -266,7 +266,7 @@ class MeshReader {
     std::vector<double> x = attribute(p.attributes, "POSITION", TINYGLTF_TYPE_VEC3);
     if (x.empty()) fail(source_, where + "/attributes: \"POSITION\" is missing");
     if (!weights.empty() && weights.size() != p.targets.size())
-      fail(source_, fmt::format("{}/targets: {} morph targets, but {} weights; expected as many", where,
+      fail(source_, fmt::format("{}/targets: {} morph targets, but {} weights; expected one for each", where,
                                 p.targets.size(), weights.size()));
     for (std::size_t k = 0; k < weights.size(); ++k) {
       if (weights[k] == 0) continue;

@@ -14,8 +14,8 @@ namespace clothbench::assets {
 enum class Side { Left, Right };
 constexpr std::string_view name_of(Side s) { return s == Side::Left ? "left" : "right"; }
 
-/// Joints of the WebXR Hand Input module, in its order. A joint's -z points along its bone to the tip, its +y out of
-/// the back of the hand.
+/// Joints of the WebXR Hand Input module, in its order. A joint's -z axis points along its bone to the tip; its +y axis
+/// points out of the back of the hand.
 inline constexpr std::array<std::string_view, 25> kJointNames = {"wrist",
                                                                  "thumb-metacarpal",
                                                                  "thumb-phalanx-proximal",
@@ -59,7 +59,7 @@ struct HandPose {
 /// Poses that every hand provides.
 inline constexpr std::array<std::string_view, 3> kPoseNames = {"relaxed", "pinch", "point"};
 
-/// Parses a pose module of `iwer` (lib/device/configs/hand/*.js): left hand, relative to the pointing ray's space. Only
+/// Parses a pose module of `iwer` (lib/device/configs/hand/*.js): a left hand, in the space of the pointing ray. Only
 /// parses the object literal; executes no code. Throws Error with file and JSON pointer.
 HandPose parse_pose_js(const std::string& text, const std::string& source);
 
@@ -103,7 +103,7 @@ struct SkinnedMesh {
 /// coincident vertices, which the file repeats along texture seams. Throws Error naming the file and its fault.
 SkinnedMesh parse_hand_glb(const std::string& bytes, const std::string& source);
 
-/// A hand: its mesh, and kPoseNames in the palm frame (`palm_frame`) for this side.
+/// A hand: its mesh, and the poses of kPoseNames for this side, in the palm frame (`palm_frame`).
 struct Hand {
   Side side = Side::Right;
   SkinnedMesh mesh;

@@ -86,7 +86,7 @@ struct HandRecording {
   bool has_capsules = false;
   std::vector<RecordedHand> frames;  ///< at times 0, 1, 2, ... frames
 
-  /// The hand at `time_s`; constant before the first frame and after the last. Throws Error between two frames.
+  /// The hand at `time_s`; constant before the first frame and after the last. Throws Error for a time between frames.
   const RecordedHand& at(double time_s) const;
 };
 

@@ -12,7 +12,7 @@ using Box = Eigen::AlignedBox3d;
 /// A rigid transformation: rotation and translation [m].
 using Frame = Eigen::Isometry3d;
 
-/// positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from free space.
+/// positions [m], xyz interleaved; triangles, 3 vertex indices each, counter-clockwise as seen from free space.
 struct TriangleMesh {
   std::vector<double> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -9,7 +9,7 @@
 namespace clothbench::assets {
 namespace {
 
-// A right hand in its palm frame, with rounded sizes of an adult's hand in metres and degrees. The thumb is at -x.
+// A right hand in its palm frame, in metres and degrees, with rounded sizes of an adult's hand. The thumb is at -x.
 struct Finger {
   std::size_t first;         ///< metacarpal joint
   double x_base, x_knuckle;  ///< x of the metacarpal and the proximal joint
@@ -172,7 +172,7 @@ struct Plan {
   double length_x, length_z;
 };
 
-// Heights and sizes are rounded from those of the two scanned tables.
+// Rounded heights and sizes of the two scanned tables.
 const Plan kPlans[] = {{"procedural-low-table", "444c8313", {1.2, 0.45, -0.4}, 0.6, 1.1},
                        {"procedural-desk", "1088a241", {-1.4, 0.76, 0.2}, 0.75, 1.3}};
 
@@ -188,8 +188,8 @@ std::vector<Block> solids_of(const Plan& p) {
   return blocks;
 }
 
-/// Grid lines of one axis through all block faces; gaps in between are at most `kFine` over a table, otherwise at most
-/// `kCoarse`.
+/// Coordinates of grid lines along one axis: every block face, and lines between the faces. On a
+/// horizontal axis, gaps over a block are at most `kFine`; all other gaps are at most `kCoarse`.
 std::vector<double> grid_lines(int axis, double low, double high, const std::vector<Block>& blocks) {
   std::vector<double> faces = {low, high};
   for (const Block& b : blocks) faces.insert(faces.end(), {b.low[axis], b.high[axis]});
@@ -280,7 +280,7 @@ class CellRoom {
   TriangleMesh mesh_;
 };
 
-/// Sum of three waves of different lengths and directions: rms 5 mm, at most 12 mm, all shorter than the tables.
+/// Sum of three waves of different lengths and directions, all shorter than the tables: rms 5 mm, peak 12.3 mm.
 double roughness(double x, double z) {
   return 0.0041 *
          (std::sin(9.1 * x + 4.7 * z) + std::sin(21.3 * z - 6.1 * x + 1.0) + std::sin(33.7 * x + 27.9 * z + 2.0));

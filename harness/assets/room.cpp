@@ -177,7 +177,7 @@ bool is_closed_manifold(const TriangleMesh& mesh) {
 
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
-  // Volume relative to one of the mesh's points: far from the origin, digits would be lost.
+  // Volume relative to one of the mesh's points, because digits would be lost far from the origin.
   const Vector origin = mesh.vertex(mesh.triangles[0][0]);
   double six = 0;
   for (const auto& t : mesh.triangles)

@@ -20,7 +20,7 @@ extern char** environ;
 namespace clothbench {
 namespace {
 
-/// Returns 0, or the errno that prevented the start. `input`: descriptor for its standard input, -1 for this process's.
+/// Returns 0, or the errno that prevented the start. `input`: descriptor for the child's standard input; -1: inherited.
 int spawn(const std::vector<std::string>& argv, const ChildSetup& setup, int input, pid_t& pid) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
@@ -55,7 +55,7 @@ std::string ChildEnd::text() const {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& argv, const ChildSetup& setup) {
   int ends[2] = {-1, -1};
-  // Close-on-exec, so that no other child inherits it: a hang-up then means that this child has ended.
+  // Close-on-exec, so that no other child inherits the socket: a hang-up then means that this child has ended.
   int failed = setup.socket && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 ? errno : 0;
   if (failed == 0) failed = spawn(argv, setup, ends[1], pid_);
   socket_ = ends[0];

@@ -16,7 +16,7 @@
 namespace clothbench {
 namespace {
 
-/// Throws. The exit code is a bad argument's for a path at which no file can exist, but not for a full or broken disk.
+/// Throws Error, with BadInput for a path at which no file can exist and CheckFailed for a full or broken disk.
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
   const int why = errno;
   const bool wrong_path = why == ENOENT || why == ENOTDIR || why == EISDIR || why == ENAMETOOLONG || why == EACCES ||

@@ -5,7 +5,7 @@
 
 namespace clothbench {
 
-/// Stands between a file's name and the id of the writing process in a temporary name.
+/// Separates a file's name from the id of the writing process in a temporary name.
 inline constexpr char kTemporaryMark[] = ".tmp.";
 
 /// `<path>.tmp.<pid>`: name of an incomplete file.
@@ -38,10 +38,10 @@ inline constexpr DataFolder kAssetFolder{"rooms and hands", "CLOTHBENCH_ASSETS",
 /// Folders that contain the data folders.
 struct DataRoots {
   std::filesystem::path installed;  ///< share/clothbench of this program's tree; empty if unknown
-  std::filesystem::path source;     ///< the source tree this was built from
+  std::filesystem::path source;     ///< the source tree from which this program was built
 };
 
-/// The roots of this program, correct also if it was moved.
+/// The roots of this program, correct even if it was moved.
 DataRoots data_roots();
 
 /// Value of the environment variable; empty if it is not set.

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 64;
-constexpr std::size_t kShown = 120;  // bytes of the input, or of a library's text about it, that a message shows
+constexpr std::size_t kShown = 120;  // maximum bytes that a message shows of the input or of a library's message
 
 std::string at(const std::string& text, std::size_t byte) {
   byte = std::min(byte, text.size());
@@ -85,7 +85,7 @@ const json& sub_schema(const json& schema, const json& root) {
   return root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
 }
 
-/// Whether an empty object is valid, so that its defaults may replace a missing one.
+/// Whether an empty object is valid, so that a missing object may be replaced by its defaults.
 bool may_be_empty(const json& s) {
   return s.contains("properties") && !s.contains("required") && !s.contains("minProperties") &&
          s.value("type", json()) == "object";
@@ -160,7 +160,7 @@ std::string expectation(const json& s) {
   return joined(parts);
 }
 
-/// First key of an object that its schema lacks, with the most similar known one (valijson names only the object).
+/// First key of an object that is not in its schema, and the most similar known one (valijson names only the object).
 std::string unknown_key(const json& value, const json& schema, const json& root, const std::string& pointer) {
   const json s = json(sub_schema(schema, root));
   if (value.is_object() && s.contains("properties")) {

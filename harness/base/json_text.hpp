@@ -17,7 +17,7 @@ nlohmann::json parse_json(const std::string& text, const std::string& source);
 /// Message of a JSON library's exception, without the input text that it quotes.
 std::string what_without_text(const std::exception&);
 
-/// Throws Error, with place and expectation, for an invalid value that the schema cannot detect.
+/// Throws Error, with the location and the expected value, for an invalid value that the schema cannot detect.
 [[noreturn]] void refuse(const std::string& source, const std::string& pointer, const std::string& expected);
 
 /// Checks a value against a schema of scenarios/schema (compiled in). Throws Error for the deepest violation: `source`,

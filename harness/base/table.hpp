@@ -18,7 +18,7 @@ struct Table {
   /// A `table` environment for LaTeX with the package booktabs: the title as caption, the note below the rows. Uses
   /// only characters that LaTeX has without further packages.
   std::string latex() const;
-  /// Columns beyond console_columns() follow below, after a copy of the first two columns. The note is wrapped.
+  /// Columns beyond console_columns() follow below, after a copy of the first one or two columns. The note is wrapped.
   std::string console() const;
 };
 
@@ -32,7 +32,7 @@ std::string paired(double a, double b, const std::string& between, int digits);
 std::size_t display_width(const std::string&);
 
 /// Breaks text at spaces so that indented lines fit `columns`; a longer word gets its own line. Ends with a newline.
-/// `head`: text in the indent of the first line; if it is longer than the indent, before the text.
+/// `head` stands in the first line's indent or, if it is longer than the indent, before the text.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head = "");
 
 }  // namespace clothbench

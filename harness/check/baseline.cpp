@@ -82,7 +82,7 @@ ordered_json json_of(const BaselineRun& c) {
   return j;
 }
 
-/// Conditions on which results depend and times do not: all except the machine, the driver and the trials.
+/// Conditions on which results depend: all except the machine, the driver, the device profile and the trials.
 std::vector<Condition> conditions_of_results(const RunRecord& r) {
   std::vector<Condition> out = conditions_of(r);
   std::erase_if(out, [](const Condition& c) {
@@ -105,7 +105,7 @@ BaselineRun part_of(const RunRecord& r, bool (*has)(const std::string& name)) {
   return c;
 }
 
-constexpr Gate kVerdict{};  // its tolerance is in the scene
+constexpr Gate kVerdict{};  // the scene's bound includes the tolerance
 
 }  // namespace
 

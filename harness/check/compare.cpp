@@ -61,7 +61,7 @@ struct Pair {
   std::vector<const RunRecord*> a = {}, b = {};
 };
 
-/// Adds the conditions that differ between A's first run and the others. A different order only forbids time verdicts.
+/// Adds the conditions that differ between A's first run and the other runs. The order of A and B affects only times.
 void add_conditions(const Pair& p, const std::vector<std::string>& allowed, CheckedRun& run, DifferingRuns& differing) {
   const RunRecord& first = *p.a.front();
   const std::vector<Condition> conditions = conditions_of(first);
@@ -112,8 +112,8 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// For every other split of the log times into these sizes: the shift of B that gives it the actual difference of
-/// means; ascending. It is the mean moved from B to A minus the mean moved back.
+/// For every other split of the log times into these sizes: the shift of B that gives the split the actual difference
+/// of means; ascending. This shift is the mean of the times moved from B to A minus the mean of the times moved back.
 std::vector<double> shifts_of(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t m = a.size(), n = m + b.size();
   const std::uint32_t actual = (1u << m) - 1, end = 1u << n;

@@ -20,8 +20,8 @@ struct Condition {
 /// The condition kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
 const std::vector<std::string>& condition_kinds();
 
-/// All conditions of a run, in the order of the kinds. A run that is not "ok" has no "length": an early end is a
-/// result; one without timed trials has no "trials".
+/// All conditions of a run, in the order of the kinds. A run that is not "ok" has no "length", because an
+/// early end is a result. A run without timed trials has no "trials".
 std::vector<Condition> conditions_of(const RunRecord&);
 
 struct ConditionDifference {
@@ -74,7 +74,7 @@ struct RunKey {
 /// The part of a run that does not depend on the machine.
 struct BaselineRun {
   RunKey key;
-  std::vector<Condition> conditions;  ///< valid only for these; scene included, but no machine, driver or trials
+  std::vector<Condition> conditions;  ///< of its results: all except machine, driver, device profile and trials
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
@@ -103,7 +103,7 @@ extern const char* const kBaselineSchema;
 /// Regression rule of a summary scalar; nullptr: it is not compared. Verdicts of bounds have no tolerance.
 const Gate* find_gate(const std::string& name);
 
-/// Whether the scalar is the verdict of a bound: 1 pass, 0 fail. From 1 to 0 is a failure, from 0 to 1 an improvement.
+/// Whether the scalar is the verdict of a bound: 1 pass, 0 fail. A change from 1 to 0 fails, from 0 to 1 improves.
 bool is_verdict(const std::string& name);
 
 std::vector<std::string> gated_names();
@@ -120,8 +120,8 @@ inline constexpr std::size_t kMaxProcesses = 12;  ///< per side; the test evalua
 
 /// Ratio of the frame times B/A, estimated from processes. Processes are the units of replication, because the trials
 /// of one process share its memory layout, clocks and driver state. `ratio`: ratio of the geometric means over the
-/// processes. `p`: exact permutation test of the difference of the mean logarithms over all assignments of the
-/// processes to the two sides, twice the smaller tail. `low`, `high`: smallest and largest ratio that this test does
+/// processes. `p`: exact permutation test of the difference of the mean logarithms, over all assignments of the
+/// processes to the two sides; twice the smaller tail. `low`, `high`: smallest and largest ratio that this test does
 /// not reject at 5 % (equal tails of at most 2.5 %). Source: Good, Permutation, Parametric and Bootstrap Tests of
 /// Hypotheses (3rd ed.), 3.2. The test assumes that processes are exchangeable if the builds are equally fast, so run A
 /// and B in random order. If A and B alternate strictly, the test rejects in less than 5 % of cases.
@@ -144,7 +144,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>&);
 /// a difference of the builds. True if a start is unknown.
 bool in_turns(const std::vector<const RunRecord*>& a, const std::vector<const RunRecord*>& b);
 
-/// Ordered from good to bad; a whole gets the worst of its parts. Changed: two builds differ (neither is a baseline).
+/// Ordered from good to bad; a run gets the worst of its findings. Changed: two builds differ (neither is a baseline).
 enum class Verdict { Same, New, Improved, Changed, Failed };
 
 const char* word_for(Verdict);
@@ -186,8 +186,8 @@ struct Checked {
 std::vector<Finding> motion_findings(const RunRecord&);
 
 /// Differences of `record` from its baseline (outcome, stages, scalars with a regression rule), trials that repeat
-/// another one, and faults of the stored motion (results/store.hpp). If the outcome differs, stages and scalars are not
-/// compared. Throws Error if the record's scene has no cloth size.
+/// another trial, and faults of the stored motion (results/store.hpp). If the outcome differs, stages and scalars are
+/// not compared. Throws Error if the record's scene has no cloth size.
 std::vector<Finding> compare_run(const BaselineRun&, const RunRecord& record);
 
 /// Differences of two builds' results of one run: outcome, stages, every machine-independent scalar (relative tolerance

@@ -77,7 +77,7 @@ std::vector<Finding> compare_stages(const BaselineRun& was, const BaselineRun& i
   std::string message;
   if (!added.empty()) message = "not in the baseline: " + added;
   if (!gone.empty()) message += (message.empty() ? "" : "; ") + ("missing: " + gone);
-  if (message.empty()) message = "the same stages, order or number differs";
+  if (message.empty()) message = "the same stages in another order or number";
   return {{Verdict::Failed, "stages", fmt::format("{} stages", was.stages.size()),
            fmt::format("{} stages", is.stages.size()), "", message}};
 }
@@ -128,7 +128,7 @@ std::vector<Finding> compare_scalars(const BaselineRun& was, const BaselineRun& 
   for (const std::string& name : scalar_names(was, is)) {
     const double before = scalar(was, name), now = scalar(is, name);
     const Gate& gate = *find_gate(name);
-    // Measured moduli and relations of runs have no cloth, so the length is read only if the rule needs it.
+    // Records of measured moduli or of relations between runs have no cloth: read the length only if the rule needs it.
     if (gate.unit != SlackUnit::One && !length) length = length_of(record);
     const double tolerance = slack(gate, before, gate.unit == SlackUnit::One ? 1 : *length);
     const Verdict verdict = judge(name, before, now, tolerance);

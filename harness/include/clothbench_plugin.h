@@ -3,17 +3,17 @@
  *
  * The library exports one function, `clothbench_plugin`, which returns a description that stays valid. Units are SI.
  * Coordinates are right-handed. Vectors are x y z with +y up. Positions and velocities of vertices are interleaved and
- * ordered by rows of the grid: vertex (i, j), the ith of row j, has index j * columns + i. Pointers in a scene are
- * valid until `destroy`, those in a frame or a restart until the call returns, texts and arrays that the plugin returns
- * until its next call. Calls come from one thread at a time. No exception or longjmp may cross them.
+ * ordered by rows of the grid: vertex i of row j has index j * columns + i. Pointers in a scene are valid until
+ * `destroy`; pointers in a frame or a restart are valid until the call returns. Texts and arrays from the plugin must
+ * stay valid until its next call. Calls come from one thread at a time. No exception or longjmp may cross them.
  *
- * Version 1. CLOTHBENCH_PLUGIN_HEADER states it with the sizes of the structs. A library whose version or sizes differ
- * was built with another header and is refused. See solvers/plugin/README.md; solvers/plugin/example is a complete
- * solver.
+ * CLOTHBENCH_PLUGIN_HEADER states the version of this interface, 1, and the sizes of its structs. A library whose
+ * version or sizes differ was built with another header and is refused. See solvers/plugin/README.md;
+ * solvers/plugin/example is a complete solver.
  *
  *   cc -std=c99 -O2 -shared -fPIC -I <folder of this file> mine.c -lm -o mine.so
- *   clothbench list solvers --solver plugin:mine.so      it loads
- *   clothbench conformance plugin:mine.so                what every solver must do */
+ *   clothbench list solvers --solver plugin:mine.so      tests whether it loads
+ *   clothbench conformance plugin:mine.so                tests what every solver must do */
 #ifndef CLOTHBENCH_PLUGIN_H
 #define CLOTHBENCH_PLUGIN_H
 #include <stdint.h>
@@ -30,7 +30,7 @@ extern "C" {
 #define CLOTHBENCH_PLUGIN_EXPORT
 #endif
 
-/* Features: what a scene needs, a solver supports, a stage serves. */
+/* Features. A scene needs features, a solver supports them, and a stage serves them. */
 enum {
   CLOTHBENCH_STRETCH = 1 << 0,
   CLOTHBENCH_SHEAR = 1 << 1,
@@ -55,7 +55,7 @@ enum {
   CLOTHBENCH_CLOTH_MESH = 1 << 19 /* a triangle mesh instead of a grid: columns is the number of vertices, rows is 1 */
 };
 
-/* How a step ended. Any other than OK ends the run and becomes its status in the results. */
+/* How a step ended. A value other than OK ends the run and becomes the run's status in the results. */
 enum {
   CLOTHBENCH_OK = 0,
   CLOTHBENCH_NOT_FINITE = 1,
@@ -64,26 +64,26 @@ enum {
   CLOTHBENCH_TIMED_OUT = 4
 };
 
-/* An edge of the grid or mesh. `membrane_stiffness_N_per_m` is the sheet's Y = E h at the edge, the force per width
- * over the strain of a strip that is pulled at one end; infinity if it is inextensible. The solver chooses how to model
- * it, as a spring or a constraint. The edge stands for a piece of cloth `along_m` x `across_m`:
- * - structural edge of a grid: its own length, and the width of the cloth on both sides of it: on the border half of
- *   a cell. Of a mesh: its length, and the area of its triangles over that length.
+/* An edge of the grid or mesh. `membrane_stiffness_N_per_m` is the sheet's Y = E h at the edge: the force per
+ * width and strain of a strip that is pulled at one end. It is infinity if the sheet is inextensible. The solver
+ * chooses how to model Y, as a spring or a constraint. The edge stands for a piece of cloth `along_m` x `across_m`:
+ * - structural edge: its length, and the width of its cloth. In a grid this cloth is half a cell on each side, so on
+ *   the border it is half a cell in all. In a mesh the width is the area of the edge's triangles divided by its length.
  * - shear edge, a diagonal of a cell: the cell's sides along the rows (`along_m`) and along the columns (`across_m`).
  *   Both diagonals of every cell are listed, and each stands for the whole cell.
- * - skip edge, from a to b with the vertex m = (a + b) / 2 between them: the length from a to m, and the whole width of
- *   a cell, half on the border. Its stiffness is 0. It carries bending: a strip with bending rigidity B has the energy
- *   B across / (2 along^3) |a - 2 m + b|^2.
+ * - skip edge, from a to b with the vertex m = (a + b) / 2 between them: the length from a to m, and the width of a
+ *   cell (on the border, half of it). Its stiffness is 0. It carries bending: a strip with bending rigidity B has the
+ *   energy B across / (2 along^3) |a - 2 m + b|^2.
  *
- * Springs that make the sheet: one with Y and Poisson's ratio 1/3, the only one that springs alone can have. On a cell
- * a x b, along an edge of length a: Y (9/8 b/a - 3/8 a/b), but at least Y b / (10 a), half of that on the border; both
- * diagonals: 3/16 Y (a^2 + b^2) / (a b). On square cells these are 3/4 Y, 3/8 Y on the border, 3/8 Y on diagonals.
- * Without shear edges, and on a mesh, an edge has Y across / along (Van Gelder 1998, "Approximate Simulation of Elastic
- * Membranes by Triangulated Spring Meshes"). */
+ * `spring_N_per_m` makes a sheet with stiffness Y and Poisson's ratio 1/3, the only ratio that springs allow. In a
+ * cell a x b, an edge of length a has Y (9/8 b/a - 3/8 a/b), but at least Y b / (10 a); on the border it has half of
+ * that. Each diagonal has 3/16 Y (a^2 + b^2) / (a b). On square cells these are 3/4 Y, on the border 3/8 Y, diagonals
+ * 3/8 Y. Without shear edges, and on a mesh, an edge has Y across / along (Van Gelder 1998, "Approximate Simulation of
+ * Elastic Membranes by Triangulated Spring Meshes"). */
 typedef struct ClothbenchEdge {
   uint32_t a, b;
   double rest_m, membrane_stiffness_N_per_m, along_m, across_m;
-  double spring_N_per_m; /* that spring constant; infinity where inextensible, 0 of skip edges */
+  double spring_N_per_m; /* see above; infinity if inextensible, 0 for skip edges */
 } ClothbenchEdge;
 
 enum {
@@ -104,8 +104,8 @@ typedef struct ClothbenchCollider {
   double center_m[3]; /* plane: a point on it; sphere, box: centre */
   double normal[3];   /* plane: unit vector into free space */
   double radius_m;    /* sphere */
-  /* box: half extents along its axes; the axes, x y z of the first, then of the second and the third. They are unit
-   * vectors in world coordinates, orthogonal and right-handed: the third is the cross product of the first two. */
+  /* box: half extents along its three axes; then the axes, x y z each. They are unit vectors in world coordinates,
+   * orthogonal and right-handed: the third is the cross product of the first two. */
   double half_extent_m[3], axes[9];
   uint32_t capsule_count, vertex_count, triangle_count;
   int32_t closed;            /* mesh: closed surface of a solid, with outward normals */
@@ -126,9 +126,9 @@ typedef struct ClothbenchScene {
   double frame_rate_hz;
   uint32_t frames;
   const double *position_m, *velocity_m_per_s, *mass_kg; /* at the start; one mass per vertex */
-  /* 3 vertices each. In a grid all are counter-clockwise seen from the side to which u x v points, with u and v the
-   * directions of growing i and j. Cell (i, j) has two, (i, j) (i+1, j) (i+1, j+1) and (i, j) (i+1, j+1) (i, j+1). In
-   * a mesh they are as in its file, neighbours wound alike. */
+  /* 3 vertices each. In a grid, all triangles are counter-clockwise seen from the side to which u x v points; u and v
+   * are the directions of growing i and j. Cell (i, j) has the triangles (i, j) (i+1, j) (i+1, j+1) and (i, j)
+   * (i+1, j+1) (i, j+1). A mesh has the triangles of its file, with neighbours wound alike. */
   uint32_t triangle_count;
   const uint32_t* triangles;
   uint32_t structural_count, shear_count, skip_count;
@@ -140,15 +140,15 @@ typedef struct ClothbenchScene {
   uint32_t collider_count;
   const ClothbenchCollider* colliders;
   const ClothbenchPose* poses;            /* one per collider, at the start */
-  double self_thickness_m, self_friction; /* distance between two layers of the cloth in contact, 0: no
-                                             self-collision; Coulomb coefficient of cloth on cloth */
+  double self_thickness_m, self_friction; /* distance between two layers in contact (0: no self-
+                                             collision); Coulomb coefficient of cloth on cloth */
 
-  /* 3 a vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent, folded
-   * or scattered (position_m). Lengths of edges are those of this shape. */
+  /* 3 per vertex: the cloth at rest, in world coordinates. A grid lies flat in its plane, even if it starts bent,
+   * folded or scattered (position_m). This shape defines the rest lengths of edges. */
   const double* rest_position_m;
 } ClothbenchScene;
 
-/* One displayed frame. Its data hold at the frame's end; between frames positions change linearly. */
+/* One displayed frame. Its data describe the frame's end; between frames, positions change linearly. */
 typedef struct ClothbenchFrame {
   int32_t index;
   double time_s, dt_s;
@@ -158,25 +158,25 @@ typedef struct ClothbenchFrame {
 
   const ClothbenchPose* poses_before; /* at the end of the frame before, or at the scene's start */
   /* One per collider, one per grip: 1 if it teleports in this frame, so that it has no velocity and may be put at its
-   * new place at once. Both NULL if nothing does. Marked is what moves in this frame by more than half the distance of
-   * the scene's jump. */
+   * new position at once. Both are NULL if the scene has no jump in this frame. If it has one, everything that moves
+   * in this frame by more than half the distance of the jump is marked. */
   const uint8_t *collider_teleports, *grip_teleports;
 } ClothbenchFrame;
 
-/* A state in the course of a scene, and where all else is then. */
+/* A state of the cloth during a scene, and the colliders and grips at that time. */
 typedef struct ClothbenchRestart {
-  int32_t index; /* of the last frame that is over; -1: the scene's start */
-  double time_s; /* at its end */
+  int32_t index; /* of the last finished frame; -1: the scene's start */
+  double time_s; /* at the end of that frame */
   const double *position_m, *velocity_m_per_s;
   const ClothbenchPose* poses;   /* one per collider */
-  const double* grip_position_m; /* one per grip; NULL if there are none or nothing moves */
+  const double* grip_position_m; /* one per grip; NULL if there are no grips or nothing moves */
   const uint8_t* grip_held;
 } ClothbenchRestart;
 
 /* The device of a solver. */
 typedef struct ClothbenchDevice {
   const char *name, *driver, *api; /* "NVIDIA RTX 4090", "NVIDIA 570.86", "CUDA 12.8" */
-  int32_t is_software;             /* 1: a CPU that stands in for a GPU: its times say nothing of one */
+  int32_t is_software;             /* 1: a CPU that emulates a GPU; its times are not a GPU's */
   const char* properties_json;     /* a JSON object of all that the API reports, or NULL */
 } ClothbenchDevice;
 
@@ -187,8 +187,8 @@ typedef struct ClothbenchSetting {
   int32_t integer; /* 1: only whole numbers */
 } ClothbenchSetting;
 
-/* A stage of a frame. All stages together must serve exactly the features that the scene needs, without those that the
- * solver ignores: a solver must not do work that the scene does not need. */
+/* A stage of a frame. All stages together must serve exactly the features that the scene needs and the solver does not
+ * ignore, because a solver must not do work that the scene does not need. */
 typedef struct ClothbenchStage {
   const char* name;
   uint32_t serves; /* features; 0: work that every frame needs */
@@ -199,12 +199,12 @@ typedef struct ClothbenchStage {
 typedef struct ClothbenchPlugin {
   /* CLOTHBENCH_PLUGIN_HEADER fills these. */
   uint32_t version, plugin_size, scene_size, frame_size, edge_size, collider_size, pose_size, setting_size, stage_size;
-  const char* name;    /* letters, digits, . _ -; for tables and file names; no solver of clothbench may have it */
+  const char* name;    /* letters, digits, . _ -; for tables and file names; not the name of a clothbench solver */
   const char* summary; /* one line */
   const char* solver_version; /* raise it when results change */
   const char* precision;      /* "float32" or "float64" */
-  /* Features. A scene is run if the solver supports or ignores all that it needs, as if it did not need what is
-   * ignored; a scene that needs any other gives a row `unsupported`. */
+  /* Features. A scene is run if the solver supports or ignores each feature that it needs; ignored features are not
+   * simulated. A scene that needs any other feature gives a row `unsupported`. */
   uint32_t supports, ignores;
   int32_t time_order; /* order of accuracy in the time step */
   uint32_t setting_count;
@@ -215,21 +215,21 @@ typedef struct ClothbenchPlugin {
   void* (*create)(const double* settings, const ClothbenchScene*, const char** why);
   void (*destroy)(void*);
   /* Continues from the scene's start (index -1), which it restores bit for bit, or from a state that `read_state` gave.
-   * Returns 0 and changes nothing if positions and velocities are not the whole state of the solver then. */
+   * Returns 0 and changes nothing if positions and velocities are not the solver's whole state at that time. */
   int32_t (*restart)(void*, const ClothbenchRestart*);
   /* Computes one frame, complete on return. This call is timed. */
   int32_t (*step)(void*, const ClothbenchFrame*);
   void (*read_state)(void*, double* position_m, double* velocity_m_per_s);
   const ClothbenchStage* (*stages)(void*, uint32_t* count);
 
-  /* The rest may be NULL.
+  /* All members from here on may be NULL.
    *
    * Vertical displacement [m], downwards negative, of a body in free fall with the solver's integrator; NULL: the exact
    * solution. */
   double (*free_fall_m)(const double* settings, double dt_s, double gravity_m_per_s2, double velocity_m_per_s,
                         double damping_per_s, int32_t frames);
-  /* Device time [s] of the last frame, from the begin of its first work on the device to the end of its last, NAN if
-   * not known. Not NULL: the solver runs on a GPU. */
+  /* Device time [s] of the last frame, from the start of its first work on the device to the end of its last; NAN if
+   * not known. If this function is not NULL, the solver runs on a GPU. */
   double (*device_s)(void*);
 
   /* Distance [m] at which the solver keeps the cloth from the scene's collider of this index, for metrics of contact.
@@ -242,7 +242,7 @@ typedef struct ClothbenchPlugin {
 
   void (*device_info)(void*, ClothbenchDevice*); /* NULL: the CPU */
 
-  /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
+  /* Third-party engine that the solver wraps, in its authors' spelling: "NvCloth". A report compares the solver with
    * published results of the same engine. NULL: none. */
   const char* engine;
 } ClothbenchPlugin;

@@ -14,7 +14,7 @@ namespace clothbench {
 namespace {
 
 constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side; added to the contact offset
-constexpr double kTouchMargin = 0.1;  // of the contact offset; added to it if larger
+constexpr double kTouchMargin = 0.1;  // of the contact offset; added instead if larger
 
 using contact::Nearest;
 using contact::Point;
@@ -103,7 +103,7 @@ class Probes final : public ColliderContact {
     meshes[k] = std::make_unique<TriangleTree>(TriangleMeshView{surface.positions, surface.triangles});
   }
 
-  /// Moves the surfaces of dynamic mesh colliders to their poses at the end of `frame`.
+  /// Moves the surfaces of kinematic mesh colliders to their poses at the end of `frame`.
   void advance(int frame) {
     if (frame == placed) return;
     for (std::size_t k = 0; k < meshes.size(); ++k)
@@ -158,7 +158,7 @@ class Probes final : public ColliderContact {
     return out;
   }
 
-  /// Marks triangles that touch collider k although none of their vertices does. Impossible for a half-space.
+  /// Marks triangles that touch collider k although none of their vertices does. A half-space has no such triangle.
   template <class Mark>
   void touch_between(std::size_t k, int frame, const std::vector<double>& x, Mark mark) const {
     const ColliderKind& kind = kind_of(scene.colliders[k]);

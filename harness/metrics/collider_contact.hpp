@@ -21,20 +21,20 @@ inline constexpr Needs kColliders{"colliders",
 /// Contour lengths are summed over the colliders (if two overlap, both count); the depth is the maximum over the
 /// colliders.
 ///
-/// A point of the cloth touches a collider if it is at most this far away: the solver's contact offset plus a tenth of
-/// it, or plus a thousandth of the cloth's shorter side if that is larger. A triangle touches if any of its points
-/// does, on its edges and face too. Slip is computed from vertices only.
+/// A point of the cloth touches a collider if its distance is at most the solver's contact offset plus a tolerance: a
+/// tenth of the offset or a thousandth of the cloth's shorter side, whichever is larger. A triangle touches if any of
+/// its points does, including points of its edges and face. Slip is computed from vertices only.
 class ColliderContact {
  public:
   virtual ~ColliderContact() = default;
   /// Positions [m] at the end of frame `frame`, 0 = the initial state.
   virtual SceneContact probe(int frame, const std::vector<double>& positions) = 0;
-  /// Touch and slip in a frame. Call in the order of frames: slip compares with the previous. NaN touches nothing.
+  /// Touch and slip in a frame. Call in the order of frames, because slip compares a frame with the previous one.
   virtual SceneTouch touch(int frame, const std::vector<double>& positions) = 0;
 };
 
-/// `scene` outlives the result. `held_at_m`: the solver's contact offset per collider, as in Plan::contact_margins_m;
-/// if not stated, the collider's margin_m. Throws Error naming a collider that cannot be probed.
+/// `scene` must outlive the result. `held_at_m`: the solver's contact offset per collider, as in
+/// Plan::contact_margins_m; if not stated, the collider's margin_m. Throws Error naming an invalid collider.
 std::unique_ptr<ColliderContact> collider_contact(const Scene& scene, const std::vector<double>& held_at_m = {});
 
 /// Self-intersection of a cloth with these triangles; exact (contact::self_contour).

@@ -19,7 +19,7 @@ struct MetricContext {
   const Scene& scene;
   const SolverEntry& entry;
   const nlohmann::json&
-      settings;  ///< complete; only for the solver's free_fall_m, as no metric may depend on a setting by name
+      settings;  ///< complete; only for the solver's free_fall_m, because no metric may use a setting by name
   std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
 };
 
@@ -56,7 +56,7 @@ struct StabilityFrame {
   unsigned classes = 0;             ///< bit k: class Fk occurred; only classes that the scene evaluates
   double speed = kMissing;          ///< maximum vertex speed over v_char
   double energy_gain = kMissing;    ///< divided by M g L (M v_char^2 without gravity)
-  double strain_excess = kMissing;  ///< maximum
+  double strain_excess = kMissing;  ///< maximum strain beyond the exact or load strain
   /// Whether the run has failed for good (F0 or F1).
   bool lost() const { return (classes & 3u) != 0; }
 };

@@ -17,7 +17,7 @@ namespace clothbench {
 /// Input of the summary's scalars: the parts of one run of one scene that were computed.
 struct RunView {
   RunView(const Scene&, const AccuracyPass&, Outcome = {});
-  /// For a run with its trials; `plan` must outlive this.
+  /// For a run with its trials; `plan` must outlive this object.
   RunView(const Scene&, const RunRecord&, const Plan& plan, bool on_gpu);
 
   const Scene& scene;
@@ -78,7 +78,7 @@ const char* name_of(Better);
 
 enum class Expect { No, Yes };  ///< whether a scene's `expect` may set a bound on a scalar
 
-/// One number of a run's summary. No regression rule: machine-dependent values, and those that may grow in a good run.
+/// One number of a run's summary. Values that depend on the machine or may grow in a good run have no regression rule.
 struct Scalar {
   std::string name;  ///< a trailing '*' stands for any text
   Reduction from;

@@ -57,7 +57,7 @@ double mesh_error(const TruthJudge& judge, double moved_quantity) {
   return judge.reference_case().smooth_law ? judge.space_error() / moved_quantity : 0;
 }
 
-/// Half a unit in the last place of float32, of the coordinate with the maximum magnitude.
+/// Half a unit in the last place [m], in float32, of the coordinate with the maximum magnitude.
 double rounding_m(const std::vector<Vec3>& columns) {
   double largest_m = 0;
   for (const Vec3& x : columns)

@@ -15,7 +15,7 @@ class TruthJudge {
   const Scene& scene() const { return scene_; }
   const truth::ReferenceCase& reference_case() const { return case_; }
   TruthErrors judge(int frame, const ClothState&) const;
-  /// The ranking error of frames at these times, as a run's `truth_error`: RMS over time; for a case at rest, the last.
+  /// The ranking error of frames at these times (a run's `truth_error`): RMS over time; at rest, of the last frame.
   double ranking_error(const std::vector<double>& times_s, const std::vector<TruthErrors>&) const;
   /// Ranking error (see ReferenceCase) of the grid's exact solution against the continuum, which smaller time steps
   /// cannot reduce. NaN for a sheet with shear and for a mesh: no exact solution is known (compute_reference).
@@ -36,7 +36,7 @@ bool keeps_energy(const Scene&);
 
 /// Sensitivity of a scene's exact solution to its stiffnesses: `truth_dependence_Y` and `truth_dependence_B`. Each is
 /// the change of the ranking value (quantity or positions, truth::ReferenceCase) per logarithm of the membrane
-/// stiffness or the bending rigidity, from evaluating the reference case with 10 % more. 1: the value changes by 1 %
+/// stiffness or the bending rigidity, estimated with 10 % more of this stiffness. 1: the value changes by 1 %
 /// for 1 % more stiffness. 0: the scene has no such stiffness. For a moving solution it is the maximum over a few
 /// frames. Empty for a scene without a reference case.
 std::map<std::string, double> truth_dependence(const Scene&);

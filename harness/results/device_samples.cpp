@@ -40,7 +40,7 @@ struct Taken {
   std::vector<double> time_unix_s, trial;
 };
 
-/// The device's state log during a trial: time that it covers, and reasons against the trial's times.
+/// The device's state log during a trial: the time that it covers, and its reasons to distrust the trial's times.
 struct StateLog {
   double logged_s = 0;
   std::set<std::string> reasons;
@@ -62,7 +62,7 @@ Taken take(const json& group, const RunRecord& r, StateLogs& logs) {
     out.index.push_back(k);
     out.time_unix_s.push_back(t);
     out.trial.push_back(-1);
-    // A sample covers the period before it. In a state log, a late one covers up to two.
+    // A sample covers the period before it. A late sample of a state log covers up to two periods.
     const double since = k > 0 ? std::max(t - 2 * period, group["time_unix_s"][k - 1].get<double>()) : t - period;
     for (const TimedTrial& trial : r.trials) {
       if (t - period >= trial.start_unix_s && t <= trial.end_unix_s) out.trial.back() = trial.index;

@@ -52,14 +52,14 @@ nlohmann::json to_json(const std::vector<StoredGroup>&);
 
 /// A run while it is measured: a sequence of CBOR items (RFC 8949, RFC 8742), each an object with one member. On a
 /// device without HDF5 this is the final form. In order: "header"; "replay"; one "frame" per frame of the untimed pass;
-/// its metrics as "accuracy" and its end as "outcome"; one "trial" per trial; "outcome" of the whole run. If an item
-/// occurs twice, the later one holds (of trials: with the same index); frame 0 restarts the pass. Numeric series are
-/// little-endian byte strings, as in memory.
+/// the pass's metrics as "accuracy" and its end as "outcome"; one "trial" per trial; "outcome" of the whole run. If an
+/// item occurs twice (for trials: with the same index), the later one holds; frame 0 restarts the pass. Numeric series
+/// are little-endian byte strings, as in memory.
 
 /// Creates the file with its header, completely or not at all.
 void create_part(const std::filesystem::path&, const RunHeader&);
 
-/// Appends an item and, if `sync`, calls fsync. Throws Error naming the file; the file is then unchanged.
+/// Appends an item and, if `sync`, calls fsync. Throws Error naming the file, and restores the file if possible.
 void append_to_part(const std::filesystem::path&, const char* kind, nlohmann::json body, bool sync = true);
 
 /// Reads all complete items and ignores the rest: a killed process leaves an incomplete item at the end. `complete_B`:
@@ -72,7 +72,7 @@ inline constexpr bool kWithHdf5 = true;
 /// Writes one result file (layout in results/README.md) by tmp + fsync + rename. Throws Error naming the file.
 void write_hdf5(const std::filesystem::path&, const RunRecord&);
 
-/// Reads a file with positions of every `stride`-th and the last frame; 0: no positions, `replay` and grid triangles.
+/// Reads a file with positions of every `stride`-th and the last frame; 0: no positions, replay or grid triangles.
 RunRecord read_hdf5(const std::filesystem::path&, std::size_t stride);
 
 /// Writes a sidecar file for opening the trajectory and the static meshes in ParaView: per frame a grid over

@@ -96,7 +96,7 @@ void add_jumps(const Scene& scene, std::vector<StoredArray>& out) {
   out.insert(out.end(), {frame, distance});
 }
 
-/// Adds the mesh without its triangles, which every file has, and its groups, to which pins, masses and regions refer.
+/// Adds the mesh (without triangles, which every file has) and its groups, to which pins, masses and regions refer.
 void add_cloth(const ClothMesh& mesh, std::vector<StoredGroup>& out) {
   StoredGroup& cloth = out.emplace_back();
   cloth.path = "cloth";

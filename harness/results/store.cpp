@@ -72,13 +72,13 @@ bool is_named(int file, const fs::path& path) {
          open_file.st_dev == named.st_dev;
 }
 
-/// Locks one byte, or all if `count` is 0. Record locks also work over NFS. False if another process holds one of them.
+/// Locks one byte, or all if `count` is 0; false if another process holds a lock on one. Record locks work over NFS.
 bool lock(int file, std::size_t first, int count) {
   struct flock range {};
   range.l_type = F_WRLCK;
   range.l_start = static_cast<off_t>(first);
   range.l_len = count;
-  return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // a file system without locks
+  return fcntl(file, F_OFD_SETLK, &range) == 0 || (errno != EAGAIN && errno != EACCES);  // true without lock support
 }
 
 /// Record of a planned run without a result; its name is "<scene>__<solver>__<setting>".
@@ -148,7 +148,7 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
         header.settings.dump()));
   has_replay_ = !before.replay.empty();
   fs::resize_file(part_, complete_B);  // removes an incomplete item
-  // The header states the machine's condition at the load before the trials.
+  // The header describes the machine as it was when the run was loaded, before the trials.
   if (before.trials.empty()) append_to_part(part_, "header", header_to_json(header));
 }
 

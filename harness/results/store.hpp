@@ -21,8 +21,8 @@ Finish best_finish();
 
 /// Writes one run, crash-safe. `<dir>/<run>.part` grows by one item per finished trial and per frame of the accuracy
 /// pass (results/part_file.hpp). `finish` turns it into `<dir>/<run>.h5` + `<run>.xdmf` (tmp + fsync + rename) and
-/// removes it; with Finish::Cbor it appends the outcome and renames the file to `<run>.cbor`. SIGKILL loses nothing
-/// that was already passed to it.
+/// removes the part file; with Finish::Cbor it appends the outcome and renames the part file to `<run>.cbor`. After
+/// SIGKILL, the data already passed to this object are in the file.
 class RunWriter {
  public:
   /// Continues an existing part file of this run. Throws Error with both values if scenario_sha256 or settings differ.
@@ -89,8 +89,8 @@ std::string trajectory_fault(const std::filesystem::path&);
 /// program. Empty for a grid without colliders and grips.
 std::vector<StoredGroup> replay_of(const Scene&);
 
-/// Adds capsules or triangles for drawing to a collider's group that has neither, for programs that do not know the
-/// kinds of colliders: arrays with the usual names and shapes, and whether the triangles bound a convex body. Leaves
+/// For programs that do not know the kinds of colliders: adds capsules or triangles for drawing to a collider's group
+/// that has neither, as arrays with the usual names and shapes, and states whether the triangles are convex. Leaves
 /// unknown kinds unchanged. Throws Error or nlohmann::json::exception if something is missing or malformed.
 void show_shape(StoredGroup&);
 
@@ -124,7 +124,7 @@ void write_manifest(const std::filesystem::path& dir, const StudyManifest&);
 StudyManifest read_manifest(const std::filesystem::path& dir);
 
 /// Creates a folder for result files and locks it, so that a second process that would write the same files is refused.
-/// The kernel releases locks when a process ends, so a dead process blocks nothing. Its children write under its lock.
+/// The kernel releases locks when a process ends, so a dead process blocks nothing. Child processes need no own lock.
 class ResultFolder {
  public:
   /// `runs`: numbers of the runs of a study that this process executes while other processes execute other runs; empty:
@@ -156,7 +156,7 @@ class DeviceSamples {
 
   /// Stores samples as /device_samples, from 5 s before the run's first trial to 5 s after its last (all samples if
   /// trials have no times), each with the trial that contains its whole period. Samples within trials give `sampled_…`
-  /// in the summary. `distrusted_trials` of the environment: by trial index, reasons to distrust the times.
+  /// in the summary. `distrusted_trials` of the environment gets reasons to distrust times, by trial index.
   void attach_to(RunRecord&);
   /// Reasons to distrust trials, over all runs so far.
   const std::set<std::string>& reasons() const { return reasons_; }

@@ -184,7 +184,7 @@ std::uint32_t nearest_vertex(const ClothMesh& m, const Vec3& point) {
   return static_cast<std::uint32_t>(best);
 }
 
-/// Whether the cell in column i and row j is cut along its other diagonal: irregular, but reproducible.
+/// Whether the cell in column i and row j is cut along its other diagonal; the pattern is irregular but reproducible.
 bool turned(int i, int j) { return (7 * i + 5 * j + i * j) % 3 == 0; }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> listed_vertices(const Cloth&, const nlohmann::json& l
                                            const std::string& pointer);
 
 /// All vertices that an object of the scene selects: "corners", "edge" and "clamp" of a grid; "group" and "nearest_m"
-/// of a mesh (nearest to points in the mesh's frame; of several at equal distance, the first); "vertices" of either.
+/// of a mesh (the vertices nearest to points in its frame; the first if equally near); "vertices" of either.
 /// Throws Error at `pointer` of the scene if it selects none, or something that the cloth does not have.
 std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&, const std::string& source,
                                              const std::string& pointer);
@@ -50,16 +50,16 @@ std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&
 /// Longest and second longest side [m] of the mesh's bounding box.
 std::pair<double, double> longest_sides(const ClothMesh&);
 
-/// A flat sheet of irregular triangles, generated from numbers; resolution and angle to its lattice are free.
+/// A flat sheet of irregular triangles, generated from these numbers.
 struct DrawnSheet {
   double width_m = 1, height_m = 1;
   int cells = 8;           ///< along the width; along the height, cells have nearly the same size
   double angle_rad = 0;    ///< rotation of the lattice of inner vertices
-  double share = 0;        ///< largest move of each inner vertex, as a fraction of a cell, 0 to 0.4
-  std::uint32_t seed = 1;  ///< of these moves
-  bool clamp = false;      ///< a second line of vertices, a cell from x = 0; attaching both lines makes a clamp
+  double share = 0;        ///< maximum random offset of an inner vertex, as a fraction of a cell, 0 to 0.4
+  std::uint32_t seed = 1;  ///< of these offsets
+  bool clamp = false;      ///< adds a line of vertices one cell from the edge x = 0; attaching both makes a clamp
   std::array<int, 2> copies = {1, 1};      ///< equal sheets along x and z, centred on the position of a single one
-  std::array<double, 2> apart_m = {0, 0};  ///< gaps between neighbours
+  std::array<double, 2> apart_m = {0, 0};  ///< distances of neighbouring copies
 };
 
 /// Delaunay triangles (Bowyer 1981; Watson 1981) of a sheet in the plane z = 0, x from 0 to width_m and y from 0 to
@@ -67,21 +67,21 @@ struct DrawnSheet {
 /// equal mesh.
 ClothMesh drawn_mesh(const DrawnSheet&);
 
-/// Reads `cloth.mesh.drawn`: such a sheet with its centre at the origin. Throws Error with the JSON pointer if the
+/// Reads `cloth.mesh.drawn`: a DrawnSheet with its centre at the origin. Throws Error with the JSON pointer if the
 /// sheet would have more than 20 000 vertices, or all copies more than 2 000 000.
 ClothMesh read_drawn_mesh(const nlohmann::json& drawn, const std::string& source);
 
 /// Maximum number of corners of a polygon.
 inline constexpr std::size_t kMostCorners = 1000;
 
-/// Cuts a polygon, convex or not, into triangles inside it with its winding (ear clipping: Meisters 1975). The polygon
+/// Cuts a polygon, convex or not, into triangles that lie in it and have its winding (ear clipping: Meisters 1975). It
 /// need not be flat: it is projected along the axis nearest to its normal. `corners` [m]; triangles hold indices of
 /// corners. A corner at the position of the previous one is in no triangle. Throws Error "<where>: ..." for a polygon
 /// without area, crossing or touching itself, too thin to cut, or with over `kMostCorners` corners.
 std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& corners, const std::string& where);
 
-/// Converts a grid scene to one with the same cloth as a triangle mesh: same vertices and numbers, each cell cut along
-/// one of its diagonals in an irregular pattern, the grid as rest shape if the cloth starts bent. Pins, grips,
+/// Converts a grid scene to one with the same cloth as a triangle mesh, with equal vertices and numbering. Each cell is
+/// cut along one diagonal in an irregular pattern; if the cloth starts bent, the grid is the rest shape. Pins, grips,
 /// colliders and the start stay. A mesh has one stiffness, so regions are removed, as are the reference case and the
 /// bounds of `expect`, which hold for the grid. Bending is removed too unless `bends`, because some solvers cannot bend
 /// meshes. A mesh scene is returned unchanged.

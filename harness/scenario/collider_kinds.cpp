@@ -137,7 +137,7 @@ ColliderKind box_kind() {
   return k;
 }
 
-// Dynamic capsules: one capsule that follows a path, or the capsules of a hand.
+// Kinematic capsules: one capsule that follows a path, or the capsules of a hand.
 
 /// A capsule of length `length_m` about `center` at a time, its unit `axis` rotated by `spin` [rad/s] x time.
 Capsule moved_capsule(const Path& path, const Vec3& center, const Vec3& axis, double length_m, double radius_m,
@@ -201,7 +201,7 @@ void read_mesh(const json& j, ColliderReader& reader, Collider& c) {
   c.mesh = collider_mesh(m);
 }
 
-/// A user's capture is read from its file: it is no asset, so no procedural stand-in may replace it.
+/// A user's capture is read from its file. It is no asset, so no procedural stand-in may replace it.
 assets::Room room_of(const std::string& name, ColliderReader& reader) {
   if (!name.ends_with(".json")) return assets::open_room(reader.assets(), name);
   return assets::load_room(file_of_scene(name, reader.source()).value_or(name));

@@ -48,13 +48,13 @@ struct ColliderSurface {
 struct ColliderKind {
   Collider::Shape shape = Collider::Shape::Plane;
   const char* name = "";                                       ///< name in result files
-  Feature standing = Feature::Plane, moving = Feature::Plane;  ///< features that a static and a dynamic one require
+  Feature standing = Feature::Plane, moving = Feature::Plane;  ///< required if the collider is static; if it moves
   std::vector<ColliderType> types = {};
   /// The form in result files: numbers, and the capsules or the mesh of every frame.
   std::vector<ColliderNumbers> numbers = {};
   enum class Holds { Numbers, Capsules, Mesh } holds = Holds::Numbers;
 
-  // The geometry: a union of capsules, or the triangles of a surface; the other one is nullptr.
+  // The geometry is a union of capsules or a surface of triangles; the function for the other form is nullptr.
   std::vector<Capsule> (*capsules)(const Collider&, const ColliderPose&) = nullptr;
   ColliderSurface (*surface)(const Collider&, const ColliderPose&, const Extent&) = nullptr;
   /// Exact nearest point on a static collider, used instead of its triangles.

@@ -66,7 +66,7 @@ const assets::AssetSource& ColliderReader::assets() {
 
 namespace {
 
-/// Time [s] that gives the same displacement at full speed from the start.
+/// Time [s] in which full speed from the start gives the displacement that the ramp gives in `t`.
 double ramped(double t, double ramp_s) {
   if (t >= ramp_s) return t - ramp_s / 2;
   return t / 2 - ramp_s / (2 * std::numbers::pi) * std::sin(std::numbers::pi * t / ramp_s);
@@ -96,7 +96,7 @@ void require_radii(const assets::HandRecording& recording, const std::string& fi
   }
 }
 
-/// A track or a recording in its own file.
+/// Reads a track or a recording from its own file.
 MovingHand hand_of_file(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const auto name = j["track"].get<std::string>();
   const std::filesystem::path file = needed_file(name, reader.source(), reader.pointer() + "/track");

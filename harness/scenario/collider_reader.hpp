@@ -21,12 +21,12 @@ inline Vec3 to_vec3(const assets::Vector& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Finds a file that a scene names: next to the scene `source`, or in the scenarios folder; empty if in neither.
 std::optional<std::filesystem::path> file_of_scene(const std::string& name, const std::string& source);
-/// file_of_scene, or Error at `pointer` of the scene if the file is not found.
+/// As file_of_scene, but throws Error at `pointer` of the scene if the file is not found.
 std::filesystem::path needed_file(const std::string& name, const std::string& source, const std::string& pointer);
 
 /// A mesh for solvers; `closed` if it is the closed surface of a solid, with outward normals.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
-/// Mesh of a hand for solvers, which follows its joints; `closed` as above.
+/// Mesh of a hand for solvers. It follows the hand's joints; `closed` as above.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 
 /// The 19 capsules of a hand, and the matrices by which a hand's mesh follows its joints. A replay and the live session
@@ -74,7 +74,7 @@ class ColliderReader {
   /// JSON pointer of the object.
   const std::string& pointer() const { return at_; }
 
-  std::function<ColliderPose(double time_s)> pose;  ///< of a dynamic collider
+  std::function<ColliderPose(double time_s)> pose;  ///< of a kinematic collider
   struct RoundTable {
     assets::Table table;
     ColliderMesh mesh;

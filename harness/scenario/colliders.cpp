@@ -82,8 +82,8 @@ TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const 
 }
 
 /// Corner first: the lowest corner is `drop_m` above the table and `inset_m` inside the middle of a long edge. One
-/// diagonal rises at `tilt` [rad] along that edge. The other is horizontal and perpendicular to it, so that half of the
-/// cloth is beyond the edge if `inset_m` is 0.
+/// diagonal rises at `tilt` [rad] along that edge. The other diagonal is horizontal and perpendicular to the edge, so
+/// that half of the cloth is beyond the edge if `inset_m` is 0.
 TablePose corner_first_over(const assets::Table& table, const Cloth& cloth, double drop_m, double tilt,
                             double inset_m) {
   const Edges e = edges_of(table);

@@ -98,7 +98,7 @@ double draw_shape(json& scene, DrawnValues& draw) {
 }
 
 void draw_start(json& scene, DrawnValues& draw) {
-  // As a fraction of an edge. More noise would strain some edges at the start beyond the limit of `expect`.
+  // A fraction of an edge. More noise would strain some edges at the start beyond the limit of `expect`.
   constexpr double kMostNoise = 0.05;
   const json& cloth = scene["cloth"];
   const double link = cloth["size_m"][0].get<double>() / (cloth["grid"][0].get<int>() - 1);
@@ -122,7 +122,7 @@ double draw_fold(json& scene, DrawnValues& draw) {
 /// size have no natural scale.
 bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
 
-/// Samples each range; its name is a dotted key of the scene.
+/// Samples each range; the range's name is a dotted key of the scene.
 double draw_keys(json& scene, DrawnValues& draw) {
   for (const auto& [key, unused] : draw.ranges().items()) {
     const auto [low, high] = draw.bounds(key);
@@ -154,7 +154,7 @@ class BoxPoint {
   double root_ = 1, power_ = 1;
 };
 
-/// The value at the fraction `u` of a range or a list of words; an integer if both bounds are and `may_be_whole`.
+/// The value at the fraction `u` of a range or a list of words; an integer if `may_be_whole` and both bounds are.
 json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
   const auto words = static_cast<std::size_t>(
       std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));
@@ -169,7 +169,7 @@ json at_point(const json& range, double u, bool may_be_whole, const std::string&
                                                                                       : json(rounded(x));
 }
 
-/// Samples what all kinds of the study share first, so that the kinds of one round share these values.
+/// Samples the ranges that all kinds share first, so that kinds with the same point of the box share these values.
 void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
   if (!kind.box.contains("settings") || kind.box["settings"].empty())
     throw Error(kind.at + "/how: \"box\" needs \"box\" of the study, with \"settings\" of a solver");
@@ -185,7 +185,7 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
     for (const auto& [key, range] : ranges.items()) {
       const json value = at_point(range, point.next(), false, draw.at() + "/" + key);
       draw.note(key, value);
-      // A square of this side.
+      // The value is the side of a square.
       apply_override(scene, key + "=" + (key == "cloth.size_m" ? json{value, value} : value).dump(), draw.at());
     }
 }

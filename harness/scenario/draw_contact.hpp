@@ -22,7 +22,7 @@ struct ContactKind {
   nlohmann::json ranges;
   std::string at;           ///< file and JSON pointer of the "draw" block, for messages
   nlohmann::json box = {};  ///< the study's "box": ranges that all kinds share, for "how": "box"
-  std::uint64_t kinds = 1;  ///< number of kinds; that many successive seeds, from seed 1 on, share a point of the box
+  std::uint64_t kinds = 1;  ///< number of kinds; each group of `kinds` successive seeds shares a point of the box
 };
 
 /// The kind that an entry of a study's "scenes" describes. `base`: file of its scene; `at`: file and JSON pointer of
@@ -39,7 +39,7 @@ class ContactDrawer {
   /// Throws Error with Assets::Required if rooms or hands have not been fetched.
   explicit ContactDrawer(Assets assets);
 
-  /// A scene, not yet resolved, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Random are:
+  /// A scene, not yet resolved, named `<study>-<seed>-<kind>`, with "seed" and "drawn". Random values, by `how`:
   ///   desk     any table of any room; position on it, height, yaw, tilt, initial velocity (not upwards)
   ///   shape    as desk, and the size of the cloth; over a sphere, or over a box in any orientation
   ///   sweep    a hand's pose, orientation, direction (any, from either side), depth and speed
@@ -50,7 +50,7 @@ class ContactDrawer {
   ///   box      as keys, and settings of solvers, from points that fill the box of all ranges evenly
   ///   crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
   /// Hands approach, leave and stay away for 1 s. Dropped cloth has a floor 1 m below. Hands and grips faster than 5
-  /// m/s get shorter frames: a hand moves at most 70 mm per frame. Throws Error with a range that is missing, unknown
+  /// m/s get shorter frames: a hand moves at most 70 mm per frame. Throws Error naming a range that is missing, unknown
   /// or empty.
   nlohmann::json draw(const ContactKind&, const std::string& study, std::uint64_t seed);
 

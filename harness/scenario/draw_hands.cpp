@@ -13,7 +13,7 @@ using nlohmann::json;
 using std::numbers::pi;
 
 constexpr double kSettle_s = 0.5, kApproach_s = 0.4, kAway_s = 1;
-constexpr double kAway_m = 0.35;  ///< distance of palm and cloth at which no finger touches, in any orientation
+constexpr double kAway_m = 0.35;  ///< distance from palm to cloth at which no finger touches, in any orientation
 constexpr double kFrameRate_hz = 72, kSpeedOfLongestFrames_m_per_s = 5;
 
 /// Builds the keys of a track one after another.

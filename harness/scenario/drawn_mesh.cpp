@@ -20,7 +20,7 @@ double twice_area(const std::vector<Point>& p, const Triangle& t) {
   return (p[t[1]][0] - p[t[0]][0]) * (p[t[2]][1] - p[t[0]][1]) - (p[t[1]][1] - p[t[0]][1]) * (p[t[2]][0] - p[t[0]][0]);
 }
 
-/// Integer coordinates make the test below exact, because on a lattice four points often lie on one circle.
+/// Integer coordinates make the test below exact. This matters, because four lattice points often lie on one circle.
 using Exact = __int128;
 using Place = std::array<std::int64_t, 2>;
 

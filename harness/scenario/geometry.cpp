@@ -13,8 +13,8 @@ namespace {
 /// Width [cells] that grid line `i` of `n` stands for: 1, or 0.5 at the border.
 double share(int i, int n) { return i == 0 || i == n - 1 ? 0.5 : 1.0; }
 
-/// Angle between neighbouring chords of an arc of n equal chords whose ends are `span` chords apart:
-/// sin(n d/2) / sin(d/2) = span, which falls from n at d = 0 to 0 at d = 2 pi/n.
+/// Angle d between neighbouring chords of an arc of n equal chords if the arc's ends are `span` chords apart. Solves
+/// sin(n d/2) / sin(d/2) = span; the left side falls from n at d = 0 to 0 at d = 2 pi/n.
 double chord_angle(int n, double span) {
   double low = 0, high = 2 * std::numbers::pi / n;
   for (int k = 0; k < 200 && low < high; ++k) {
@@ -25,8 +25,8 @@ double chord_angle(int n, double span) {
   return high;
 }
 
-/// Position [m] of grid line `i` on an arc whose cells are equal chords of a circle: along the chord between the arc's
-/// ends, from its middle, and below that chord.
+/// Position [m] of grid line `i` on an arc whose cells are equal chords of a circle. First: along the chord between the
+/// arc's ends, from that chord's middle. Second: depth below that chord.
 std::pair<double, double> on_arc(const Cloth& c, int i) {
   const int n = c.columns - 1;
   const double d = chord_angle(n, c.span_m / c.du()), radius = c.du() / (2 * std::sin(d / 2));
@@ -146,8 +146,8 @@ std::array<Vec3, 3> rest_corners(const ClothMesh& m, std::size_t triangle) {
 double drape_turn_rad(const Cloth& c) { return 2 * std::asin(c.du() / (2 * c.drape_radius_m)); }
 
 Vec3 draped_row(const Cloth& c, int i, double offset_m) {
-  // Angles count from the horizontal on side u0. Less than turn / 2 below the axis, a row has the same distance from it
-  // whether it hangs or touches, so both rules agree there.
+  // Angles count from the horizontal on side u0. A row less than turn / 2 below the axis has the same distance from the
+  // axis whether it hangs or touches, so both rules agree there.
   const double turn = drape_turn_rad(c), middle = (c.columns - 1) / 2.0 - offset_m / c.du();
   const auto angle_of = [&](double row) { return std::numbers::pi / 2 + (row - middle) * turn; };
   const double slack = 1e-9 * turn;

@@ -138,7 +138,7 @@ void check_assumed(const json& scenario, const std::string& source) {
     }
     if (!found)
       refuse(source, fmt::format("/assumed/{}", k),
-             in_quotes(entry) + ": expected the pointer of a value of this scene");
+             in_quotes(entry) + ": expected the JSON pointer of a value in this scene");
   }
 }
 
@@ -268,7 +268,7 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
   s.name = scenario["name"].get<std::string>();
   if (s.name.size() > kMostName)
     refuse(source, "/name",
-           fmt::format("{} characters; expected at most {}, since the names of result files hold it", s.name.size(),
+           fmt::format("{} characters; expected at most {}, because names of result files contain it", s.name.size(),
                        kMostName));
   s.why = scenario["why"].get<std::string>();
   s.cloth = read_cloth(scenario["cloth"], source, parts);
@@ -341,7 +341,7 @@ void complete_expect(nlohmann::json& expect, const Scene& scene, const std::stri
       expect[b.scalar] = {{"at_most", b.at_most}};
     } else if (!(upper_bound(expect[b.scalar]) <= b.at_most) && !expect[b.scalar].contains("why")) {
       refuse(source, std::string("/expect/") + b.scalar,
-             fmt::format("\"why\", the reason for a bound looser than the strict one (at most {:g})", b.at_most));
+             fmt::format("expected \"why\", the reason for a bound looser than the strict one ({:g})", b.at_most));
     }
   }
 }

@@ -81,7 +81,7 @@ Scene scene_from_parts(nlohmann::json scenario, const std::string& source, const
 /// stand-ins.
 void read_colliders(nlohmann::json& scenario, Scene& scene, const std::string& source, Assets assets);
 
-/// Reads uneven cells, masses or stiffness and a start away from rest from a completed scenario: cloth.column_factors,
+/// Reads uneven cells, masses and stiffness, and a start not at rest, from a completed scenario: cloth.column_factors,
 /// .mass_factors, .start, .spin_rad_per_s and material.regions. Throws Error with JSON pointer.
 void read_irregular(const nlohmann::json& scenario, Scene&, const std::string& source);
 

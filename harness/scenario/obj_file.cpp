@@ -76,7 +76,7 @@ Statements statements_of(std::string_view text, const std::string& source) {
   for (std::uint32_t number = 1, first = 1; std::getline(in, line); ++number) {
     if (statement.empty()) first = number;
     for (std::size_t at = line.find('#'); at != std::string::npos; at = line.find('#', at + 1))
-      if (at == 0 || std::isspace(static_cast<unsigned char>(line[at - 1])) != 0) line.resize(at);  // else a name's
+      if (at == 0 || std::isspace(static_cast<unsigned char>(line[at - 1])) != 0) line.resize(at);  // if not in a name
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.pop_back();
     const bool goes_on = line.ends_with('\\');
     if (goes_on) line.back() = ' ';
@@ -94,7 +94,7 @@ Statements statements_of(std::string_view text, const std::string& source) {
     } else if (words[0] != "g" && words[0] != "o") {
       continue;
     }
-    out.text += fmt::format("{}{}\n", fmt::join(words, " "), words.size() == 1 ? " " : "");  // for the library
+    out.text += fmt::format("{}{}\n", fmt::join(words, " "), words.size() == 1 ? " " : "");  // tinyobj needs the space
   }
   return out;
 }
@@ -118,7 +118,7 @@ struct Reader {
     const auto n = static_cast<std::int64_t>(out.vertices.size()), k = index < 0 ? n + index : index - std::int64_t{1};
     if (k >= 0 && k < n) return static_cast<std::uint32_t>(k);
     refuse_line(source, statements.faces[faces.size()],
-                fmt::format("vertex {} of {} before it (the first is 1)", index, n));
+                fmt::format("vertex {}: expected one of the {} before it (the first is 1)", index, n));
   }
 
   void add_face(const tinyobj::index_t* indices, int count) {

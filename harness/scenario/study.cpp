@@ -56,7 +56,7 @@ void check_lengths(const json& axis, std::size_t a, const std::string& pointer, 
                               pointer, a, key, axis["values"].size(), values.size()));
 }
 
-/// Refuses an override of the axis's key, which would give all values of the axis the same scene.
+/// Refuses an override of the axis's key, because it would give all values of the axis the same scene.
 void check_free(const json& axis, const std::vector<std::string>& set) {
   const std::string start = axis["key"].get<std::string>() + "=";
   for (const std::string& item : set)
@@ -187,7 +187,7 @@ class Builder {
     return rungs;
   }
 
-  /// By solver name, tags of the scenes that it runs in the quick form; null: the form does not select by tag.
+  /// Tags of the scenes that each solver runs in the quick form, by solver name; null: the form does not select by tag.
   json quick_by_solver() const {
     const json tags = quick_.is_null() ? json() : quick_["tags"];
     return tags.is_object() ? tags : json();
@@ -216,7 +216,7 @@ class Builder {
     return path;
   }
 
-  /// Every scene of the study is a kind. Kinds alternate with the seed, so that a seed determines its kind.
+  /// Each entry of "scenes" is a kind. Kinds alternate with the seed, so that a seed determines its kind.
   void draw_scenes() {
     std::vector<ContactKind> kinds;
     for (std::size_t k = 0; k < j_["scenes"].size(); ++k) {
@@ -264,7 +264,7 @@ class Builder {
     }
   }
 
-  /// Adds one item for all solvers that make equal changes to the scene. The names of their runs must differ.
+  /// Adds one item per set of solvers that make equal changes to the scene. The names of their runs must differ.
   void add_forms(const json& scenario, const std::string& path, const Variant& v, const std::string& pointer) {
     std::map<Words, std::size_t> forms;
     for (std::size_t s = 0; s < study_.solvers.size(); ++s) {
@@ -315,7 +315,7 @@ class Builder {
     const auto check = [&](const std::string& pointer, const std::string& word, const Words& known) {
       if (!contains(known, word))
         throw Error(
-            fmt::format("{}: {}: {} names none{}", source_, pointer, in_quotes(word), nearest_known(word, known)));
+            fmt::format("{}: {}: {} is unknown{}", source_, pointer, in_quotes(word), nearest_known(word, known)));
     };
     const Words tags(tags_.begin(), tags_.end());
     const auto check_all = [&](const std::string& pointer, const json& words) {

@@ -36,7 +36,7 @@ struct StudyOptions {
   std::vector<std::string> overrides;  ///< applied to every scene after all changes by the study
   StudyLength length = StudyLength::Full;
   Assets assets = Assets::MayBeProcedural;
-  /// If not empty, only these run. A solver that the study lacks joins it, with default settings and unchanged scenes.
+  /// If not empty, only these solvers run. Those that the study lacks get default settings and unchanged scenes.
   std::vector<std::string> solvers = {};
   /// Settings that the study's sweep, if any, varies for such an added solver; a solver without an entry is not varied.
   std::map<std::string, std::vector<std::string>> knobs = {};
@@ -45,10 +45,10 @@ struct StudyOptions {
   int count = 0;  ///< number of seeds; 0: the study's number
 };
 
-/// A study with its axes expanded. Runs of one `group` are interleaved: for protocol fps all runs on one grid,
-/// otherwise all runs of one scene.
+/// A study with its axes expanded. The runs of one `group` are interleaved; with protocol fps these are all runs on one
+/// grid, otherwise all runs of one scene.
 struct Study {
-  /// One form of a scene, and the solvers that run it. A solver's own changes make a different form of the same name.
+  /// One form of a scene, and the solvers that run it. A solver's own changes make another form with the same name.
   struct Item {
     Scene scene;  ///< name = base name and the labels of its axis values
     int group = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPlace = 1e-6;  // fraction of L: tolerance for the positions in a scene
 
-/// The face on which a sheet lies: its outward normal, and the distance from the sheet to its contact offset.
+/// The face on which a sheet lies: its outward normal, and the height of the sheet above the face's contact offset.
 struct Face {
   Vec3 normal{};
   double gap_m = std::numeric_limits<double>::infinity();
@@ -143,7 +143,7 @@ ReferenceCase capstan(const Strip& s) {
   s.need(j.at("length_m").get<double>() >= c.height_m + 2 * std::abs(dot(off, axis)),
          "a cylinder as long as the strip is wide");
   s.need(std::abs(j.at("radius_m").get<double>() + collider.margin_m - c.drape_radius_m) <= kPlace * s.length_m,
-         "a drape radius that is the cylinder's and its margin");
+         "a drape radius equal to the cylinder's radius plus its margin");
   const double cell = c.du(), turns = std::numbers::pi / drape_turn_rad(c),
                middle = s.links / 2.0 - c.drape_offset_m / cell;
   const int m = static_cast<int>(std::lround(turns));

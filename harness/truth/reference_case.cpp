@@ -50,8 +50,8 @@ std::vector<double> rest_uv(const Cloth& c) {
   return out;
 }
 
-/// Adapts a case to a flat rectangle of triangles. `vertices` becomes the continuum's solution at the mesh's vertices,
-/// `columns` its means over the rows of the material points, as for a run: interpolation in triangles is no error.
+/// Adapts a case to a flat rectangle of triangles. `vertices` becomes the continuum's solution at the mesh's vertices.
+/// `columns` becomes its column means over the material points, as for a run, so that interpolation is no error.
 ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   known.vertices = [s, continuum = known.continuum](int frame) {
     const Cloth& c = s.scene.cloth;
@@ -66,7 +66,7 @@ ReferenceCase on_mesh(const Strip& s, ReferenceCase known) {
   return known;
 }
 
-/// The exact solutions by name; whether each also holds for a flat rectangle of triangles.
+/// An exact solution, its name, and whether it also holds for a flat rectangle of triangles.
 struct Solution {
   const char* name;
   ReferenceCase (*of)(const Strip&);

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-// Exact solutions of simple motions and shapes: formulas, or equations, some of them for the scene's mesh.
-// Values are in SI units; tensions and loads per unit width. Callers check the arguments.
+// Exact solutions of simple motions and shapes: formulas, or equations solved numerically; some for the scene's grid.
+// Values are in SI units; tensions and loads are per unit width. Callers check the arguments.
 
 namespace clothbench::truth {
 
@@ -76,9 +76,9 @@ double hang_displacement_m(const HeavyStrip&, double rest_m);
 /// Rest shape of a clamped, horizontal strip of rigid links under its own weight, Gamma = rho g L^3/B: the minimum of
 /// potential energy plus bending energy, (B/2a^3)|x_{i-1} - 2 x_i + x_{i+1}|^2 per link (quadratic isometric bending,
 /// Bergou et al. 2006), with lumped row masses. The clamp acts on half a cell, so its hinge is twice as stiff. Newton's
-/// method follows the branch from zero load; angles to 1e-13. Converges with order 2 in 1/links to Euler's elastica,
-/// theta'' = -Gamma (1 - s) cos(theta). Returns links + 1 nodes divided by the length; second coordinate downwards.
-/// Valid for 0 <= Gamma <= 1e4 while no hinge rotates by 90 degrees.
+/// method follows the branch from zero load, with angles to 1e-13. Converges with order 2 in 1/links to Euler's
+/// elastica, theta'' = -Gamma (1 - s) cos(theta). Returns links + 1 nodes divided by the length; second coordinate
+/// downwards. Valid for 0 <= Gamma <= 1e4 while no hinge rotates by 90 degrees.
 Nodes cantilever_nodes(int links, double own_weight);
 
 /// A straight chain of equal springs with lumped masses (half a cell at each end), without gravity, whose ends are

@@ -37,7 +37,7 @@ struct Strip {
     need((scene.needs & FeatureSet{Feature::UnevenGrid, Feature::Regions, Feature::Spin}).empty(),
          "even cells and no spin");
     need(may_shear || !scene.needs.has(Feature::Shear),
-         "\"shear\": false in its material: so that rows are independent");
+         "\"shear\": false in its material, so that rows are independent");
     need(std::abs(dot(scene.cloth.axis_v, up)) <= kLevel, "axis_v at right angles to gravity");
   }
 
@@ -67,7 +67,7 @@ struct Strip {
     need(scene.pins.vertices == expected && scene.grips.vertices.empty(), what);
   }
   void need_inextensible() const { need(!scene.material.membrane_stiffness_N_per_m, "an inextensible material"); }
-  /// Requires that its own weight stretches the membrane by at most this fraction of the length.
+  /// Requires that the membrane's own weight stretches it by at most this fraction of the length.
   void need_stiff(double strain, const std::string& text) const {
     const auto Y = scene.material.membrane_stiffness_N_per_m;
     need(!Y || scene.cloth.areal_density_kg_per_m2 * g * length_m / *Y <= strain,
@@ -120,7 +120,7 @@ struct Strip {
     return c;
   }
 
-  static constexpr double kLevel = 1e-9, kFlat = 1e-9;  ///< for directions; for positions, as a fraction of the length
+  static constexpr double kLevel = 1e-9, kFlat = 1e-9;  ///< tolerances of directions, of positions over length
 };
 
 // strip_cases.cpp

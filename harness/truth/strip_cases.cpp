@@ -1,4 +1,4 @@
-// Reference cases without contact: each one's requirements on its scene, and its solution in scene coordinates.
+// Reference cases without contact: the requirements of each on its scene, and its solution in scene coordinates.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -93,9 +93,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadMesh{"", "expected at least one triangle"},
         BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "expected at least one triangle"},
-        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj: line 4: vertex 4 of 3"},
-        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "mesh.obj: line 4: vertex -4 of 3"},
-        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "mesh.obj: line 4: vertex 0 of 3"},
+        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "mesh.obj: line 4: vertex 4: expected one of the 3"},
+        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "mesh.obj: line 4: vertex -4: expected one of the 3"},
+        BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "mesh.obj: line 4: vertex 0: expected one of the 3"},
         BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3.5\n",
                 "mesh.obj: line 4: \"3.5\": expected the numbers of a vertex"},
         BadMesh{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4294967299\n",

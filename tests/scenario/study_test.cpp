@@ -144,8 +144,8 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
   };
   EXPECT_EQ(study_error(quick(R"("tags":["shape"])")), "");
   EXPECT_PRED2(mentions, study_error(quick(R"("tags":["shapes"])")),
-               "/quick/tags/0: \"shapes\" names none; nearest known: shape");
-  EXPECT_PRED2(mentions, study_error(quick(R"("tags":{"a x":["shape"]})")), "/quick/tags: \"a x\" names none");
+               "/quick/tags/0: \"shapes\" is unknown; nearest known: shape");
+  EXPECT_PRED2(mentions, study_error(quick(R"("tags":{"a x":["shape"]})")), "/quick/tags: \"a x\" is unknown");
   EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")), "/solvers/0/tags/1");
   EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a"},{"solver":"a"}])")), "two runs are named");
   EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")),

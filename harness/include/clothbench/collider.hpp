@@ -52,7 +52,7 @@ struct Collider {
   std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< box: orthonormal, in world coordinates
   std::vector<Capsule> capsules{};                              ///< their number is constant during a run
   std::shared_ptr<const ColliderMesh> mesh{};
-  bool recorded = false;  ///< a user's hand, recorded or live: its speed is not known in advance
+  bool recorded = false;  ///< a user's hand, recorded or live, so its speed is not known in advance
 
   /// The feature that a solver must support to collide with it.
   Feature feature() const;
@@ -65,7 +65,7 @@ struct ColliderPose {
   std::vector<Affine> joints;  ///< of a skinned mesh: one matrix per joint
 };
 
-/// Poses of all moving colliders and grips at one instant. Between instants, ends and vertices move in straight lines.
+/// Poses of all moving colliders and grips at one instant. Between instants, their points move in straight lines.
 struct FrameMotion {
   std::vector<ColliderPose> colliders;  ///< one per Scene::colliders
   std::vector<Vec3> grip_position_m;    ///< one per Scene::grips.vertices: its position while held

@@ -19,7 +19,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A solver cannot be created or cannot load a scene. The run becomes a row of results; other Errors end the command.
+/// A solver cannot be created or cannot load a scene. This error becomes a row of results; others end the command.
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, ExitCode::CheckFailed) {}

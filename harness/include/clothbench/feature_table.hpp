@@ -1,5 +1,5 @@
-// Every feature is a row here and a bit in clothbench_plugin.h, in the same order. A file that includes this one first
-// defines the macro FEATURE with these arguments:
+// Every feature is a row here and a bit in clothbench_plugin.h, in the same order. Before including this table, a
+// file must define the macro FEATURE with these arguments:
 //   enumerator, name in files, suffix of the plugin's bit CLOTHBENCH_<suffix>, category (FeatureOf), description,
 //   expression that is true if `scene` needs the feature (it may use helpers of harness/scenario/load.cpp).
 

@@ -17,7 +17,7 @@ struct Outcome {
   std::string klass = "ok";  ///< outcome class F0 to F3, or ok
   int failed_frame = -1;
   std::string message;
-  /// Result of the scene's `expect`: "pass", "fail: " and the reason, "not measured", or "" if the scene has none.
+  /// Result of the scene's `expect`: "pass"; "fail: " and the reason; "not measured"; "" if the scene has none.
   std::string expect = {};
   std::string trajectory_sha256 = {};  ///< hash of the motion that this result describes; set by the store
 };
@@ -46,15 +46,15 @@ struct TimedTrial {
   int index = 0;
   std::vector<double> frame_wall_s, frame_device_s;
   std::vector<double> stage_device_s, stage_read_B, stage_write_B;  ///< (frame, stage)
-  /// Mean wall time [s] of a frame if the trial's frames are run once more without waiting for each. NaN if not
+  /// Mean wall time [s] of a frame when the trial is repeated without waiting for the end of each frame. NaN if not
   /// measured, or if the solver keeps at most one frame in flight.
   double pipelined_wall_s = kMissing;
   /// Wall times [s] of the first frames in a second run with rendering; empty unless requested.
   std::vector<double> frame_rendered_s = {};
-  /// CPU times [s] of the timed frames of a CPU solver; empty for a GPU solver. CPU time of the process, summed over
-  /// its threads (CLOCK_PROCESS_CPUTIME_ID).
+  /// CPU time [s] of the process in each timed frame, summed over its threads (CLOCK_PROCESS_CPUTIME_ID). Empty for a
+  /// GPU solver.
   std::vector<double> frame_cpu_s = {};
-  /// System time at which the first timed frame begins and the last one ends [s since 1970 UTC], for other programs.
+  /// System times [s since 1970 UTC] of the first timed frame's start and the last one's end, to match device logs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
   int frames() const { return static_cast<int>(frame_wall_s.size()); }

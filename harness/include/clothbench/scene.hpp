@@ -26,7 +26,7 @@ struct Start {
   int folds = 0;        ///< layers of a folded sheet
   double noise_m = 0;   ///< standard deviation of the noise on every coordinate
   std::uint64_t seed = 0;
-  std::vector<std::vector<std::uint32_t>> merged;  ///< all vertices of a list start at its first vertex
+  std::vector<std::vector<std::uint32_t>> merged;  ///< vertices of a list, also pinned ones, start at the first one
   struct Move {
     std::vector<std::uint32_t> vertices;
     Vec3 by_m{};
@@ -45,7 +45,7 @@ struct Edge {
 
 /// A cloth of any shape and topology. Its local frame has origin center_m and axes axis_u, axis_v, axis_u x axis_v.
 struct ClothMesh {
-  std::vector<Vec3> vertices;                           ///< [m]; initial positions; without pattern also the rest shape
+  std::vector<Vec3> vertices;                           ///< [m]; initial positions and, without pattern, rest shape
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area, consistently wound
   std::vector<Edge> edges;                              ///< each edge once, all structural, a < b, ascending order
   std::vector<double> areas_m2;                         ///< per edge: the sum of the areas of its triangles
@@ -77,8 +77,8 @@ struct Cloth {
   Vec3 center_m{}, axis_u{}, axis_v{};
   /// Distance between u0 and u1 if the sheet starts as an arc along u, bent towards axis_u x axis_v; 0: no arc.
   double span_m = 0;
-  /// If drape_radius_m is above 0, the sheet starts draped over a cylinder along axis_v through center_m. Where the
-  /// sheet touches, its rows are `drape_radius_m` from the axis; elsewhere they hang along axis_u x axis_v. The middle
+  /// If drape_radius_m is above 0, the sheet starts draped over a cylinder along axis_v through center_m. Rows that
+  /// touch the cylinder are `drape_radius_m` from its axis; the others hang along axis_u x axis_v. The middle
   /// of the sheet is `drape_offset_m` from the top, towards u1.
   double drape_radius_m = 0, drape_offset_m = 0;
   Vec3 initial_velocity_m_per_s{};
@@ -128,7 +128,7 @@ struct TimeSpan {
   double duration_s = 0;
   double dt() const { return 1.0 / frame_rate_hz; }
   int frames() const { return static_cast<int>(duration_s * frame_rate_hz + 0.5); }
-  /// End times [s] of frames of unequal length (hitch, jitter): frames() + 1 values, the first is 0. Empty: equal.
+  /// End times [s] of frames of unequal length (hitch, jitter): frames() + 1 values from 0 on. Empty: equal lengths.
   std::vector<double> ends_s = {};
   /// Time [s] at the end of frame `frame` (0: the start), and duration [s] of frame `frame` + 1.
   double at(int frame) const { return ends_s.empty() ? frame * dt() : ends_s.at(static_cast<std::size_t>(frame)); }
@@ -146,7 +146,7 @@ struct StabilityRules {
   std::string name;           ///< name of the case, such as "S01"; empty = not evaluated
   std::uint32_t judged = 0;   ///< bit k: class Fk is evaluated
   bool when_relaxed = false;  ///< F1 and F2 are evaluated from the first frame with mean |strain| below 1 %
-  double relax_s = 0;         ///< latest time [s] of that frame, otherwise F2; 0 = no limit
+  double relax_s = 0;         ///< if that frame comes after this time [s], the run gets F2; 0 = no limit
   double settle_s = 0;        ///< a shape at rest is evaluated from this time [s] on
 };
 
@@ -164,7 +164,7 @@ struct Scene {
   Pins pins;
   Grips grips;
   std::vector<Collider> colliders;
-  /// One per frame from 0 (the start) to time.frames(), so frames() + 1; empty if grips and colliders are static.
+  /// time.frames() + 1 states, the first at the start; empty if grips and colliders are static.
   std::vector<FrameMotion> motion;
   Vec3 gravity_m_per_s2{};
   TimeSpan time;
@@ -188,13 +188,13 @@ struct Scene {
 };
 
 /// Lumped vertex masses [kg], size vertex_count. A grid vertex has a quarter of each adjacent cell ("quad-lumped":
-/// interior rho*du*dv, edge half, corner quarter) times its mass factor; a mesh vertex has a third of each triangle.
+/// interior rho*du*dv, edge half, corner quarter), a mesh vertex a third of each triangle; times its mass factor.
 std::vector<double> vertex_masses(const Scene&);
 
 /// Initial positions [m], size 3*vertex_count, xyz interleaved.
 std::vector<double> initial_positions(const Scene&);
 
-/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity + spin about center_m, also if pinned.
+/// Initial velocities [m/s], size 3*vertex_count, xyz interleaved: velocity + spin about center_m, even if pinned.
 std::vector<double> initial_velocities(const Scene&);
 
 /// Y [N/m] of a structural or shear edge. Grid: Y of its cell; for an edge along v, the mean of its two cells. Mesh:
@@ -206,10 +206,10 @@ std::vector<std::optional<double>> triangle_stiffnesses(const Scene&);
 std::vector<std::optional<double>> edge_stiffnesses(const Scene&);
 
 /// Sides [m] of the cell that a structural or shear edge stands for: along the edge (along u for a diagonal) and across
-/// it. For an edge along v the side across is the mean of the two columns. On a grid's border the spring is halved, not
-/// the cell. For an edge of a mesh (border included): edge length, and area of its triangles over edge length. Then Y
-/// across/along is the spring of Van Gelder 1998 ("Approximate simulation of elastic membranes by triangulated spring
-/// meshes"); equilateral triangles give a sheet with exactly Y and Poisson ratio 1/3.
+/// it. For an edge along v, the side across is the mean of the two columns. On a grid's border the cell keeps its full
+/// width, and the spring is halved. Edge of a mesh (border included): its length, and the area of its triangles over
+/// that length. Y across/along is then the spring of Van Gelder 1998 ("Approximate simulation of elastic membranes by
+/// triangulated spring meshes"); equilateral triangles give a sheet with exactly Y and Poisson ratio 1/3.
 struct EdgeCell {
   double along_m = 0, across_m = 0;
 };
@@ -220,8 +220,8 @@ EdgeCell edge_cell(const Cloth&, const struct Edge&);
 bool on_border(const Cloth&, const struct Edge&);
 
 /// Springs [N/m] in a sheet of uniaxial stiffness Y [N/m]. With shear, the homogenised sheet is isotropic with Poisson
-/// ratio 1/3, the only one that central springs allow (C12 = C66). Cells along x across: Y (9/8 across/along - 3/8
-/// along/across) per inner edge, 3/16 Y (along^2 + across^2)/(along across) per diagonal; square cells: 3/4 Y, 3/8 Y.
+/// ratio 1/3, the only one that central springs allow (C12 = C66). An inner edge gets Y (9/8 across/along - 3/8
+/// along/across), a diagonal 3/16 Y (along^2 + across^2)/(along across); on square cells, 3/4 Y and 3/8 Y.
 /// An inner edge with along/across above about 1.6 gets the minimum, a tenth of Y across/along: the sheet is then
 /// stiffer than Y. Without shear: Y across/along.
 double grid_spring_N_per_m(double Y_N_per_m, const EdgeCell&, bool shears);
@@ -235,7 +235,7 @@ double drape_turn_rad(const Cloth&);
 /// Position [m] of the middle of row `i` of a draped sheet that has slid by `offset_m` towards u1.
 Vec3 draped_row(const Cloth&, int i, double offset_m);
 
-/// Vertices of an edge: "u0" and "u1" run along v, "v0" and "v1" along u; ascending.
+/// Vertices of an edge in ascending order. The edges "u0" and "u1" run along v, "v0" and "v1" along u.
 std::vector<std::uint32_t> edge_vertices(const Cloth&, const std::string& edge);
 /// Vertices of the edge and of the neighbouring grid line. Holding both also fixes the direction at the edge.
 std::vector<std::uint32_t> clamp_vertices(const Cloth&, const std::string& edge);
@@ -253,14 +253,14 @@ double collider_speed_m_per_s(const Scene&);
 /// collider_speed_m_per_s without users' hands, whose speed a live session does not know in advance.
 double scripted_collider_speed_m_per_s(const Scene&);
 
-/// Maximum speed [m/s] of colliders and attached vertices since the previous frame, per `scene.motion`; the first is 0.
+/// Maximum speed [m/s] of colliders and attached vertices since the previous frame, for each frame; the first is 0.
 std::vector<double> driving_speeds_m_per_s(const Scene&);
 
 /// Maximum frame-to-frame speed [m/s] of attached vertices until their release.
 double grip_speed_m_per_s(const Scene&);
 
-/// Maximum strain that hands impose: growth of the distance between the first gripped vertex and any other one, over
-/// that distance at the start, while both are attached. 0 if the hands are static or approach each other.
+/// Maximum strain that hands impose: relative growth, since the start, of the distance between the first gripped vertex
+/// and any other gripped vertex while both are attached. 0 if the hands are static or approach each other.
 double grip_strain(const Scene&);
 
 }  // namespace clothbench

@@ -13,7 +13,7 @@
 
 namespace clothbench {
 
-/// One setting of a solver. `default_json` is a JSON literal and fixes the type.
+/// One setting of a solver. `default_json` is a JSON literal, whose type is the type of the setting.
 struct SettingSpec {
   std::string name, default_json, doc;
 };
@@ -31,8 +31,8 @@ struct SolverInfo {
   /// Pairs (feature, condition): {StaticMesh, DuplicatedLayer} = meshes are supported only with a duplicated layer.
   std::vector<std::pair<Feature, Feature>> only_with = {};
   std::vector<SettingSpec> settings;
-  int time_order = 1;  ///< order of accuracy in the time step, as declared, with exact inner solves
-  /// Settings only for tests and measurements, members of one object: "tuning": {"shuffles": false}. Help omits them.
+  int time_order = 1;  ///< declared order of accuracy in the time step, if inner solves are exact
+  /// Settings only for tests and measurements; members of the object "tuning": {"shuffles": false}. Help omits them.
   std::vector<SettingSpec> tuning = {};
   std::string engine = {};  ///< engine that a plugin wraps, from clothbench_plugin.h; otherwise empty
 };
@@ -69,7 +69,7 @@ struct BufferPlan {
 
 struct LeftOut {
   std::string what, why;
-  /// Stiffness that the model without this feature does not control: "strip_Y" (Y of cloth without shear), "sheet_Y" or
+  /// Stiffness that the model does not control without this feature: "strip_Y" (Y of cloth without shear), "sheet_Y" or
   /// "B". Empty if none. The report does not rank the run by a quantity that depends on it.
   std::string no_parameter = {};
 };
@@ -99,7 +99,7 @@ struct SolverCount {
   std::string fault = {};  ///< error message if a count above 0 makes the run an error
 };
 
-/// Input of one frame. Times are those at the frame's end.
+/// Input of one frame. All times are at the frame's end.
 struct FrameInput {
   int index = 0;
   double time_s = 0;
@@ -138,7 +138,7 @@ class ClothSolver {
   /// Number of frames of the loaded scene that `run_frames` keeps in flight; 1: it calls `step` for each.
   virtual int frames_in_flight() const { return 1; }
   /// Equivalent to `step` for each frame; all are complete on return, but a frame may start before the previous one is
-  /// complete. The final state is bit-identical to that of `step`. Stops at the first frame whose status is not Ok.
+  /// complete. The final state is bit-identical to `step`'s. Stops at the first frame whose status is not Ok.
   virtual StepStatus run_frames(const std::vector<FrameInput>& frames) {
     StepStatus status = StepStatus::Ok;
     for (std::size_t k = 0; k < frames.size() && status == StepStatus::Ok; ++k) status = step(frames[k]);
@@ -146,13 +146,13 @@ class ClothSolver {
   }
   virtual void read_state(ClothState&) const = 0;
   /// Continues from positions and velocities that `read_state` returned for this scene. Returns false and changes
-  /// nothing if they are not the complete state: the solver keeps more state, or the scene has motion.
+  /// nothing if they are not the complete state, because the solver keeps more or the scene has motion.
   virtual bool restart(const ClothState&) { return false; }
   /// As `restart`, from the state at the end of frame `last`, for solvers whose state depends on the time in the scene.
   virtual bool restart_at(const ClothState& state, const FrameInput& /*last*/) { return restart(state); }
   virtual FrameCost last_cost() const = 0;
   virtual Plan plan() const = 0;
-  /// Equal entries in equal order after every frame of a loaded scene; empty if the solver has nothing to count.
+  /// The same counters in the same order after every frame of a loaded scene; empty if the solver has none.
   virtual std::vector<SolverCount> counts() const { return {}; }
   /// Messages of the validation layer that this solver has caused so far; 0 without a validation layer.
   virtual int validation_messages() const { return 0; }
@@ -183,7 +183,7 @@ const std::vector<std::string>& solver_names_of_tree();
 /// Prefix of a shared library's path on the command line; prefix and path make up the plugin's SolverInfo::folder.
 inline constexpr char kPluginPrefix[] = "plugin:";
 /// The solver in a shared library (clothbench_plugin.h). `name`: "plugin:PATH", or the name of a plugin that this
-/// process or its parent has loaded; otherwise null. Throws Error if the library is not a solver.
+/// process or its parent has loaded. Null for another name. Throws Error if the library is not a solver.
 const SolverEntry* external_solver(const std::string& name);
 inline bool is_external(const SolverInfo& info) { return info.folder.starts_with(kPluginPrefix); }
 /// Finds a solver by name or "plugin:PATH". Throws Error that suggests the most similar known name.

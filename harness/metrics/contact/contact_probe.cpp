@@ -253,7 +253,7 @@ int SweptMesh::signed_crossings(const Point<3>& p, const Point<3>& q) const {
       v[i] = at_time(prism.from[i], 0);
       w[i] = at_time(prism.to[i], 1);
     }
-    // For a static triangle det(v1 - v0, v2 - v0, w2 - v0, x - v0) = -n.(x - v0), and + - for the other two.
+    // For a static triangle det(v1 - v0, v2 - v0, w2 - v0, x - v0) = -n.(x - v0); the other two have the signs + and -.
     sum -= prism.orientation * crossing<4>(start, end, {v[0], v[1], v[2], w[2]});
     sum += prism.orientation * crossing<4>(start, end, {v[0], v[1], w[1], w[2]});
     sum -= prism.orientation * crossing<4>(start, end, {v[0], w[0], w[1], w[2]});
@@ -272,7 +272,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
   };
   if (std::none_of(links.begin(), links.end(), differ) || crosses_at(from) || crosses_at(to)) return step;
 
-  // If its distances to the border sum up to more than twice its displacement, a vertex has not moved around it.
+  // A vertex has not moved around the border if its distances to the border (start plus end) exceed twice its path.
   const std::vector<Link> border = border_of(mesh);
   const auto distance = [&](const Point<3>& point) {
     double least = std::numeric_limits<double>::infinity();
@@ -290,7 +290,7 @@ std::vector<int> proven_crossings(std::span<const double> from, std::span<const 
     for (const auto& [a, b] : links)
       if (step[a] == step[b] && step[a] != 0 && proven[a] != proven[b]) proven[a] = proven[b] = changed = true;
   }
-  // Drop the crossings of every unproven group, from vertices with a link to other vertices inwards.
+  // Drop the crossings of every unproven group that has a link to others, from the linked vertices inwards.
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : links) {

@@ -13,15 +13,15 @@ struct ContactSample {
   double depth_max_m;       ///< of the cloth in the object, between vertices too; NaN for an object without inside
 };
 
-/// Contact with a mesh. The contour is exact (`contour`). The depth is the largest distance from the surface of
-/// vertices, edge midpoints and centroids inside it; vertices only would miss a finger that rises through the middle of
-/// a triangle. A mesh with an inside is closed, with outward normals. `links`: edges_of the cloth.
+/// Contact with a mesh. The contour is exact (`contour`). The depth is the largest distance to the mesh's surface, over
+/// the cloth's vertices, edge midpoints and centroids inside; vertices only would miss a finger that rises through the
+/// middle of a triangle. A mesh with an inside is closed, with outward normals. `links`: edges_of the cloth.
 ContactSample mesh_contact(const TriangleMeshView& cloth, std::span<const Link> links, const TriangleTree& mesh,
                            bool has_inside);
 
 /// Contact with capsules of positive radius. Their contour is computed on triangles (capsule_mesh), which lie at most
-/// kCapsuleError of the radius too deep; contour inside another capsule does not count. The depth is exact: the largest
-/// depth in a single capsule.
+/// kCapsuleError times the radius below the surface; contour inside another capsule does not count. The depth is exact:
+/// the largest depth in a single capsule.
 ContactSample capsule_contact(const TriangleMeshView& cloth, std::span<const Capsule> shapes);
 
 /// Contact of a cloth with the half-space behind a plane, opposite to its unit normal. Exact: depth is linear on a flat
@@ -48,8 +48,8 @@ std::optional<std::array<Point<3>, 2>> intersection(const Simplex<3>& cloth, con
 Contour contour(const TriangleMeshView& cloth, const TriangleTree& object);
 
 /// Intersection of a cloth with itself: pairs of its triangles that share no vertex, each once. Every self-intersection
-/// begins with an edge that passes through a face not containing it, or with two edges that pass each other. So it
-/// misses only a crease turned inside out within the triangles of one vertex. Degenerate cases as in `contour`.
+/// begins with an edge that passes through a face not containing it, or with two edges that pass each other. Only
+/// a crease turned inside out within the triangles of one vertex is missed. Degenerate cases as in `contour`.
 Contour self_contour(const TriangleMeshView& cloth);
 
 /// Signed crossings of the straight path p -> q with a static mesh: crossings along the normals minus crossings against
@@ -89,7 +89,7 @@ class SweptMesh {
 ///
 /// The straight path between frames may cross a mesh that the vertex moved around. If no link crosses the mesh before
 /// or after the step, a link from a vertex that crossed to one that did not passes around a border. A connected group
-/// of equal crossings then counts only if it has no link to others, or a member cannot reach the border.
+/// of vertices with equal crossings then counts only if it has no link to others, or a member cannot reach the border.
 std::vector<int> proven_crossings(std::span<const double> from, std::span<const double> to, const TriangleMeshView&,
                                   const TriangleTree&, std::span<const Link> links);
 

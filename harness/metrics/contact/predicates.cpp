@@ -35,7 +35,7 @@ int exact_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N
   return static_cast<int>(CGAL::sign(determinant<CGAL::MP_Float, N>(m)));
 }
 
-/// Sign of the determinant, its last row moved by shift * (e, e^2, e^3, 0), e -> 0+: sign of the first cofactor not 0.
+/// Sign, for e -> 0+, of the determinant with shift * (e, e^2, e^3, 0) added to its last row: sign of its first term.
 template <int N>
 int perturbed_sign(const std::array<Point<N>, N>& head, const std::array<Point<N>, N>& tail, int shift) {
   if (const int sign = sign_of_determinant<N>(head, tail)) return sign;
@@ -78,7 +78,7 @@ int sign_of_determinant(const std::array<Point<N>, N>& head, const std::array<Po
   // absolute bound covers underflow errors. On overflow or NaN the comparison is false.
   constexpr double kRelative = 0x1p-48, kLeast = 0x1p-900;
   if (std::abs(value) > kRelative * bound && bound > kLeast && std::isfinite(bound)) return value > 0 ? 1 : -1;
-  // 0 if every term has a factor that is exactly 0, the most common tie: points that share a coordinate.
+  // The sign is 0 if every term has a factor 0. This is the most common tie: points that share a coordinate.
   for (auto& row : magnitude)
     for (double& x : row) x = x == 0 ? 0 : 1;
   if (determinant<double, N, true>(magnitude) == 0) return 0;

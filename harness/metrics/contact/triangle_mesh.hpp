@@ -41,8 +41,8 @@ inline Point<3> point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 /// Point `i` of coordinates, xyz interleaved.
 inline Point<3> point_at(std::span<const double> x, std::size_t i) { return Point<3>::Map(x.data() + 3 * i); }
 
-/// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, seen counter-clockwise from the
-/// side the normal points to. Triangles may be degenerate, and vertices may be repeated instead of shared.
+/// Plain arrays: positions [m], xyz interleaved; triangles, 3 vertex indices each, counter-clockwise seen from the
+/// side to which the normal points. Triangles may be degenerate, and vertices may be repeated instead of shared.
 struct TriangleMeshView {
   std::span<const double> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
@@ -174,7 +174,7 @@ struct Capsule {
   double radius_m;
 };
 
-/// Parameter on the axis of its point nearest to p, from 0 at a to 1 at b; 0 for a sphere.
+/// Parameter of the axis point nearest to p, from 0 at a to 1 at b; 0 for a sphere.
 double axis_share(const Point<3>& p, const Capsule&);
 
 /// Signed distance [m] to the surface, negative inside; exact.
@@ -201,7 +201,7 @@ struct Nearest {
   Point<3> carried_m;  ///< displacement of that surface point since the previous frame
 };
 
-/// Nearest point of a union of capsules. `before`: the capsules one frame earlier; no capsule spins about its axis.
+/// Nearest point of a union of capsules. `before`: the capsules one frame earlier; assumes no spin about their axes.
 Nearest nearest(const Point<3>& p, std::span<const Capsule> now, std::span<const Capsule> before);
 
 /// The nearest point of a mesh within `bound_m`, if any. `before`: the mesh at the previous frame; null: it is static.

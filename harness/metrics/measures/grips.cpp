@@ -1,4 +1,4 @@
-// Hands that grip and pull the cloth: how closely it follows them, how far it stretches, the strain after release.
+// Cloth that hands grip and pull: how closely it follows them, how far it stretches, its strain after release.
 #include <algorithm>
 
 #include "metrics/registry.hpp"
@@ -10,7 +10,7 @@ double grip_error(const MetricFrame& f) {
   const Scene& scene = f.context.scene;
   const FrameMotion* motion = scene.motion_after(f.index - 1);
   double most = 0;
-  // A state that is not finite gives NaN, held or not.
+  // A vertex that is not finite gives NaN, attached or not.
   for (const double x : f.state.position) most += 0 * x;
   for (std::size_t k = 0; motion != nullptr && k < scene.grips.vertices.size(); ++k) {
     if (motion->grip_held[k] == 0) continue;

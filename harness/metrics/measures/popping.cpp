@@ -9,14 +9,14 @@
 namespace clothbench {
 namespace {
 
-/// The eye sums light over some 30 ms (Barlow 1958, daylight): within it a viewer sees a jump, not a motion. At least
-/// two whole frames, because a snap shorter than a frame's duration may straddle a frame.
+/// The eye sums light over about 30 ms (Barlow 1958, daylight), so a motion within this time looks like a jump. The
+/// window has at least two whole frames, because a snap shorter than a frame's duration may straddle a frame.
 double window_s(const Scene& scene) {
   constexpr double kRounding = 1e-9;
   return std::max(2.0, std::ceil(1.0 / 36 / scene.time.dt() - kRounding)) * scene.time.dt();
 }
 
-// A body that is hit leaves at up to twice the speed of what hits it. A wave moves a free edge twice as fast
+// A body that is hit leaves at up to twice the speed of the body that hits it. A wave moves a free edge twice as fast
 // as the vertices inside, because wave and reflection add up. At a corner, two edges reflect the wave.
 constexpr double kDoubled = 2, kAtCorner = 4;
 
@@ -74,7 +74,7 @@ class Paths {
   std::vector<double> path_m_;  ///< of each frame's vertices
 };
 
-/// Path length [m] by the end of each frame, summed over the fastest collider or grip of each frame.
+/// Path length [m] up to each frame's end: the sum of the displacements of the fastest collider or grip in each frame.
 std::vector<double> driven_m(const RunView& r) {
   const std::vector<double> speeds = driving_speeds_m_per_s(r.scene);
   std::vector<double> way(r.pass.time_s.size(), 0);
@@ -105,7 +105,7 @@ std::vector<Surroundings> surroundings(const Cloth& cloth) {
   return out;
 }
 
-/// Maximum displacement in the second of three windows beyond the explained one. Explained is the largest of: twice the
+/// Maximum displacement in the second of three windows beyond the explained part, which is the largest of: twice the
 /// path of any driver in any window; twice the vertex's displacement in the first or third window in the same
 /// direction; a neighbour's path in these two windows times the vertex's gain. `x`: states at the ends of the windows.
 double unexplained_m(const std::array<Instant, 4>& x, double driven_m, const std::vector<Surroundings>& round) {

@@ -8,10 +8,10 @@
 namespace clothbench {
 namespace {
 
-/// Differences that the graph Laplacian of a mesh, the mean of its neighbours minus a vertex, has from its own mean
-/// over the neighbours (Sorkine et al. 2004, Laplacian Surface Editing, section 3). On a smooth surface they vanish
-/// with the square of the cell's size relative to the Laplacian. RMS over the vertices whose neighbours all lie inside,
-/// divided by the mean length of an edge.
+/// The graph Laplacian at a vertex is the mean of its neighbours minus the vertex (Sorkine et al. 2004, Laplacian
+/// Surface Editing, section 3). The measure is the difference between a vertex's Laplacian and the mean Laplacian of
+/// its neighbours: RMS over the vertices whose neighbours all lie inside, divided by the mean edge length. On a
+/// smooth surface, this difference relative to the Laplacian vanishes with the square of the cell size.
 double roughness(const RunView& r) {
   const Cloth& cloth = r.scene.cloth;
   const std::size_t n = cloth.vertex_count();

@@ -69,7 +69,7 @@ Bandwidth bandwidth(const TimedTrial& trial, const std::vector<double>& stage_by
   return out;
 }
 
-/// Maximum number of concurrent clothbench processes while the run was loaded and timed; missing if a part lacks it.
+/// Maximum number of concurrent clothbench processes while the run was loaded and timed; NaN if unknown for a part.
 double jobs_beside(const RunView& r) {
   const RunRecord& record = *r.run;
   double most = record.header.environment.is_object() ? record.header.environment.value("jobs", kMissing) : kMissing;

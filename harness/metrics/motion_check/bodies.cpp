@@ -11,7 +11,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Radius [m] of a finger. If a skinned hand moves over half of it in a frame, its force may have any direction.
+/// Radius [m] of a finger. A skinned hand that moves by more than half of it in a frame may push in any direction.
 constexpr double kFinger_m = 0.01;
 /// Frames whose contacts are kept: a window and its neighbours.
 constexpr std::size_t kFramesKept = 16;
@@ -77,7 +77,7 @@ Pose& AllBodies::pose(Body& b, std::size_t frame) {
   return *slot;
 }
 
-/// Largest displacement [m] of a collider's point from the previous frame to this one.
+/// Largest displacement [m] of any point of a collider from the previous frame to this one.
 double AllBodies::displacement(Body& b, std::size_t frame) {
   if (!b.moves() || frame == 0 || frame >= m.frames) return 0;
   std::pair<std::size_t, double>& known = b.displacements[frame % b.displacements.size()];
@@ -141,8 +141,8 @@ void AllBodies::touch_capsules(Body& b, std::size_t frame, const std::vector<V3>
 }
 
 /// Every surface triangle within reach of a cloth triangle may push along its own normal, and along the line between
-/// the nearest points of both: a frame does not tell when they met. If the cloth moves by more than half a cell,
-/// surface triangles smaller than the reach count if their boxes overlap.
+/// the nearest points of both, because a frame does not tell when they met. If the cloth moves by more than half a
+/// cell, a surface triangle smaller than the reach counts as in reach if the boxes of both overlap.
 void AllBodies::touch_triangle(Body& b, Pose& p, const Corners& corners, const std::vector<V3>& x, double reach,
                                bool any) {
   const Simplex<3> t{x[corners[0]], x[corners[1]], x[corners[2]]};
@@ -215,7 +215,7 @@ void AllBodies::touch_surface(Body& b, std::size_t frame, const std::vector<V3>&
     for (const V3& q : x) places.push_back(b.kind.nearest(b.collider, {q[0], q[1], q[2]}));
   for (const Corners& t : m.triangles) {
     const double allowed = std::max({reach[t[0]], reach[t[1]], reach[t[2]]});
-    // Above one flat face, the nearest point of a cloth triangle is a vertex.
+    // If a cloth triangle is above one flat face, its point nearest to the face is a vertex.
     if (!places.empty() && places[t[0]].normal == places[t[1]].normal && places[t[0]].normal == places[t[2]].normal) {
       const auto near = [&](std::uint32_t v) { return places[v].distance_m < allowed; };
       if (std::none_of(t.begin(), t.end(), near)) continue;

@@ -156,7 +156,7 @@ inline std::array<V3, 2> nearest_of(const Simplex<3>& t, const V3& a, const V3& 
   return out.best;
 }
 
-/// Nearest points of two triangles that do not cross: on the first, on the second (without edges outside `box`).
+/// Nearest points of two triangles that do not cross: on the first, on the second. Ignores edges of `s` outside `box`.
 inline std::array<V3, 2> nearest_of_triangles(const Simplex<3>& t, const Simplex<3>& s, const Box& box) {
   NearestPair out{{t[0], s[0]}};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -17,7 +17,7 @@ constexpr std::size_t kSpans[] = {1, 3, 12};
 constexpr std::size_t kKept = 12;
 /// Minimum depth of the part beyond a line, in cells.
 constexpr double kDeep = 2.8;
-/// Limits if links cross a line between vertices: offset of a crossing from the line, in cells; vertices beyond it.
+/// If links cross a line between vertices: maximum offset of a crossing, in cells; minimum vertices beyond the line.
 constexpr double kFlat = 0.1;
 constexpr std::size_t kMany = 20;
 /// If a line is not straight, forces act at most this many times the bulge away from it.
@@ -94,7 +94,7 @@ class Hinges {
     double value = 0, scale = 0, hidden = 0;  ///< [N m]
     std::size_t beyond = 0;                   ///< vertices of the part
   };
-  /// Rows, columns, diagonals and hull edges at the border of the hull `blocked`; through the centre if it is empty.
+  /// Lines along rows, columns, diagonals and hull edges, at the border of the hull `blocked` or, if empty, the centre.
   std::vector<Line> lines_of(const std::vector<Place>& blocked) const {
     const Place last = place_.back();
     std::vector<Line> out;
@@ -196,7 +196,7 @@ class Hinges {
     found_.add("hinge", off / allowed, k);
   }
 
-  /// Distance of neighbouring parallel lines, c and c + 1.
+  /// Distance between the parallel lines c and c + 1.
   double spacing_m(const Line& line) const {
     return 1 / std::hypot(line.p / m_.scene.cloth.du(), line.q / m_.scene.cloth.dv());
   }

@@ -11,7 +11,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Membrane stiffness [N/m] at which the charge for stored energy is capped: above, strain shows a solver's accuracy.
+/// Maximum stiffness [N/m] in the charge for stored energy: above it, strain shows only how accurate a solver is.
 constexpr double kStiffest = 1000, kInextensible = 1e4;
 
 class Limits {
@@ -99,8 +99,8 @@ class Limits {
     found_.add("energy", (kinetic + potential - start_energy_ - elastic_start_) / allowed, k);
   }
 
-  /// Only driven colliders and attachments add energy: otherwise the cloth has at most its energy in any earlier frame.
-  /// The earlier frame's energy includes what links and bending may store and what a rebound hides for a few frames.
+  /// Only driven colliders and attachments add energy. Without them, no frame has more energy than an earlier one. The
+  /// earlier energy includes the energy that links and bending may store or that a rebound hides for a few frames.
   void rise(std::size_t k, double energy, double kinetic, double mean_square) {
     constexpr std::size_t kHides = 4;
     double bent = 0;
@@ -174,7 +174,7 @@ class Limits {
   }
 
   /// Speed [m/s] at which an edge in reach of a collider hits it in the interval before frame k: the collider may stop
-  /// or reverse one end while the other moves on. Taken from the interval before that, so that no jump explains itself.
+  /// or reverse one end while the other moves on. Computed from the previous interval, so that no jump explains itself.
   double impact_speed(std::size_t k, const Edge& e) const {
     double fastest = 0;
     bool in_reach = false;

@@ -1,6 +1,6 @@
 // Momentum and angular momentum of the whole cloth. Forces inside the cloth cancel in both, so no material law is
-// needed: the force beyond gravity and damping must be one that attachments and colliders in reach can exert. Distance
-// from their cone: by column generation and non-negative least squares (Lawson & Hanson 1974, 23).
+// needed: attachments and colliders in reach must be able to exert the force beyond gravity and damping. Its distance
+// from the cone of their forces is found by column generation and NNLS (Lawson & Hanson 1974, 23).
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace clothbench::motion_check {
 namespace {
 
-/// Mean distance [frames] of an impulse from its stored frame, the mean hat weight of a second difference.
+/// Mean distance [frames] of an impulse from its stored frame, weighted by the hat function of a second difference.
 constexpr double kChord = 1.0 / 3;
 /// Tolerance [weights] of a lasting force; fraction of a tolerance to which distances are computed.
 constexpr double kLasting = 0.05, kResolved = 0.1;
@@ -17,12 +17,12 @@ constexpr double kLasting = 0.05, kResolved = 0.1;
 constexpr std::size_t kWindow = 12;
 /// Tolerance of friction coefficients: 10 % and 0.02.
 constexpr double kFrictionFactor = 1.1, kFrictionSlack = 0.02;
-/// For steady sliding on a face: change of the normal force, and force in excess of friction [weights].
+/// Tolerances of steady sliding on a face: normal force and tangential force [weights], and fraction of friction.
 constexpr double kSteady = 0.05, kSliding = 0.03, kFrictionShare = 0.05;
 /// Numbers of intervals over which sliding is averaged.
 constexpr std::size_t kSlidingSpans[] = {4, 12};
 
-/// Minimum norm of w - sum of non-negative multiples of the columns, with the residual.
+/// The residual of minimum norm: w minus a sum of non-negative `multiples` of the columns.
 template <class Columns>
 V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multiples) {
   const auto n = static_cast<Eigen::Index>(columns.cols());
@@ -60,7 +60,7 @@ V6 residual_of_cone(const Columns& columns, const V6& w, Eigen::VectorXd& multip
   return rest;
 }
 
-/// Unit force of a contact with the largest component along h, or zero. `coulomb`: in friction's cone; else any push.
+/// Unit force of a contact with the largest component along h, or zero. `coulomb`: in the friction cone; else any push.
 V3 best_force(const Contact& c, const V3& h, bool coulomb) {
   if (c.any_force) return h.normalized();
   const double along = h.dot(c.normal);
@@ -256,7 +256,7 @@ class Momentum {
     return out;
   }
 
-  /// Coulomb's law averaged over `span` intervals: friction is mu N against the motion of sliding cloth, else less.
+  /// Coulomb's law averaged over `span` intervals: friction is mu N against the motion if the cloth slides, else less.
   void sliding(std::size_t k, std::size_t span) {
     if (k < span + 1) return;
     V3 across = V3::Zero(), drag = V3::Zero();

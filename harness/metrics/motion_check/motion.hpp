@@ -38,7 +38,7 @@ class Motion {
   std::vector<double> masses_kg;
   double mass_kg = 0;       ///< of the cloth
   double length_m = 0;      ///< its longer side
-  double cell_m = 0;        ///< the longer mean edge
+  double cell_m = 0;        ///< mean edge length along u or v, whichever is longer
   double resolution_m = 0;  ///< kResolution of the longer side
   V3 gravity{};             ///< [m/s2]
   double weight_unit = 0;   ///< |gravity| [m/s2]; 9.81 if the scene has none
@@ -83,7 +83,7 @@ class Motion {
 using V6 = Eigen::Matrix<double, 6, 1>;
 using M6 = Eigen::Matrix<double, 6, 6>;
 
-/// The wrench of a force: force and moment about the centre over half the cloth's length, so both have one unit.
+/// The wrench of a force: force, and moment divided by half the cloth's length, so that both have one unit.
 inline V6 wrench_of(const V3& force, const V3& arm) {
   V6 w;
   w << force, arm.cross(force);
@@ -130,7 +130,7 @@ void check_smoothness(const Motion&, Bodies&, Findings&);
 struct Contact {
   V3 point, normal;  ///< of the collider's surface, outwards
   double friction;
-  bool any_force;  ///< the collider moves by over half its radius, so its force may have any direction
+  bool any_force;  ///< the collider moves by more than half its radius, so its force may have any direction
 };
 
 /// The surface within reach of the cloth in one frame.

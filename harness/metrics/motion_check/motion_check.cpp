@@ -92,7 +92,7 @@ void check_passage(const Motion& m, Bodies& bodies, Findings& found) {
   }
 }
 
-/// A cloth with self-collision may cross itself only at the corner of a cell.
+/// Beyond its start, a cloth with self-collision may cross itself over at most half the length of a cell.
 void check_self(const Motion& m, Bodies&, Findings& found) {
   if (!(m.scene.cloth.self_collision.thickness_m > 0) || !kWithContactMetrics) return;
   found.define("self_crossing");

@@ -48,7 +48,7 @@ struct Frames {
 /// not fill whole frames of the scene's vertices.
 std::vector<Finding> verify(const Scene& scene, const Frames& frames, std::span<const double> contact_offsets_m = {});
 
-/// The findings with the largest ratio, NaN before all others; null if there are none.
+/// The finding with the largest ratio, NaN before all others; null if there are none.
 const Finding* worst(std::span<const Finding> findings);
 
 }  // namespace clothbench::motion_check

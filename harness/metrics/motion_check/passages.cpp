@@ -87,7 +87,7 @@ void add_middle(Body& b) {
   b.middle = std::make_unique<contact::TriangleTree>(contact::TriangleMeshView{b.middle_positions, b.middle_triangles});
 }
 
-/// Points deep inside a solid, at most half a cell apart. None of them may pass through the cloth.
+/// Points deep inside a solid, half a cell apart (at most 33 in a row). None of them may pass through the cloth.
 std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   std::vector<V3> out;
   const auto count = [&](double length) {
@@ -128,7 +128,7 @@ std::vector<V3> AllBodies::inner_points(Body& b, std::size_t frame) {
   return out;
 }
 
-/// Points that pass the cloth in all three orders of motion: points first, cloth first, both together.
+/// Number of points that pass the cloth in all three orders of motion: points first, cloth first, both at once.
 int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, const std::vector<V3>& to) {
   Box swept, path;
   for (std::size_t v = 0; v < m.vertices; ++v) {
@@ -163,7 +163,7 @@ int AllBodies::through_cloth(std::size_t frame, const std::vector<V3>& from, con
   return count;
 }
 
-/// Vertices that pass a static surface: through it, or in and out through faces that look in opposite directions.
+/// Number of vertices that pass a static surface: through it, or in and out through faces with opposite normals.
 int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& tree, std::span<const double> positions,
                                std::span<const Corners> triangles) {
   const std::vector<double> was = cloth(frame - 1), now = cloth(frame);

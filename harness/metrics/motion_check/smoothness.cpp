@@ -36,7 +36,7 @@ class Smoothness {
   }
 
  private:
-  /// Fourth difference in time divided by 6 (keeps the height of a one-frame spike) minus the mean of the neighbours.
+  /// Fourth difference in time, divided by 6 to keep the height of a one-frame spike, minus its mean over neighbours.
   Field high_pass(std::size_t k) const {
     Field f(m_.vertices), sum(m_.vertices, V3::Zero());
     for (std::size_t v = 0; v < m_.vertices; ++v)

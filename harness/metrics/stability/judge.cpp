@@ -13,8 +13,8 @@ using Bounds = StabilityJudge::Bounds;
 // Thresholds of the outcome classes, all chosen for this project; published work rarely states its own.
 constexpr double kSpeed = 10;        // F0: speed over v_char
 constexpr double kGain = 0.1;        // F1: energy gained, divided by M g L
-constexpr double kStrain = 0.10;     // F2: maximum strain beyond the exact or load strain, for more than ...
-constexpr int kStrainFrames = 3;     // ... this number of consecutive frames
+constexpr double kStrain = 0.10;     // F2: maximum strain beyond the exact or load strain, in more than kStrainFrames
+constexpr int kStrainFrames = 3;     // consecutive frames
 constexpr double kStrainP99 = 0.05;  // F2: 99th percentile, in any frame
 constexpr double kTorn = 1;          // F2: maximum strain beyond the exact or load strain, in any frame
 constexpr double kRelaxed = 0.01;    // if delayed: F1 and F2 are evaluated once mean |strain| is below this
@@ -30,7 +30,7 @@ double rest_distance(const Cloth& c, std::uint32_t a, std::uint32_t b) {
   return std::hypot(c.line_u_m(ia) - c.line_u_m(ib), (ja - jb) * c.dv());
 }
 
-/// Largest strain between two held vertices: attached to attached or pinned ones; if `m` is null, between pins.
+/// Largest strain between two held vertices, at least one of them attached; if `m` is null, between two pinned ones.
 double imposed_strain(const Scene& s, const std::vector<double>& start, const FrameMotion* m) {
   std::vector<std::pair<std::uint32_t, Vec3>> held;
   for (const std::uint32_t v : s.pins.vertices) held.emplace_back(v, vertex_at(start, v));
@@ -86,8 +86,8 @@ double greatest_stiffness(const Scene& s) {
 ///
 /// Free fall: sqrt(2 g H), H = twice the diagonal for pinned or attached cloth, otherwise the diagonal plus g t^2/2.
 /// Waves: a strain e travels at c = sqrt(Y/rho) with particle speed e c. The static strain is M g/(Y w), w the shorter
-/// side; sudden loads double it. Added: 3 v/c for hands (the wave and its first reflections), 2 v/c for colliders, v/c
-/// for cloth that falls slack and is stopped suddenly.
+/// side; sudden loads double it. The strain bound adds 3 v/c for hands (wave and first reflections), 2 v/c for
+/// colliders, and v/c for cloth that falls slack and is stopped suddenly.
 std::vector<Bounds> envelope(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> mass = vertex_masses(s);

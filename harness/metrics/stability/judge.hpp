@@ -24,7 +24,7 @@ class StabilityJudge {
   struct Bounds {
     double speed_m_per_s = 0;  ///< v_char: maximum of free fall, hands, colliders, start, strain times wave speed
     double jump_speed_m_per_s =
-        0;                ///< of the last jump (a teleport, a start that is not at rest), over its frame; 0: none
+        0;                ///< last jump (a teleport, or a start that is not at rest) over its frame's duration; 0: none
     double strain = 0;    ///< maximum strain that loads, hands and colliders can cause; no prediction
     double work_J = 0;    ///< maximum work that hands and colliders can have done so far
     bool jumped = false;  ///< a hand, a collider or the start jumps in this frame
