@@ -58,7 +58,7 @@ class ColliderBodies {
   std::vector<MovingTriangle> triangles_;  ///< triangles of one mesh are contiguous
 };
 
-/// Describes a solver of this folder. Its own settings come first, then the settings of contact, which both share.
+/// Describes a solver of this folder. Its own settings come first, then the contact settings that both solvers share.
 SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings);
 
 /// Fraction of velocity that damping leaves after a step of h [s]: e^(-c h), or 1 without damping.

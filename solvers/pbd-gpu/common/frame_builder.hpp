@@ -92,10 +92,10 @@ class FrameBuilder {
   // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  /// Counters of all stages (four words each; vulkan/count_bytes.cpp) on the device, as the host reads them, and zeros;
-  /// null unless bytes are counted.
+  /// Counters of all stages (four words each; vulkan/count_bytes.cpp): on the device, their copy on the host, and zeros
+  /// that reset them. Null unless bytes are counted.
   const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
-  std::vector<double> copied_B_;  ///< by stage, in a frame
+  std::vector<double> copied_B_;  ///< bytes copied per frame, by stage
   std::vector<std::unique_ptr<FrameKernel>> kernels_;
   std::unique_ptr<vulkan::Program> frame_, upload_, download_;
 };

@@ -42,8 +42,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
-  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: no frame before it, or the
-  /// cloth or attached vertices have changed since. Without BDF2, `last_dt_s` is always `dt_s`.
+  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`. 0: no frame came before, or the
+  /// state was set or a vertex attached or released after it. Without BDF2, `last_dt_s` is always `dt_s`.
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
   /// Updates the number of substeps; true if the frame must then be recorded again. Called once before each frame.
   virtual bool update_substep_count(double /*dt_s*/) { return false; }
@@ -75,8 +75,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
   double dt_s_ = 0, last_dt_s_ = 0;    ///< durations of the recorded frame and of the one before it
   double done_dt_s_ = 0;               ///< duration of the last frame; 0: BDF2 has no frame to continue from
-  StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
-  StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
+  StepStatus ready_ = StepStatus::Ok;  ///< status of the last reset
+  StepStatus last_ = StepStatus::Ok;   ///< status of the last reset or step
   Vec3 origin_m_{};
   const vulkan::Buffer *position_ = nullptr, *velocity_ = nullptr, *read_position_ = nullptr, *read_velocity_ = nullptr;
   std::unique_ptr<ColliderBuffers> colliders_;

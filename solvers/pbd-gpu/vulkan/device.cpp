@@ -64,8 +64,8 @@ VkApplicationInfo application() {
   return app;
 }
 
-/// Devices of this process. They are kept until it ends, because drivers fail to load after some hundred times (NVIDIA
-/// 580: VK_ERROR_INCOMPATIBLE_DRIVER), and not destroyed then, because the driver's own clean-up may come first.
+/// Devices of this process. They are kept until it ends, because drivers fail to load after many reloads (NVIDIA 580:
+/// VK_ERROR_INCOMPATIBLE_DRIVER). They are never destroyed, because the driver's own clean-up may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;

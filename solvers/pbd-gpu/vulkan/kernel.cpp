@@ -13,11 +13,11 @@ Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std
     : Kernel(std::move(device), std::move(name), code) {
   for (const auto& [number, access] : accesses_of(code_)) {
     const auto found = buffers.find(number);
-    if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
+    if (found == buffers.end()) throw Error(fmt::format("kernel {}: buffer {} is missing", name_, number));
     bindings_.push_back({number, found->second, access});
   }
   if (const std::uint32_t most = device_->limits().maxComputeWorkGroupInvocations; specialization.at(0) > most)
-    throw Error(fmt::format("kernel {}: its workgroups of {} are larger than this device's or its profile's {}", name_,
+    throw Error(fmt::format("kernel {}: its workgroups have {} threads; this device or its profile allows {}", name_,
                             specialization[0], most));
   create_layout(push_bytes);
   create_set();

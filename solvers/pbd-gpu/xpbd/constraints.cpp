@@ -127,7 +127,7 @@ double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// True if the mesh rests flat as it starts (all z alike) with a convex border: shortest paths are then straight.
+/// True if the mesh starts at rest, flat (all z equal) and with a convex border: shortest paths are then straight.
 bool is_convex_sheet(const ClothMesh& m) {
   if (!m.pattern_m.empty()) return false;
   double low = m.vertices[0][2], high = low, size = 0, area = 0;

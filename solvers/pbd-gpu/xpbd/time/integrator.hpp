@@ -44,8 +44,8 @@ bool is_held(const Scene&);
 /// True if the scene has neither self-collision nor a collider that the cloth can reach. The motion is then the same
 /// with and without its colliders. Meshes and kinematic colliders count as in reach.
 bool is_contact_free(const Scene&);
-/// Estimated speed [m/s] at which cloth that is not held hits static colliders: its initial speed plus the speed of
-/// a fall from its centre to the nearest. 0 if the cloth is held, no collider is in reach, or one is kinematic.
+/// Estimated speed [m/s] at which cloth that is not held hits static colliders: its initial speed plus the speed of a
+/// fall from its centre to the nearest one. 0 if the cloth is held, no collider is in reach, or any is kinematic.
 double impact_speed_m_per_s(const Scene&);
 
 /// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality` (README,

@@ -135,7 +135,7 @@ void SubstepController::next(double cloth_m) {
   if (wanted <= base_) now_ = smallest;
   const int most = std::max(1, now_ / rules::kMinSubstepsPerList);
   const double lists = std::ceil(cloth_m / cell_m_ / rules::kCellsPerList);
-  lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also of NaN
+  lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also if cloth_m is NaN
 }
 
 /// Cloth at rest uses half of base_, and later a quarter, until it moves.
