@@ -19,7 +19,7 @@ class SceneView {
   const ClothbenchScene* scene() const { return &view_; }
   /// A frame's input; valid until the next call of `frame` or `restart`. Skins kinematic meshes; this is solver time.
   const ClothbenchFrame* frame(const FrameInput&);
-  /// The state at the end of frame `last`; valid until the next call of either, while `state` is unchanged.
+  /// The state at the end of frame `last`; valid until the next call of `frame` or `restart` or a change of `state`.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:

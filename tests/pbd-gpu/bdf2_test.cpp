@@ -1,4 +1,4 @@
-// Second order in time (BDF2): errors against `reference` in double precision (bending: against its own limit), the
+// Second order in time (BDF2): errors against `reference` in double precision (bending: against many substeps), the
 // frames at which it restarts, and the scenes in which it is off.
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ class Bdf2 : public Gpu {
   }
 };
 
-/// A sheet that hangs by one edge and swings in its own plane and out of it, or such a strip.
+/// A sheet or strip that hangs by one edge and swings in its own plane and out of it.
 Scene swing(Scene s) {
   s.pins.vertices = edge_vertices(s.cloth, "u0");
   s.needs.add(Feature::Pins);

@@ -111,7 +111,7 @@ TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
   }
 }
 
-/// Fast cloth builds several pair lists per frame, each in a dispatch; fewer once the collider has stopped it.
+/// Fast cloth builds several pair lists per frame, one per dispatch, and fewer once the collider has stopped it.
 TEST_F(FusedFrames, OfFastClothTakeALongerFrameInParts) {
   Scene s = falling(17, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
   s.cloth.initial_velocity_m_per_s = {0.4, -12, 0.3};

@@ -107,7 +107,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
 }
 
 TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
-  // At the end it is at rest, with few substeps; at the start it falls.
+  // At the end the sheet is at rest and uses few substeps; at the start it falls.
   Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
   s = two_sided(s);
   const auto solver = make("xpbd");

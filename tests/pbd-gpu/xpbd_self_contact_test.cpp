@@ -155,7 +155,7 @@ TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
 }
 
 TEST_F(ClosingLayers, FrictionHoldsALayerThatSlidesOnAnother) {
-  // Pressed down by gravity, it slides on the layer below at 0.5 m/s and stops after v^2 / (2 mu g) = 26 mm.
+  // Gravity presses the layer down; it slides on the one below at 0.5 m/s and stops after v^2 / (2 mu g) = 26 mm.
   double way[2];
   for (const int k : {0, 1}) {
     Scene s = closing(0, k == 0 ? 0 : 0.5);

@@ -28,7 +28,7 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   Plan plan() const override { return plan_; }
   int validation_messages() const override { return *messages_; }
 
-  /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
+  /// The buffer that read_state reads positions from, for rendering without read-back: the scene's vertices first, a
   /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
@@ -50,8 +50,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   bool reads_back_ = false;  ///< the host reads each frame's result before it submits the next: one frame in flight
   bool uses_bdf2_ = false;   ///< a frame's first substep depends on the last frame's
 
-  /// Adds the buffers of positions, relative to `origin_m` so that a scene far from the world's origin loses no digits,
-  /// and velocities; .w of both: inverse mass. `layers` copies of the vertices; read_state reads back the first.
+  /// Adds the buffers of positions (relative to `origin_m`, so that distant scenes lose no digits) and velocities;
+  /// .w of both: inverse mass. `layers`: copies of the vertices; read_state reads back the first one.
   void add_state(const std::vector<double>& start, const std::vector<float>& inverse_mass, Vec3 origin_m, int layers);
   /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
   void add_colliders(Vec3 origin_m, bool as_convex_shapes);

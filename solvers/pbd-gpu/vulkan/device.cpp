@@ -119,7 +119,7 @@ std::vector<DeviceInfo> Device::list() {
   return all;
 }
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Device::Device(const DeviceOptions& options, Maker* maker) : Device() {
   create_instance(options.validation, maker);
   choose_physical(options.index, maker);

@@ -7,7 +7,7 @@
 
 namespace clothbench::vulkan {
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
                const Buffers& buffers, std::uint32_t push_bytes)
     : Kernel(std::move(device), std::move(name), code) {
@@ -107,7 +107,7 @@ Groups groups_for(std::uint64_t items, std::uint32_t group_size) {
   return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Buffer::Buffer(std::shared_ptr<Device> device, std::string name, VkDeviceSize bytes, Place place)
     : Buffer(std::move(device)) {
   name_ = std::move(name);

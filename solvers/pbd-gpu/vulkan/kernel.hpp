@@ -103,8 +103,8 @@ struct Groups {
 };
 
 /// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows if one row would exceed the
-/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check. Throws Error for
-/// more than 65535 rows, and for more items than 32 bits can number.
+/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check their index. Throws
+/// Error for more than 65535 rows, and for more items than 32 bits can number.
 Groups groups_for(std::uint64_t items, std::uint32_t group_size);
 
 }  // namespace clothbench::vulkan

@@ -43,7 +43,7 @@ double way_through(const Scene& s, double u, double v) {
 }
 
 /// Extra length [m] of a tether, for a vertex at distance r through the cloth from pins that span `width`: five times
-/// the elongation of a sheet around a small group of pins, which carries all of its weight (force M g spread over r).
+/// the elongation of a sheet around a small group of pins that carries its whole weight (force M g spread over r).
 double spread_slack_m(const Scene& s, double width, double r) {
   const double scale = tether_spread_m(s);
   return scale > 0 ? scale * std::log1p(r / width) : 0;

@@ -59,7 +59,7 @@ const float kImpactMassFactor = 0.25;  // [margins] a correction of this length 
 const float kRounding_m = 2e-7;  // rounding error of positions
 const float kTiny = 1e-6;       // smaller weights count as 0
 
-/// Index of the first fraction whose pairs fit, or of the last; pairs beyond the capacity count as `overflow`.
+/// Index of the first fraction whose pairs fit, or of the last fraction; then pairs beyond the capacity are counted.
 uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
   uint level = 0u;
   while (level + 1u < PAIR_LEVELS && counted[level] > capacity) ++level;

@@ -54,7 +54,7 @@ struct ContactFrameState {
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint contact_free;      // 1: the frame was simulated without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;  // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
-  uint max_displacement;  // maximum of all vertices [m], a float's bits; of the last frame, once reset of this one
+  uint max_displacement;  // max over vertices [m], bits of a float; before its reset, of the last frame
   uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
   float last_h;                                          // length of the last substep in a fused frame [s]; 0: none
   float drift[3];  // velocity of the centres of self-contact's motion bounds [m/s]: half of the cloth's mean velocity

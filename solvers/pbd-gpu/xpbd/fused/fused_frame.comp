@@ -121,7 +121,7 @@ bool move_grips(uint s) {
   return true;
 }
 
-/// Called by one thread: stores the values from which the next frame starts and the host chooses that frame's substeps.
+/// Called by one thread: stores the step length for the next frame, and the displacement that sets its substeps.
 void end_frame() {
   frame_state.last_h = p.h;
   diagnostics.max_displacement = frame_state.max_displacement;

@@ -84,7 +84,7 @@ vec4 from_part(vec4 mine, out vec4 below) {
   return exchanged[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
 }
 
-// The three functions above for a row of a system, one overload per type of its entries (for tridiagonal.glsl).
+// The three functions above for a row of a system: one overload per type of entry, for tridiagonal.glsl.
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
 float inverse_of(float x) { return 1.0 / x; }
 void exchange_row(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,

@@ -1,7 +1,7 @@
 #version 450
-// Solves one colour of chains (xpbd/mesh/README.md). A thread holds a vertex and the link to the next entry, a
-// workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved by
-// parallel cyclic reduction. The first colour of a substep contains every vertex and also predicts it. A mesh with
+// Solves one colour of chains (xpbd/mesh/README.md). A thread holds a vertex and the link to the next entry; a
+// workgroup holds a block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved
+// by parallel cyclic reduction. The first colour of a substep contains every vertex and also predicts it. A mesh with
 // bending has passes before the first colour: the prediction, then the iterations of bending, one thread per vertex.
 // With MEMBRANE these iterations include triangles, and there are no colours. PERSISTENT: a dispatch executes any
 // number of passes instead of one.

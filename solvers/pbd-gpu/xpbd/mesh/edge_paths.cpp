@@ -32,7 +32,7 @@ std::vector<EdgePath> grid_edge_paths(const Scene& s) {
       path.vertices.push_back(static_cast<std::uint32_t>(j * columns + i));
     if (path.vertices.size() > 1) out.push_back(std::move(path));
   };
-  // Colours in the order in which they are solved: diagonals, columns, rows (README, "Lines").
+  // Colours in the order in which they are solved: diagonals, columns, rows (xpbd/README.md).
   int colour = 0;
   if (s.needs.has(Feature::Shear)) {
     for (int i = 0; i < columns; ++i) line(i, 0, -1, 1, colour);

@@ -28,7 +28,7 @@ std::uint32_t bending_iterations(double largest);
 SlicedRows<BendingEntry> bending_table(const BendingMatrix&);
 
 /// Stiffness [N/m] of a triangle of constant strain in the elongations d of its edges 0-1, 1-2 and 2-0; its energy is
-/// 1/2 sum K_jk d_j d_k. For small d that is an isotropic sheet of plane stress and Poisson's ratio 1/3.
+/// 1/2 sum K_jk d_j d_k. For small d that is an isotropic sheet in plane stress with Poisson's ratio 1/3.
 struct TriangleStiffness {
   double rest_m[3];     ///< lengths
   double along_N_m[3];  ///< K_00, K_11, K_22

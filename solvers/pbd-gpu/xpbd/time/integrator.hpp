@@ -27,10 +27,10 @@ TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_p
 
 /// Whether a scene is integrated by BDF2.
 FeatureDecision bdf2_decision(const Scene&, const nlohmann::json& settings);
-/// Whether its links get implicit tension (xpbd/time/README.md).
+/// Whether the links of a scene get implicit tension (xpbd/time/README.md).
 FeatureDecision tension_decision(const Scene&, const nlohmann::json& settings);
 
-/// Whether the splitting error of its diagonals is corrected (xpbd/time/README.md).
+/// Whether the splitting error of a scene's diagonals is corrected (xpbd/time/README.md).
 FeatureDecision splitting_correction_decision(const Scene&, const nlohmann::json& settings);
 
 /// Whether the correction suits the scene, whatever the number of substeps: a held, elastic, contact-free sheet with
@@ -48,8 +48,8 @@ bool is_contact_free(const Scene&);
 /// fall from its centre to the nearest one. 0 if the cloth is held, no collider is in reach, or any is kinematic.
 double impact_speed_m_per_s(const Scene&);
 
-/// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality` (README,
-/// "Substeps"). In a scene with contact it is the maximum, because the number may vary by frame.
+/// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality`
+/// (xpbd/time/README.md). In a scene with contact it is the maximum, because the number may vary by frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
 /// The substeps that fast motion in contact needs, if they are more than xpbd_substeps(); otherwise 0.

@@ -100,7 +100,7 @@ void write_pair(uint at, uint primitive, uint of_shape) {
   states[at].correction = vec4(0.0);
 }
 
-/// Index of the shape of bit `bit` among the overlapping shapes of a step.
+/// Rank of the shape with bit `bit` among the overlapping shapes of a step.
 uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((1u << bit) - 1u))); }
 
 /// Writes the first `count` pairs of primitive k to the list, from index `at` on.
