@@ -99,8 +99,8 @@ class Patch {
     return added_.size() > to;
   }
 
-  /// Derivative of the least-squares quadratic through the vertices, at the edge's middle, across the edge to its left,
-  /// per edge length. Vertices of the edge's own triangles weigh most. If several fit equally well, uses the smallest.
+  /// Derivative of the quadratic fitted to the vertices by least squares, at the edge's middle, across it to the left,
+  /// per edge length. Vertices of the edge's own triangles weigh more. If several fit equally well, uses the smallest.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;
