@@ -223,8 +223,8 @@ Plan BulletSolver::plan() const {
   p.contact_margins_m.assign(scene_->colliders.size(), contact_margin_m());
   for (const Collider& c : scene_->colliders)
     if (c.margin_m != contact_margin_m())
-      p.left_out.push_back({fmt::format("the margin of {} m that the scene asks for at {}", c.margin_m, c.name),
-                            fmt::format("Bullet holds the cloth at collision_margin_m = {} m", contact_margin_m())});
+      p.left_out.push_back({fmt::format("the scene's margin of {} m at {}", c.margin_m, c.name),
+                            fmt::format("Bullet's contact offset is collision_margin_m = {} m", contact_margin_m())});
   return p;
 }
 

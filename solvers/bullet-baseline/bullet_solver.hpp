@@ -17,7 +17,7 @@ btVector3 to_bullet(const Vec3&);
 /// A scene's colliders as rigid bodies of a Bullet world: static ones, and kinematic ones for capsules.
 ///
 /// Spheres, boxes and capsules are exact. A plane is the top of a large box, like the ground in Bullet's examples; for
-/// soft bodies btStaticPlaneShape is such a slab too. A mesh has a thin body per triangle; triangles of a kinematic
+/// soft bodies btStaticPlaneShape is such a box too. A mesh has a thin body per triangle; triangles of a kinematic
 /// mesh keep their initial shape.
 class ColliderBodies {
  public:
@@ -58,7 +58,7 @@ class ColliderBodies {
   std::vector<MovingTriangle> triangles_;  ///< triangles of one mesh are contiguous
 };
 
-/// Describes a solver of this folder. Its own settings come first, then the settings of contact, which both share.
+/// Describes a solver of this folder. Its own settings come first, then the contact settings that both solvers share.
 SolverInfo bullet_info(const char* name, const char* summary, std::vector<SettingSpec> settings);
 
 /// Fraction of velocity that damping leaves after a step of h [s]: e^(-c h), or 1 without damping.
@@ -103,7 +103,7 @@ class BulletSolver : public ClothSolver {
   std::unique_ptr<btSoftBody> new_body(btSoftBodyWorldInfo&);
   /// Adds links of one kind with the scene's rest lengths, instead of Bullet's default, the distances at the start.
   static void add_links(btSoftBody&, const Cloth&, EdgeKind);
-  /// Sets gravity, no air, no water, and the voxel size of the distance fields.
+  /// Sets gravity and the voxel size of the distance fields, and switches air and water off.
   void set_surroundings(btSoftBodyWorldInfo&) const;
   /// Destroys colliders, body and world; called by the destructors of the two solvers.
   void drop();

@@ -19,11 +19,11 @@ namespace {
 /// Vector from a link's first end to its second, at the positions where Bullet evaluates forces.
 btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_q; }
 
-/// btDeformableMassSpringForce with a stiffness for each link. Bullet's class has two in all; an isotropic grid needs
-/// one along each direction, half of each on the borders, one on the diagonals and one for bending.
+/// btDeformableMassSpringForce with a stiffness for each link. Bullet's class has only two stiffnesses. An isotropic
+/// grid needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, hence indefinite if a link is compressed.
-/// This class has no damping: in Bullet it acts on motion relative to neighbours, in a scene on all motion.
+/// This class has no damping, because Bullet's damps motion relative to neighbours, and a scene's damps all motion.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness [N/m] of each link of the only body to which this force is added.
@@ -196,7 +196,7 @@ class BulletDeformable final : public BulletSolver {
     const btVector3 gravity = to_bullet(scene().gravity_m_per_s2);
     w.setGravity(gravity);
     w.setImplicit(implicit_);
-    // Without projection implicit steps do not move the cloth, because Bullet's other preconditioner ignores them.
+    // Without projection implicit steps do not move the cloth: Bullet's other preconditioner ignores such steps.
     w.setUseProjection(true);
     body_ = new_body(w.getWorldInfo());
     std::vector<btScalar> stiffness;

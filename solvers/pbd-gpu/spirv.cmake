@@ -4,7 +4,7 @@
 if(CMAKE_SCRIPT_MODE_FILE)
   file(READ ${SPIRV} words HEX)
   string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${words}")
-  # 16 words of 11 characters a line: some editors and compilers dislike a line of a megabyte.
+  # 16 words of 11 characters per line, because some editors and compilers fail on a line of a megabyte.
   string(REPEAT "..........." 16 line)
   string(REGEX REPLACE "(${line})" "\\1\n" words "${words}")
   file(WRITE ${INC} "${words}\n")

@@ -1,4 +1,4 @@
-# clothbench_peer(<target>): settings that all adapters of installed engines share. In clothbench's own tree its own header counts.
+# clothbench_peer(<target>): settings that all adapters of installed engines share. Inside clothbench's source tree, its header is used.
 function(clothbench_peer target)
   find_path(CLOTHBENCH_INCLUDE clothbench_plugin.h PATHS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../harness/include NO_DEFAULT_PATH
     DOC "Folder of clothbench_plugin.h, if clothbench is not installed")

@@ -60,8 +60,8 @@ struct Spring {
   Kind kind;
 };
 
-/// The sheet as springs: clothbench_plugin.h's for stretch and shear; for bending, skip edges of B across / along^3 (no
-/// rigidity if nearly flat).
+/// The sheet as springs: for stretch and shear, the springs of clothbench_plugin.h; for bending, skip edges with
+/// stiffness B across / along^3, which have no rigidity while the sheet is nearly flat.
 inline std::vector<Spring> springs(const ClothbenchScene& s) {
   std::vector<Spring> out;
   for (std::uint32_t k = 0; k < s.structural_count; ++k) {
@@ -80,7 +80,7 @@ inline std::vector<Spring> springs(const ClothbenchScene& s) {
   return out;
 }
 
-/// Centre of the cloth's bounds [m]: the engines' float32 origin, so that cloth far from the world's loses no digits.
+/// Centre of the cloth's bounds [m]: origin of the engines' float32 coordinates, so that distant cloth loses no digits.
 inline Point centre(const ClothbenchScene& s) {
   Point low = point(s.position_m, 0), high = low;
   for (std::uint32_t v = 1; v < s.vertex_count; ++v)

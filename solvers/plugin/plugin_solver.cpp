@@ -119,7 +119,7 @@ class PluginSolver final : public ClothSolver {
   const SolverInfo info_;
   const std::vector<double> settings_;
   std::optional<SceneView> view_;
-  void* self_ = nullptr;  ///< this and the next members are valid once a scene is loaded
+  void* self_ = nullptr;  ///< this and the next members are valid after a scene is loaded
   DeviceInfo device_ = {"CPU", "", "plugin", false, "{}"};
   Plan plan_;
 };

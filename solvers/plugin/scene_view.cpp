@@ -139,7 +139,7 @@ void SceneView::pose(const FrameMotion* motion, Posed& out) const {
   }
 }
 
-/// Poses at the end of the previous frame: in a run those in `now_`, so call this before `now_` is overwritten.
+/// Poses at the end of the previous frame. In a run, `now_` contains them, so call this before `now_` is overwritten.
 const SceneView::Posed& SceneView::pose_before(const FrameInput& in) {
   if (in.index <= 0) return start_;
   std::swap(before_, now_);

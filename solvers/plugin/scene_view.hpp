@@ -17,9 +17,9 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
   const ClothbenchScene* scene() const { return &view_; }
-  /// A frame's input; valid until the next call of `frame` or `restart`. Skins kinematic meshes, which is solver time.
+  /// A frame's input; valid until the next call of `frame` or `restart`. Skins kinematic meshes; this is solver time.
   const ClothbenchFrame* frame(const FrameInput&);
-  /// The state at the end of frame `last`; valid until the next call of either, while `state` is unchanged.
+  /// The state at the end of frame `last`; valid until the next call of `frame` or `restart` or a change of `state`.
   const ClothbenchRestart* restart(const ClothState& state, const FrameInput& last);
 
  private:

@@ -82,9 +82,9 @@ struct State {
   Vector x, v, lambda;
 };
 
-/// Newton's method of an implicit step stops when both limits are met, RATTLE's when all |C| are below `length_m`.
+/// Newton's method in an implicit step stops if both limits are met; in RATTLE, if all |C| are below `length_m`.
 struct Tolerance {
-  double acceleration = 0;  ///< of residuals [m/s^2]: M^-1 r, and constraints' times mass_scale
+  double acceleration = 0;  ///< of residuals [m/s^2]: M^-1 r, and mass_scale times constraint residuals
   double length_m = 0;      ///< of the last correction
 };
 

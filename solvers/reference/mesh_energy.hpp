@@ -24,7 +24,7 @@ namespace clothbench::reference {
 Eigen::SparseMatrix<double> bending_matrix(const ClothMesh&, double rigidity_N_m,
                                            const std::vector<std::uint32_t>& pinned);
 
-/// Poisson's ratio of triangle meshes, as of grid springs. With it an equilateral triangle is equal to three springs.
+/// Poisson's ratio of triangle meshes and of grid springs. With it an equilateral triangle is equal to three springs.
 inline constexpr double kMeshPoissonRatio = 1.0 / 3;
 
 /// Compliance S [m/N] of a triangle of constant strain: S t are the elongations of the edges 0-1, 1-2 and 2-0 under the

@@ -84,7 +84,7 @@ bool orders(const Event& b, const Event& first, const Event& second, const Event
 }
 
 /// Time line of programs that are submitted one after another, each with a wait. The host accesses their host buffers
-/// before the first and after the last.
+/// before the first and after each.
 std::vector<Event> time_line(const std::vector<const vulkan::Program*>& submitted) {
   std::set<const vulkan::Buffer*> filled, fetched;
   for (const vulkan::Program* p : submitted)
@@ -193,7 +193,7 @@ TEST_F(Barriers, NoneIsMissingAndNoneIsThereInVain) {
         EXPECT_NE(hazard(events, {p, k}), "")
             << run.solver << run.settings << ": without barrier " << k << " of " << barriers;
     }
-    EXPECT_GE(overflow, 4) << "before and after what each program does";
+    EXPECT_GE(overflow, 4) << "one at the start of each program, and one for the host";
   }
 }
 

@@ -1,4 +1,4 @@
-// Second order in time (BDF2): errors against `reference` in double precision (bending: against its own limit), the
+// Second order in time (BDF2): errors against `reference` in double precision (bending: against many substeps), the
 // frames at which it restarts, and the scenes in which it is off.
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ class Bdf2 : public Gpu {
   }
 };
 
-/// A sheet that hangs by one edge and swings in its own plane and out of it, or such a strip.
+/// A sheet or strip that hangs by one edge and swings in its own plane and out of it.
 Scene swing(Scene s) {
   s.pins.vertices = edge_vertices(s.cloth, "u0");
   s.needs.add(Feature::Pins);
@@ -77,7 +77,7 @@ TEST_F(Bdf2, StripsAndSheetsOfSecondOrderInTime) {
       error[k] = rms(row.scene, motion(row.scene, "xpbd", predicting({{"substeps", row.substeps << k}})), right);
     const double euler = rms(row.scene, motion(row.scene, "xpbd", by_euler({{"substeps", 2 * row.substeps}})), right);
     EXPECT_LE(error[1], row.error) << row.what;
-    EXPECT_LE(error[1], 0.2 * euler) << row.what << ": or this compares nothing";
+    EXPECT_LE(error[1], 0.2 * euler) << row.what << ": otherwise this compares nothing";
     EXPECT_GE(std::log2(error[0] / error[2]) / 2, row.order) << row.what;
   }
 }
@@ -149,14 +149,14 @@ TEST_F(Bdf2, TensionHoldsLoadsAndWhatIsPulledTooFar) {
     double low, high;
   };
   for (const Row& row : {Row{"an edge of 300 times the mass", loaded, 0, 1e-3},
-                         {"pins apart", pulled, 0.495, 0.505},
-                         {"the same as a chain", uneven, 0.495, 0.505}}) {
+                         {"pins pulled apart", pulled, 0.495, 0.505},
+                         {"pins pulled apart, solved as a chain", uneven, 0.495, 0.505}}) {
     nlohmann::json given = {{"substeps", 4}};
     const double with = strain(row.scene, motion(row.scene, "xpbd", given).back());
     given["tuning"]["tension"] = "never";
     const double without = strain(row.scene, motion(row.scene, "xpbd", given).back());
     EXPECT_TRUE(with >= row.low && with <= row.high) << row.what << ": strain " << with;
-    EXPECT_FALSE(without >= row.low && without <= row.high) << row.what << ": or this tests nothing";
+    EXPECT_FALSE(without >= row.low && without <= row.high) << row.what << ": otherwise this tests nothing";
   }
 }
 

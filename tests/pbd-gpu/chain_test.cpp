@@ -50,7 +50,7 @@ TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
   const Scene wide = uneven(sheet(17, 9), 4, 0.3), thin = uneven(sheet(17, 9), 4, 1e-3);
   EXPECT_TRUE(chain_cloth(wide).welded.empty());
   const ChainCloth cloth = chain_cloth(thin);
-  EXPECT_EQ(cloth.welded.size(), 9u) << "one vertex a row";
+  EXPECT_EQ(cloth.welded.size(), 9u) << "one vertex per row";
   EXPECT_EQ(cloth.particle[5], 4u);
   const auto whole = [](const Scene& s) {
     std::map<std::uint32_t, double> stiffness;  // of the links that leave row 0, by column
@@ -59,7 +59,7 @@ TEST(ChainPlan, WeldsSliversAndAddsUpWhatBecomesParallel) {
     return stiffness[0];
   };
   EXPECT_GT(whole(thin), whole(uneven(sheet(17, 9), 4, 1)))
-      << "diagonals of a sliver are stiff, and so is what they become";
+      << "diagonals of a sliver are stiff, and so are the links that they become";
   for (const ChainColour& f : plan_of(thin, cloth, 256))
     for (const EdgePath& chain : f.chains)
       for (const std::uint32_t v : chain.vertices) EXPECT_EQ(cloth.particle[v], v);
@@ -74,7 +74,7 @@ TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
     for (std::uint32_t k = 0; k < 2; ++k) {
       const TetherEnd& e = t.ends[2 * v + k];
       const Vec3 &a = s.cloth.mesh->vertices[v], &b = s.cloth.mesh->vertices[e.to];
-      EXPECT_NEAR(e.reach, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1e-6) << "a convex sheet: straight";
+      EXPECT_NEAR(e.reach, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1e-6) << "straight in a convex sheet";
     }
   Scene tube = mesh_tube(16, 8);
   tube.material.membrane_stiffness_N_per_m.reset();
@@ -83,7 +83,7 @@ TEST(TetherTable, ReachesAsFarAsTheClothIsWide) {
   const TetherTable round = tether_table(tube);
   ASSERT_EQ(round.a_vertex, 1u);
   const double half_way = std::numbers::pi * 0.2;  // the radius is 0.2 m
-  EXPECT_GT(round.ends[8].reach, 0.98 * half_way) << "round the tube, not through it";
+  EXPECT_GT(round.ends[8].reach, 0.98 * half_way) << "around the tube, not through it";
   EXPECT_LT(round.ends[8].reach, 1.01 * half_way);
 }
 
@@ -110,7 +110,7 @@ TEST_F(Chained, MeshesAndUnevenGridsEndWhereTheReferenceDoes) {
     };
     const double coarse = error(1, 40), fine = error(1, 160);
     EXPECT_LT(fine, 4e-3) << s->cloth.rows;
-    EXPECT_LT(fine, 0.4 * coarse) << "of order one in the substep";
+    EXPECT_LT(fine, 0.4 * coarse) << "the error is of first order in the substep";
     // At second order, rounding in single precision is as large as the error with 160 substeps.
     EXPECT_LT(error(2, 40), 5e-4) << s->cloth.rows;
     EXPECT_LT(error(2, 160), 5e-4) << s->cloth.rows;

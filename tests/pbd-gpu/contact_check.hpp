@@ -9,7 +9,7 @@ namespace clothbench::pbd_gpu {
 
 /// A whole run of `xpbd`, checked by the harness's contact metrics, which share no code with the solver.
 struct ContactRun {
-  std::string fault;    ///< how the run failed, what passed through, wrong stages; empty if nothing
+  std::string fault;    ///< why the run failed, what passed through, wrong stages; empty if none of these
   double touching = 0;  ///< largest fraction of the cloth that touched colliders in a frame
 };
 inline ContactRun contact_run(const Scene& s, const nlohmann::json& given) {

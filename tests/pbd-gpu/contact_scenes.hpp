@@ -19,7 +19,7 @@ inline Scene with_collider(Scene s, const Collider& c) {
   return s;
 }
 
-/// With two-sided contact, as `xpbd` supports it.
+/// The scene with two-sided contact, as `xpbd` supports it.
 inline Scene two_sided(Scene s) {
   s.cloth.sides = Sides::Double;
   s.needs = s.needs - FeatureSet{Feature::DuplicatedLayer};
@@ -43,7 +43,7 @@ inline Collider half_space(Vec3 point, Vec3 normal, double friction) {
   return {.shape = Plane, .margin_m = kMargin_m, .friction = friction, .center_m = point, .normal = normal};
 }
 
-/// Rotated about two axes, so that no face is horizontal.
+/// A box that is rotated about two axes, so that no face is horizontal.
 inline Collider box(Vec3 center, Vec3 half, double friction = 0) {
   Collider c = touching(Collider::Shape::Box, friction);
   c.center_m = center;
@@ -55,7 +55,7 @@ inline Collider box(Vec3 center, Vec3 half, double friction = 0) {
   return c;
 }
 
-/// Two capsules, one of them a sphere; they move with `capsules_moved`.
+/// Two capsules, one of them a sphere; `moving` moves them.
 inline Collider capsules(Vec3 at, double friction = 0) {
   Collider c = touching(Collider::Shape::Capsules, friction);
   c.capsules = {{{at[0] - 0.2, at[1] + 0.013, at[2]}, {at[0] + 0.21, at[1] - 0.02, at[2] + 0.11}, 0.05},
@@ -121,7 +121,7 @@ inline ColliderPose pose_at(const Collider& c, int k) {
   return pose;
 }
 
-/// Folded over a line along v, with its layers `apart` m apart along `normal`, and with self-contact.
+/// The sheet folded over a line along v, with its layers `apart` m apart, and with self-contact.
 inline Scene folded(Scene s, double apart = 0.1, double friction = 0) {
   Cloth& c = s.cloth;
   c.axis_u = {0, 1, 0};
@@ -133,8 +133,8 @@ inline Scene folded(Scene s, double apart = 0.1, double friction = 0) {
   return s;
 }
 
-/// Motion of everything that moves, and of `grips`, which move by (0.02, 0.03, -0.01) m per frame and release at
-/// instant `release`.
+/// The scene with motion of all kinematic colliders and of `grips`, which move by (0.02, 0.03, -0.01) m per frame and
+/// release their vertices at instant `release`.
 inline Scene moving(Scene s, std::vector<std::uint32_t> grips = {}, int release = 1000) {
   const std::vector<double> x = initial_positions(s);
   s.grips.vertices = std::move(grips);

@@ -14,7 +14,7 @@ TEST(Groups, RoundUpAndTurnIntoRowsPastTheLimit) {
     const Groups g = groups_for(items, 64);
     EXPECT_LE(g.x, 65535u);
     EXPECT_GE(64ull * g.x * g.y, items);
-    EXPECT_LT(64ull * g.x * g.y, items + 64ull * (g.y + 1)) << "less than a group a row in vain";
+    EXPECT_LT(64ull * g.x * g.y, items + 64ull * (g.y + 1)) << "less than one unused group per row";
   }
   EXPECT_THROW(groups_for(1ull << 33, 64), Error);
   EXPECT_THROW(groups_for(~0ull, 64), Error);
@@ -105,9 +105,9 @@ TEST_F(Gpu, ListIsNotEmptyAndBadIndexIsNoDevice) {
 TEST(Room, IsForTheLargestBufferAndForAll) {
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, 3u << 20, 5u << 20), "");
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, (3u << 20) - 1, 5u << 20),
-            "buffer \"a\" of 3.0 MiB, and its limit is 3.0 MiB");
+            "buffer \"a\" of 3.0 MiB, but the device's limit is 3.0 MiB");
   EXPECT_EQ(why_no_room("a", 3u << 20, 5u << 20, 3u << 20, (5u << 20) - 1),
-            "buffers of at least 5.0 MiB, and it has 5.0 MiB");
+            "buffers of at least 5.0 MiB, but the device has 5.0 MiB");
 }
 
 TEST(Kernels, AccessesAreReadFromTheCode) {
@@ -119,7 +119,7 @@ TEST(Kernels, AccessesAreReadFromTheCode) {
                                              {BIND_SLIP, Access::ReadWrite}}));
   const vulkan::SpirV code = shader("update_positions");
   // The header has five words, and the first instruction (OpCapability) has two.
-  EXPECT_THROW(vulkan::accesses_of({code.words, 6 * sizeof(std::uint32_t)}), Error) << "torn";
+  EXPECT_THROW(vulkan::accesses_of({code.words, 6 * sizeof(std::uint32_t)}), Error) << "code that is cut off";
 }
 
 TEST_F(Gpu, ProfilesCutLimitsAndRefuseLargerWorkgroups) {

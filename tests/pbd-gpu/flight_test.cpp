@@ -36,7 +36,7 @@ TEST_F(Gpu, PipelinedFramesAreTheSameBits) {
       if (device_->has_timestamps()) {
         EXPECT_GT(flown->last_cost().device_s, 0);
       }
-      // Frames stepped afterwards are the same as without pipelined frames before them.
+      // Frames that are stepped afterwards do not depend on whether the frames before them were pipelined.
       EXPECT_EQ(after_frame(*flown, s, count).position, after_frame(*stepped, s, count).position);
     }
 }
@@ -45,7 +45,7 @@ TEST_F(Gpu, AClothThatHandsHoldDoesNotGoOnFromWhatWasReadOfIt) {
   const Scene held = moving(sheet(9, 7), {0, 8});
   const auto solver = make("xpbd");
   solver->load(held);
-  EXPECT_FALSE(solver->restart(state_of(*solver))) << "where hands are is not in positions and velocities";
+  EXPECT_FALSE(solver->restart(state_of(*solver))) << "positions and velocities do not contain the hands' positions";
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct FrameRun {
 
 class FusedFrames : public Gpu {
  protected:
-  /// In one dispatch of one workgroup, which lavapipe runs at once; it ends a thread's loops after 65535 iterations.
+  /// One dispatch of one workgroup: lavapipe may not run several at once, and it ends loops after 65535 rounds.
   static FrameRun run(const Scene& s, const char* in_one, int frames, const char* barrier = "always",
                       int substeps = kSubsteps) {
     const auto solver = make("xpbd", {{"substeps", substeps},
@@ -94,8 +94,8 @@ TEST_F(FusedFrames, MoveTheClothBitForBitAsADispatchAPhaseDoes) {
   }
 }
 
-/// Convex shapes are active from the start, but the slow cloth touches one only later. Frames before the contact use
-/// one workgroup, or many for larger cloth.
+/// The slow cloth touches the collider only after some contact-free frames. These use one workgroup, or many for
+/// larger cloth.
 TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
   if (!in_turn(1)) GTEST_SKIP() << "part of pbd_gpu.matrix";
   for (const int columns : {17, 33}) {
@@ -111,7 +111,7 @@ TEST_F(FusedFrames, OfASlowClothThatMeetsAColliderLate) {
   }
 }
 
-/// Fast cloth builds several pair lists per frame, each in a dispatch; fewer once the collider has stopped it.
+/// Fast cloth builds several pair lists per frame, one per dispatch, and fewer once the collider has stopped it.
 TEST_F(FusedFrames, OfFastClothTakeALongerFrameInParts) {
   Scene s = falling(17, 13, sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction));
   s.cloth.initial_velocity_m_per_s = {0.4, -12, 0.3};
@@ -120,7 +120,7 @@ TEST_F(FusedFrames, OfFastClothTakeALongerFrameInParts) {
   EXPECT_GT(one.most_recorded, one.recorded);
 }
 
-/// Frames before the contact have fewer substeps, in fused frames also contact-free ones; all fall alike.
+/// Frames before the contact have fewer substeps, and fused frames may be contact-free; the cloth falls alike in all.
 TEST_F(FusedFrames, FallAlikeWithAnyNumberOfSubsteps) {
   Scene s = two_sided(with_collider(sheet(17, 13), sphere({0.02, 0.01, 0.03}, 0.13, kContactFriction)));
   s.needs.add(Feature::Shear);

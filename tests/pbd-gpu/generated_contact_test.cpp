@@ -20,7 +20,7 @@ TEST_F(GeneratedContacts, NothingCrosses) {
     ++run;
   }
   EXPECT_GE(run, 15);
-  EXPECT_GE(touched, run / 2) << "something must touch for this to say anything";
+  EXPECT_GE(touched, run / 2) << "otherwise too few runs touch, and this tests nothing";
 }
 
 }  // namespace

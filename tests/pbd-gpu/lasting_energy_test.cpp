@@ -10,8 +10,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Stretch energy of an isotropic sheet's lattice on square cells: springs of 3/4 Y along
-/// the grid, half of it on borders, and 3/8 Y on diagonals; without shear Y along the grid. 0 if it is inextensible.
+/// Stretch energy of an isotropic sheet's lattice of square cells: springs of 3/4 Y along the grid, half as much on
+/// borders, and 3/8 Y on diagonals; without shear Y along the grid. 0 if the sheet is inextensible.
 double spring_energy(const Scene& s, const std::vector<double>& x) {
   if (!s.material.membrane_stiffness_N_per_m) return 0;
   const Cloth& c = s.cloth;
@@ -32,7 +32,7 @@ double spring_energy(const Scene& s, const std::vector<double>& x) {
   return energy;
 }
 
-/// Kinetic, spring and potential energy minus its value at the start, over M g L: mean over the last second.
+/// Gain of energy (kinetic, spring and potential) since the start, divided by M g L: mean over the last second.
 double lasting_gain(ClothSolver& solver, const Scene& s) {
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s), speed = initial_velocities(s);
   const auto energy = [&](const std::vector<double>& x, const std::vector<double>& v) {

@@ -1,4 +1,4 @@
-// Layout of grid lines: tethers, taut lines, substeps, threads. Needs no device.
+// Layout of grid lines: tethers, over-constrained lines, substeps, threads. Needs no device.
 #include "xpbd/lines/line_layout.hpp"
 
 #include "gpu_fixture.hpp"
@@ -20,7 +20,7 @@ TEST(Tethers, GoToCornersEdgesAndClamps) {
   EXPECT_EQ(tethers_of(with_pins(s)).to, (R{{0, 0, 0, 0}, {8, 0, 8, 0}}));
   EXPECT_EQ(tethers_of(pinned(s, edge_vertices(s.cloth, "u1"))).to, (R{{8, 0, 8, 6}}));
   EXPECT_EQ(tethers_of(pinned(s, clamp_vertices(s.cloth, "v0"))).to, (R{{0, 0, 8, 1}}));
-  EXPECT_EQ(tethers_of(pinned(s, {0, 1, 9})).to, (R{{0, 0, 0, 0}})) << "an L fills no rectangle: one of its vertices";
+  EXPECT_EQ(tethers_of(pinned(s, {0, 1, 9})).to, (R{{0, 0, 0, 0}})) << "an L fills no rectangle: one vertex of it";
   EXPECT_EQ(tethers_of(pinned(s, {0, 2, 4, 6, 8, 62})).to.size(), Tethers::kMax);
 }
 
@@ -45,8 +45,7 @@ TEST(TautLines, AreThoseStraightBetweenHeldVertices) {
   expected[18 + 1] = 1;
   EXPECT_EQ(over_constrained_lines(s), expected);
   s = pinned(s, edge_vertices(s.cloth, "u0"));
-  EXPECT_EQ(over_constrained_lines(s), std::vector<std::uint8_t>(36, 0))
-      << "vertices side by side leave no link between them";
+  EXPECT_EQ(over_constrained_lines(s), std::vector<std::uint8_t>(36, 0)) << "no free vertex is between two pinned ones";
 }
 
 TEST(Substeps, FollowTheRule) {
@@ -60,7 +59,7 @@ TEST(Substeps, FollowTheRule) {
   EXPECT_EQ(xpbd_substeps(hang, {{"quality", "fast"}, {"substeps", 7}}), 7);
   EXPECT_EQ(xpbd_substeps(hang, {{"tethers", false}}), 10);
   hang.time.frame_rate_hz = 36;
-  EXPECT_EQ(of(hang, "fast"), 2) << "as many a frame: a rule in seconds would tell similar scenes apart";
+  EXPECT_EQ(of(hang, "fast"), 2) << "as many per frame: a rule in seconds would treat scaled scenes differently";
   for (const auto& [n, fast] : {std::pair{64, 3}, {128, 5}, {256, 11}, {512, 21}, {1024, 43}}) {
     Scene s = with_pins(sheet(n, 9));
     s.material.membrane_stiffness_N_per_m.reset();
@@ -75,11 +74,11 @@ TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
   const int most = xpbd_substeps(fold, settings);
   const double cell_m = fold.cloth.du();
   SubstepController pace(fold, settings, true);
-  EXPECT_EQ(pace.substeps(), most) << "nothing is known of the first frame";
+  EXPECT_EQ(pace.substeps(), most) << "no displacement is known before the first frame";
   pace.next(std::numeric_limits<double>::infinity());
   EXPECT_EQ(pace.substeps(), most);
   pace.next(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(pace.substeps(), most) << "nor where that is NaN";
+  EXPECT_EQ(pace.substeps(), most) << "nor if the displacement is NaN";
   std::vector<int> calm;
   for (int f = 0; f < 24; ++f) {
     pace.next(cell_m / 25);
@@ -89,7 +88,7 @@ TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
   EXPECT_GE(calm.front(), std::lround(0.75 * most));
   EXPECT_EQ(calm.back(), 6) << "a quarter of 24";
   pace.next(cell_m / 7);
-  EXPECT_EQ(pace.substeps(), 6) << "not calm, and not yet fast";
+  EXPECT_EQ(pace.substeps(), 6) << "not quiescent, and not yet fast";
   pace.next(cell_m / 5);
   EXPECT_EQ(pace.substeps(), 24);
   pace.next(100 * cell_m);
@@ -114,9 +113,9 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
       }
     return xpbd_substeps(changed, {{"quality", quality}});
   };
-  EXPECT_EQ(of(0.8, "default"), 5) << "31 links over 6: it goes 11 mm, by less than 4 mm in each";
+  EXPECT_EQ(of(0.8, "default"), 5) << "31 links / 6; the 11 mm per frame are less than 4 mm per substep";
   EXPECT_EQ(of(5, "default"), 18);
-  EXPECT_EQ(of(7.5, "default"), 26) << "an eighth of a cell, which is more than a margin";
+  EXPECT_EQ(of(7.5, "default"), 26) << "per substep an eighth of a cell, which is more than a margin";
   EXPECT_EQ(of(5, "fast"), 9);
   EXPECT_EQ(of(100, "fast"), 16) << "the maximum";
   EXPECT_EQ(of(100, "default"), 32) << "the maximum";

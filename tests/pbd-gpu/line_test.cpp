@@ -1,6 +1,6 @@
 // Purposes of the line solver: little stretch with few substeps, the reference cases, and robustness if lines are
-// singular. Bounds are slightly above its measured values, which equal those of a sequential double-precision emulation
-// of the method.
+// singular. Bounds are slightly above its measured values. A sequential emulation of the method in double precision
+// gives equal values.
 #include <cmath>
 
 #include "clothbench/record.hpp"
@@ -30,8 +30,8 @@ TEST_F(LineScenes, ReferenceCasesAreMetAtLowCost) {
     double error;
     int order = 1;
   };
-  // Frames of 60 Hz; of 960 Hz in the last row, where tension is limited and waves are slower (0.061 otherwise). There
-  // the hands' speed changes at the end of each frame, which reduces the second order.
+  // Frames of 60 Hz, except two-hand-pull, which has 960 Hz. There the hands' speed changes at the end of each frame,
+  // which reduces the second order.
   for (const Row& row : {Row{"swing-strip", 3, 4.5e-3},
                          {"swing-strip", 5, 2.7e-3},
                          {"swing-strip", 10, 1.5e-3},
@@ -74,7 +74,7 @@ TEST_F(LineScenes, StayFiniteOnAnyGridAndRepeat) {
   }
 }
 
-/// No vertex is farther from a pin than the cloth between them is long; without shear, along its lines.
+/// No vertex is farther from a pin than the length of the cloth between them; without shear, measured along grid lines.
 TEST_F(LineScenes, TethersEndWhereTheClothIsTaut) {
   for (const bool shear : {true, false}) {
     Scene s = with_pins(sheet(33, 31));
@@ -97,7 +97,7 @@ TEST_F(LineScenes, TethersEndWhereTheClothIsTaut) {
     };
     const double with = farthest(true);
     EXPECT_TRUE(with >= (shear ? 0.98 : 0.88) && with <= 1.03) << shear << ": " << with;
-    EXPECT_GE(farthest(false), 1.1) << "or this tests nothing";
+    EXPECT_GE(farthest(false), 1.1) << "otherwise this tests nothing";
   }
 }
 
@@ -132,7 +132,7 @@ TEST_F(LineScenes, WorkgroupsThatWaitForOneAnotherAgreeOrSaySo) {
     EXPECT_EQ(state.velocity, expected.velocity) << threads;
     ++agreed;
   }
-  EXPECT_GE(agreed, 1) << "one workgroup has none to wait for";
+  EXPECT_GE(agreed, 1) << "a single workgroup has no other to wait for";
 }
 
 /// Elastic sheets have the scene's modulus at every resolution: a sheet with shear, hanging at rest by its weight.
@@ -154,7 +154,7 @@ TEST_P(Moduli, AreTheScenesAtDefaultAndFast) {
 }
 
 TEST_P(Moduli, WithoutCouplingAreFarOff) {
-  EXPECT_GE(error({{"tuning", {{"splitting_correction", "never"}}}}), 0.1) << "the coupling does nothing";
+  EXPECT_GE(error({{"tuning", {{"splitting_correction", "never"}}}}), 0.1) << "otherwise the correction does nothing";
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, Moduli, ::testing::Values("[33,5]", "[65,9]"));

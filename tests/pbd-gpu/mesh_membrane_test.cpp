@@ -30,10 +30,9 @@ struct IsotropicModuli {
 };
 
 /// Moduli of a flat triangle mesh that hangs along axis_u by its smallest u and has come to rest at `position` [m], xyz
-/// interleaved. For these moduli the exact displacement, (p/E) (L u - u^2/2 - nu v^2/2) along u and -nu (p/E) (L - u) v
-/// across it, with p = density times gravity and v from the middle, is the least-squares fit to the displacement of the
-/// vertices between 0.4 L and 0.9 L, apart from rigid motion. NaN without enough of them, or if the sheet has not
-/// become longer.
+/// interleaved. The exact displacement is (p/E) (L u - u^2/2 - nu v^2/2) along u and -nu (p/E) (L - u) v across it,
+/// with p = density times gravity and v from the middle. It is fitted, together with a rigid motion, by least squares
+/// to the vertices from 0.4 L to 0.9 L. NaN if there are too few of them, or if the sheet has not become longer.
 IsotropicModuli hanging_moduli(const Scene& s, const std::vector<double>& position) {
   constexpr double kFirst = 0.4, kLast = 0.9;  // of the length: both edges disturb the displacement
   const std::vector<Vec3>& rest = s.cloth.mesh->vertices;

@@ -50,7 +50,7 @@ inline Scene mesh_tube(int around, int along) {
   return of_mesh(cloth_mesh({std::move(x), std::move(t)}, "tube"), {});
 }
 
-/// One column of cells with a different width.
+/// The scene with one column of cells `factor` times as wide.
 inline Scene uneven(Scene s, std::size_t column, double factor) {
   s.cloth.column_factors.assign(static_cast<std::size_t>(s.cloth.columns - 1), 1);
   s.cloth.column_factors[column] = factor;

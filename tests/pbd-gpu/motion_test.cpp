@@ -1,4 +1,4 @@
-// Dynamic input: upload, skinning and gripped vertices.
+// Dynamic input: upload, skinning and attached vertices.
 
 #include "contact_scenes.hpp"
 

@@ -174,7 +174,7 @@ TEST_F(PaperContacts, AFallenSheetStaysOnAMesh) {
   const ClothState caught = after(*solver, s, 72), lost = after(*thin, s, 72);
   for (std::size_t i = 0; i < s.cloth.vertex_count(); ++i) {
     EXPECT_NEAR(caught.position[3 * i + 1], -0.28, 0.02);
-    EXPECT_LT(lost.position[3 * i + 1], -1) << "discrete contact: what passes the depth within a frame is through";
+    EXPECT_LT(lost.position[3 * i + 1], -1) << "a vertex that passes the depth in one frame falls through";
   }
 }
 

@@ -32,7 +32,7 @@ TEST_F(Gpu, XpbdDoesNotFreezeWithManySubstepsFarFromTheOrigin) {
   Scene s = sheet(5, 4);
   s.cloth.center_m = {1000, 1000, 1000};
   s.time = {16, 1};
-  const nlohmann::json settings = {{"substeps", 256}};  // 4096 a second
+  const nlohmann::json settings = {{"substeps", 256}};  // 4096 per second
   const auto solver = make("xpbd", settings);
   solver->load(s);
   EXPECT_LE(free_fall_error(s, after(*solver, s, 8), 8, xpbd_free_fall_m(s, settings, 8)), 1e-4);

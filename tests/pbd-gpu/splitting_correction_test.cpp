@@ -10,7 +10,7 @@ namespace {
 
 class SplittingCorrection : public Gpu {
  protected:
-  /// The plan's reason for not using it ("" if it does); also checks that its buffers exist only if it is on.
+  /// The plan's reason for not using the correction, or ""; also checks that its buffers exist only if it is on.
   static std::string reason(const Scene& s, const nlohmann::json& given = nlohmann::json::object()) {
     const auto solver = make("xpbd", given);
     solver->load(s);
@@ -53,7 +53,7 @@ TEST_F(SplittingCorrection, IsOnlyWhereASheetNeedsItAndThePlanSaysWhy) {
         {"nothing holds the cloth: no tension lasts", free},
         {"fewer than four links across the cloth", square(5, 4)},
         {"cells are not square", with_pins(sheet(9, 9, 1, 0.5))},
-        {"the cloth touches", with_collider(square(), sphere({0, 0, 0}, 0.1))},
+        {"the scene has contact", with_collider(square(), sphere({0, 0, 0}, 0.1))},
         {"links or masses are not all alike", with_pins(uneven(square(), 3, 0.2))},
         {"setting time_order=1", square(), {{"time_order", 1}}},
         {"a wave crosses too many cells in a substep: the modulus of the sheet is below Y", fine, {{"substeps", 1}}},

@@ -19,7 +19,7 @@ void pose_hand(ColliderPose& pose, std::size_t k) {
   }
 }
 
-/// A sheet that falls onto a collider; frames equal steps, so that every step can be checked.
+/// A sheet that falls onto a collider, with one step per frame, so that every step can be checked.
 Scene falling_in_steps(const Collider& collider, double steps_per_s) {
   Scene s = with_collider(sheet(12, 10), collider);
   s = two_sided(s);
@@ -48,7 +48,7 @@ TEST_F(XpbdContacts, NothingCrossesAtAnyStep) {
       SCOPED_TRACE(name + " at " + std::to_string(steps_per_s));
       const ContactRun run = contact_run(falling_in_steps(collider, steps_per_s), {{"substeps", 1}});
       EXPECT_EQ(run.fault, "");
-      EXPECT_GT(run.touching, 0) << "or this says nothing";
+      EXPECT_GT(run.touching, 0) << "otherwise this tests nothing";
     }
 }
 
@@ -107,7 +107,7 @@ TEST_F(XpbdContacts, DropNoPairInSilence) {
 }
 
 TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
-  // At the end it is at rest, with few substeps; at the start it falls.
+  // At the end the sheet is at rest and uses few substeps; at the start it falls.
   Scene s = with_damping(with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction)));
   s = two_sided(s);
   const auto solver = make("xpbd");
@@ -117,7 +117,7 @@ TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
     for (int f = 0; f < s.time.frames(); ++f) end = after_frame(*solver, s, f);
     solver->reset();
   }
-  EXPECT_EQ(ends[0].position, ends[1].position) << "by the frame that the last one of the run before had recorded";
+  EXPECT_EQ(ends[0].position, ends[1].position) << "otherwise a frame recorded in the first run was submitted again";
 }
 
 /// Two triangles in the plane z = `at`, 4 m wide, moved along z by a single joint.
@@ -151,7 +151,7 @@ TEST_F(XpbdContacts, NothingPassesAThinSheetHoweverFastItComes) {
       const ClothState state = after_frame(*solver, s, f);
       const double wall = -0.11 + (f + 1) * metres_per_frame;
       for (std::size_t i = 2; i < state.position.size(); i += 3) {
-        ASSERT_GT(state.position[i], wall) << metres_per_frame << " m a frame, frame " << f;
+        ASSERT_GT(state.position[i], wall) << metres_per_frame << " m per frame, frame " << f;
         pushed = pushed || state.position[i] > 0.01;
       }
     }

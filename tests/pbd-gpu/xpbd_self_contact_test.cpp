@@ -44,7 +44,7 @@ long crossings(const Scene& s, const ClothState& state) {
   return contact::self_contour({state.position, all}).pairs;
 }
 
-/// Frames equal steps, so that every step can be checked; without contact this cloth passes through itself.
+/// One step per frame, so that every step can be checked; without contact this cloth passes through itself.
 TEST_F(SelfContacts, NothingCrossesAtAnyStep) {
   Scene fold = fold_on_floor();
   fold.time = {500, 0.2};
@@ -147,15 +147,15 @@ TEST_P(ClosingLayers, LayersMeetAndNothingCrosses) {
         fastest =
             std::max(fastest, std::hypot(state.velocity[3 * v], state.velocity[3 * v + 1], state.velocity[3 * v + 2]));
   }
-  // A fast leg is detected at the end of a frame when it returns from the stretched bend.
+  // A fast leg touches and returns within a frame, so only slower ones are seen close at a frame's end.
   if (GetParam() <= 5) {
-    EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "they must have met for this to say anything";
+    EXPECT_LT(least, 1.5 * s.cloth.self_collision.thickness_m) << "otherwise no layers touch";
   }
-  EXPECT_LT(fastest, GetParam()) << "what met does not bounce";
+  EXPECT_LT(fastest, GetParam()) << "layers that touch do not bounce";
 }
 
 TEST_F(ClosingLayers, FrictionHoldsALayerThatSlidesOnAnother) {
-  // Pressed down by gravity, it slides on the layer below at 0.5 m/s and stops after v^2 / (2 mu g) = 26 mm.
+  // Gravity presses the layer down; it slides on the one below at 0.5 m/s and stops after v^2 / (2 mu g) = 26 mm.
   double way[2];
   for (const int k : {0, 1}) {
     Scene s = closing(0, k == 0 ? 0 : 0.5);

@@ -15,12 +15,12 @@ struct MeshRange {
 };
 
 /// All meshes of one kind, one after another; indices count from the first vertex of the first mesh. Null and empty if
-/// the scene has none.
+/// the scene has no mesh of this kind.
 struct MeshBuffers {
   std::vector<MeshRange> ranges;
   const vulkan::Buffer* triangles = nullptr;        ///< uvec4 each: corners, collider; null if as_convex_shapes
-  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; of kinematic meshes, at the frame's end
-  const vulkan::Buffer* start_positions = nullptr;  ///< of kinematic meshes, at its start; only if as_convex_shapes
+  const vulkan::Buffer* positions = nullptr;        ///< vec4 each; if kinematic, at the frame's end
+  const vulkan::Buffer* start_positions = nullptr;  ///< at the frame's start; only if kinematic and as_convex_shapes
 };
 
 /// Shapes of one kind: `count` structs of gpu_types.h.
@@ -34,9 +34,9 @@ struct ShapeBuffer {
 class ColliderBuffers {
  public:
   /// Adds buffers, the stages the scene needs and their kernels to `frame`. Positions are relative to `origin_m`,
-  /// subtracted in double. `as_convex_shapes`: the solver uses convex shapes (ConvexShapes) and adds them itself. Then,
-  /// of static shapes, only planes have buffers, and kinematic meshes also keep positions at the frame's start (as
-  /// capsules always do).
+  /// subtracted in double. `as_convex_shapes`: the solver uses convex shapes (ConvexShapes) and adds them itself. Then
+  /// planes are the only static shapes with a buffer, and kinematic meshes also keep their positions at the frame's
+  /// start, as capsules always do.
   ColliderBuffers(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, bool as_convex_shapes);
 
   ShapeBuffer planes, spheres, boxes, capsules;
@@ -48,7 +48,7 @@ class ColliderBuffers {
   void record();
   /// The host's part of a reset: the next frame starts at motion[0].
   void reset();
-  /// Call before a frame is submitted: kinematic colliders move from the last call's `end` to this `end`; null: none.
+  /// Call before a frame is submitted: kinematic colliders move from the last call's `end` to this; null: no motion.
   void write(const FrameMotion* end);
 
  private:
@@ -78,8 +78,8 @@ class GripBuffer {
   /// `layers` copies of the cloth's vertices lie one after another in the solver's buffers.
   GripBuffer(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, std::uint32_t layers);
 
-  /// Adds a kernel that sets position and velocity of attached vertices to the hand's, and .w of both to 0. Of released
-  /// vertices it only sets .w, to the inverse mass. May be called for several buffers.
+  /// Adds a kernel that sets position and velocity of attached vertices to the hand's, and .w of both to 0. For
+  /// released vertices it only sets .w to the inverse mass. May be called for several buffers.
   const FrameKernel* add_kernel(const vulkan::Buffer& positions);
   void record_upload();
   /// `fraction` of the path through the frame, 0 to 1.

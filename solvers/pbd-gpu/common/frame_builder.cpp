@@ -23,10 +23,10 @@ std::string why_no_room(const std::string& name, std::uint64_t bytes, std::uint6
                         std::uint64_t memory_B) {
   constexpr double kMiB = 1024.0 * 1024;
   if (bytes > largest_B)
-    return fmt::format("buffer \"{}\" of {:.1f} MiB, and its limit is {:.1f} MiB", name, bytes / kMiB,
+    return fmt::format("buffer \"{}\" of {:.1f} MiB, but the device's limit is {:.1f} MiB", name, bytes / kMiB,
                        largest_B / kMiB);
   if (all_B <= memory_B) return "";
-  return fmt::format("buffers of at least {:.1f} MiB, and it has {:.1f} MiB", all_B / kMiB, memory_B / kMiB);
+  return fmt::format("buffers of at least {:.1f} MiB, but the device has {:.1f} MiB", all_B / kMiB, memory_B / kMiB);
 }
 
 void FrameBuilder::require_room(const std::string& name, std::uint64_t bytes) const {

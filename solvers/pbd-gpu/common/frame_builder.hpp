@@ -13,14 +13,14 @@ namespace clothbench::pbd_gpu {
 
 inline constexpr std::uint32_t kGroupSize = 64;
 
-/// Code of a kernel by name: its file's, plus the variant's suffix from CMakeLists.txt. Throws Error if there is none.
+/// Code of a kernel. `name`: its file's name plus the variant's suffix in CMakeLists.txt. Throws Error if not found.
 vulkan::SpirV shader(const std::string& name);
 
 /// A kernel and the stage to which its dispatches belong.
 struct FrameKernel {
   int stage;
   std::uint32_t group_size;
-  std::vector<std::uint32_t> counting;  ///< its code with byte counters; empty: without
+  std::vector<std::uint32_t> counting;  ///< its code with byte counters; empty if bytes are not counted
   vulkan::Kernel kernel;
 };
 
@@ -89,13 +89,13 @@ class FrameBuilder {
   const Scene* scene_ = nullptr;
   Plan plan_;
   const vulkan::Buffer* timed_out_ = nullptr;
-  // Programs and kernels refer to buffers, so they are declared, and destroyed, in this order.
+  // Programs and kernels refer to buffers, so they are declared after them and destroyed before them.
   std::vector<std::unique_ptr<vulkan::Buffer>> buffers_;
   vulkan::Buffers bound_;
-  /// Counters of all stages (four words each; vulkan/count_bytes.cpp) on the device, as the host reads them, and zeros;
-  /// null unless bytes are counted.
+  /// Counters of all stages (four words each; vulkan/count_bytes.cpp): on the device, their copy on the host, and zeros
+  /// that reset them. Null unless bytes are counted.
   const vulkan::Buffer *counters_ = nullptr, *counted_ = nullptr, *zeros_ = nullptr;
-  std::vector<double> copied_B_;  ///< by stage, in a frame
+  std::vector<double> copied_B_;  ///< bytes copied per frame, by stage
   std::vector<std::unique_ptr<FrameKernel>> kernels_;
   std::unique_ptr<vulkan::Program> frame_, upload_, download_;
 };

@@ -12,7 +12,7 @@ namespace clothbench::pbd_gpu {
 /// A frame that takes longer has timed out. GPUs are reset by their drivers after about 2 s; software devices are slow.
 constexpr double kTimeout_s = 2, kSoftwareTimeout_s = 300;
 
-/// Like an application that shows one frame while the next is computed.
+/// Two, as in an application that shows one frame while the next is computed.
 constexpr int kFramesInFlight = 2;
 
 void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {
@@ -121,7 +121,7 @@ void GpuSolver::reset() {
   if (colliders_) colliders_->reset();
   if (grips_) grips_->reset();
   if (timed_out_ != nullptr) std::memset(timed_out_->mapped(), 0, sizeof(std::uint32_t));
-  // A loss here is reported by the next step, or by a read of the state before it.
+  // The next step, or a read of the state before that step, reports a device that is lost here.
   ready_ = run(*upload_);
   last_ = StepStatus::Ok;
 }
@@ -196,7 +196,7 @@ void GpuSolver::read_state(ClothState& state) const {
     }
 }
 
-/// The rounding errors of compensated sums restart at 0, and BDF2 and the number of substeps start as after a reset.
+/// As after a reset, rounding errors of compensated sums are 0, and BDF2 and the number of substeps start anew.
 bool GpuSolver::restart(const ClothState& state) {
   take_messages();
   const bool more_layers = position_->bytes() > read_position_->bytes();

@@ -28,7 +28,7 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   Plan plan() const override { return plan_; }
   int validation_messages() const override { return *messages_; }
 
-  /// The buffer that read_state reads positions from, for drawing without reading back: the scene's vertices first, a
+  /// The buffer that read_state reads positions from, for rendering without read-back: the scene's vertices first, a
   /// vec4 each, relative to `origin_m()`. The solver must be loaded.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
@@ -42,16 +42,16 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   /// Adds the buffers and kernels of this scene.
   virtual void build() = 0;
-  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`; 0: no frame before it, or the
-  /// cloth or attached vertices have changed since. Without BDF2, `last_dt_s` is always `dt_s`.
+  /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`. 0: no frame came before, or the
+  /// state was set or a vertex attached or released after it. Without BDF2, `last_dt_s` is always `dt_s`.
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
   /// Updates the number of substeps; true if the frame must then be recorded again. Called once before each frame.
   virtual bool update_substep_count(double /*dt_s*/) { return false; }
   bool reads_back_ = false;  ///< the host reads each frame's result before it submits the next: one frame in flight
   bool uses_bdf2_ = false;   ///< a frame's first substep depends on the last frame's
 
-  /// Adds the buffers of positions, relative to `origin_m` so that a scene far from the world's origin loses no digits,
-  /// and velocities; .w of both: inverse mass. `layers` copies of the vertices; read_state reads back the first.
+  /// Adds the buffers of positions (relative to `origin_m`, so that distant scenes lose no digits) and velocities;
+  /// .w of both: inverse mass. `layers`: copies of the vertices; read_state reads back the first one.
   void add_state(const std::vector<double>& start, const std::vector<float>& inverse_mass, Vec3 origin_m, int layers);
   /// Add the scene's colliders and grips, if any, relative to `origin_m`. Their stages come after those already added.
   void add_colliders(Vec3 origin_m, bool as_convex_shapes);
@@ -75,8 +75,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
   double dt_s_ = 0, last_dt_s_ = 0;    ///< durations of the recorded frame and of the one before it
   double done_dt_s_ = 0;               ///< duration of the last frame; 0: BDF2 has no frame to continue from
-  StepStatus ready_ = StepStatus::Ok;  ///< of the last reset
-  StepStatus last_ = StepStatus::Ok;   ///< of the last reset or step
+  StepStatus ready_ = StepStatus::Ok;  ///< status of the last reset
+  StepStatus last_ = StepStatus::Ok;   ///< status of the last reset or step
   Vec3 origin_m_{};
   const vulkan::Buffer *position_ = nullptr, *velocity_ = nullptr, *read_position_ = nullptr, *read_velocity_ = nullptr;
   std::unique_ptr<ColliderBuffers> colliders_;

@@ -1,5 +1,5 @@
-// Structs that the host and the shaders share. Members are vec4, aligned as in std430, and 4-byte scalars only, so that
-// std430 and C++ have the same layout.
+// Structs that the host and the shaders share. All members are 4-byte scalars, or vectors of four that are aligned as
+// in std430, so that std430 and C++ have the same layout.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -34,9 +34,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 
 // Line kernels of `xpbd`. LANES: threads per chain, a power of two. K: vertices per thread, an even number if the scene
 // has bending. THREADS: per workgroup. FEATURES: bit mask of LINES_... TETHERS: number of rectangles of pinned
-// vertices; TETHER_n, TETHER_n_LAST: column | row << 16 of their first and last vertex. SUBGROUP: threads that exchange
-// by shuffles. BESIDE: neighbouring chains whose threads alternate, so that loads of columns are contiguous. EXACT: all
-// vertices of all threads are on chains. PERSISTENT: all workgroups run at once and synchronise by barriers.
+// vertices; TETHER_n, TETHER_n_LAST: column | row << 16 of their first and last vertex. SUBGROUP: number of threads
+// that can shuffle values. BESIDE: number of neighbouring chains with interleaved threads, for contiguous loads of
+// columns. EXACT: no thread is padding. PERSISTENT: all workgroups run at once and synchronise by barriers.
 // clang-format off
 #define LINE_CONSTANTS(C) \
   C(1, uint, LANES, 8u) C(2, uint, K, 4u) C(3, uint, COLUMNS, 2u) C(4, uint, ROWS, 2u) C(5, uint, THREADS, 64u) \
@@ -55,9 +55,9 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
   C(33, uint, MARGIN_BITS, 0u) C(34, uint, LANES_PER_VERTEX, 1u)
-// Only for one kernel per pass. SELF: 1 with self-contact; then SELF_CAPACITY, ACTIVE_CAPACITY, CONTACT_CAPACITY:
-// capacities of its lists of candidate pairs, active pairs and pairs with contacts; THICKNESS_BITS, SELF_FRICTION_BITS:
-// bits of floats. GRIPS: number of attachable vertices, with the constant's number in LINE_CONSTANTS.
+// Only if each pass has its own kernel. SELF: 1 with self-contact; then SELF_CAPACITY, ACTIVE_CAPACITY,
+// CONTACT_CAPACITY: capacities of its lists of candidate pairs, active pairs and pairs with contacts; THICKNESS_BITS,
+// SELF_FRICTION_BITS: bits of floats. GRIPS: attachable vertices; the same constant as in LINE_CONSTANTS.
 #define CONTACT_PASS_CONSTANTS(C) \
   C(1, uint, SELF, 0u) C(2, uint, SELF_CAPACITY, 0u) C(3, uint, ACTIVE_CAPACITY, 0u) C(4, uint, CONTACT_CAPACITY, 0u) \
   C(5, uint, THICKNESS_BITS, 0u) C(6, uint, SELF_FRICTION_BITS, 0u) C(7, bool, SECOND_SOLVE, false) \
@@ -119,10 +119,10 @@ struct PaperContactConstants {
   uint particles;
   uint first, count;              // range of shapes or triangles that every particle is tested against
   float margin, depth, friction;  // of a mesh
-  uint layer;                     // number of particles of one layer
+  uint layer;                     // number of particles per layer
 };
 
-// Features that a scene needs of the line kernels of `xpbd`: bits of their constant FEATURES.
+// Features that the line kernels of `xpbd` need for a scene: bits of the constant FEATURES.
 #define LINES_BEND 2u
 #define LINES_SHEAR 4u
 #define LINES_ELASTIC 8u       // links have a compliance
@@ -143,9 +143,9 @@ struct LineConstants {
   float inverse_mass;               // of an inner vertex [1/kg]
   uint bend_rounds_u, bend_rounds_v;
   uint first_substep, substeps;  // of this dispatch
-  float substep_part;            // of a frame
+  float substep_part;            // length of a substep as a fraction of the frame
   float frames_per_s;
-  uint first_pass, passes;  // of this dispatch; a substep has one per colour. In fused_frame: BROAD_PHASE_DONE, or 0
+  uint first_pass, passes;  // of this dispatch; one per colour. In fused_frame, first_pass is BROAD_PHASE_DONE or 0
   uint timeout_polls;       // polls of a barrier over the whole dispatch before it times out
   float per_h;              // 1/h
   float history_weight;     // fraction of the last substep's change that is predicted
@@ -169,26 +169,26 @@ struct TetherEnd {
   float reach;
 };
 
-/// Range of a colour's entries, in blocks of a workgroup each.
+/// Range of a colour's entries. A block contains the entries of one workgroup.
 struct ChainRange {
   uint first_entry, blocks, rounds;
 };
 
 /// Rows per slice of the bending matrix of a mesh.
 #define BENDING_ROWS 32u
-/// Entry of that matrix outside the diagonal.
+/// Off-diagonal entry of the bending matrix.
 struct BendingEntry {
   uint column;
   float stiffness;  // [N/m]
 };
-/// Entry j of the slice's row r is number first + BENDING_ROWS j + r, j below width.
+/// Entry j of the slice's row r has index first + BENDING_ROWS j + r; j < width.
 struct BendingSlice {
   uint first, width;
 };
 
 /// A triangle seen from one of its corners: edge 0 leads to `a`, edge 1 from `a` to `b`, edge 2 back. Its energy is
-/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries are stored in slices like bending; `a` of padding
-/// is CHAIN_NO_VERTEX.
+/// 1/2 sum K_jk d_j d_k in the elongations d of its edges. Entries are stored in slices, like the bending matrix; in
+/// padding, `a` is CHAIN_NO_VERTEX.
 struct MembraneCorner {
   uint a, b;
   float rest_0, rest_1, rest_2;        // lengths [m]

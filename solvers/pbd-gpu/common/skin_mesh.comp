@@ -1,6 +1,6 @@
 #version 450
-// Linear blend skinning: x = sum_k w_k M_k rest. Weights of 0 are not skipped, so every vertex reads as many bytes.
-// KEEP_START: also stores the vertex's position at the frame's start.
+// Linear blend skinning: x = sum_k w_k M_k rest. Weights of 0 are not skipped, so every vertex reads the same number of
+// bytes. KEEP_START: also stores the vertex's position at the frame's start.
 #include "common/common.glsl"
 layout(std430, binding = BIND_SKIN) readonly buffer Skin { SkinVertex skin[]; };
 layout(std430, binding = BIND_JOINTS) readonly buffer Joints { JointMatrix joints[]; };

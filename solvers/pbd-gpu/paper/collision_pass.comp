@@ -1,6 +1,6 @@
 #version 450
 // The collision kernels of `paper` (Kim, Ma & Hong 2025, 3.2.3 to 3.2.6): one thread per particle, which is tested
-// against every shape or triangle of one kind. CMakeLists.txt compiles this file once for each.
+// against every shape or triangle of one kind. CMakeLists.txt compiles this file once per kernel.
 #include "common/common.glsl"
 layout(std430, binding = BIND_SPHERES) readonly buffer Spheres { SphereShape spheres[]; };
 layout(std430, binding = BIND_BOXES) readonly buffer Boxes { BoxShape boxes[]; };
@@ -64,8 +64,8 @@ vec3 satisfied(vec3 at, vec3 from, uint k) {
 }
 
 #elif defined(MESH_COLLISIONS)
-// 3.2.4 (room) and 3.2.6, Algorithm 4 (hand), no broad phase. A particle that projects into the triangle, less than the
-// margin in front or the depth behind, moves along the normal to the margin.
+// 3.2.4 (room) and 3.2.6, Algorithm 4 (hand), without broad phase. A particle whose projection is in the triangle, and
+// which is less than the margin in front of it or less than the depth behind it, moves along the normal to the margin.
 bool projects_into(vec3 d, vec3 ab, vec3 ac, vec3 normal) {
   float u = dot(cross(d, ac), normal), v = dot(cross(ab, d), normal);
   return u >= 0.0 && v >= 0.0 && u + v <= dot(cross(ab, ac), normal);

@@ -1,6 +1,6 @@
 #version 450
 // The kernels of `paper` with one thread per particle (Kim, Ma & Hong 2025, 3.2.3), in the order of a step.
-// CMakeLists.txt compiles this file once for each. .w of velocities and predicted positions: inverse mass, 0 where
+// CMakeLists.txt compiles this file once per kernel. .w of velocities and predictions: inverse mass, 0 if
 // pinned.
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -27,7 +27,7 @@ void main() {
   vec4 vel = v[i];
   q[i] = vec4(x[i].xyz + vel.xyz * p.h, vel.w);
 
-#elif defined(AVERAGE_CONSTRAINT_DELTAS)  // onto the predicted position; clears the sums
+#elif defined(AVERAGE_CONSTRAINT_DELTAS)  // adds the mean to the predicted position; clears the sums
   uvec4 sum = d[i];
   if (sum.w == 0u) return;
   vec4 at = q[i];

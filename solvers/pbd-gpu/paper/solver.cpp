@@ -196,10 +196,10 @@ SolverInfo paper_info() {
       {"mesh_depth_m", "0.03", "a particle at most this far behind a triangle of a static mesh touches it"},
       {"hand_depth_m", "0.01", "as mesh_depth_m, for the mesh of a hand"},
       {"relaxation", "1.0", "factor of the averaged corrections; above 1: over-relaxation"},
-      {"collisions", "\"after\"", "after | inside: collide after the loop of iterations (Algorithm 1) or in each"},
+      {"collisions", "\"after\"", "after | inside: collide after all iterations (Algorithm 1) or in each of them"},
       {"projection", "\"predicted\"", "predicted | previous: positions that are tested against colliders"},
       {"second_layer", "\"same\"", "same | opposite: side of a triangle to which the duplicated layer is pushed"},
-      {"friction_on", "\"position\"", "position | velocity: friction takes tangential displacement or only velocity"},
+      {"friction_on", "\"position\"", "position | velocity: friction reduces tangential displacement or only velocity"},
       {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
       {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
   return info;

@@ -95,7 +95,7 @@ class Counting {
     for (Id& sum : sums_) put(more_types_, spv::OpVariable, {to_sum, sum = id(), spv::StorageClassPrivate, value(0)});
   }
 
-  /// A constant of the module.
+  /// Id of an unsigned constant, which is declared on first use.
   Id value(std::uint32_t number) {
     const auto [at, fresh] = value_.try_emplace(number, 0);
     if (fresh) put(more_types_, spv::OpConstant, {uint_, at->second = id(), number});

@@ -64,8 +64,8 @@ VkApplicationInfo application() {
   return app;
 }
 
-/// Devices of this process. They are kept until it ends, because drivers fail to load after some hundred times (NVIDIA
-/// 580: VK_ERROR_INCOMPATIBLE_DRIVER), and not destroyed then, because the driver's own clean-up may come first.
+/// Devices of this process. They are kept until it ends, because drivers fail to load after many reloads (NVIDIA 580:
+/// VK_ERROR_INCOMPATIBLE_DRIVER). They are never destroyed, because the driver's own clean-up may come first.
 struct Made {
   std::mutex mutex;
   std::map<std::tuple<int, bool, std::string>, std::shared_ptr<Device>> devices;
@@ -119,7 +119,7 @@ std::vector<DeviceInfo> Device::list() {
   return all;
 }
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Device::Device(const DeviceOptions& options, Maker* maker) : Device() {
   create_instance(options.validation, maker);
   choose_physical(options.index, maker);

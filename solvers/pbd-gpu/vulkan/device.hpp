@@ -25,7 +25,7 @@ class Failure : public Error {
 /// Throws Failure naming the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
-/// Creates the Vulkan objects of a Device instead of direct calls of Vulkan: an OpenXR runtime adds extensions that it
+/// Creates the Vulkan objects of a Device instead of Vulkan's own functions: an OpenXR runtime adds extensions that it
 /// needs and selects the GPU that drives the headset (XR_KHR_vulkan_enable2).
 class Maker {
  public:
@@ -69,7 +69,7 @@ class Device {
   bool is_discrete() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU; }
   DeviceInfo info() const;
 
-  /// Memory type with all of `wanted`, or kNoMemory.
+  /// Memory type that is `allowed` and has all properties `wanted`, or kNoMemory.
   static constexpr std::uint32_t kNoMemory = ~0u;
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 

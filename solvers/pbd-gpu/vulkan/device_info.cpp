@@ -15,7 +15,7 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   vkGetPhysicalDeviceProperties2(physical, &all);
   const VkPhysicalDeviceProperties& p = all.properties;
   const VkPhysicalDeviceLimits& l = p.limits;
-  if (p.apiVersion >= VK_API_VERSION_1_2) {  // where driver properties are part of Vulkan
+  if (p.apiVersion >= VK_API_VERSION_1_2) {  // driver properties are core from 1.2 on
     subgroup.pNext = &driver;
     vkGetPhysicalDeviceProperties2(physical, &all);
   }

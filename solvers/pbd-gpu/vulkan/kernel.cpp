@@ -7,17 +7,17 @@
 
 namespace clothbench::vulkan {
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Kernel::Kernel(std::shared_ptr<Device> device, std::string name, SpirV code, std::vector<std::uint32_t> specialization,
                const Buffers& buffers, std::uint32_t push_bytes)
     : Kernel(std::move(device), std::move(name), code) {
   for (const auto& [number, access] : accesses_of(code_)) {
     const auto found = buffers.find(number);
-    if (found == buffers.end()) throw Error(fmt::format("kernel {}: it has no buffer {}", name_, number));
+    if (found == buffers.end()) throw Error(fmt::format("kernel {}: buffer {} is missing", name_, number));
     bindings_.push_back({number, found->second, access});
   }
   if (const std::uint32_t most = device_->limits().maxComputeWorkGroupInvocations; specialization.at(0) > most)
-    throw Error(fmt::format("kernel {}: its workgroups of {} are larger than this device's or its profile's {}", name_,
+    throw Error(fmt::format("kernel {}: its workgroups have {} threads; this device or its profile allows {}", name_,
                             specialization[0], most));
   create_layout(push_bytes);
   create_set();
@@ -107,7 +107,7 @@ Groups groups_for(std::uint64_t items, std::uint32_t group_size) {
   return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }
 
-// Delegates, so that the destructor runs if this throws.
+// Delegates to another constructor, so that the destructor runs if this one throws.
 Buffer::Buffer(std::shared_ptr<Device> device, std::string name, VkDeviceSize bytes, Place place)
     : Buffer(std::move(device)) {
   name_ = std::move(name);

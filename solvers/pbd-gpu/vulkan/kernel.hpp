@@ -47,10 +47,10 @@ enum class Access { Read, Write, ReadWrite };
 /// Accesses of a kernel's code to storage buffers, by binding: loads, stores and atomics through all pointers.
 std::map<std::uint32_t, Access> accesses_of(SpirV code);
 
-/// Returns `code` with instructions that count the bytes of storage buffers that it loads and stores on its path. Each
+/// Returns `code` with instructions that count the bytes that it loads from and stores to storage buffers. Each
 /// invocation has two sums of its own and adds them at its end to four words of buffer `counter`, from `first_word` on:
 /// bytes read (low and high word), bytes written (likewise). An atomic operation reads and writes its word. Accesses to
-/// the bindings `uncounted` do not count, because the number of polls of a barrier depends on timing.
+/// the bindings `uncounted` are not counted: the counters of barriers, whose number of polls depends on timing.
 std::vector<std::uint32_t> with_byte_counters(SpirV code, std::uint32_t counter, std::uint32_t first_word,
                                               const std::set<std::uint32_t>& uncounted);
 
@@ -103,8 +103,8 @@ struct Groups {
 };
 
 /// Workgroups for `items` items at `group_size` each: one row, or the fewest equal rows if one row would exceed the
-/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check. Throws Error for
-/// more than 65535 rows, and for more items than 32 bits can number.
+/// 65535 workgroups that every device supports. The last row may exceed the items, so kernels check their index. Throws
+/// Error for more than 65535 rows, and for more items than 32 bits can number.
 Groups groups_for(std::uint64_t items, std::uint32_t group_size);
 
 }  // namespace clothbench::vulkan

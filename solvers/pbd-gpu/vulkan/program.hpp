@@ -38,7 +38,7 @@ class Program {
   void need_copies(std::size_t count);
   /// Submits a copy that is not in flight. Throws Failure.
   void submit(std::size_t copy);
-  /// Waits until a copy is no longer in flight. Throws as `run`.
+  /// Waits until a copy is no longer in flight. Throws like `run`.
   void wait(std::size_t copy, double timeout_s);
 
   double device_s() const;                        ///< first to last timestamp of the last run; NaN without timestamps
@@ -73,7 +73,7 @@ class Program {
   void barrier(VkPipelineStageFlags before, VkPipelineStageFlags after, VkAccessFlags written, VkAccessFlags next);
   /// `since`: accesses of the steps since the last barrier.
   void barrier_if_needed(const Touched& next, Touched& since);
-  /// Objects that each submission in flight has for itself.
+  /// Objects that each submission in flight needs for itself.
   struct Copy {
     VkCommandBuffer commands = VK_NULL_HANDLE;  ///< reused by later recordings
     VkFence fence = VK_NULL_HANDLE;
@@ -87,10 +87,10 @@ class Program {
   std::shared_ptr<Device> device_;
   std::vector<Step> steps_;
   std::map<const Buffer*, std::size_t> numbers_;
-  std::map<const Kernel*, Touched> touched_by_;  ///< kernels stay the same
+  std::map<const Kernel*, Touched> touched_by_;  ///< a kernel's bindings never change
   VkCommandBuffer commands_ = VK_NULL_HANDLE;    ///< being recorded
   std::vector<Copy> copies_;
-  std::size_t recorded_copies_ = 0;  ///< this many of the first copies hold the last recording
+  std::size_t recorded_copies_ = 0;  ///< the copies before this index hold the last recording
   std::uint32_t query_count_ = 0;
   bool time_stages_ = false;
   std::vector<Recorded> recorded_;

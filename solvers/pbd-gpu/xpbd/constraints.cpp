@@ -43,7 +43,7 @@ double way_through(const Scene& s, double u, double v) {
 }
 
 /// Extra length [m] of a tether, for a vertex at distance r through the cloth from pins that span `width`: five times
-/// the elongation of a sheet around a small group of pins, which carries all of its weight (force M g spread over r).
+/// the elongation of a sheet around a small group of pins that carries its whole weight (force M g spread over r).
 double spread_slack_m(const Scene& s, double width, double r) {
   const double scale = tether_spread_m(s);
   return scale > 0 ? scale * std::log1p(r / width) : 0;
@@ -127,7 +127,7 @@ double cross2(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// True if the mesh rests flat as it starts (all z alike) with a convex border: shortest paths are then straight.
+/// True if the mesh starts at rest, flat (all z equal) and with a convex border: shortest paths are then straight.
 bool is_convex_sheet(const ClothMesh& m) {
   if (!m.pattern_m.empty()) return false;
   double low = m.vertices[0][2], high = low, size = 0, area = 0;

@@ -27,14 +27,14 @@ constexpr double kRegularisation = 1e-3;
 double eigenvalue_bound(const std::vector<double>& mass,
                         const std::function<void(const std::vector<double>& v, std::vector<double>& to)>& times);
 
-/// Rows of a sparse matrix in slices of BENDING_ROWS, each as long as the slice's longest: the first entries of all
-/// rows of the slice, then the second ones.
+/// Rows of a sparse matrix in slices of BENDING_ROWS, each row padded to the longest of its slice. A slice contains the
+/// first entries of all its rows, then the second entries, and so on.
 template <class Entry>
 struct SlicedRows {
   std::vector<BendingSlice> slices;
   std::vector<Entry> entries;
 };
-/// `length(i)`: of row i, i below `rows`. `entry(i, j)` also gives padding: j from length(i) on, or i from `rows` on.
+/// `length(i)`: entries of row i < rows. `entry(i, j)` must also return padding, for j >= length(i) and for i >= rows.
 template <class Entry, class Length, class At>
 SlicedRows<Entry> sliced(std::uint32_t rows, const Length& length, const At& entry) {
   SlicedRows<Entry> out;
@@ -75,7 +75,7 @@ struct TetherTable {
   std::string reason;  ///< reason if there are no tethers
 };
 /// In a grid or a flat mesh with a convex border, reach is the distance at rest. Otherwise it is the path length
-/// along edges. This is longer than a path through triangles, so these tethers are a little looser.
+/// along edges. Such a path is longer than one through triangles, so these tethers are a little looser.
 TetherTable tether_table(const Scene&, bool wanted = true);
 
 /// 5 M g / Y [m]: five times the elongation scale of a sheet that hangs from a few vertices; 0 if inextensible.

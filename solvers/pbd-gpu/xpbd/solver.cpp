@@ -89,8 +89,8 @@ class Xpbd final : public GpuSolver {
     if (touches && lines_) fused_frame_ = FusedFrame::make(frame(), *lines_, *contact_);
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
-    // Strips on edges need all substeps for friction even if they hardly move, and crumpled starts to come to rest.
-    // Cloth that attachments have released would snap if the number of substeps changed.
+    // Strips on edges need all substeps for friction even if they hardly move; crumpled starts need them to come to
+    // rest. Cloth that attachments have released would snap if the number of substeps changed.
     const bool adapts = touches && !contact_->has_kinematic_shapes() && grips() == nullptr &&
                         scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
@@ -154,7 +154,7 @@ class Xpbd final : public GpuSolver {
     const int lists = lists_in(dt_s), substeps = controller_.substeps();
     const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
     const double last_h_s = std::exchange(last_h_s_, length_of(dt_s));
-    // Fused frames keep the last length on the device, where contact-free frames have other substeps.
+    // Fused frames keep the last length on the device, because contact-free frames have another number of substeps.
     const bool same_start = fused_frame_ || std::exchange(recorded_last_h_s_, last_h_s) == last_h_s;
     return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists || !same_start;
   }
@@ -198,7 +198,7 @@ class Xpbd final : public GpuSolver {
       }
       if (contact_) contact_->record_list(list_s, count);
       for (int s = first; s < first + count; ++s) {
-        // First, as in the fused frame, so that a released vertex moves freely in this substep.
+        // Before the solve, as in the fused frame, so that a released vertex moves freely in this substep.
         if (move_grips_ != nullptr) grips()->record_move(*move_grips_, (s + 1.0) / substeps, dt_s);
         if (contact_) contact_->record_before(s - first, count, list_s);
         record_lines(s, 1, substeps, dt_s, s == 0 ? start : step);
@@ -228,8 +228,8 @@ class Xpbd final : public GpuSolver {
 
   SubstepController controller_;
   int recorded_substeps_ = 0, recorded_lists_ = 1, contact_free_substeps_ = 0;
-  double last_dt_s_ = 0;                         ///< of the last frame; 0: none
-  double last_h_s_ = 0, recorded_last_h_s_ = 0;  ///< of the last substep, and the one before the recorded frame
+  double last_dt_s_ = 0;                         ///< duration of the last frame; 0: none
+  double last_h_s_ = 0, recorded_last_h_s_ = 0;  ///< of the last substep; of the last one before the recorded frame
 
   bool crumpled_ = false;
   bool second_solve_ = false;       ///< chains are solved again between the response rounds
@@ -249,16 +249,16 @@ struct Tuning {
 
 const std::vector<Tuning>& tunings() {
   static const std::vector<Tuning> all = {
-      {"contact_frame", {"auto", "always", "never"}, "contact frames in one dispatch; auto: where that is faster"},
+      {"contact_frame", {"auto", "always", "never"}, "frames with contact in one dispatch; auto: if that is faster"},
       {"device_barrier",
        {"auto", "always", "never"},
        "workgroups of a dispatch wait for one another; auto: on discrete GPUs that run all of them at once"},
       {"bdf2", {"auto", "always"}, "time_order 2; auto: if it is safe, always: in every scene without contact"},
-      {"tension", {"auto", "always", "never"}, "implicit tension; auto: where it pays, always: without contact"},
-      {"splitting_correction", {"auto", "always", "never"}, "of diagonals; auto: in sheets whose modulus needs it"},
-      {"vertices_a_thread", {0, 2, 4, 8, 16, 32}, "of a line; 0: by line and device"},
-      {"threads_a_group", {0, 32, 64, 128, 256, 512, 1024}, "of one colour; 0: by line and device"},
-      {"lines_beside", {0, 1, 2, 4}, "neighbouring lines whose threads alternate; 0: by line and device"}};
+      {"tension", {"auto", "always", "never"}, "implicit tension; auto: where it helps, always: contact-free scenes"},
+      {"splitting_correction", {"auto", "always", "never"}, "for diagonals; auto: in sheets whose modulus needs it"},
+      {"vertices_a_thread", {0, 2, 4, 8, 16, 32}, "vertices of a line per thread; 0: by line and device"},
+      {"threads_a_group", {0, 32, 64, 128, 256, 512, 1024}, "threads per workgroup; 0: by line and device"},
+      {"lines_beside", {0, 1, 2, 4}, "neighbouring lines whose threads are interleaved; 0: by line and device"}};
   return all;
 }
 
@@ -287,8 +287,8 @@ SolverInfo xpbd_info() {
                    {"stage_times", "false", "timestamps around every stage (slower; for profiling)"},
                    {"count_bytes", "false", "kernels count the bytes that they load and store (slower)"}};
   info.tuning = {
-      {"contact_groups", "0", "minimum workgroups of a fused frame with contact; 0: 96, or as many as the lines have"},
-      {"contact_pairs", "0", "pairs that the list has capacity for; 0: by the cloth's primitives"}};
+      {"contact_groups", "0", "minimum workgroups of a fused frame with contact; 0: 96, or as many as the lines need"},
+      {"contact_pairs", "0", "capacity of the list of pairs; 0: by the number of the cloth's primitives"}};
   for (const Tuning& t : tunings()) info.tuning.push_back({t.name, t.values.front().dump(), t.doc});
   return info;
 }

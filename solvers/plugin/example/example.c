@@ -1,5 +1,5 @@
-/* Extended position-based dynamics on one CPU core, complete: small steps, one pass over the constraints each
- * (Macklin et al., Small Steps in Physics Simulation, 2019), bending by an isometric Laplacian (Bergou et al. 2006). */
+/* Extended position-based dynamics on one CPU core, in small steps, each with one pass over the constraints
+ * (Macklin et al., Small Steps in Physics Simulation, 2019); bending by an isometric Laplacian (Bergou et al. 2006). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ typedef struct {
   double *x, *v, *before, *weight, memory[]; /* weight: 1 / mass, 0 where pinned */
 } Solver;
 
-/* Says what will run: nothing that the scene does not need. */
+/* Adds a stage if the scene needs a feature that it serves, or always. */
 static void add_stage(Solver* s, const char* name, uint32_t serves, int always) {
   const uint32_t needed = serves & s->scene->needs;
   if (needed || always) s->stages[s->stage_count++] = (ClothbenchStage){name, needed, 0, NAN, NAN};
@@ -52,9 +52,9 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
   return s;
 }
 
-/* Draws d = a - b of an edge to its length, or d = a - 2 middle + b across a fold to nothing. A sheet of stiffness Y
- * and Poisson's ratio 1/3 is a lattice of springs, `share` 3/4 along the grid and 3/8 along the diagonals of square
- * cells; a strip of width w with vertices l apart has the bending energy B w / (2 l^3) |d|^2. */
+/* Moves d = a - b of an edge towards its rest length, or d = a - 2 middle + b of a fold towards 0. A sheet of stiffness
+ * Y and Poisson's ratio 1/3 is a lattice of springs, with `share` 3/4 along the grid and 3/8 along the diagonals of
+ * square cells; a strip of width w with vertices l apart has the bending energy B w / (2 l^3) |d|^2. */
 static void hold(Solver* s, const ClothbenchEdge* e, int fold, double share, double h) {
   const double bending = s->scene->bending_rigidity_N_m / (e->along_m * e->along_m);
   const double modulus = fold ? bending : share * e->membrane_stiffness_N_per_m;

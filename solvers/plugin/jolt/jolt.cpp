@@ -158,7 +158,7 @@ struct Settings {
 };
 
 std::string obstacle(const Settings& s, const ClothbenchScene&) {
-  return s.iterations < 1 || s.collision_steps < 1 ? "Jolt takes at least one iteration and one step" : "";
+  return s.iterations < 1 || s.collision_steps < 1 ? "Jolt needs at least one iteration and one collision step" : "";
 }
 
 class Solver : public peer::Adapter {

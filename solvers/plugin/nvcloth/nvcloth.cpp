@@ -290,7 +290,7 @@ const ClothbenchSetting kSettings[] = {
     {"substeps", "solver iterations per frame, instead of the solver frequency; 0: by the frequency", 0, 1},
     {"tethers", "1: geodesic tethers to the pins", 1, 1},
     {"collision_margin_m", "contact offset of all colliders; 0: the scene's margins", 0, 0},
-    {"frictionless_triangles", "1: run scenes whose meshes have friction, without it; 0: refuse them", 0, 1}};
+    {"frictionless_triangles", "1: run scenes whose meshes have friction, but without friction; 0: refuse them", 0, 1}};
 
 }  // namespace
 }  // namespace clothbench::nvcloth

@@ -54,7 +54,7 @@ void run() {
 void run() {
   uint i = item();
   if (i < VERTICES) clamp_to_motion_bound(i, x[i]);
-  if (i == 0u && response_round == 1u && p.first_substep == 0u) frame_state.max_displacement = 0u;  // of the last frame
+  if (i == 0u && response_round == 1u && p.first_substep == 0u) frame_state.max_displacement = 0u;  // for this frame
   if (SHAPES > 0u && (!SECOND_SOLVE || response_round < 2u)) clear_active_bits(i, stride());
 }
 

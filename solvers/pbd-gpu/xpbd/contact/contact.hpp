@@ -62,7 +62,7 @@ class XpbdContact {
   /// Diagnostics since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
   void clear_diagnostics();
-  /// Reads and resets the largest displacement of a vertex per list of pairs [m]; infinite: a fused frame stored none.
+  /// Reads and resets the largest displacement of a vertex during a list of pairs [m]; infinity: none was stored.
   double read_max_displacement_m(bool is_single_dispatch);
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 
@@ -82,7 +82,7 @@ class XpbdContact {
   const Scene& scene_;
   const bool with_itself_;
   ContactSpecialization constants_;
-  ContactPassSpecialization pass_constants_;  ///< of one kernel per pass
+  ContactPassSpecialization pass_constants_;  ///< if each pass has its own kernel
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
   const vulkan::Buffer* diagnostics_ = nullptr;

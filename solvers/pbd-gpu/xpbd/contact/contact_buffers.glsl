@@ -22,16 +22,16 @@ layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 pri
 #else
 #define STATE
 #endif
-layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the lines
+layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the solve
 layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
 layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 motion_bounds[]; };
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
-layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: motion bound
+layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: max displacement
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
 // Vertex-triangle adjacency: per vertex the index of its first entry, then entries 4 * triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
-layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: pairs
+layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: count
 layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // pairs[n].w: n-th active pair
 layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFrameState frame_state; };
@@ -50,16 +50,16 @@ layout(std430, binding = BIND_TOUCHED) STATE buffer Touched { uint touched[]; };
 layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active_bits[]; };
 
 // Fractions of the motion bounds, tried in turn until all pairs fit into the list. Powers of two multiply exactly. A
-// vertex that keeps its speed stays within the second.
+// vertex that keeps its speed stays within the second fraction of its bound.
 const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
 const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // maximum depenetration per substep, as a fraction of the margin
 const float kStaticMarginFactor = 0.75;  // fraction of the margin that edges and faces keep from static shapes
-const float kImpactMassFactor = 0.25;  // a correction of so many margins in round 0 halves the solve's inverse mass
+const float kImpactMassFactor = 0.25;  // [margins] a correction of this length in round 0 halves the inverse mass
 const float kRounding_m = 2e-7;  // rounding error of positions
 const float kTiny = 1e-6;       // smaller weights count as 0
 
-/// Index of the first fraction whose pairs fit, or of the last; pairs beyond the capacity count as `overflow`.
+/// Index of the first fraction whose pairs fit, or of the last fraction; then pairs beyond the capacity are counted.
 uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
   uint level = 0u;
   while (level + 1u < PAIR_LEVELS && counted[level] > capacity) ++level;
@@ -92,8 +92,8 @@ uint response_round = 0u;  // 0: before the solve, at the predicted positions; f
 #define ACTIVE_COUNT frame_state.active_pair_count[min(response_round, 1u)]
 #define SELF_ACTIVE_COUNT min(frame_state.self_active, ACTIVE_CAPACITY)
 // Only kinematic shapes get a response before the constraint solve (round 0). Friction of static shapes would act on a
-// displacement without the pull of the constraints. With round 0, a strip over a cylinder (capstan-hold) slips at 5 %
-// less overhang than in Coulomb's law, without it at 0.7 % less.
+// displacement without the pull of the constraints: with round 0, a strip over a cylinder (capstan-hold) slips at 5 %
+// less overhang than Coulomb's law predicts, and without round 0 at 0.7 % less.
 #define FIRST_ROUND (HAS_KINEMATIC != 0u ? 0u : 1u)
 uint substep_now = 0u;
 float t_begin = 0.0, t_end = 1.0;  // of the substep, as fractions of the frame

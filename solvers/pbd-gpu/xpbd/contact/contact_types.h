@@ -5,7 +5,7 @@ struct ConvexShape {
   uint first, count;
   float radius, margin, friction;
   uint is_kinematic;
-  uint first_source;  // of its points if it is kinematic; otherwise of the next kinematic convex shape
+  uint first_source;  // index of its first point's PointSource; if static, of the next kinematic shape's
   uint unused0;
 };
 
@@ -54,7 +54,7 @@ struct ContactFrameState {
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
   uint contact_free;      // 1: the frame was simulated without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;  // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
-  uint max_displacement;  // maximum of a vertex in this frame [m], a float's bits; the last frame's until it is reset
+  uint max_displacement;  // max over vertices [m], bits of a float; before its reset, of the last frame
   uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
   float last_h;                                          // length of the last substep in a fused frame [s]; 0: none
   float drift[3];  // velocity of the centres of self-contact's motion bounds [m/s]: half of the cloth's mean velocity
@@ -68,13 +68,13 @@ struct SelfAabb {
   vec4 low_0, high_0, low_1, high_1;  // w unused
 };
 
-/// A pair of cloth triangles, listed once with each of the two: the other triangle.
+/// A candidate pair of cloth triangles. Each of the two triangles has an entry, which names the other one.
 struct SelfPair {
   uint other;
   float bound;  // lower bound of their distance [m]
 };
 
-/// A pair of triangles that is active in this substep; like its SelfPair stored with each of the two.
+/// A pair of triangles that is active in this substep. Like a SelfPair, it is stored with each of the two.
 struct SelfActivePair {
   uint own, other;
   uint link;         // index of its SelfPair; after the narrow phase, of its contacts
@@ -84,7 +84,7 @@ struct SelfActivePair {
 };
 
 /// One of an active pair's SELF_CONTACTS contacts. 0: nearest points of the two triangles; 1 to 3: the first triangle's
-/// vertices with the second; 4 to 6: the second's vertices with the first. First is the triangle of the lower number.
+/// vertices with the second; 4 to 6: the second's vertices with the first. The first triangle has the lower index.
 struct SelfContact {
   vec4 normal;         // towards the first triangle; w: distance to keep [m]
   vec4 first, second;  // weights of the vertices at the nearest points; w unused
@@ -98,7 +98,7 @@ struct SelfCorrection {
   vec4 velocity_part;  // part of the sum that also changes velocity
 };
 
-/// Counts since loading or reset (all 0 unless contact failed), and the displacement for the next frame's substeps.
+/// Counts since loading or reset (0 unless contact failed), and the displacement that sets the next frame's substeps.
 struct ContactDiagnostics {
   uint infeasible_vertices;  // vertices without a feasible position at a substep's end
   uint inside;               // pairs that touch at a substep's start
@@ -110,7 +110,7 @@ struct ContactDiagnostics {
 struct ContactConstants {
   vec4 gravity_h;                // g h [m/s]
   uint response_round;           // 0: before the constraint solve, at predicted positions; from 1 on: after it
-  uint first_substep, substeps;  // this substep; substeps of the frame
+  uint first_substep, substeps;  // index of this substep; substeps per frame
   uint level;                    // index into kFractions
   float substep_part;            // 1 / substeps
   float h, per_h;                // of the substep [s], [1/s]

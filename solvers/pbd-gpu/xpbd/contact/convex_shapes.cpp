@@ -71,7 +71,7 @@ class Maker {
     }
   }
 
-  /// Adds the faces as triangles: a face's plane separates most cloth triangles on it at once (separated_by_face).
+  /// Adds the faces as triangles, because a face's plane separates most cloth triangles on it (separated_by_face).
   void add_box(const Collider& c, std::size_t k) {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const unsigned a = 1u << axis, b = 1u << (axis + 1) % 3, side = 1u << (axis + 2) % 3;

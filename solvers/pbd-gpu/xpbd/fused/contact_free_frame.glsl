@@ -1,6 +1,6 @@
 // Contact-free fast path (xpbd/fused/README.md). The bound on how far the cloth moves is an estimate, not a guarantee:
 // check_motion_bound() tests it after every substep.
-const uint kMaxNearbyGroups = 32u;  // of convex shapes; with more, the frame has contact without further tests
+const uint kMaxNearbyGroups = 32u;  // with more groups of shapes, the frame has contact without further tests
 shared uint nearby_groups[kMaxNearbyGroups], nearby_group_count, max_displacement;
 vec3 box_low, box_high;
 float rest, by_hands;

@@ -68,7 +68,7 @@ void fill_at(float fraction, uint level) {
   }
 }
 
-/// Builds the frame's list of pairs. kTestsContactFree: it stays empty if the cloth is slow and cannot reach a shape.
+/// Builds the frame's list of pairs. With kTestsContactFree, the list stays empty if slow cloth cannot reach a shape.
 bool broad_phase() {
   bool may_be_contact_free = kTestsContactFree && is_slow();
   if (thread == 0u) any_nearby = kOutOfReach;

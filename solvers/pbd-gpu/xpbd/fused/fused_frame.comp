@@ -1,8 +1,8 @@
 #version 450
-// Simulates one frame in a single dispatch (xpbd/fused/README.md) with the functions of the path with one kernel per
-// pass. Grid barriers per substep: 9 with kinematic shapes, 8 otherwise. CONTACT_FREE: dispatched first. Runs the broad
-// phase; if the cloth is slow and no collider is within its motion bound, it simulates the frame with constraints only
-// and sets frame_state.contact_free, so that the kernel with contact exits.
+// Simulates one frame in a single dispatch (xpbd/fused/README.md). Calls the functions of the path that has one kernel
+// per pass. Grid barriers per substep: 9 with kinematic shapes, 8 otherwise. The variant CONTACT_FREE is dispatched
+// first. It runs the broad phase; if the cloth is slow and no collider is within its motion bound, it simulates the
+// frame with constraints only and sets frame_state.contact_free, so that the kernel with contact exits.
 #define SUBGROUPS
 #include "common/common.glsl"
 #define FUSED_FRAME
@@ -56,7 +56,7 @@ uint global_thread, grid_stride;  // this thread among the threads of all workgr
        n += by_subgroup ? grid_stride / THREADS * gl_NumSubgroups : grid_stride)
 
 // Each workgroup tests its part of the candidate pairs, kRounds per thread at a time. After each test the remaining
-// pairs are distributed over its threads again, so that no thread idles while its neighbour tests.
+// pairs are distributed over the workgroup's threads again, so that no thread idles while its neighbour tests.
 const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
 shared uint tested[kRounds * THREADS], active_found[kRounds * THREADS], tested_count, found_count, slot;
 void find_active_pairs() {
@@ -121,7 +121,7 @@ bool move_grips(uint s) {
   return true;
 }
 
-/// Called by one thread: stores what the next frame starts from, and what the host chooses its substeps by.
+/// Called by one thread: stores the step length for the next frame, and the displacement that sets its substeps.
 void end_frame() {
   frame_state.last_h = p.h;
   diagnostics.max_displacement = frame_state.max_displacement;
@@ -150,7 +150,7 @@ bool narrow_phase() {
   by_subgroup = false;
   find_active_pairs();
   if (!kPairsOfSubgroups) return true;
-  GRID_BARRIER_OR_FAIL;  // wait for all active pairs before they are spread evenly: neighbours are active together
+  GRID_BARRIER_OR_FAIL;  // wait for all pairs before subgroups share them evenly (neighbours are active together)
   FOR_EACH_ACTIVE_PAIR(n, ACTIVE_COUNT) process_pair(pairs[n].w);
   return true;
 }
@@ -171,7 +171,7 @@ bool respond_to_contact(out uint active_count) {
   if (global_thread == 0u && active_count > 0u) frame_state.contact_possible = 1u;
   if (response_round == 2u && active_count > 0u) {
     FOR_EACH_STRIDED(n, active_count) respond(pairs[n].w);
-    GRID_BARRIER_OR_FAIL;  // as above
+    GRID_BARRIER_OR_FAIL;  // wait for the contacts' corrections before vertices read them
   }
   if (global_thread == 0u && response_round > 0u) frame_state.active_pair_count[0] = 0u;
   if (active_count == 0u && PLANES == 0u) return true;

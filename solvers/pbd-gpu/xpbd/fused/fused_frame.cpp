@@ -4,13 +4,13 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Minimum workgroups; those without lines process only pairs and vertices. With 1, capsule sweeps take a sixth longer
-/// and a desk three times as long; 64 costs 6 % on a desk and 9 % in a whole room, 256 costs 5 % in sweeps (H100).
+/// Minimum number of workgroups; those without lines process pairs and vertices. With 1, capsule sweeps take a sixth
+/// longer, a desk three times as long; 64 costs 6 % on a desk and 9 % in a whole room, 256 costs 5 % in sweeps (H100).
 constexpr std::uint32_t kWorkgroups = 96;
 /// Maximum number of groups of shapes: nearby_groups has one bit each, in 4 KiB of shared memory.
 constexpr std::uint32_t kMaxGroups = 1u << 15;
-/// Maximum vertices of cloth on static colliders, which has contact in most frames. Above, one kernel per pass takes
-/// less GPU time: by a third with 96 x 96, by half with 128 x 128 (p95 on a ball, H200).
+/// Maximum vertices of cloth on static colliders, which has contact in most frames. For more vertices, one kernel per
+/// pass takes less GPU time, by a third with 96 x 96 and by half with 128 x 128 (p95 on a sphere, H200).
 constexpr std::uint32_t kMaxOnStaticShapes = 64 * 64;
 
 std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, XpbdContact& contact) {
@@ -24,7 +24,7 @@ std::unique_ptr<FusedFrame> FusedFrame::make(FrameBuilder& frame, Lines& lines, 
   std::unique_ptr<FusedFrame> made(new FusedFrame(frame, lines, contact));
   if (made->add_kernels()) return made;
   if (wanted == "always")
-    throw Error("solver xpbd: tuning.contact_frame=always: expected a device that runs all its workgroups at once");
+    throw Error("solver xpbd: tuning.contact_frame=always: expected a device that runs all workgroups at once");
   return nullptr;
 }
 
@@ -34,7 +34,7 @@ bool FusedFrame::add_kernels() {
   LineSpecialization lines = lines_.persistent_specialization(shape);
   groups_ = lines_.groups_of(shape);
   const auto wanted = frame_.tuning()["contact_groups"].get<std::uint32_t>();
-  // Workgroups without lines process only pairs and vertices, and so do threads without a line.
+  // Additional workgroups have no lines, so not every thread is on a chain.
   if (const std::uint32_t smallest = wanted != 0 ? wanted : kWorkgroups; smallest > groups_.x * groups_.y) {
     groups_ = vulkan::groups_for(smallest, 1);
     lines.EXACT = 0;

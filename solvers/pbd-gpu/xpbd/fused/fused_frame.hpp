@@ -6,8 +6,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Simulates a frame, lines and contact, in one dispatch (fused_frame.comp), pass by pass like the path with one kernel
-/// per pass. Also moves attached vertices.
+/// Simulates a frame with lines and contact in one dispatch (fused_frame.comp), with the same passes as the path that
+/// has one kernel per pass. Also moves attached vertices.
 class FusedFrame {
  public:
   /// Null with self-collision, scaled masses, too many shapes or vertices, if the settings forbid it, or if the device

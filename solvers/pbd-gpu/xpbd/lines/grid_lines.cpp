@@ -7,8 +7,8 @@
 
 namespace clothbench::pbd_gpu {
 
-/// Threads per workgroup if many workgroups share lines and contact: a line needs 32; pairs and vertices use all there
-/// are. A desk takes 3.4 times as long with 32; 256 gain nothing (H200).
+/// Threads per workgroup if many workgroups share lines and contact. A line needs only 32, but pairs and vertices use
+/// all threads: a desk takes 3.4 times as long with 32, and no less time with 256 (H200).
 constexpr std::uint32_t kThreadsWithContact = 128;
 
 Lines::Lines(FrameBuilder& frame, const Scene& scene, bool uses_bdf2, bool tension, bool corrects_splitting)
@@ -116,7 +116,7 @@ LineSpecialization Lines::persistent_specialization(const LineShape& shape) {
   return s;
 }
 
-/// False if the device does not run all workgroups at once, or is not tested for it.
+/// False if the device does not run all workgroups at once, or if that is not tested.
 bool Lines::add_persistent() {
   const LineShape shape = pass_shape(std::max(scene_.cloth.columns, scene_.cloth.rows), request(), device());
   const std::vector<std::uint32_t> constants = persistent_specialization(shape).by_number();

@@ -1,6 +1,6 @@
 // XPBD with a direct solve of whole grid lines (xpbd/lines/README.md). A chain is a line of one of four colours: 0
-// rows, 1 columns, 2 and 3 diagonals. Diagonals wrap around the cloth's sides, so that all have ROWS vertices, but have
-// no link there. LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
+// rows, 1 columns, 2 and 3 diagonals. Diagonals wrap around the cloth's sides, where they have no link, so that all
+// have ROWS vertices. LANES threads hold a chain, K consecutive vertices each: pos, vel and w (inverse mass) below.
 LINE_CONSTANTS(SPECIALIZE)
 layout(push_constant) uniform Push { LineConstants p; };
 layout(std430, binding = BIND_REGULARISATION) readonly buffer Regularisation { float regularisation[]; };  // by chain
@@ -84,7 +84,7 @@ vec4 from_part(vec4 mine, out vec4 below) {
   return exchanged[start + (lane % PARTS * PART + lane / PARTS) * BESIDE];
 }
 
-// The three functions above for a row of a system, one overload per type of its entries (for tridiagonal.glsl).
+// The three functions above for a row of a system: one overload per type of entry, for tridiagonal.glsl.
 float link_lower[K], link_diagonal[K], link_upper[K], link_right[K];
 float inverse_of(float x) { return 1.0 / x; }
 void exchange_row(uint n, float a, float c, float d, out float a_below, out float c_below, out float d_below,
@@ -165,7 +165,7 @@ void move(uint k, vec3 step) {
 
 vec3 direction[K], direction_below;  // unit vectors along the links; 0: no link
 float w_above;                       // inverse mass of the vertex after the thread's
-float link_length[K], pull[K];  // pull: tension over length with which the solve starts
+float link_length[K], pull[K];  // pull: tension / length at the start of the solve
 
 /// Compliance of the chain's links, divided by h'^2 and all factors of forces [1/kg] (TimeStep).
 float compliance() {

@@ -23,7 +23,7 @@ class Lines {
   void add_kernels(bool any_masses);
   /// Shape of the fused kernel.
   LineShape shape_with_contact() const;
-  /// Specialization constants of a kernel whose workgroups all run at once; its shape is stored.
+  /// Stores a shape; returns the specialization constants of a kernel of this shape whose workgroups all run at once.
   LineSpecialization persistent_specialization(const LineShape&);
   /// Shape of line_frame (threads 0 if the cloth or the device does not fit), and the specialization constants of a
   /// shape.
@@ -33,8 +33,8 @@ class Lines {
   LineConstants constants(double dt_s, int substeps, const TimeStep&) const;
   std::uint32_t passes() const { return scene_.needs.has(Feature::Shear) ? 4 : 2; }
 
-  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each a TimeStep. If no kernel
-  /// simulates many substeps, `count` must be 1.
+  /// Records substeps [first, first + count) of the `substeps` of a frame of dt_s, each with this TimeStep. If no
+  /// kernel simulates many substeps, `count` must be 1.
   void record(int first, int count, int substeps, double dt_s, const TimeStep&);
   bool is_single_dispatch() const { return substeps_ != nullptr && (moves_grips_ || scene_.grips.vertices.empty()); }
   /// True if its kernels move attached vertices with their hands.
@@ -51,8 +51,8 @@ class Lines {
   const Tethers tethers_;
   const bool uses_bdf2_, tension_, corrects_splitting_;
   bool regularised_ = false, moves_grips_ = false;
-  const FrameKernel* substeps_ = nullptr;     ///< any number of substeps per dispatch; null: pass_, one colour each
-  std::array<const FrameKernel*, 3> pass_{};  ///< rows, columns, diagonals
+  const FrameKernel* substeps_ = nullptr;     ///< any number of substeps per dispatch; null: pass_ is used
+  std::array<const FrameKernel*, 3> pass_{};  ///< one colour per dispatch: rows, columns, diagonals
   std::array<LineShape, 2> shape_{};          ///< of rows, and of columns and diagonals
 };
 

@@ -1,5 +1,5 @@
 #version 450
-// Simulates `substeps` substeps of a cloth of at most 32 x 32 vertices in one workgroup, the state in shared memory.
+// Simulates `substeps` substeps of a cloth of at most 32 x 32 vertices in one workgroup, with state in shared memory.
 #define SUBGROUPS
 #include "common/common.glsl"
 layout(std430, binding = BIND_POSITIONS) buffer Positions { vec4 x[]; };
@@ -134,7 +134,7 @@ void store() {
 /// Moves attached vertices along a straight line through the frame.
 void move_held(uint substep) {
   barrier();  // wait for the last substep's reads before attached vertices move
-  // The quotient that the host passes to move_grips; a multiple of substep_part would round differently.
+  // Equals the quotient that the host passes to move_grips; a multiple of substep_part would round differently.
   float fraction = float(p.first_substep + substep + 1u) / floor(1.0 / p.substep_part + 0.5);
   for (uint g = thread; g < GRIPS; g += THREADS) {
     GripVertex grip = grips[g];
@@ -143,7 +143,7 @@ void move_held(uint substep) {
         grip.from.xyz * (1.0 - fraction) + grip.to.xyz * fraction,
         (grip.to.xyz - grip.from.xyz) * p.frames_per_s);
   }
-  barrier();  // wait for their new positions before threads read them
+  barrier();  // wait for attached vertices before threads read them
 }
 
 void main() {

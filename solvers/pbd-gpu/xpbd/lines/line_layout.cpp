@@ -73,7 +73,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
   const bool select_plane = device.wide;
   const std::uint32_t vertices = request.vertices != 0 ? request.vertices : select_plane && n <= 384 ? 2 : 4;
   const std::uint32_t beside = request.beside != 0 ? request.beside : !select_plane || n <= 192 ? 1 : n <= 384 ? 2 : 4;
-  // A requested number of threads is used in full; otherwise the smallest that holds whole subgroups and lines.
+  // A requested number of threads is used in full; otherwise the smallest number that holds whole subgroups and lines.
   const std::uint32_t largest = std::min(request.threads != 0 ? request.threads
                                          : select_plane       ? 1024u
                                                               : 256u,
@@ -89,7 +89,7 @@ LineShape pass_shape(int length, const LineRequest& request, const LineDevice& d
     const bool exchange = lanes * beside > device.subgroup;
     if ((exchange ? 32 * s.threads : 0) + kBarrier_B <= device.shared_B) return s;
   }
-  throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices a side; expected at most " +
+  throw Error("solver xpbd: a cloth of " + std::to_string(length) + " vertices per side; expected at most " +
               std::to_string(32 * largest / beside));
 }
 

@@ -1,5 +1,5 @@
 #version 450
-// Solves colours of lines of a cloth of any size, the state in memory. The first colour of a substep also predicts its
+// Solves colours of lines of a cloth of any size, with the state in memory. A substep's first colour also predicts its
 // vertices. Each colour contains every vertex exactly once, so it can update the state in place. A dispatch solves one
 // colour or, with PERSISTENT, any number: then all workgroups run at once and synchronise by barriers.
 #define SUBGROUPS

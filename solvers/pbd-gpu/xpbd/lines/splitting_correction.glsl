@@ -1,6 +1,6 @@
-// Splitting-error correction (xpbd/time/README.md). Diagonals are solved before columns and rows, for the length that
-// they will have after these: a second-order low-pass filter of the last substeps' displacements by columns and rows
-// predicts it. A part of each link's compliance acts delayed (creep), because the shift would excite oscillations.
+// Splitting-error correction (xpbd/time/README.md). Diagonals are solved first, for the length that they will have once
+// columns and rows have moved the vertices. A second-order low-pass filter predicts these displacements from the last
+// substeps. A part of each link's compliance acts delayed (creep), because the shift would excite oscillations.
 layout(std430, binding = BIND_SHIFTS) coherent buffer Shifts { vec4 shifts[]; };  // `shift` divided by h'^2
 layout(std430, binding = BIND_LINK_CREEP) buffer LinkCreep { float link_creep[]; };
 const float kMaxRate = 0.04, kRatePerFrame = 0.2;  // filter rate: maximum per substep, and sum over a frame
@@ -13,7 +13,7 @@ float filter_rate() { return min(kMaxRate, kRatePerFrame * p.substep_part); }
 
 /// Fraction of a link's compliance that acts at once. The rest acts by creep, so the state at rest is the same.
 float at_once() {
-  float waves = 4.0 / 3.0 * p.inverse_mass / p.alpha_u;  // h'^2 Y / m: square of the links that a wave crosses in h'
+  float waves = 4.0 / 3.0 * p.inverse_mass / p.alpha_u;  // h'^2 Y / m: squared count of links that a wave crosses in h'
   float links = float(min(COLUMNS, ROWS) - 1u);
   return 1.0 / (1.0 + waves / (3.0 * waves + links * links / 7.0));
 }
@@ -33,7 +33,7 @@ void load_creep() {
   }
 }
 
-/// Updates creep and shifts after a solve. `lambda`: multipliers of the thread's links; `below`: of the link before.
+/// Updates creep and shifts after a solve. `lambda`: multipliers of the thread's links; `below`: of the previous link.
 void record_multipliers(float alpha, float lambda[K], float below) {
   float rate = filter_rate();
   [[unroll]] for (uint k = 0u; k < K; ++k) {

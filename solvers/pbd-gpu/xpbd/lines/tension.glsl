@@ -1,5 +1,5 @@
-// Implicit tension (xpbd/time/README.md): before a chain's links are solved, zero-length springs of the links' tension
-// move its vertices. That is a system in the vertices' displacements, diagonally dominant at any tension.
+// Implicit tension (xpbd/time/README.md): before a chain's links are solved, zero-length springs with the links'
+// tension move its vertices. Their system in the vertices' displacements is diagonally dominant at any tension.
 float turn_lower[K], turn_diagonal[K], turn_upper[K];
 vec3 turn_right[K];
 void exchange_row(uint n, float a, float c, vec3 d, out float a_below, out float c_below, out vec3 d_below,
@@ -32,7 +32,7 @@ void from_part(inout vec3 d, out vec3 d_below) {
 #define RIGHT turn_right
 #include "xpbd/lines/tridiagonal.glsl"
 
-/// Solves the links only for their tension over length, `pull`, then moves the vertices by springs of that tension.
+/// Solves the links only for `pull`, their tension / length, then moves the vertices by springs of that tension.
 void turn_by_tension(float smallest) {
   [[unroll]] for (uint k = 0u; k < K; ++k) pull[k] = 0.0;
   link_equations(smallest);

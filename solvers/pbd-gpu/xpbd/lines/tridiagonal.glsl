@@ -3,8 +3,8 @@
 // once per type of entry, with the macros SOLVE, MATRIX, VECTOR, M and the four arrays.
 //
 // Each thread eliminates rows until it has one left (Wang 1981). Parallel cyclic reduction (Hockney & Jesshope 1981)
-// solves these in `rounds` rounds (log2(LANES): exactly): through shared memory until each subgroup has a separate
-// system, then by shuffles. RIGHT becomes the solution, `before` the solution of the row before the thread's first.
+// solves these rows in `rounds` rounds, exactly if there are log2(LANES): through shared memory until each subgroup has
+// a separate system, then by shuffles. RIGHT becomes the solution, `before` the previous thread's last solution.
 
 /// Reduces one row per thread, a u[i-1] + u[i] + c u[i+1] = d: d becomes the solution, d_below the previous row's.
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
@@ -60,7 +60,7 @@ void SOLVE(uint rounds, out VECTOR before) {
     UPPER[k] = -(UPPER[k] * UPPER[k + 1u]);
   }
   const uint last = M - 1u;
-  // The next thread's first row contains only its own last row and this thread's last. With M = 1 it is its last row.
+  // The next thread's first row now couples only the two threads' last unknowns. With M = 1 it is that thread's last.
   MATRIX zero = MATRIX(0.0);
   MATRIX a, c, a_below, c_below;
   VECTOR d, d_below;

@@ -68,7 +68,7 @@ class FlatMesh {
   std::vector<std::array<std::uint32_t, 2>> at_edge_;
 };
 
-/// The triangles near an edge, unfolded into one plane with the edge from (0, 0) to (1, 0): it is the unit of length.
+/// The triangles near an edge, unfolded into one plane with the edge from (0, 0) to (1, 0), the unit of length.
 class Patch {
  public:
   /// The edge starts at corner k of triangle t; t lies to its left.
@@ -99,8 +99,8 @@ class Patch {
     return added_.size() > to;
   }
 
-  /// Derivative across the edge at its middle, to the left and per edge length, of the least-squares quadratic through
-  /// the vertices. Vertices of the edge's own triangles weigh most. If several fit equally well, uses the smallest.
+  /// Derivative of the quadratic fitted to the vertices by least squares, at the edge's middle, across it to the left,
+  /// per edge length. Vertices of the edge's own triangles weigh more. If several fit equally well, uses the smallest.
   Form derivative_across() const {
     constexpr double kFar = 0.1, kMin = 1e-9;
     constexpr std::size_t kTerms = 6;
@@ -190,7 +190,7 @@ Form across_of(const FlatMesh& mesh, std::uint32_t t, int k) {
     for (const auto& [v, share] : form) shares += std::abs(share);
     if (!grew || (form.size() >= 6 && shares <= kMaxShares)) break;
   }
-  for (auto& [v, share] : form) share /= -norm2(mesh.side(t, k));  // from the left to the outside
+  for (auto& [v, share] : form) share /= -norm2(mesh.side(t, k));  // the left of the edge is inside the triangle
   return form;
 }
 

@@ -1,7 +1,7 @@
 #version 450
-// Solves one colour of chains (xpbd/mesh/README.md). A thread holds a vertex and the link to the next entry, a
-// workgroup a block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved by
-// parallel cyclic reduction. The first colour of a substep contains every vertex and also predicts it. A mesh with
+// Solves one colour of chains (xpbd/mesh/README.md). A thread holds a vertex and the link to the next entry; a
+// workgroup holds a block of whole chains. The links of a chain are a tridiagonal system in their multipliers, solved
+// by parallel cyclic reduction. The first colour of a substep contains every vertex and also predicts it. A mesh with
 // bending has passes before the first colour: the prediction, then the iterations of bending, one thread per vertex.
 // With MEMBRANE these iterations include triangles, and there are no colours. PERSISTENT: a dispatch executes any
 // number of passes instead of one.
@@ -14,11 +14,11 @@ layout(std430, binding = BIND_VELOCITY_COMPENSATION) buffer VelocityCompensation
 layout(std430, binding = BIND_LAST_POSITIONS) buffer LastPositions { vec4 lx[]; };
 layout(std430, binding = BIND_LAST_VELOCITIES) buffer LastVelocities { vec4 lv[]; };
 layout(std430, binding = BIND_CHAIN_ENTRIES) readonly buffer Entries { ChainEntry entries[]; };
-layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // TETHERS a vertex
+layout(std430, binding = BIND_TETHER_ENDS) readonly buffer TetherEnds { TetherEnd tether_ends[]; };  // by vertex
 layout(std430, binding = BIND_CHAIN_COLOURS) readonly buffer Ranges { ChainRange ranges[]; };
 layout(std430, binding = BIND_BENDING_SLICES) readonly buffer Slices { BendingSlice slices[]; };
 layout(std430, binding = BIND_BENDING_ENTRIES) readonly buffer BendingEntries { BendingEntry bending[]; };
-// One entry per vertex: right sides, steps of odd iterations, steps of even ones; with MEMBRANE also positions.
+// Arrays by vertex: right sides, steps of odd iterations, steps of even iterations; with MEMBRANE also positions.
 layout(std430, binding = BIND_BENDING_STEPS) coherent buffer BendingSteps { vec4 bent[]; };
 layout(push_constant) uniform Push { ChainConstants p; };
 #include "xpbd/time/substep.glsl"
@@ -65,7 +65,7 @@ void exchange(vec4 mine, uint n, out vec4 below, out vec4 above) {
 vec3 direction, direction_below;  // unit vectors along the thread's link and the one before; 0: no link
 float link_length;
 
-/// Solves the links of the chain at the current positions, starting from tension over length `pull`. Returns the
+/// Solves the links of the chain at the current positions, starting from tension / length `pull`. Returns the
 /// multipliers of the link before (x) and of the thread's link (y).
 vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   vec4 none, next, below, above;
@@ -96,7 +96,7 @@ vec2 solve_links(ChainEntry entry, uint rounds, float pull) {
   return vec2(below.z, row.z);
 }
 
-/// Moves the vertices by zero-length springs of tension over length `pull` (tension.glsl). A chain has one more vertex
+/// Moves the vertices by zero-length springs of tension / length `pull` (tension.glsl). A chain has one more vertex
 /// than links, so this system needs one more round.
 void turn(float pull, uint rounds) {
   vec4 below, above, right_below, right_above;
@@ -168,7 +168,7 @@ const bool kSolves = kBends;
 float weight = 2.0;     // of iteration `weight_of` of bending
 uint weight_of = 1u;
 
-/// Weight of Chebyshev's iteration k (at least 2); the same bits with one dispatch for all passes as with one per pass.
+/// Weight of Chebyshev's iteration k (at least 2); bit-identical whether a dispatch executes one pass or all.
 float weight_at(uint k) {
   if (k < weight_of) {
     weight = 2.0;
@@ -178,7 +178,7 @@ float weight_at(uint k) {
   return weight;
 }
 
-/// K times the steps (k = 1: the positions), as a sum of differences, which lose no digits: rows of K sum to 0.
+/// K times the steps (if k = 1, the positions). Sums differences, which lose no digits; rows of K sum to 0.
 vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
   vec3 force = vec3(0.0);
   BendingSlice slice = slices[i / BENDING_ROWS];
@@ -192,8 +192,8 @@ vec3 bending_force(uint i, uint k, uint before, vec3 mine) {
 }
 
 #ifdef MEMBRANE
-/// The triangles' part: linear in the steps; in iteration k = 1 by their elongations. Later iterations use the
-/// positions that the first one stored, because the last one overwrites x.
+/// Force of the triangles: in iteration k = 1 from their elongations, later linear in the steps. Later iterations use
+/// the positions that the first one stored, because the last one overwrites x.
 vec3 triangle_force(uint i, uint k, uint before, vec3 here, vec3 mine) {
   vec3 pull = vec3(0.0);
   BendingSlice slice = membrane_slices[i / BENDING_ROWS];
@@ -219,7 +219,7 @@ void bend(uint i, uint k) {
 #ifdef MEMBRANE
   if (k == 1u) bent[3u * p.vertices + i] = here;
 #endif
-  if (here.w == 0.0) {  // attached vertices do not move; one may have moved in the last frame
+  if (here.w == 0.0) {  // attached vertices have no step; one may have been free in the last frame
     if (k < p.bending_iterations) bent[now + i] = vec4(0.0);
     return;
   }

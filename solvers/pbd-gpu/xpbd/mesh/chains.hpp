@@ -8,15 +8,15 @@
 namespace clothbench::pbd_gpu {
 
 /// The constraints of `xpbd` if links are not uniform (triangle meshes, uneven grids, regions); even grids use Lines.
-/// There is one dispatch per colour and substep, or one in all if the device runs all workgroups at once. A substep
-/// solves each colour once. Before them, an iteration over all vertices solves the bending of a mesh and, instead of
-/// links, the triangles of an elastic mesh.
+/// There is one dispatch per colour and substep, or a single one if the device runs all workgroups at once. A substep
+/// solves each colour once. Before the colours, an iteration over all vertices solves the bending of a mesh and,
+/// instead of links, the triangles of an elastic mesh.
 class Chains {
  public:
   /// Adds its stages, buffers and kernels. The buffers of the state must exist.
   Chains(FrameBuilder& frame, const Scene& scene, const ChainCloth& cloth, bool uses_bdf2, bool tension, bool membrane);
 
-  /// Records `count` substeps, each a TimeStep. `again`: only solves the colours, from the current positions.
+  /// Records `count` substeps, each with this TimeStep. `again`: only solves the colours, from the current positions.
   void record(int count, const TimeStep&, bool again = false);
 
   /// Records that each welded vertex follows the vertex that it is welded to; `record` ends with this.

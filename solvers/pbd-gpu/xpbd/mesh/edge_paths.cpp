@@ -32,7 +32,7 @@ std::vector<EdgePath> grid_edge_paths(const Scene& s) {
       path.vertices.push_back(static_cast<std::uint32_t>(j * columns + i));
     if (path.vertices.size() > 1) out.push_back(std::move(path));
   };
-  // Colours in the order in which they are solved: diagonals, columns, rows (README, "Lines").
+  // Colours in the order in which they are solved: diagonals, columns, rows (xpbd/README.md).
   int colour = 0;
   if (s.needs.has(Feature::Shear)) {
     for (int i = 0; i < columns; ++i) line(i, 0, -1, 1, colour);
@@ -72,7 +72,7 @@ void add_ring(EdgePath ring, std::vector<EdgePath>& out) {
   out.push_back(std::move(over));
 }
 
-/// Pairs the edges at every vertex that continue each other straightest. A sequence of paired edges is an edge path.
+/// Pairs edges that continue each other at a vertex, the straightest pairs first. A sequence of pairs is an edge path.
 std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   constexpr double kStraight = -0.5;  // a turn of less than 60 degrees
   const std::size_t n = m.vertices.size(), count = m.edges.size();
@@ -125,8 +125,8 @@ std::vector<EdgePath> mesh_edge_paths(const ClothMesh& m, bool rings_overlap) {
   for (const std::size_t end : {0u, 1u})
     for (std::uint32_t e = 0; e < count; ++e)
       if (done[e] == 0 && next[e][end] == kNone) follow(e, end == 0 ? m.edges[e].a : m.edges[e].b);
-  // The rest are rings. A ring is cut where it begins, and the link there stretches far more than others. If
-  // neighbouring rings have cuts far apart, the cloth between holds it.
+  // The rest are rings. A ring is cut where it begins, and the link there stretches far more than others. The cuts of
+  // neighbouring rings are far apart, so that the cloth between them limits this stretch.
   constexpr double kGolden = 0.6180339887498949;
   double begin = 0;
   for (std::uint32_t e = 0; e < count; ++e) {
@@ -189,7 +189,7 @@ ChainCloth chain_cloth(const Scene& s) {
       all.push_back(e);
       stiffness.push_back(membrane_stiffness(s, e));
     }
-  // Links that welding made parallel add their stiffnesses.
+  // Adds the stiffnesses of links that welding made parallel.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<double, double>> links;  // rest, stiffness
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Edge& e = all[k];

@@ -10,8 +10,8 @@ namespace clothbench::pbd_gpu {
 /// True if the links of a cloth are not uniform, so that Chains solve it instead of Lines.
 bool needs_chain_solver(const Scene&);
 
-/// Factor on the substeps for equal links: short links rotate faster, by the square root of the length ratio. 1 if the
-/// shortest link that is not welded has at least half of the mean length.
+/// Factor on the number of substeps, because short links rotate faster than mean ones, by the square root of the length
+/// ratio. 1 if the shortest link that is not welded has at least half of the mean length.
 double substeps_for_short_links(const Scene&);
 
 /// Particles and links of a chain cloth, slivers welded (xpbd/mesh/README.md).
@@ -31,7 +31,7 @@ ChainCloth chain_cloth(const Scene&);
 /// A path of links [v0 v1], [v1 v2], ... that is best solved as a whole: a line of a grid, or edges of a mesh that
 /// continue as straight as its triangles allow.
 struct EdgePath {
-  std::vector<std::uint32_t> vertices;  ///< particles; a closed edge path ends with its first
+  std::vector<std::uint32_t> vertices;  ///< particles; a closed edge path ends with its first one
   int colour = -1;                      ///< preferred colour; -1: any
   std::vector<float> share = {};        ///< fraction of each link's stiffness; empty: 1
 };
@@ -41,7 +41,7 @@ std::vector<EdgePath> edge_paths(const Scene&, const ChainCloth&);
 
 /// One colour: chains that share no vertex.
 struct ChainColour {
-  std::vector<EdgePath> chains;   ///< each of at least two vertices and at most a block
+  std::vector<EdgePath> chains;   ///< each has at least two vertices and fits into a block
   std::uint32_t longest() const;  ///< links of the longest chain
 };
 /// Distributes edge paths over few colours, and cuts them into chains where necessary. Colours are in the order in

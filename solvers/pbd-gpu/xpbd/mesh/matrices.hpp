@@ -10,25 +10,25 @@ namespace clothbench::pbd_gpu {
 /// Matrix K [N/m] of the bending energy 1/2 (x'Kx + y'Ky + z'Kz) of a triangle mesh that is flat at rest across every
 /// edge. The diagonal is not stored, because rows sum to 0.
 struct BendingMatrix {
-  std::vector<std::uint32_t> first;    ///< entry of each vertex's row; one more than vertices
+  std::vector<std::uint32_t> first;    ///< first entry of each vertex's row, then the number of entries
   std::vector<std::uint32_t> columns;  ///< of entries, ascending in a row
   std::vector<double> stiffness;       ///< of entries [N/m]
-  double max_per_s2 = 0;  ///< upper bound of the eigenvalues of (diagonal of masses)^-1 K [1/s^2], no vertex held
+  double max_per_s2 = 0;  ///< upper bound of the eigenvalues of (diagonal of masses)^-1 K [1/s^2], without pins
 };
 
 /// Uses Morley's element (xpbd/mesh/README.md). Exact for quadratic deflections on any mesh, in energy and in force.
-/// `reference` solves for the derivatives across edges instead.
+/// The solver `reference` solves for the derivatives across edges instead.
 BendingMatrix bending_matrix(const Scene&);
 
 /// Number of Chebyshev's iterations (2 to 1000) that reduce the error of (M + h^2 K) x = M y to a thousandth.
 /// `largest`: upper bound of the eigenvalues of h^2 M^-1 K.
 std::uint32_t bending_iterations(double largest);
 
-/// Input of the kernel. Rows shorter than the slice's longest are padded with entries of stiffness 0 to themselves.
+/// Input of the kernel. Rows shorter than the slice's longest are padded with diagonal entries of stiffness 0.
 SlicedRows<BendingEntry> bending_table(const BendingMatrix&);
 
 /// Stiffness [N/m] of a triangle of constant strain in the elongations d of its edges 0-1, 1-2 and 2-0; its energy is
-/// 1/2 sum K_jk d_j d_k. For small d that is an isotropic sheet of plane stress and Poisson's ratio 1/3.
+/// 1/2 sum K_jk d_j d_k. For small d that is an isotropic sheet in plane stress with Poisson's ratio 1/3.
 struct TriangleStiffness {
   double rest_m[3];     ///< lengths
   double along_N_m[3];  ///< K_00, K_11, K_22

@@ -106,7 +106,7 @@ FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& sett
   const double h = scene.time.dt() / substeps;
   const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
   if (!is_contact_free(scene))
-    return {false, "the cloth touches, and a frame would take " +
+    return {false, "the scene has contact, and a frame would take " +
                        std::to_string(wants * static_cast<std::uint32_t>(substeps)) + " iterations"};
   if (wants > kMaxIterations)
     return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +

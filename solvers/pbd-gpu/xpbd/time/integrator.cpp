@@ -31,7 +31,7 @@ std::string tuned(const nlohmann::json& settings, const char* member) {
   return settings.value(kTuning, nlohmann::json::object()).value(member, "auto");
 }
 
-/// Distance [m] from a point to a static collider; of a mesh to the nearest vertex.
+/// Distance [m] from a point to a static collider; for a mesh, to its nearest vertex.
 double distance_to(const Collider& c, const Vec3& from) {
   const Vec3 to = minus(from, c.center_m);
   if (c.shape == Collider::Shape::Plane) return std::max(0.0, dot(to, c.normal));
@@ -48,7 +48,7 @@ double distance_to(const Collider& c, const Vec3& from) {
 }
 
 /// Distance [m] from the cloth's centre beyond which no vertex gets while only gravity, links, pins and attachments
-/// act: the largest at the start, twice the cloth's diagonal, and the path of a fall from the initial velocity.
+/// act: the largest at the start, plus twice the cloth's diagonal, plus the path of a fall from the initial velocity.
 double reach_m(const Scene& s) {
   const Cloth& c = s.cloth;
   const std::vector<double> x = initial_positions(s);
@@ -75,7 +75,7 @@ bool resolves_waves(const Scene& scene, int substeps) {
 
 /// h'^2 T / (m l) for the maximum tension T [N] of a link at a pin, at one substep per frame: the number that decides
 /// whether tension may be explicit. The weight is assumed to hang evenly from the pinned vertices that have free
-/// neighbours. Few such vertices are assumed to lie on the border, where a vertex has half the mass.
+/// neighbours. If these are few, they are assumed to be on the border, where a vertex has half the mass.
 double tension_number(const Scene& s) {
   const Cloth& c = s.cloth;
   if (s.pins.vertices.empty()) return 0;
@@ -140,7 +140,7 @@ FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& setti
   if (membrane_decision(scene, settings).enabled)
     return {true, ""};  // the solve of triangles includes their tension, whatever the setting
   if (wanted == "never") return {false, "setting tuning.tension=never"};
-  if (!is_contact_free(scene)) return {false, "the cloth touches"};
+  if (!is_contact_free(scene)) return {false, "the scene has contact"};
   if (wanted == "always") return {true, ""};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};
   if (!is_held(scene)) return {false, "nothing holds the cloth"};
@@ -154,7 +154,7 @@ FeatureDecision tension_decision(const Scene& scene, const nlohmann::json& setti
 FeatureDecision bdf2_decision(const Scene& scene, const nlohmann::json& settings) {
   const std::string wanted = tuned(settings, "bdf2");
   if (settings.value("time_order", 2) < 2 && wanted != "always") return {false, "setting time_order=1"};
-  if (!is_contact_free(scene)) return {false, "the cloth touches: a contact would rebound"};
+  if (!is_contact_free(scene)) return {false, "the scene has contact, and the cloth would rebound"};
   if (wanted == "always") return {true, ""};
   if (starts_crumpled(scene)) return {false, "the cloth starts crumpled"};
   if (!is_held(scene)) return {true, ""};
@@ -183,7 +183,7 @@ FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& 
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
   if (!scene.needs.has(Feature::Shear)) return {false, "the scene has no shear stiffness"};
   if (needs_chain_solver(scene) || !c.mass_factors.empty()) return {false, "links or masses are not all alike"};
-  if (!is_contact_free(scene)) return {false, "the cloth touches"};
+  if (!is_contact_free(scene)) return {false, "the scene has contact"};
   if (wanted == "always") return {true, ""};
   if (!is_held(scene)) return {false, "nothing holds the cloth: no tension lasts"};
   if (settings.value("time_order", 2) < 2) return {false, "setting time_order=1"};

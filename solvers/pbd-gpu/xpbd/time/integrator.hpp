@@ -27,10 +27,10 @@ TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_p
 
 /// Whether a scene is integrated by BDF2.
 FeatureDecision bdf2_decision(const Scene&, const nlohmann::json& settings);
-/// Whether its links get implicit tension (xpbd/time/README.md).
+/// Whether the links of a scene get implicit tension (xpbd/time/README.md).
 FeatureDecision tension_decision(const Scene&, const nlohmann::json& settings);
 
-/// Whether the splitting error of its diagonals is corrected (xpbd/time/README.md).
+/// Whether the splitting error of a scene's diagonals is corrected (xpbd/time/README.md).
 FeatureDecision splitting_correction_decision(const Scene&, const nlohmann::json& settings);
 
 /// Whether the correction suits the scene, whatever the number of substeps: a held, elastic, contact-free sheet with
@@ -44,12 +44,12 @@ bool is_held(const Scene&);
 /// True if the scene has neither self-collision nor a collider that the cloth can reach. The motion is then the same
 /// with and without its colliders. Meshes and kinematic colliders count as in reach.
 bool is_contact_free(const Scene&);
-/// Estimated speed [m/s] at which cloth that is not held hits static colliders: its initial speed plus the speed of
-/// a fall from its centre to the nearest. 0 if the cloth is held, no collider is in reach, or one is kinematic.
+/// Estimated speed [m/s] at which cloth that is not held hits static colliders: its initial speed plus the speed of a
+/// fall from its centre to the nearest one. 0 if the cloth is held, no collider is in reach, or any is kinematic.
 double impact_speed_m_per_s(const Scene&);
 
-/// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality` (README,
-/// "Substeps"). In a scene with contact it is the maximum, because the number may vary by frame.
+/// Substeps per frame: the setting `substeps` or, if that is 0, the rule for the setting `quality`
+/// (xpbd/time/README.md). In a scene with contact it is the maximum, because the number may vary by frame.
 int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 
 /// The substeps that fast motion in contact needs, if they are more than xpbd_substeps(); otherwise 0.

@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 
-// All thresholds that decide a scene's integration and number of substeps, each with [unit], reason and (source; none:
-// it is a choice). xpbd/time/README.md describes how they act together.
+// All thresholds that decide a scene's integration and number of substeps, each with [unit], reason and (source). A
+// value without source is a choice. xpbd/time/README.md describes how they act together.
 
 namespace clothbench::pbd_gpu {
 
@@ -19,16 +19,16 @@ namespace rules {
 // [last steps] A longer step restarts BDF2, which is zero-stable only for ratios below 1 + sqrt(2) (Hairer, Norsett &
 // Wanner, Solving Ordinary Differential Equations I, III.5)
 inline constexpr double kMaxStepRatio = 2;
-// [longer sides a wave crosses per substep] Above, a sheet released level, two corners held, gains up to seven times
-// backward Euler's energy (energy of released sheets)
+// [longer sides a wave crosses per substep] Above, a sheet that starts horizontal, held at two corners, gains up to
+// seven times backward Euler's energy (energy of released sheets)
 inline constexpr double kMaxWaveOfCloth = 0.6;
 // [h'^2 T / (m l)] Above, explicit tension throws a line aside (xpbd/time/README.md)
 inline constexpr double kMaxExplicitTension = 1.0 / 3;
 // [relative increase of the attachments' distance] Above, links of a sheet overshoot the converged stretch: by 12 % at
 // order 2, 3 % at order 1 (two-hand-stretch-10mps)
 inline constexpr double kMaxGripStrain = 0.5;
-// [cells a wave crosses in h'] Above, a sheet's modulus drifts: if the square is 100, within seconds; 52, within a
-// minute; 47, never (modulus of a patch of 65 x 17 vertices)
+// [cells a wave crosses in h'] Above, a sheet's modulus drifts: within seconds if the square of this number is 100,
+// within a minute if it is 52, never if it is 47 (modulus of a patch of 65 x 17 vertices)
 inline constexpr double kMaxSplittingCells = 6.9;
 // [shorter sides a wave crosses in h'] Above, the delayed correction excites oscillations (energy of small sheets)
 inline constexpr double kMaxSplittingOfSide = 1.15;
@@ -38,12 +38,12 @@ inline constexpr double kMaxStiffnessTimesTension = 25;
 inline constexpr int kMinSplittingLinks = 4;  // [links across] With fewer there is nothing to correct
 // [relative difference of a cell's sides] The correction is derived for square cells (xpbd/time/README.md)
 inline constexpr double kMaxSplittingOblong = 0.05;
-// [substeps] Maximum cost of a frame for the correct modulus; n/6 if that is more
+// [substeps] Maximum cost of a frame for the correct modulus, or links along the longer side / 6 if that is more
 inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 
 // Substeps by what acts on the cloth: the first row that applies (substep_count.cpp). They are counted per frame,
-// whatever its duration: a constant in seconds would differ between scaled copies of a scene. Source unless stated:
-// error by substeps, in hanging sheets and strips without contact, and strain in contact.
+// whatever its duration: a constant in seconds would differ between scaled copies of a scene. Source unless stated: the
+// error as a function of the substeps in hanging sheets and strips without contact, and the strain in contact.
 inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Tethers bound the stretch
 inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
 inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Each colour disturbs the others
@@ -58,7 +58,7 @@ inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the c
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
-// Otherwise a heap of the cloth's layers slides on: one of 32 x 32 vertices for a second at 16 substeps, not at 24
+// With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
 // [dt sqrt(g / L)] Above, held cloth uses proportionally more substeps: at 100 g a strip would gain energy
 inline constexpr double kMaxSwing = 0.15;
@@ -66,23 +66,23 @@ inline constexpr double kMaxSwing = 0.15;
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
 // Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima only limit cost.
-// [contact offsets per substep] Within, a vertex that is hit pulls its neighbours along before links overstretch
+// [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
-inline constexpr double kMinMarginOfCell = 0.125;  // [cells] Thinner contact offsets count as this
+inline constexpr double kMinMarginOfCell = 0.125;  // [cells] Smaller contact offsets count as this
 // [thicknesses per substep] Above, responses cannot separate layers, and planes cut off their motion
 inline constexpr double kMaxLayerApproach = 2.0 / 3;
-// [m/s] Assumed: a live session does not know its hand's speed, and a replay must use as many substeps
+// [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
 inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] Maximum cost of a frame
 inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] For free cloth on static colliders
 
-// Substeps by the last frame (SubstepController): cloth at rest on a desk moves by 1 mm when their number changes.
+// Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
 inline constexpr double kMinOfLast = 0.75;  // [of the last number] The strain of an impact relaxes over several frames
 inline constexpr int kSubstepGrain = 4;     // [substeps] Rounding up to multiples avoids recording each frame again
-inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below for kQuiescentFrames, the cloth is at rest
+inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below this for kQuiescentFrames, cloth is at rest
 // [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;
-inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer, cloth may only be turning around
+inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer frames, cloth may only pass a turning point
 inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
 // [substeps] A list of self-contact pairs for a longer time would overflow with fast cloth, and the reduced motion

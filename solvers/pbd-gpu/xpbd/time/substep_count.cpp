@@ -57,7 +57,7 @@ double substeps_for_layers(const Scene& scene) {
   return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
-/// Substeps by the rules of README.md, "Substeps". `touches`: with contact in this frame; `fast`: with fast motion.
+/// Substeps by the rules of xpbd/time/README.md. `touches`: with contact in this frame; `fast`: with fast motion.
 int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const double links = links_of_longer_side(scene.cloth);
@@ -135,7 +135,7 @@ void SubstepController::next(double cloth_m) {
   if (wanted <= base_) now_ = smallest;
   const int most = std::max(1, now_ / rules::kMinSubstepsPerList);
   const double lists = std::ceil(cloth_m / cell_m_ / rules::kCellsPerList);
-  lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also of NaN
+  lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also if cloth_m is NaN
 }
 
 /// Cloth at rest uses half of base_, and later a quarter, until it moves.

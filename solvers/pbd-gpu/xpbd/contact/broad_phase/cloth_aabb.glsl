@@ -1,5 +1,5 @@
-// The box of all positions that the cloth can reach in a frame, reduced per thread, subgroup, workgroup and then over
-// all, so that few threads wait for one another.
+// The box of all positions that the cloth can reach in a frame. It is reduced per thread, per subgroup, per workgroup
+// and then over all workgroups, so that few threads wait for one another.
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 shared uint cloth_low[3], cloth_high[3];
 

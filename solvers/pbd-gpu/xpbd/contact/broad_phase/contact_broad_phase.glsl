@@ -1,5 +1,5 @@
 // Candidate pairs of a primitive and a convex shape: their boxes overlap after the primitive's box is inflated by the
-// motion bounds of its vertices. The list is made for ever smaller fractions of the bounds (kFractions) until it fits.
+// motion bounds of its vertices. The list is made with decreasing fractions of the bounds (kFractions) until it fits.
 vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
@@ -80,8 +80,8 @@ uint overlapping_groups(inout uint bits, uint word) {
   }
   return cluster_or(overlapping);
 }
-// BODY gets the shapes whose boxes overlap the primitive's, a few at a time from `q` on: a bit for each in
-// `overlapping`, those of this lane in `own`.
+// Runs BODY for a few shapes at a time, from index `q` on. `overlapping` has a bit for each shape whose box overlaps
+// the primitive's box; `own` has only the bits that this lane tested.
 #define FOR_EACH_OVERLAPPING_SHAPES(BODY) \
   for (uint word = 0u; word < GROUP_WORDS; ++word) \
     for (uint bits = NEARBY_GROUPS(word); bits != 0u;) \
@@ -100,7 +100,7 @@ void write_pair(uint at, uint primitive, uint of_shape) {
   states[at].correction = vec4(0.0);
 }
 
-/// Index of the shape of bit `bit` among the overlapping shapes of a step.
+/// Rank of the shape with bit `bit` among the overlapping shapes of a step.
 uint slot_in(uint overlapping, uint bit) { return uint(bitCount(overlapping & ((1u << bit) - 1u))); }
 
 /// Writes the first `count` pairs of primitive k to the list, from index `at` on.

@@ -47,7 +47,7 @@ void main() {
     lows[t] = b.low;
     highs[t] = b.high;
   }
-  barrier();  // wait for the boxes of shapes before thread 0 makes the group's
+  barrier();  // wait for the boxes of shapes before thread 0 makes the group's box
   if (t != 0u) return;
   ShapeAabb all = ShapeAabb(lows[0], highs[0]);
   for (uint o = 1u; o < n; ++o) {

@@ -1,7 +1,7 @@
 // Once per frame, one thread per triangle. A triangle has two boxes: at the frame's start (fraction 0), and inflated by
 // its vertices' motion bounds (fraction 1). Both are also inflated by the drift plus half of the thickness. A group is
-// SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together; its box contains their boxes at
-// fraction 1.
+// SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together. The group's box contains its
+// triangles' boxes at fraction 1.
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 const uint kGroups = gl_WorkGroupSize.x / SHAPES_PER_GROUP;

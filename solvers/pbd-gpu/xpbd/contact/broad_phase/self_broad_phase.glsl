@@ -1,5 +1,5 @@
 // Candidate pairs of self-contact: cloth triangles without a common vertex whose boxes, inflated by a fraction of the
-// motion bounds, overlap. Each pair is stored with both triangles. Once per list and fraction, one subgroup per
+// motion bounds, overlap. Each pair is stored twice, once per triangle. Once per list and fraction, one subgroup per
 // triangle.
 const float kRoundingFactor = 0.9999;  // keeps a rounded distance below the exact one
 bool share_a_vertex(uvec4 a, uvec4 b) {
@@ -15,8 +15,8 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
 }
 
 #include "xpbd/contact/lanes_per_triangle.glsl"
-// Runs BODY for the triangles of all groups that overlap BOX, one per lane at a time: `q` is this lane's index in
-// self_order, `mine` whether that box overlaps BOX at fraction SHARE. Control flow is subgroup-uniform.
+// Runs BODY for the triangles of all groups that overlap BOX, one per lane at a time. `q` is the index of this lane's
+// triangle in self_order, `mine` whether its box overlaps BOX at fraction SHARE. Control flow is subgroup-uniform.
 #define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY) \
   for (uint begin = 0u; begin * SHAPES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) { \
     uint g = begin + triangle_lane(); \

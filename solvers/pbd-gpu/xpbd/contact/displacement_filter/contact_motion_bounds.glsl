@@ -1,7 +1,7 @@
 // Conservative bound of a vertex's motion in the frame: boxes are inflated by it, and vertices are clamped to it.
 
-// A vertex may move several times as far in a frame as its speed predicts: a whipping corner, or released cloth. A
-// smaller bound would clamp such vertices, which changes the cloth's momentum without contact.
+// A vertex may move several times as far in a frame as its speed predicts: a whipping corner, or released cloth. With a
+// smaller factor such vertices would be clamped, which changes the cloth's momentum without contact.
 #define BOUND_FACTOR (GRIPS > 0u ? 8.0 : 4.0)
 
 /// Maximum displacement of a point of any convex shape in the frame.
@@ -13,7 +13,7 @@ float max_displacement_of_shapes() {
 }
 
 /// Whether no vertex moved farther than about a cell in the last frame. Faster cloth near a collider always uses the
-/// substeps for contact, because an impact strains the cloth more if there are fewer.
+/// number of substeps for contact, because with fewer an impact strains the cloth more.
 bool is_slow() { return uintBitsToFloat(frame_state.max_displacement) <= 2.0 * p.bound_m; }
 
 /// Speed-independent part of a vertex's motion bound [m]: from the cloth's largest displacement in the last frame,
@@ -36,7 +36,7 @@ float pulled() {
 }
 
 /// Mean velocity of a few scattered vertices of cloth with self-contact: motion that is common to all triangles brings
-/// no two of them together. Any velocity is valid: vertices are clamped to bounds around it.
+/// no two of them together. Any value is valid, because vertices are clamped to bounds that move with it.
 vec3 mean_velocity() {
   const uint kSamples = 8u, kSpread = 2654435769u;  // 2^32 / golden ratio (Knuth, TAOCP 3, 6.4)
   vec3 all = vec3(0.0);

@@ -7,7 +7,7 @@ const float kFeasibilityTolerance_m = 2e-6;  // a smaller violation is rounding 
 uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;
 vec3 start;
 
-/// Offset of a `plane` collider for this vertex: above the plane, or lower if the vertex starts lower (no deeper).
+/// Offset of a `plane` collider for this vertex: kMinSeparation_m above the plane or, if lower, the vertex's start.
 float half_space(PlaneShape s) {
   return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, kMinSeparation_m);
 }

@@ -1,7 +1,7 @@
-// Selects a pair's plane: normal as at the start if that separates the proposed positions, otherwise a normal that
-// separates both start and end, if one is found. Vertices move on straight lines, so a plane that separates a pair at
-// start and end separates it in between.
-const float kUnsure_m = 1e-6;  // a vertex not farther before a plane may be behind it, by rounding
+// Selects a pair's plane: with the normal at the start if that also separates the proposed positions, otherwise with a
+// normal that separates both start and end, if one is found. Vertices move on straight lines, so a plane that separates
+// a pair at start and end separates it in between.
+const float kUnsure_m = 1e-6;  // a vertex at most this far in front of a plane may be behind it, by rounding
 vec3 starting[3], proposed[3];
 
 float highest_of_shape(vec3 n) { return highest_point(n, t_end) + shape.radius; }

@@ -4,7 +4,7 @@
 const float kick_scale = 1.0;
 #endif
 
-/// Limit of a vertex's displacement in the substep [m]: that to `to`, and room for corrections by contact.
+/// Limit of a vertex's displacement in the substep [m]: the distance to `to`, plus room for contact corrections.
 float max_displacement(uint i, vec3 to) {
   return distance(to, starts[i].xyz) + p.substep_part * frame_state.max_shape_displacement + MARGIN_M;
 }
@@ -21,7 +21,7 @@ void clear_correction_bits(uint first, uint at_once) {
     active_bits[CORRECTION_BITS + k] = 0u;
 }
 
-/// Unscaled inverse mass of vertex i, from y; if it is attached or was just released, `in_lines`, from x.
+/// Unscaled inverse mass of vertex i: from y, or `in_lines` (from x) if it is attached or was just released.
 float mass_of(uint i, float in_lines) {
   float w = y[i].w;
   return in_lines == 0.0 || w == 0.0 ? in_lines : w;

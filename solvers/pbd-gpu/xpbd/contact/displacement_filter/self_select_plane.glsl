@@ -1,5 +1,5 @@
-// Plane between two triangles of the cloth: normal as at the start, midway between their proposed positions but within
-// the gap at the start, so a vertex that does not move satisfies all these planes.
+// Plane between two triangles of the cloth. It has the normal at the start and lies midway between their proposed
+// positions, but within the gap at the start, so a vertex that does not move satisfies all these planes.
 void select_self_plane(uint k) {
   if ((self_active[k].marks & SELF_PLANE) == 0u) return;
   uint own = self_active[k].own, other = self_active[k].other;

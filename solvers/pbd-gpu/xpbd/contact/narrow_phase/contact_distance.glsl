@@ -141,7 +141,7 @@ void load_shape(float t) {
   [[unroll]] for (uint j = 0u; j < 3u; ++j) shape_points[j] = j < shape.count ? point_at(j, t) : vec3(0.0);
 }
 
-/// Nearest points of `cloth` and the convex shape at time `begin`; the result's `displacement` is from there to `end`.
+/// Nearest points of `cloth` and the convex shape at time `begin`. The shape's `displacement` is from `begin` to `end`.
 Nearest nearest_of_few(float begin, float end) {
   load_shape(begin);
   Feature f = nearest_feature();
@@ -150,7 +150,7 @@ Nearest nearest_of_few(float begin, float end) {
   // The difference of the nearest points loses digits if they nearly touch or the shape is large, and a small error of
   // direction changes the gap at the shape's far corners. The normal of the two features is exact enough.
   try_normal(r, dot(f.normal, f.apart) < 0.0 ? -f.normal : f.normal, begin);
-  // Above a face an edge may be found, as near up to rounding. So the face's normal is tried too.
+  // Above a face, rounding may make an edge the nearest feature, so the face's normal is tried too.
   if (shape.count == 3u) {
     vec3 face = cross(shape_points[1] - shape_points[0], shape_points[2] - shape_points[0]);
     try_normal(r, dot(face, f.apart) < 0.0 ? -face : face, begin);

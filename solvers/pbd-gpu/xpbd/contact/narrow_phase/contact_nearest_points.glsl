@@ -1,6 +1,6 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// Whether a static triangle's plane keeps a cloth triangle off it; then only vertices have contacts with the triangle.
+/// Whether the plane of a static triangle separates it from a cloth triangle; then only the cloth's vertices touch it.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;
   load_shape(t_begin);
@@ -48,7 +48,7 @@ uint find_contact(uvec4 e, inout PairState s) {
   return PAIR_TESTED | PAIR_NEAREST | (e.w == 3u ? PAIR_PLANE : 0u);
 }
 
-/// Computes the nearest points of an active pair, unless round 0 has, and its contact's correction.
+/// Computes the nearest points of an active pair, unless round 0 has done so, and its contact's correction.
 void process_pair(uint k) {
   uvec4 pair = pairs[k];
   uvec4 e = primitives[pair.x];

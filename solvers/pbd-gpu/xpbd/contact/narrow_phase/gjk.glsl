@@ -48,7 +48,7 @@ bool on_tetrahedron(out vec4 weights) {
     const uvec4 f = kFaces[k];
     vec3 a = simplex[f.x].at, b = simplex[f.y].at, c = simplex[f.z].at, n = cross(b - a, c - a);
     float inner = dot(n, simplex[f.w].at - a), origin = -dot(n, a);
-    // Skips a face with the origin inside, unless the tetrahedron is flat: its fourth corner's side is then rounding.
+    // Skips a face with the origin on its inner side, unless rounding decides which side that is (flat tetrahedron).
     bool flat_one = abs(inner) <= kFlat * length(n) * length(simplex[f.w].at - a);
     if (!flat_one && origin * inner > 0.0) continue;
     vec3 l = on_face(a, b, c), q = l.x * a + l.y * b + l.z * c;
@@ -87,7 +87,7 @@ bool reduce() {
 }
 
 #ifdef FUSED_FRAME
-/// Index of the shape's support point along v, the lowest of equals. The subgroup's lanes divide the points.
+/// Index of the shape's support point along v, the lowest if there are several. The subgroup's lanes divide the points.
 uint support_of_subgroup(vec3 v, float t) {
   float high = -1e30;
   uint best = 0u;
@@ -184,7 +184,7 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     vec3 to = vec3(0.0);
     [[unroll]] for (uint m = 0u; m < 4u; ++m)
       if (m < simplex_size) to += weight_of[m] * simplex[m].at;
-    // No progress: by rounding, the iteration would cycle.
+    // No progress: rounding would make the iteration cycle.
     if (!(dot(to, to) > 1e-14 && (k == 0u || dot(to, to) < square))) break;
     v = to;
     if (simplex_size == 4u) break;

@@ -1,5 +1,5 @@
 // Active pairs of self-contact, after the constraint solve, one subgroup per triangle. The order of triangles among the
-// active pairs is not fixed, and nothing depends on it; a triangle's pairs are in the list's order.
+// active pairs is not fixed, and nothing depends on it; each triangle's pairs keep their order in the list.
 #include "xpbd/contact/lanes_per_triangle.glsl"
 
 /// Reserves entries for a triangle's `count` active pairs. Returns the first index, and how many pairs fit.

@@ -4,7 +4,7 @@ vec3 first_at[3], second_at[3];
 
 bool has_vertex(uvec4 e, uint v) { return e.x == v || e.y == v || e.z == v; }
 
-/// Whether `own` is the first of v's triangles without a vertex of `other`; only it owns the contact of v and `other`.
+/// Whether `own` is the first of v's triangles without a vertex of `other`; that one owns the contact of v and `other`.
 bool owns(uint v, uint own, uvec4 other) {
   uint end = vertex_triangles[v + 1u];
   for (uint f = vertex_triangles[v]; f < end; ++f) {

@@ -1,7 +1,7 @@
 // Accumulates corrections (Jacobi averaging): each vertex moves by the mean of its contacts' proposals, weighted by
 // length. In round 0 `velocity_part` changes only v, because the prediction that follows moves x by h v; and the
-// inverse mass of a corrected vertex is reduced. The order of summation does not depend on the lanes that share it:
-// kPartialSums sums of every kPartialSums-th triangle, the last with the vertex's own pairs.
+// inverse mass of a corrected vertex is reduced. The order of summation is the same for any number of lanes: each of
+// kPartialSums sums takes every kPartialSums-th triangle, and the last one also the vertex's own pairs.
 const uint kPartialSums = 8u;
 bool any_pairs = true;  // whether contacts with convex shapes correct the vertex in this round
 vec3 sum, sum_velocity_part;
@@ -36,7 +36,7 @@ void from_pairs(uint primitive, uint corner, float w) {
 
 // Pairs of a triangle are read a few at a time, so that the loads are issued together.
 const uint kSelfPairUnroll = 4u, kNoCorrection = ~0u;
-/// Adds the corrections of self-contact pairs of triangle `primitive`, whose vertex `corner` this is.
+/// Adds the corrections that self-contact pairs of triangle `primitive` propose for its vertex `corner`.
 void from_self(uint primitive, uint corner) {
   uvec4 range = self_ranges[primitive];
   for (uint first = range.z, end = range.z + range.w; first < end; first += kSelfPairUnroll) {

@@ -1,15 +1,15 @@
 // Correction of a contact with a convex shape. Target gap: the smaller of the kept margin and the gap at the start.
 #include "xpbd/contact/response/friction.glsl"
 
-/// Margin that the target gap and the recovery use. With the whole margin, edges and faces would lift flat cloth off
-/// the vertices that rest on a static shape.
+/// Margin that the target gap and the recovery use. With the whole margin, contacts of edges and faces would lift flat
+/// cloth, so that its vertices no longer rest on a static shape.
 float kept_margin(uvec4 e, vec3 weights) {
   bool inner = e.w == 3u && max(weights.x, max(weights.y, weights.z)) < 1.0 - kTiny;
   return shape.margin * (inner && shape.is_kinematic == 0u ? kStaticMarginFactor : 1.0);
 }
 
-/// Correction of a contact, divided by the inverse mass of its point; w: depenetration. From the narrow phase:
-/// `weights.w`: n·(shape's nearest point at the end); `displacement_or_plane`: that point's displacement, target gap.
+/// Correction of a contact, divided by the inverse mass of its point; w: depenetration. Stored by the narrow phase: in
+/// `weights.w` n·(shape's nearest point at the end), in `displacement_or_plane` that point's displacement, target gap.
 vec4 contact_correction(uvec4 e, PairState s) {
   if (response_round == 0u && shape.is_kinematic == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;
@@ -28,7 +28,7 @@ vec4 contact_correction(uvec4 e, PairState s) {
   return vec4(c.velocity_part, c.depenetration) / mass;
 }
 
-/// Marks a pair that proposes a correction, and its vertices: later passes read only these. `proposed`: it has a mark.
+/// Marks a pair that proposes a correction, and its vertices: later passes read only these. `proposed`: it is marked.
 void mark_correction(uint k, uvec4 e, bool proposes, bool proposed) {
   if (proposes) {
     [[unroll]] for (uint c = 0u; c < 3u; ++c) touched[CORRECTED(e[min(c, e.w - 1u)])] = 1u;
