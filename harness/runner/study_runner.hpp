@@ -61,8 +61,8 @@ void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool
 /// stored run is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
-/// As execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above 1,
-/// untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over the
+/// Like execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above
+/// 1, untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over the
 /// workers, the longest first. If a process crashes, or a run makes no frame for too long (solver_limit_s(); if
 /// `apart`, 1.2 x the run's limit + 5 s), the current run is stored as `crashed` or `timed_out` and a new process
 /// continues with the rest. `eye`: image size per eye if the plan renders, otherwise empty.
