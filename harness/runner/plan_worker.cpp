@@ -112,7 +112,7 @@ const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
 
 std::mutex hdf5;  // the library is not thread-safe
 
-/// Writes the result file of a run whose process ended without it, with the frames that its untimed pass had finished.
+/// Writes the result file that a run's ended process did not write, with the finished frames of its untimed pass.
 void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
   const std::lock_guard lock(hdf5);
   RunWriter writer(out, header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol));
@@ -122,8 +122,8 @@ void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const
   writer.finish(outcome, summarise(c, {}, r));
 }
 
-/// Sends the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored with
-/// this outcome and a new process continues with the rest. If the process had executed other plans before, a crash
+/// Sends the plan to the worker. If its process crashes, or makes no frame for `limit_s`, the current run is stored
+/// with this outcome and a new process continues with the rest. If the process had executed other plans before, a crash
 /// counts only if it recurs in a new process.
 RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, const std::string& eye, double limit_s,
               const char* interrupted) {

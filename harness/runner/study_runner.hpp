@@ -47,8 +47,9 @@ struct RunResult {
   std::vector<std::string> faults;           ///< violated rules of the harness: stages, counts, validation
 };
 
-/// One sentence for each solver that finished none of its runs, except unsupported ones and those skipped for time. If
-/// there is any, `run` and `study` exit with 1. A run that ends as its scene expects is finished.
+/// One sentence for each solver that finished none of its runs. Runs that are unsupported or were skipped for time do
+/// not count. If there is any sentence, `run` and `study` exit with 1. A run that ends as its scene expects is
+/// finished.
 std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 
 /// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name. Throws

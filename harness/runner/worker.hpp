@@ -41,9 +41,9 @@ double solver_limit_s();
 nlohmann::json device_to_json(const DeviceOptions&);
 DeviceOptions device_from_json(const nlohmann::json&);
 
-/// A child process, `program run-child …`, that calls solvers on behalf of this one; commands call solvers in no other
-/// way. One child answers many requests, because creating a Vulkan device costs as much as a small run; after a crash
-/// it is replaced. Not thread-safe.
+/// A child process, `program run-child …`, that calls solvers on behalf of this one. Commands call solvers in no other
+/// way, except with --in-process. One child answers many requests, because creating a Vulkan device costs as much as a
+/// small run; after a crash a new child replaces it. Not thread-safe.
 class Worker {
  public:
   /// `program`: empty for this program. `scratch`: a folder of this worker for a file with the child's output, whose

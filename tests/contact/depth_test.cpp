@@ -102,7 +102,7 @@ void nearly_singular() {
     std::array<std::array<long, N>, N> m;
     for (auto& row : m)
       for (long& x : row) x = entry(random);
-    // The last row is a small combination of the others, give or take 1.
+    // The last row is a linear combination of the others with small coefficients, plus or minus 1.
     for (int j = 0; j < N; ++j) {
       m[N - 1][j] = trial % 2 ? small(random) : 0;
       for (int i = 0; i < N - 1; ++i) m[N - 1][j] += (i + 1) * m[i][j];

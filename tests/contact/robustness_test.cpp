@@ -136,7 +136,7 @@ ContactSample mesh_sample(int level, double d) {
   return against(cloth, object);
 }
 
-/// Three levels, each with half the resolution: close to the exact value, with observed order 2 +- 0.3.
+/// Three levels, each with twice the resolution of the one before: observed order 2 +- 0.3.
 TEST(UnitNumbers, SphereMesh) {
   for (const double d : {0.005, 0.01, 0.02}) {
     const double exact = exact_contour(d);
