@@ -189,7 +189,7 @@ void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers
   std::array<VkWriteDescriptorSet, kBindings> writes{};
   for (std::uint32_t k = 0; k < kBindings; ++k) {
     if (buffers[k]->bytes() > device_->limits().maxStorageBufferRange)
-      throw Error(buffers[k]->name() + ": larger than the maximum storage buffer of this device");
+      throw Error(buffers[k]->name() + ": larger than this device's maximum storage buffer");
     infos[k] = {buffers[k]->handle(), 0, VK_WHOLE_SIZE};
     writes[k] = blank<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     writes[k].dstSet = set_;

@@ -28,8 +28,8 @@ Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
   return so_far;
 }
 
-/// Overrides of scenarios/conformance/sheet.json, a sheet that is pinned at both ends of one side, and how they change
-/// the motion of the sheet.
+/// Overrides of scenarios/conformance/sheet.json, and how they change the motion of its sheet, which is pinned at both
+/// ends of one side.
 struct Relation {
   const char* name;
   std::vector<std::string> overrides;

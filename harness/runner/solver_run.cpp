@@ -161,7 +161,7 @@ bool SolverRun::take_over(const RunRecord& before, double duration_s) {
   if (!before.summary.contains(kUntimed)) return false;
   const bool whole = before.accuracy.time_s.size() == static_cast<std::size_t>(accuracy_frames(duration_s)) + 1;
   if (before.outcome.status == "ok" && !whole) return false;
-  // Concurrent passes share the GPU, though no CPU core, so a pass on a GPU may have timed out because of the others.
+  // Concurrent passes share the GPU (but no CPU core), so a pass on a GPU may have timed out because of the others.
   if (before.outcome.status == "timed_out" && spec_.entry->info.on_gpu) return false;
   outcome_ = before.outcome;
   return true;

@@ -28,7 +28,7 @@ install(EXPORT clothbench NAMESPACE clothbench:: FILE clothbenchConfig.cmake DES
 write_basic_package_version_file(${generated}/clothbenchConfigVersion.cmake COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${generated}/clothbenchConfigVersion.cmake DESTINATION ${package})
 
-# With MTIME 0, because a timestamp would make the file differ from build to build.
+# MTIME 0, because the time of the build would make the file differ from build to build.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
 file(ARCHIVE_CREATE OUTPUT ${generated}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw
   COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)

@@ -93,7 +93,7 @@ TEST(ChildProcess, IsKilled) {
   const ChildEnd end = child.kill();
   EXPECT_EQ(end.how, ChildEnd::How::TimedOut);
   EXPECT_LT(end.wall_s, 30);
-  EXPECT_EQ(child.wait().how, ChildEnd::How::TimedOut) << "a second wait reports the same end";
+  EXPECT_EQ(child.wait().how, ChildEnd::How::TimedOut) << "waiting after the kill reports the same end";
 }
 
 TEST(ChildProcess, AnswersOnItsSocketUntilItEnds) {

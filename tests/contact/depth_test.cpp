@@ -137,7 +137,7 @@ TEST(Predicates, ExtremeSizes) {
   }
 }
 
-// A path through any point of a flat fan crosses one triangle; if it is cut there, only one of its halves crosses one.
+// A path through any point of a flat fan crosses exactly one triangle, and exactly one half of the path crosses it.
 TEST(Predicates, PathThroughAVertexMeetsOneTriangleOfTheFan) {
   const Point<3> hub(0, 0, 0);
   const Point<3> rim[6] = {{1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {1, -1, 0}};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the shell commands of the documents: each document's in order, in a copy of the tree, unchanged or in a short form.
+"""Runs the shell commands of each document in order, in a copy of the tree; each command runs unchanged or in a short form.
 
 usage: run_commands.py CLOTHBENCH NULL_XR_RUNTIME.json [--only PREFIX] [--except PREFIX] [--times]
 

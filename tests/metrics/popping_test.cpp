@@ -136,7 +136,7 @@ TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   EXPECT_GT(pop_of(scene, cracked(8, 2)), 10 * bound_m());
 }
 
-/// A wave along the diagonal may move the corner at up to four times the speed of the other vertices.
+/// A wave along the diagonal may move the corner at up to four times the other vertices' speed without popping.
 TEST(Popping, OfACornerIsWhatItsWaveDoesNotExplain) {
   const Scene scene = scene_of(72);
   const auto cracked = [](double quadrupled, bool only_corner = false) -> Motion {

@@ -138,8 +138,8 @@ def driven(run):
 
 
 def popping(run):
-    """Maximum displacement in 1/36 s that none of these explains: twice the path of the fastest collider or attached vertex; twice the vertex's
-    own displacement before or after; twice (for corners, four times) the path of a vertex up to two edges away, before or after."""
+    """Maximum excess of a displacement in 1/36 s over the largest of these: twice the path of the fastest collider or attached vertex; twice the
+    vertex's own displacement before or after; twice (for corners, four times) the path of a vertex up to two edges away, before or after."""
     rate, count = run.scene["time"]["frame_rate_hz"], run.x.shape[1]
     window = max(2, np.ceil(rate / 36 - 1e-9)) / rate
     linked = np.zeros((count, count), int)

@@ -1,5 +1,5 @@
 // Readers' messages about wrong input state the place briefly and do not repeat long input. Also tests messages about
-// missing radii in hand recordings, and about studies with too many runs.
+// unknown radii in hand recordings, and about studies with too many runs.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

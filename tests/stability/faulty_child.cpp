@@ -1,4 +1,4 @@
-// Replaces `clothbench run-child`. Its solvers fail in frame 3, each in the way that its name says.
+// Replaces `clothbench run-child`. Each solver fails at the load or in frame 3, in the way that its name says.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -14,7 +14,7 @@
 namespace clothbench {
 namespace {
 
-/// Falls freely until its fault in frame 3.
+/// Falls freely until it fails.
 class Faulty final : public StillSolver {
  public:
   using StillSolver::StillSolver;

@@ -66,7 +66,7 @@ TEST_F(Friction, CriticalAngleWithinATenthOfADegree) {
   EXPECT_GE(quantity(15.9), 0.01) << "m in 2 s";
 }
 
-/// The error decreases with more substeps; by default, a finer strip uses more.
+/// The error decreases with more substeps; by default, a finer strip uses more substeps.
 TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-slip"), 0.05); }
 
 }  // namespace
