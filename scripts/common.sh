@@ -25,7 +25,7 @@ meanwhile() {
   rm -f "$stage_logs/meanwhile.status"
   { "$@" >"$stage_logs/meanwhile.log" 2>&1 && echo 0 >"$stage_logs/meanwhile.status" || echo $? >"$stage_logs/meanwhile.status"; } &
 }
-# build_targets PRESET TARGET…: what does not contain the page comes first, because npm, which bundles it, is installed meanwhile.
+# build_targets PRESET TARGET…: first builds targets without the report's page, because npm, which bundles it, is still being installed.
 build_targets() {
   cmake --build --preset "$1" -j "$JOBS" --target solvers/all harness/{assets,metrics,runner,scenario,truth}/all
   while [ ! -f "$stage_logs/meanwhile.status" ]; do sleep 0.2; done
@@ -91,7 +91,7 @@ stage_ticker() {
   done
 }
 
-# side_by_side COMMAND…: runs each in its own process, which ends at an error; if one fails, fails and prints the end of its output again.
+# side_by_side COMMAND…: runs all at the same time, each in its own process with `set -e`. If one fails, prints the end of its output again.
 side_by_side() {
   local command processes=() k failed=()
   for command in "$@"; do

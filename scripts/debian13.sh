@@ -2,8 +2,8 @@
 # Runs both README commands on a bare Debian 13 as a newcomer would: a chroot made by debootstrap, a clone of the committed HEAD, one
 # build by clang with warnings as errors, the quick study, a short set of tests, a live session on Monado's OpenXR runtime, the Debian
 # package, and that package installed in a second bare Debian 13.
-#   scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; all in it is made anew but the
-#                                                                                     bare system and downloads
+#   scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]     default: build/debian13; only the bare system and
+#                                                                                     downloads in it are kept
 # --prepare: only makes the system and installs packages, which mostly waits for network and disk.
 # --keep: continues with the system of the last call, at the current HEAD.
 # --suite bookworm: on a bare Debian 12, with its own compiler and without Monado, which it lacks; FOLDER: build/bookworm.
@@ -106,7 +106,7 @@ set_up() {
   newcomer 'rm -f /etc/apt/apt.conf.d/docker-clean; apt-get update; apt-get install -y --no-install-recommends git ca-certificates
             git config --global --add safe.directory "*"; scripts/bootstrap.sh --short'
 }
-# Not optimised, which halves the compile time; no speed is measured here. Word splitting is intended.
+# Without optimisation, which halves the compile time; no speed is measured here.
 options='-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-DNDEBUG'
 [ "$suite" != trixie ] || options+=' -DCLOTHBENCH_WERROR=ON'
 compiler="export CLOTHBENCH_CMAKE='$options'"

@@ -5,7 +5,7 @@ usage: embed_tables.py [--check] [CLOTHBENCH]     default program: build/release
 
 A document marks such a table by a line of one of these forms before it and `<!-- end of table -->` after it:
 
-    <!-- table of FILE: HEADING -->                      the Markdown table below the heading of FILE that starts so
+    <!-- table of FILE: HEADING -->                      the Markdown table of FILE below the heading that starts with HEADING
     <!-- table of FILE: HEADING: ROW, ROW -->            only its rows whose first cell is ROW or starts with `ROW:`
     <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a
 """
@@ -87,8 +87,8 @@ def main():
             if not check:
                 path.write_text(after, encoding="utf-8")
     if check and stale:
-        sys.exit(f"{', '.join(stale)}: not what scripts/embed_tables.py writes; run it with this build's clothbench")
-    print("; ".join(stale) or "all tables are those of their sources")
+        sys.exit(f"{', '.join(stale)}: differs from the output of scripts/embed_tables.py; run it with this build's clothbench")
+    print("; ".join(stale) or "all tables match their sources")
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "
   exit 0
 fi
 
-# Debian's npm conflicts with others, so Debian's is installed only if there is none.
+# Debian's npm conflicts with other installations of npm, so it is installed only if there is none.
 if ! command -v npm >/dev/null; then
   [ "$installed" = 0 ] || give_up "no npm (Debian: apt-get install npm)"
   as_root=()

@@ -10,7 +10,7 @@ deb=$(realpath "$1") root=$(realpath "$2")
 [ -f "$deb" ] || { echo "package: $deb: expected a .deb" >&2; exit 2; }
 [ -x "$root/usr/bin/apt-get" ] || { echo "package: $root: expected a folder made by debootstrap" >&2; exit 2; }
 if [ -z "${PACKAGE_TEST_OWN_MOUNTS:-}" ]; then
-  # Mounts in a separate namespace end with it, however this script ends.
+  # Mounts in a separate namespace disappear with the namespace, however this script ends.
   PACKAGE_TEST_OWN_MOUNTS=1 exec unshare --mount "$0" "$deb" "$root"
 fi
 mount -t proc proc "$root/proc"
@@ -33,17 +33,17 @@ install_it() {
   rm "$root/tmp/clothbench.deb"
   as_root dpkg -s clothbench | grep -q '^Recommends:.*\bnodejs\b' || fail "it does not recommend nodejs"
   for name in nodejs librsvg2-bin python3-matplotlib python3-h5py; do
-    ! as_root dpkg -s $name >/dev/null 2>&1 || fail "$name is there: it is recommended, and must not be needed"
+    ! as_root dpkg -s $name >/dev/null 2>&1 || fail "$name is installed: the package must work without it"
   done
-  as_root dpkg --verify clothbench | grep . && fail "its files are not as they were packed"
+  as_root dpkg --verify clothbench | grep . && fail "installed files differ from the packed files"
   mkdir -p "$root$home"
   chown 65534:65534 "$root$home"
   local version
-  version=$(as_user clothbench --version) || fail "it cannot be started: a dependency that is not declared?"
-  ok "$version installed, with what it depends on"
+  version=$(as_user clothbench --version) || fail "the program does not start: is a dependency not declared?"
+  ok "$version installed with its dependencies"
 }
 
-# The message names every place, and the source tree's place does not exist.
+# Without its data the program must name every folder that it searched. The source tree's folder must not exist.
 refuses_without_data() {
   local share=/usr/share/clothbench status=0 text source
   mv "$root$share" "$root$share.away"
@@ -51,25 +51,25 @@ refuses_without_data() {
   mv "$root$share.away" "$root$share"
   [ $status = 2 ] || fail "without $share: expected exit code 2, not $status: $text"
   source=${text##*then }
-  case $text in *CLOTHBENCH_SCENARIOS*"$share/scenarios"*", then /"*) ;; *) fail "not every place is named: $text" ;; esac
-  [ ! -e "$root$source" ] || fail "$source is there: the source tree must not be"
+  case $text in *CLOTHBENCH_SCENARIOS*"$share/scenarios"*", then /"*) ;; *) fail "the message does not name every searched folder: $text" ;; esac
+  [ ! -e "$root$source" ] || fail "$source exists: expected no source tree"
   ok "no source tree at $source"
 }
 
-# Other programs of CI may run beside it; its times are not read as measurements.
+# Other CI programs may run at the same time; the study's times are not used as measurements.
 study_and_report() {
   quietly as_user CLOTHBENCH_JOBS=1 clothbench study table3 --quick --out study
   quietly as_user clothbench report study -o report
   local report=$root$home/report runs
   runs=$(find "$root$home/study" -name '*.h5' | wc -l)
   [ "$runs" -gt 10 ] || fail "the study has $runs runs"
-  [ "$(($(wc -l <"$report/runs.csv") - 1))" = "$runs" ] || fail "report/runs.csv has not the study's $runs runs"
+  [ "$(($(wc -l <"$report/runs.csv") - 1))" = "$runs" ] || fail "report/runs.csv: expected the study's $runs runs"
   for solver in ballistic bullet-soft paper xpbd; do
     grep -qE "^\| gravity-8-single \| $solver \| single \|.* [0-9.]+ \|" "$report/report.md" || fail "report/report.md: no values of $solver"
   done
   [ -s "$report/index.html" ] || fail "no report/index.html"
   [ "$(grep -c 'Figures were left out: ' "$report/report.md")" = 1 ] || fail "report/report.md: expected one sentence on what is missing"
-  ! ls "$report"/figures/*.svg >/dev/null 2>&1 || fail "figures, without what draws them"
+  ! ls "$report"/figures/*.svg >/dev/null 2>&1 || fail "report/figures: expected no figures, because no program to draw them is installed"
   ok "study of $runs runs, complete tables; $(grep -o 'Figures were left out: .*' "$report/report.md")"
 }
 

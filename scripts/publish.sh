@@ -11,7 +11,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
-# Columns: table (where the study runs), name (the same before a "+": one report), command of clothbench without --out.
+# Columns: table (where the study runs); name (studies with equal names before "+" share a report); command of clothbench without --out.
 # PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
 # SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {
@@ -43,7 +43,7 @@ END
 
 fail() { echo "scripts/publish.sh: $*" >&2; exit 2; }
 bench=${CLOTHBENCH:-$here/build/release/clothbench}
-[ -x "$bench" ] || bench=$(command -v clothbench) || fail "no program; CLOTHBENCH names it"
+[ -x "$bench" ] || bench=$(command -v clothbench) || fail "no clothbench found; set CLOTHBENCH to its path"
 folders=() to=$here/results/reference/h200 table=gpu only=' ' limit=570 jobs=$(nproc) report='' archive='' device=()
 while [ $# -gt 0 ]; do
   case $1 in
@@ -66,7 +66,7 @@ sources() { sed 's/.*, sources //' "$1"; }
 if [ -n "$report" ]; then
   for folder in "${folders[@]}"; do
     [ -f "$folder/version" ] || fail "$folder: no file \"version\" in it; scripts/publish.sh OUT makes such folders"
-    [ "$(sources "$folder/version")" = "$(sources "$out/version")" ] || fail "$folder and $out are of different sources"
+    [ "$(sources "$folder/version")" = "$(sources "$out/version")" ] || fail "$folder and $out come from different sources"
   done
   mapfile -t complete < <(find "${folders[@]}" -maxdepth 1 -name '*.done' | sort)
   [ ${#complete[@]} -gt 0 ] || fail "$out: no complete study"
@@ -99,7 +99,7 @@ if [ -n "$report" ]; then
   if [ -n "$archive" ]; then
     members=(-C "$to" RESULTS.SHA256 commands.tsv)
     for file in "${complete[@]%.done}"; do members+=(-C "$(realpath "$(dirname "$file")")" "$(basename "$file")"); done
-    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -caf "$archive" "${members[@]}"  # equal results, equal archive
+    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -caf "$archive" "${members[@]}"  # equal results give an equal archive
     sha256sum "$archive"
   fi
   echo "$to: ${#names[@]} studies; $(wc -l <"$to/RESULTS.SHA256") result files"
@@ -112,7 +112,7 @@ for name in $only; do studies | sed 's/  */ /g' | grep -qF "$table $name " || fa
 mkdir -p "$out"
 "$bench" --version >"$out/version.now"
 [ ! -f "$out/version" ] || [ "$(sources "$out/version")" = "$(sources "$out/version.now")" ] ||
-  fail "$out has results of $(cat "$out/version"), this program is $(cat "$out/version.now"); publish results of one state of the sources"
+  fail "$out has results of $(cat "$out/version"), but this program is $(cat "$out/version.now"); publish results of one state of the sources"
 mv "$out/version.now" "$out/version"
 commit=$(sed -n 's/.*(\([0-9a-f]\{1,6\}\).*/\1/p' "$out/version")
 seed=$((16#${commit:-1}))

@@ -10,7 +10,7 @@ build() {
   configure release -DBUILD_TESTING=OFF
   build_targets release clothbench
 }
-# Downloads that the compiler does not need run during the build: they wait for the network, the build for the processor.
+# Downloads that the compiler does not need run during the build: they wait for the network, while the build is limited by the CPU.
 rest() { scripts/bootstrap.sh && scripts/fetch-assets.sh "${require[@]}"; }
 
 case ${1:--} in

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the tests.
-#   scripts/test.sh [--ci | --full | --short]     --ci: instead CI's other tests and studies; --full: all tests; --short: a named few programs
+#   scripts/test.sh [--ci | --full | --short]     --ci: only CI's further tests and studies; --full: all tests; --short: a few named programs
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,7 +18,7 @@ rest() { scripts/bootstrap.sh "${packages[@]}" && scripts/fetch-assets.sh; }
 tests() { ctest --test-dir build/release --output-on-failure -j $((JOBS + 1)) "${selection[@]}"; }
 
 # Compares a study's short form with its committed baseline; values that depend on the machine's speed are not compared.
-#   against_baseline STUDY OPTIONS...    $kind: the end of the name of the baseline
+#   against_baseline STUDY OPTIONS...    $kind: suffix of the baseline's name
 against_baseline() {
   local study=$1 out=build/$1-quick
   shift
@@ -28,7 +28,7 @@ against_baseline() {
   build/release/clothbench check "$out" --baseline "results/baselines/$study$kind.json" --junit "$out.xml"
 }
 
-# The published scenes; in CI random scenes with fixed seeds, and the stiff and extreme cases.
+# By default the published scenes; --ci: random scenes with fixed seeds, and the stiff and extreme cases; --full: both.
 studies() {
   local kind='' procedural=()
   # Results with procedural rooms and hands have separate baselines.
@@ -53,7 +53,7 @@ study = json.load(open(sys.argv[1], encoding="utf-8"))
 ours = [r for r in study["runs"] if r["solver"] == "xpbd" and r["outcome"]["status"] != "unsupported"]
 bad = [r["scene"] for r in ours if not (r["outcome"]["class"] == "ok" and r["summary"]["stability_grade"] in (0, 1, 2))]
 if study["crashed"] != 0 or bad or not ours:
-    sys.exit(f"stability: {study['crashed']} processes crashed; of {len(ours)} runs of xpbd out of bounds: {bad}")
+    sys.exit(f"stability: {study['crashed']} processes crashed; xpbd is out of bounds in these of its {len(ours)} runs: {bad}")
 END
 }
 

@@ -11,7 +11,7 @@
 namespace clothbench::testing_command {
 
 struct Answer {
-  int code = -1;  ///< exit code, or 128 and the signal
+  int code = -1;  ///< exit code, or 128 + the signal's number
   std::string text;
 };
 

@@ -9,7 +9,7 @@
 
 namespace clothbench {
 
-/// Test name of a table row from its words; without one GoogleTest prints the row's addresses.
+/// Makes a test name from the words of a table row. Without a name GoogleTest prints the row's addresses.
 inline std::string test_name(const std::string& words) {
   std::string out;
   for (char c : words) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

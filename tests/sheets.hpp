@@ -1,5 +1,5 @@
 #pragma once
-// Sheets made without a scene file, for tests of solvers, and what they are held to.
+// Sheets made without a scene file, for tests of solvers, and checks of their motion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ inline Scene with_damping(Scene s, double per_s = 0.5) {
   return s;
 }
 
-/// First and last vertex of the first row held.
+/// Pins the first and the last vertex of the first row.
 inline Scene with_pins(Scene s) {
   s.pins.vertices = {0, static_cast<std::uint32_t>(s.cloth.columns - 1)};
   s.needs.add(Feature::Pins);
@@ -59,7 +59,7 @@ inline ClothState after_frame(ClothSolver& solver, const Scene& s, int frame) {
 }
 inline ClothState after(ClothSolver& solver, const Scene& s, int frames) { return run_frames(solver, s, 0, frames); }
 
-/// Largest distance of a coordinate from the closed form of free fall over g T^2 / 2; NaN if any is.
+/// Maximum error of a coordinate against the closed form of free fall, over g T^2 / 2; NaN if any coordinate is NaN.
 inline double free_fall_error(const Scene& s, const ClothState& state, int frames, double fall_m) {
   const std::vector<double> start = initial_positions(s);
   const double t = frames * s.time.dt(), scale = 0.5 * 9.81 * t * t;
@@ -71,7 +71,7 @@ inline double free_fall_error(const Scene& s, const ClothState& state, int frame
   return worst;
 }
 
-/// The centre of mass moves on at the scene's velocity, whatever the vertices do. Tolerances: of speeds, of ways.
+/// The centre of mass must keep the scene's velocity. Tolerances: of its speed, and of its displacement.
 inline void expect_momentum_kept(const Scene& s, const ClothState& state, double time_s, double speed_m_per_s,
                                  double way_m) {
   const std::vector<double> mass = vertex_masses(s), start = initial_positions(s);

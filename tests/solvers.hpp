@@ -11,7 +11,7 @@
 
 namespace clothbench {
 
-/// A cloth that stays where it starts; a test overrides what it is about.
+/// A cloth that stays where it starts; a test overrides the functions that it is about.
 class StillSolver : public ClothSolver {
  public:
   explicit StillSolver(SolverInfo info) : info_(std::move(info)) {}
@@ -39,7 +39,7 @@ class StillSolver : public ClothSolver {
   ClothState state_;
 };
 
-/// Another solver; a test overrides what it changes.
+/// Forwards all calls to another solver; a test overrides the functions that it changes.
 class WrappedSolver : public ClothSolver {
  public:
   explicit WrappedSolver(std::unique_ptr<ClothSolver> inner) : inner_(std::move(inner)) {}
@@ -69,7 +69,7 @@ inline AccuracyPass whole_pass(SolverRun& run, const Scene& scene) {
   return run.run_accuracy(rules);
 }
 
-/// Whether an error says that there is no device, and tests may do without: CLOTHBENCH_ALLOW_NO_DEVICE=1.
+/// Whether an error reports a missing device and CLOTHBENCH_ALLOW_NO_DEVICE=1 allows tests to do without one.
 inline bool may_lack_device(const Error& e) {
   const char* allowed = std::getenv("CLOTHBENCH_ALLOW_NO_DEVICE");
   return e.code() == ExitCode::NoDevice && allowed != nullptr && std::string(allowed) == "1";

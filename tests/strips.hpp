@@ -1,5 +1,5 @@
 #pragma once
-// Triangle meshes made without a scene file, and the closed forms of isotropic sheets and beams that they are held to.
+// Triangle meshes made without a scene file, and closed forms of isotropic sheets and beams to compare them with.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ inline Scene of_mesh(ClothMesh mesh, std::vector<std::uint32_t> pins) {
   return s;
 }
 
-/// A level strip of 1 m x 0.25 m along x of irregular triangles, clamped over a cell of its `cells`.
+/// A level strip of irregular triangles, 1 m along x and 0.25 m wide, with `cells` cells along x; the first is clamped.
 inline Scene clamped_strip(int cells, double share, unsigned seed, double rigidity_N_m) {
   ClothMesh mesh = drawn_mesh({1, 0.25, cells, 0.5, share, seed, true});
   std::vector<std::uint32_t> clamp = mesh.groups.at("clamp");
@@ -54,7 +54,7 @@ inline double tip_over_beam(const Scene& s, int cells, const Eigen::VectorXd& de
   return tip / (std::pow((cells - 1.0) / cells, 4) / (8 * s.material.bending_rigidity_N_m));
 }
 
-/// The same by the matrix of its bending energy.
+/// The same ratio, with the deflection computed from the matrix of the strip's bending energy.
 inline double tip_over_beam(const Scene& s, int cells, const Eigen::MatrixXd& bending) {
   const std::vector<Eigen::Index> free = free_vertices(s);
   Eigen::VectorXd deflection = Eigen::VectorXd::Zero(bending.rows());
@@ -64,7 +64,7 @@ inline double tip_over_beam(const Scene& s, int cells, const Eigen::MatrixXd& be
   return tip_over_beam(s, cells, deflection);
 }
 
-/// The same at the end of a motion under gravity.
+/// The same ratio, with the deflection at the end of a motion under gravity.
 inline double tip_over_beam_at_end(const Scene& s, int cells, ClothSolver& solver) {
   solver.load(s);
   const std::vector<double> start = initial_positions(s), end = after(solver, s, s.time.frames()).position;
@@ -75,8 +75,8 @@ inline double tip_over_beam_at_end(const Scene& s, int cells, ClothSolver& solve
                        Eigen::VectorXd(deflection / (s.cloth.areal_density_kg_per_m2 * -s.gravity_m_per_s2[1])));
 }
 
-/// Energy of a triangle of constant strain (xx, yy, xy) by the stiffness of its edges 0-1, 1-2 and 2-0, divided by an
-/// isotropic sheet's: plane stress, Poisson's ratio 1/3.
+/// Energy of a triangle under constant strain (xx, yy, xy), computed from the stiffness of its edges 0-1, 1-2 and 2-0,
+/// divided by the energy of an isotropic sheet (plane stress, Poisson's ratio 1/3).
 inline double energy_over_sheet(const std::array<Eigen::Vector2d, 3>& corners, const Eigen::Matrix3d& stiffness,
                                 double membrane_stiffness_N_per_m, const Eigen::Vector3d& strain) {
   const double nu = 1.0 / 3, trace = strain[0] + strain[1];

@@ -10,7 +10,7 @@
 
 namespace clothbench {
 
-/// A variable of the environment has this value while it lives, or none.
+/// Sets or unsets an environment variable for the lifetime of this object.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -35,7 +35,7 @@ class ScratchFolder {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     std::string name = std::string(info->test_suite_name()) + "-" + info->name();
     for (char& c : name)
-      if (c == '/') c = '-';  // of a parameter
+      if (c == '/') c = '-';  // in a parameterized test's name
     path_ = std::filesystem::temp_directory_path() / ("clothbench-" + std::to_string(getpid()) + "-" + name);
     std::filesystem::create_directories(path_);
   }

@@ -23,8 +23,8 @@ void look(Camera& c, double azimuth, double elevation) {
   c.up = cross(c.back, c.right);
 }
 
-/// Nearest camera position, along one image axis, with every point in view: |x - middle| <= tangent (distance - z), z
-/// towards the viewer, `tangent` of half the view angle. Exact: the two outermost lines of slope `tangent` meet there.
+/// Nearest camera position that sees every point, for one image axis x and the view axis z (towards the viewer):
+/// |x - middle| <= tangent (distance - z) for all points. Exact: the two outermost lines of slope `tangent` meet there.
 struct Stand {
   double middle, distance;
 };

@@ -30,7 +30,7 @@ struct Camera {
 Camera frame(std::span<const double> points, double aspect);
 
 /// Left and right eye of a user who looks along -z at the middle of a box from `distance_m` away. The field of view of
-/// 110 x 96 degrees is a Quest 3's (Meta's technical specifications); 63 mm between the eyes is the mean of adults.
+/// 110 x 96 degrees is a Quest 3's (Meta's technical specifications); the eyes are 63 mm apart, the mean of adults.
 std::array<Camera, 2> eyes(const Vec3& middle_m, double distance_m, double near_m, double far_m);
 
 struct Bounds {
@@ -52,7 +52,7 @@ struct Surfaces {
 };
 
 /// Colliders and active grips of a scene at the end of frame `frame` (0 = the start). Static meshes are drawn without
-/// triangles outside `near` (a room has more walls than its desk); infinite planes are clipped to `near`; moving
+/// triangles outside `near` (such as distant walls of a room); infinite planes are clipped to `near`; moving
 /// colliders are drawn completely. Triangles that are not finite are omitted.
 Surfaces surfaces(const Scene&, int frame, const Bounds& near);
 

@@ -130,7 +130,7 @@ class StereoDrawer : public FrameDrawer {
     }
     if (!scene_.motion.empty()) renderer_.set_surfaces(surfaces(scene_, frame, near_));
     std::array<Camera, 2> cameras = cameras_;
-    if (falls_) {  // free cloth falls out of sight, so the eyes fall with it
+    if (falls_) {  // free cloth would fall out of sight, so the eyes fall with it
       const double t = scene_.time.at(frame);
       for (Camera& c : cameras)
         c.eye_m = plus(c.eye_m, plus(scaled(t, scene_.cloth.initial_velocity_m_per_s),

@@ -51,7 +51,7 @@ class Offscreen {
 
 /// Renders both eyes of a headset, `width` x `height` pixels each, one after the other in one submission. For a GPU
 /// solver the vertex shader reads the solver's buffer; for a CPU solver the positions of read_state are uploaded. The
-/// measured time includes this. Nothing is displayed, so it includes no wait for a display.
+/// measured time includes that upload and the rendering, but no wait for a display, because nothing is displayed.
 Rendering stereo_rendering(int width, int height);
 
 }  // namespace clothbench::render

@@ -130,7 +130,7 @@ Framing framing_of(const Motion& m) {
 Taken take(const Motion& m, const Shots& shots, const DeviceOptions& options,
            const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
   for (const std::size_t f : shots.frames)
-    if (f >= m.frames()) throw Error(fmt::format("frame {}: {} has {}", f, m.name, m.frames()));
+    if (f >= m.frames()) throw Error(fmt::format("frame {}: {} has {} frames", f, m.name, m.frames()));
   Taken taken;
   if (shots.frames.empty()) return taken;
   const bool moves = shots.movie && shots.frames.size() > 1;

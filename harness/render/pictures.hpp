@@ -55,8 +55,8 @@ Taken take(const Motion&, const Shots&, const DeviceOptions&,
 /// List of the written files for the terminal; many images become one line.
 std::string taken_text(const Taken&);
 
-/// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; an empty
-/// end is the first or the last frame). Throws Error with --frames and the expected form.
+/// Frame numbers from "12", "0:71" or "0:-1:4" (first and last, both included, and step; -1 is the last frame; in
+/// ":71" and "12:" the first and the last frame are implied). Throws Error with --frames and the expected form.
 std::vector<std::size_t> frames_from(const std::string& text, std::size_t count);
 
 /// Writes under a temporary name, then renames. Throws Error naming the file.

@@ -93,8 +93,8 @@ void Pipelines::create_pass(VkFormat colour, VkSampleCountFlagBits samples) {
   subpass.pColorAttachments = &drawn;
   subpass.pResolveAttachments = &resolved;
   subpass.pDepthStencilAttachment = &depth;
-  // Orders an earlier image's use of these attachments before this one's, and this one's result before all later
-  // commands.
+  // The first dependency orders an earlier image's use of these attachments before the use by this image. The second
+  // orders the result of this image before all later commands.
   constexpr VkPipelineStageFlags kDrawing = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                             VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -189,7 +189,7 @@ void Pipelines::bind(const std::array<const vulkan::Buffer*, kBindings>& buffers
   std::array<VkWriteDescriptorSet, kBindings> writes{};
   for (std::uint32_t k = 0; k < kBindings; ++k) {
     if (buffers[k]->bytes() > device_->limits().maxStorageBufferRange)
-      throw Error(buffers[k]->name() + ": its size exceeds what this device binds");
+      throw Error(buffers[k]->name() + ": larger than this device's maximum storage buffer");
     infos[k] = {buffers[k]->handle(), 0, VK_WHOLE_SIZE};
     writes[k] = blank<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     writes[k].dstSet = set_;

@@ -6,7 +6,7 @@ namespace clothbench::render {
 using vec4 = std::array<float, 4>;
 #endif
 
-// Push constants of every draw; 128 B is what every device has.
+// Push constants of every draw; every device supports at least 128 B.
 struct Drawn {
   vec4 to_clip[4];  // columns of projection * view, in metres from the picture's origin
   vec4 eye;         // xyz: of the viewer, from the same origin [m]

@@ -46,7 +46,7 @@ std::array<std::size_t, 2> longest_axes(const ClothMesh& m) {
   return {least == 0 ? 1u : 0u, least == 2 ? 1u : 2u};
 }
 
-constexpr double kSquares = 8, kMostSquares = 64;  // number of checker squares: shorter side; maximum for longer side
+constexpr double kSquares = 8, kMostSquares = 64;  // checker squares: along the shorter side; at most along the longer
 
 /// Computes a corner's position on the checker, in squares.
 class Checker {

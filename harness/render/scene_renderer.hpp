@@ -40,7 +40,7 @@ class SceneRenderer {
   const Vec3& origin() const { return origin_m_; }
 
   /// Draws positions from a buffer of the same device: one vec4 per vertex, in order, relative to `buffer_origin_m`.
-  /// The buffer must outlive its use here; pictures show its content when drawn.
+  /// The buffer must outlive its use here; images show its content at the time of drawing.
   void use_positions(const vulkan::Buffer& buffer, const Vec3& buffer_origin_m);
   /// Draws these positions, xyz interleaved [m], one per vertex (otherwise Error). NaN is allowed; triangles with NaN
   /// are not drawn.

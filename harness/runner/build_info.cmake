@@ -4,7 +4,7 @@ execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-# What may change a figure, in one hash: results of two commits can be compared if it is the same.
+# One hash of all files that can change a result: results of two commits are comparable if their hashes are equal.
 file(STRINGS ${SOURCE_DIR}/harness/runner/measured_paths.txt measured REGEX "^[^#]")
 execute_process(COMMAND git ls-tree -r HEAD -- ${measured} WORKING_DIRECTORY ${SOURCE_DIR}
   OUTPUT_VARIABLE listing ERROR_QUIET)
@@ -15,7 +15,7 @@ if(listing)
 endif()
 set(glslc "")
 if(GLSLC)
-  # Three lines: shaderc, its SPIRV-Tools and its glslang. Each shapes the code.
+  # The version has three lines, for shaderc, SPIRV-Tools and glslang, because each of them affects the generated code.
   execute_process(COMMAND ${GLSLC} --version OUTPUT_VARIABLE glslc ERROR_QUIET)
   string(REGEX REPLACE "\n\n.*" "" glslc "${glslc}")
   string(STRIP "${glslc}" glslc)

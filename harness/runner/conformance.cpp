@@ -69,7 +69,7 @@ class Conformer {
   void check_profile(const std::string& profile) {
     const DeviceInfo device = solver_.device();
     if (device.name.find(profile) == std::string::npos)
-      fault("device " + device.name + ": its name does not say " + profile);
+      fault("device " + device.name + ": its name does not contain " + profile);
     if (json::parse(device.properties_json).value("device_profile", "") != profile)
       fault("device " + device.name + ": its properties do not state device_profile " + profile);
   }
@@ -199,7 +199,7 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (!c.relation.empty()) return load_scene(c.scene, relation_overrides(c.relation));
   std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
   const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
-  // On a grid of four vertices none is near a hand.
+  // On a grid of four vertices, no vertex is near a hand.
   if (c.grid == "[2,2]" && is("stretch"))
     for (const char* hand : {"0", "1"}) overrides.push_back(std::string("grips.") + hand + ".radius_m=0.6");
   // A strip that starts over a cylinder needs edges shorter than the cylinder's diameter.
@@ -213,12 +213,12 @@ Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
 }
 
 std::string conformance_skip(const SolverInfo& info, const Scene& s) {
-  // Its constraints are exact: inextensible diagonals on top would mean more constraints than degrees of freedom.
+  // The reference solver's constraints are exact; with inextensible diagonals they would exceed the degrees of freedom.
   if (info.name == "reference" && !s.material.membrane_stiffness_N_per_m &&
       (s.needs.has(Feature::Shear) || s.cloth.mesh))
-    return "reference diverges: over-determined";
+    return "reference would diverge: more constraints than degrees of freedom";
   if (info.name == "xpbd" && s.cloth.mesh && s.needs.has(Feature::SelfCollision))
-    return "xpbd: self_collision is for grids only";
+    return "xpbd supports self_collision only on grids";
   if (s.cloth.mesh && s.needs.has(Feature::Bend) && (info.name == "paper" || info.name.starts_with("bullet-")))
     return info.name + " has no resistance to bending for triangle meshes";
   return missing_features(info, s.needs);

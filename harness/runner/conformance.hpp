@@ -30,8 +30,8 @@ struct ConformanceCase {
   std::string relation = {};
 };
 
-/// Cases of one scene; `profiles` adds device classes that emulate small devices, for solvers on a GPU. Cases of
-/// relations precede the whole scene; only scenes of the folder "conformance" have them.
+/// Cases of one scene; for GPU solvers, `profiles` adds cases on device classes that emulate small devices. The
+/// relation cases come before the case of the whole scene; only scenes of the folder "conformance" have them.
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
 
 /// The scene of a case. Scenes for which two or three grid lines are too few get the smallest grid that works. A mesh
@@ -66,7 +66,7 @@ ConformanceResult run_relation(const SolverEntry&, const nlohmann::json& setting
 /// skipped row: the reason). A crash is a fault.
 nlohmann::json ask_conformance(Worker&, const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const std::string& scene, bool whole, double limit_s);
-/// Executes such a request in the worker.
+/// Executes the request of ask_conformance in the worker.
 nlohmann::json conformance_answer(const nlohmann::json& request);
 /// A row as text for the terminal.
 std::string conformance_text(const std::string& solver, const nlohmann::json& row);

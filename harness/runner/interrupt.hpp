@@ -9,8 +9,8 @@ bool interrupt_requested();
 /// Clears that record; call before another run in the same process.
 void clear_interrupt();
 
-/// While `held`, runs pause between frames, because a device's activity is paused. Pauses are never timed. A trial with
-/// a pause is repeated, because its device was asleep.
+/// While `held`, runs pause between frames, because the Android activity is paused. Pauses are never timed. A trial
+/// with a pause is repeated, because its device was asleep.
 void hold_runs(bool held);
 /// Number of pauses so far.
 int times_held();

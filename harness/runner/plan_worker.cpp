@@ -82,7 +82,7 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   j.at("apart").get_to(plan.apart);
   j.at("untimed").get_to(plan.untimed);
   each_rule(plan.rules, [&](const char* key, auto& value) {
-    const json& v = j.at("rules").at(key);  // null: infinite
+    const json& v = j.at("rules").at(key);  // JSON has no infinity and stores null
     value = v.is_null() ? std::numeric_limits<std::decay_t<decltype(value)>>::infinity()
                         : v.get<std::decay_t<decltype(value)>>();
   });
@@ -101,7 +101,7 @@ void plan_from_json(const json& j, const SolverLookup& lookup, OwnPlan& own) {
   }
 }
 
-/// The run that "<run>: trial 2 of 5" names; null if it is not in the plan.
+/// The run named in a progress message such as "<run>: trial 2 of 5"; null if it is not in the plan.
 const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
   const std::string name = doing.substr(0, doing.find(": "));
   for (const auto& group : plan.groups)
@@ -112,7 +112,7 @@ const RunSpec* run_of(const RunPlan& plan, const std::string& doing) {
 
 std::mutex hdf5;  // the library is not thread-safe
 
-/// Writes the result file of a run whose process ended without it, with the frames that its untimed pass had finished.
+/// Writes the result file that a run's ended process did not write, with the finished frames of its untimed pass.
 void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const Outcome& outcome) {
   const std::lock_guard lock(hdf5);
   RunWriter writer(out, header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol));
@@ -122,8 +122,8 @@ void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const
   writer.finish(outcome, summarise(c, {}, r));
 }
 
-/// Sends the plan to the worker. If its process crashes, or a run makes no frame for `limit_s`, that run is stored with
-/// this outcome and a new process continues with the rest. If the process had executed other plans before, a crash
+/// Sends the plan to the worker. If its process crashes, or makes no frame for `limit_s`, the current run is stored
+/// with this outcome and a new process continues with the rest. If the process had executed other plans before, a crash
 /// counts only if it recurs in a new process.
 RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, const std::string& eye, double limit_s,
               const char* interrupted) {
@@ -133,7 +133,7 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
                   {"eye", eye},
                   {"resume", options.resume},
                   {"reference_cache", options.reference_cache.string()}};
-  for (std::size_t process = 0; process <= 2 * plan.size(); ++process) {  // at most two per run
+  for (std::size_t process = 0; process <= 2 * plan.size(); ++process) {  // at most two processes per run
     std::string doing = "before the first run";
     const WorkerAnswer answer =
         worker.call("plan", request, 0, interrupted, [&](const std::string& what, std::size_t done, std::size_t total) {
@@ -154,7 +154,7 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
     write_row(*at, plan, options.out, {hung ? "timed_out" : "crashed", "F3", -1, message});
     if (plan.apart) return {};  // the plan's only run
   }
-  throw Error("the study's process crashed more often than there are runs", ExitCode::CheckFailed);
+  throw Error("the study's process crashed more than twice per run", ExitCode::CheckFailed);
 }
 
 using Task = std::function<void(Worker&)>;
@@ -293,8 +293,8 @@ json execute_plan(const json& request, const WorkerProgress& progress, const Sol
     progress(what, done, total);
     repeat = [=, &progress] { progress(what, done, total); };
   };
-  // The parent ends a process that reports nothing for too long; reports keep a solver that makes frames from looking
-  // hung.
+  // The parent ends a process that reports nothing for too long. The repeated reports show that a slow solver still
+  // completes frames.
   const FrameReports reports([&] {
     if (repeat) repeat();
   });

@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kOrder = 2;         // of accuracy, of both integrators
+constexpr double kOrder = 2;         // order of accuracy of both integrators
 constexpr double kRounding = 1e-10;  // fraction of the scale; smaller differences show no order
 
 /// The scene with two rows if all its rows move alike; a sheet with shear and a mesh are returned unchanged.
@@ -46,7 +46,7 @@ Scene two_rows(const Scene& s) {
 struct Run {
   double value = kMissing;   ///< at the end
   double unrest = kMissing;  ///< change over the last tenth of the run
-  double error = kMissing;   ///< only for a mesh: distance from the continuum in the ranking error
+  double error = kMissing;   ///< only for a mesh: ranking error against the continuum
 };
 
 Run run_quantity(const Scene& scene, const TruthJudge& judge, const char* integrator, int substeps, double tolerance) {

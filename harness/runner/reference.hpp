@@ -19,7 +19,7 @@ struct ReferenceResult {
   double order_bdf2 = 0, order_conservative = 0;  ///< observed order; NaN if none
   double truth_distance = 0;                      ///< |value - truth| / scale
   double space_error =
-      0;  ///< ranking error against the continuum: of this grid's exact solution or this mesh's finest run
+      0;  ///< ranking error of this grid's exact solution, or of this mesh's finest run, against the continuum
 
   /// Scalars by their names in a run's summary: reference_value, reference_uncertainty, ... truth_space_error.
   std::map<std::string, double> scalars() const;
@@ -34,16 +34,16 @@ struct ReferenceRules {
 };
 
 /// Runs three levels of time steps, each half as long as the one before, with two integrators; the coarsest also with a
-/// tenth of the tolerance. Extrapolation and uncertainty as the grid convergence index of Roache (J. Fluids Eng. 116,
-/// 1994, 405):
+/// tenth of the tolerance. Extrapolation and uncertainty follow the grid convergence index of Roache (J. Fluids Eng.
+/// 116, 1994, 405):
 ///   p = log2((f3 - f2)/(f2 - f1)),  f* = f1 + (f1 - f2)/(2^p - 1),
 ///   U = max(Fs |f1 - f2|/(2^p - 1), |f*_A - f*_B|, |f(tol) - f(tol/10)|),
 /// where f1 is from the finest level, A and B are the integrators, and Fs = 1.25, or Fs = 3 with p = 2 if the observed
 /// p is off by more than 0.5. A shape at rest does not depend on the step: f* = f1, U = max(|f1 - f2|, |f1_A - f1_B|,
 /// tolerance, change of f1 in the last tenth of the run), and no order is observed. Rows of a grid without shear move
 /// alike, so only two of them are run. A triangle mesh has no exact solution of its own; its space_error is the larger
-/// one of both integrators' finest runs. Throws Error if the scene has no reference case, if the build has no solver
-/// `reference`, or if a run of it fails.
+/// error of the two integrators' finest runs. Throws Error if the scene has no reference case, if the build has no
+/// solver `reference`, or if a run of this solver fails.
 ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 
 /// Results for these scenes by their SHA-256. Results missing from `cache` are computed on all cores and added to it,

@@ -19,7 +19,7 @@ using nlohmann::json;
 /// States before the first frame and after every frame.
 using Motion = std::vector<ClothState>;
 
-/// `so_far`, continued by the solver to the scene's end. Throws SolverError if a frame fails.
+/// Continues the motion `so_far` to the scene's end. Throws SolverError if a frame fails.
 Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
   FrameLoop loop(solver, scene, {.first = static_cast<int>(so_far.size()), .frames = scene.time.frames()});
   solver.read_state(so_far.emplace_back());
@@ -28,8 +28,8 @@ Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
   return so_far;
 }
 
-/// Overrides of scenarios/conformance/sheet.json, which has its pins at the ends of one side, and their effect on its
-/// motion.
+/// Overrides of scenarios/conformance/sheet.json, and how they change the motion of its sheet, which is pinned at both
+/// ends of one side.
 struct Relation {
   const char* name;
   std::vector<std::string> overrides;

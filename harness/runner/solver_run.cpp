@@ -35,7 +35,7 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
     if (!l.no_parameter.empty()) j["left_out"].back()["no_parameter"] = l.no_parameter;
   }
   if (plan.substeps > 0) j["substeps"] = plan.substeps;
-  // One per collider, so that readers need no names, which may repeat.
+  // One entry per collider, in the scene's order, because names may repeat.
   for (std::size_t k = 0; k < std::min(plan.contact_margins_m.size(), scene.colliders.size()); ++k) {
     const Collider& c = scene.colliders[k];
     const double stated = plan.contact_margins_m[k];
@@ -161,7 +161,7 @@ bool SolverRun::take_over(const RunRecord& before, double duration_s) {
   if (!before.summary.contains(kUntimed)) return false;
   const bool whole = before.accuracy.time_s.size() == static_cast<std::size_t>(accuracy_frames(duration_s)) + 1;
   if (before.outcome.status == "ok" && !whole) return false;
-  // Concurrent passes share a GPU, but no core: on a GPU this pass may have timed out only because of the others.
+  // Concurrent passes share the GPU (but no CPU core), so a pass on a GPU may have timed out because of the others.
   if (before.outcome.status == "timed_out" && spec_.entry->info.on_gpu) return false;
   outcome_ = before.outcome;
   return true;
@@ -183,7 +183,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
     fail(status, frame);
     try {
       solver_->read_state(state);
-    } catch (const Error& e) {  // the device is lost and gives none
+    } catch (const Error& e) {  // a lost device returns no state
       if (outcome_.status == "ok") outcome_ = {"device_lost", "F3", frame, e.what()};
       return;
     }
@@ -197,7 +197,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
     if (outcome_.status == "ok" && !fault.empty()) outcome_ = {"error", "ok", frame, fault};
     if (outcome_.status == "ok" && metrics.lost())
       outcome_ = {"diverged", "F0", frame, "speed or energy exceeds every bound"};
-    // A pass with pauses may take any time.
+    // The time limit does not apply to a pass that was paused.
     if (outcome_.status == "ok" && rules.run_limit_s > 0 && times_held() == held_before &&
         seconds_since(start) > rules.run_limit_s && frame < frames)
       outcome_ = {"timed_out", "F3", frame,
@@ -266,8 +266,8 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   }
 }
 
-/// The trial's frames again, pipelined within each drop; the clock includes filling and draining the pipeline at the
-/// start and end of a drop.
+/// Runs the trial's frames again, pipelined within each drop; the clock includes filling and draining the pipeline at
+/// the start and end of a drop.
 void SolverRun::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   FrameLoop loop(*solver_, *spec_.scene, frame_rules(rules, trial.frames()));
@@ -281,8 +281,8 @@ void SolverRun::describe(const Rendering& rendering) {
   if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
 }
 
-/// The trial's frames again, each drawn before the next begins; fewer if drawing exceeds the trial's time limit. Each
-/// trial makes its own drawer: the images of all runs of a group would exhaust device memory.
+/// Runs the trial's frames again and draws each before the next begins; fewer frames if drawing exceeds the trial's
+/// time limit. Each trial makes its own drawer: the images of all runs of a group would exhaust device memory.
 void SolverRun::run_rendered(TimedTrial& trial, const TrialRules& rules) {
   solver_->reset();
   const std::unique_ptr<FrameDrawer> drawer = rules.rendering.make(*spec_.scene, *solver_, device_);

@@ -47,9 +47,9 @@ struct TrialRules {
   double accuracy_duration_s = 0.5;  ///< simulated time of the untimed pass
   double run_limit_s = 0;            ///< wall time after which the untimed pass is `timed_out`; 0 = no limit
   double agree =
-      0;  ///< trials end once two or more agree to this: half-range of frame rates over the median; 0 = never
+      0;  ///< no further trials once half-range / median of at least two trials' frame rates is at most this; 0 = never
   bool pipelined = false;    ///< also time a trial's frames without waiting for each, if the solver supports it
-  int profiled_frames = 12;  ///< frames per trial that run again with stage timestamps; 0: none, and no bytes
+  int profiled_frames = 12;  ///< frames per trial that run again with stage timestamps; 0: none, and no byte counts
   Rendering rendering = {};  ///< also time frames with rendering
 };
 

@@ -31,7 +31,7 @@ using nlohmann::json;
 
 constexpr const char* kWhatToDo = "results of both would be mixed; give another --out, or undo the change";
 
-/// If the solver is known, both settings are completed first: a crashed process leaves them as they were given.
+/// If the solver is known, both settings are completed first, because a crashed process stores them as given.
 bool same_settings(const RunSpec& run, const json& stored) {
   if (!run.entry->make) {
     json both = stored;
@@ -57,7 +57,7 @@ fs::path stored_run(const fs::path& folder, const std::string& run) {
   return fs::exists(part) ? part : fs::path();
 }
 
-/// Null if there is none. Another process of a sharded study may finish the run meanwhile, which removes its part file.
+/// Header of a stored run, if any. Another process of a sharded study may finish the run and remove its part file.
 std::optional<RunHeader> stored_header(const fs::path& folder, const std::string& run, fs::path& file) {
   for (int attempt = 0;; ++attempt) {
     file = stored_run(folder, run);

@@ -65,8 +65,8 @@ class GroupRun {
 
  private:
   /// One trial of every run: first all GPU runs, then all CPU runs. Each round starts with a different run, so that no
-  /// run always follows the same neighbour. During CPU runs a GPU goes to sleep, and waking it takes longer than the
-  /// warm-up of a small run: the first GPU run of a round gets a longer warm-up for all of them.
+  /// run always follows the same neighbour. A GPU goes to sleep during CPU runs, and waking it takes longer than the
+  /// warm-up of a small run. Therefore the first GPU run of each round gets a longer warm-up.
   void round(int k) {
     constexpr double kWakeUp = 5;  // normal warm-ups
     for (const bool on_gpu : {true, false}) {
@@ -222,7 +222,7 @@ std::string fault(const Expectation& e, double value) {
   return "";
 }
 
-/// Violations of the motion check, which applies to every scene; a NaN is a violation.
+/// Violations of the motion check, which applies to every scene; a NaN statistic is a violation.
 std::string fault_of_motion(const std::map<std::string, double>& summary) {
   std::string wrong;
   for (const motion_check::Statistic& s : motion_check::statistics()) {

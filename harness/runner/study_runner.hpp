@@ -47,8 +47,8 @@ struct RunResult {
   std::vector<std::string> faults;           ///< violated rules of the harness: stages, counts, validation
 };
 
-/// One sentence for each solver that finished none of its runs, except unsupported ones and those skipped for time. If
-/// there is any, `run` and `study` exit with 1. A run that ends as its scene expects is finished.
+/// One sentence for each solver that finished none of its runs; runs that are unsupported or skipped for time do not
+/// count. If there is any sentence, `run` and `study` exit with 1. A run that ends as its scene expects is finished.
 std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 
 /// Call before anything is written into a study's folder. Throws Error if two runs of the plan have one name. Throws
@@ -57,12 +57,12 @@ std::vector<std::string> solver_faults(const std::vector<RunRecord>&);
 void require_same_runs(const std::filesystem::path& folder, const RunPlan&, bool resume);
 
 /// Executes every run in this process and writes one file each. With `resume`, finished runs are skipped and finished
-/// trials reused; a run stored for another scene, other settings or another version is an Error. Without `resume`, any
-/// stored run is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
+/// trials reused; a run stored for another scene, other settings or another version is an Error. Without `resume`, a
+/// finished run is an Error. Throws Error with ExitCode::Interrupted on Ctrl-C.
 RunResult execute_runs(const RunPlan&, const RunOptions&);
 
-/// As execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above 1,
-/// untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over the
+/// Like execute_runs, but in worker processes. One process interleaves the timed trials of all runs; with `jobs` above
+/// 1, untimed passes come first, on `jobs` workers. Runs that need their own process (`apart`) are distributed over the
 /// workers, the longest first. If a process crashes, or a run makes no frame for too long (solver_limit_s(); if
 /// `apart`, 1.2 x the run's limit + 5 s), the current run is stored as `crashed` or `timed_out` and a new process
 /// continues with the rest. `eye`: image size per eye if the plan renders, otherwise empty.
@@ -84,8 +84,8 @@ std::optional<RunRecord> finished_run(const RunSpec&, const RunOptions&);
 /// (ExactBound), and stability grade 0 if it has a stability block. The last two need outcome "ok". The motion check
 /// applies to every run whose summary has its statistics.
 struct Judgement {
-  /// "pass"; "fail: " and every violated criterion with value and bound; "not measured" if the accuracy pass is shorter
-  /// than the scene and no failure, or if this build cannot measure the scene's contact; "" if the scene has no
+  /// "pass"; "fail: " and every violated criterion with value and bound; "not measured" if a run without failure has an
+  /// accuracy pass shorter than the scene, or if this build cannot measure the scene's contact; "" if the scene has no
   /// criteria and the motion was not checked.
   std::string text;
   /// "expect.<name>" -> 1 pass, 0 fail, NaN not measured; for the summary.

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The last line that a child wrote after the first `from` bytes, shortened; it mostly explains its end.
+/// The last line that a child wrote after the first `from` bytes, shortened; it usually explains why the child ended.
 std::string last_words(const fs::path& log, std::uintmax_t from) {
   std::ifstream in(log);
   in.seekg(static_cast<std::streamoff>(from));

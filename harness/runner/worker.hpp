@@ -32,7 +32,7 @@ int run_child_main(const WorkerFunctions&);
 struct WorkerAnswer {
   nlohmann::json value;
   std::optional<ChildEnd> end = {};
-  std::string last_words = {};  ///< last line of the ended worker's output, if kept; it mostly explains the end
+  std::string last_words = {};  ///< last line of the ended worker's output, if kept; it usually explains why it ended
 };
 
 /// Maximum time [s] of a solver for a frame or a load: $CLOTHBENCH_SOLVER_LIMIT_S, or 900.
@@ -41,9 +41,9 @@ double solver_limit_s();
 nlohmann::json device_to_json(const DeviceOptions&);
 DeviceOptions device_from_json(const nlohmann::json&);
 
-/// A child process, `program run-child …`, that calls solvers on behalf of this one; commands call solvers in no other
-/// way. One child answers many requests, because creating a Vulkan device costs as much as a small run; after a crash
-/// it is replaced. Not thread-safe.
+/// A child process, `program run-child …`, that calls solvers on behalf of this one. Commands call solvers in no other
+/// way, except with --in-process. One child answers many requests, because creating a Vulkan device costs as much as a
+/// small run; after a crash a new child replaces it. Not thread-safe.
 class Worker {
  public:
   /// `program`: empty for this program. `scratch`: a folder of this worker for a file with the child's output, whose
@@ -72,7 +72,7 @@ class Worker {
   std::uintmax_t said_ = 0;  ///< bytes of the child's output before the request
 };
 
-/// Executes `work(request)` with the worker's function of that name, or in this process with --in-process.
+/// Calls the worker's function of that name; with --in-process, calls `work(request)` in this process instead.
 WorkerAnswer guarded(Worker&, const std::string& function, const nlohmann::json& request,
                      const std::function<nlohmann::json(const nlohmann::json&)>& work);
 

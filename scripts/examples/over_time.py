@@ -1,4 +1,4 @@
-"""How does a quantity go, frame by frame? QUANTITY=stretch_mean_positive for another (`clothbench list metrics`). Draws over_time.png."""
+"""How does a quantity change over time? QUANTITY=stretch_mean_positive selects another one (`clothbench list metrics`). Draws over_time.png."""
 import os
 
 import matplotlib.pyplot as plt

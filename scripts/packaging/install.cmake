@@ -1,5 +1,5 @@
-# What `cmake --install` copies, and where Debian expects each thing. The tree can be moved: the program finds share/clothbench from where
-# it lies itself (harness/base/data_folder), the CMake package its header.
+# Files that `cmake --install` copies, to the folders that Debian expects. The tree can be moved: the program finds share/clothbench relative
+# to its own location (harness/base/data_folder), and so does the CMake package with the header.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -13,7 +13,7 @@ install(DIRECTORY scenarios DESTINATION ${data})
 install(DIRECTORY results/baselines DESTINATION ${data}/results)
 install(FILES results/paper-table3.json DESTINATION ${data}/results)
 install(PROGRAMS scripts/fetch-assets.sh scripts/slurm_study.sh DESTINATION ${data}/scripts)
-# The program holds both too; where there was no Node to bundle them, there are none.
+# The program contains both files, too. A build without Node, which bundles them, has neither.
 install(FILES ${CMAKE_BINARY_DIR}/web/template.html ${CMAKE_BINARY_DIR}/web/figures.cjs DESTINATION ${data}/page OPTIONAL)
 install(FILES scripts/assets-package.json scripts/assets-package-lock.json DESTINATION ${data}/scripts)
 
@@ -28,7 +28,7 @@ install(EXPORT clothbench NAMESPACE clothbench:: FILE clothbenchConfig.cmake DES
 write_basic_package_version_file(${generated}/clothbenchConfigVersion.cmake COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${generated}/clothbenchConfigVersion.cmake DESTINATION ${package})
 
-# A time of its own would make the file differ from build to build.
+# MTIME 0, because the time of the build would make the file differ from build to build.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
 file(ARCHIVE_CREATE OUTPUT ${generated}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw
   COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)

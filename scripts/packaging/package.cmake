@@ -1,4 +1,4 @@
-# `cpack -G DEB` and `cpack -G TGZ` in the build folder. The .deb needs dpkg-dev and file, which tell the libraries it depends on.
+# `cpack -G DEB` and `cpack -G TGZ` in the build folder. For the .deb, install dpkg-dev and file, which determine its dependencies.
 set(CLOTHBENCH_MAINTAINER "The clothbench authors <clothbench@clothbench.invalid>" CACHE STRING "Maintainer named in the packages")
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_NAME clothbench)
@@ -18,11 +18,11 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-# Libraries that are linked are found out; these are opened or called when the program runs. Half of the solvers need a Vulkan driver.
+# SHLIBDEPS finds the linked libraries; the packages below are loaded or called at run time. Half of the solvers need a Vulkan driver.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "mesa-vulkan-drivers | vulkan-icd")
-# A report's figures; its scripts and examples.
+# For a report's figures, and for Python scripts that read results.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nodejs, librsvg2-bin, python3-matplotlib, python3-h5py")
-# Movies; scanned rooms and hands; headsets; plugins; studies on a cluster.
+# For movies, scanned rooms and hands, headsets, plugins, studies on a cluster, and views of results.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, npm, libopenxr-loader1, cmake, slurm-client, paraview")
 include(CPack)

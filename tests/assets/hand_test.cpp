@@ -42,8 +42,8 @@ TEST_P(Hands, SkinningFollowsARigidMotion) {
   EXPECT_LT(worst, 1e-6 * 0.2);
 }
 
-// Volumes in cm^3 by a numpy program without welding or palm frame, for iwer 2.5.0 and WebXR assets 1.0.20. Linear
-// blend skinning loses volume at bent joints.
+// Volumes in cm^3, computed by a numpy program without welding or palm frame, for iwer 2.5.0 and WebXR assets 1.0.20.
+// Linear blend skinning loses volume at bent joints.
 TEST_P(Hands, VolumeOfPoses) {
   NEED_NPM_ASSETS(source);
   const Hand hand = open_hand(source, GetParam());

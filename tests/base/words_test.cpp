@@ -93,7 +93,7 @@ TEST(ChildProcess, IsKilled) {
   const ChildEnd end = child.kill();
   EXPECT_EQ(end.how, ChildEnd::How::TimedOut);
   EXPECT_LT(end.wall_s, 30);
-  EXPECT_EQ(child.wait().how, ChildEnd::How::TimedOut) << "an end is an end";
+  EXPECT_EQ(child.wait().how, ChildEnd::How::TimedOut) << "waiting after the kill reports the same end";
 }
 
 TEST(ChildProcess, AnswersOnItsSocketUntilItEnds) {
@@ -106,7 +106,7 @@ TEST(ChildProcess, AnswersOnItsSocketUntilItEnds) {
   EXPECT_EQ(byte, 'y');
   EXPECT_EQ(child.wait().code, 0);
   EXPECT_EQ(child.read(byte, 50ms), ChildProcess::Heard::End);
-  EXPECT_FALSE(child.write("more\n")) << "an error and no signal";
+  EXPECT_FALSE(child.write("more\n")) << "the write fails, but raises no signal";
 }
 
 TEST(ChildProcess, OneThatIsNotThereIsAnError) { EXPECT_THROW(ChildProcess({"no-such-program-anywhere"}), Error); }

@@ -66,7 +66,7 @@ TEST_P(Bullet, LiesOnAPlaneAtTheMargin) {
 }
 
 TEST_P(Bullet, TakesTheMarginAskedFor) {
-  // 4 mm needs steps below 4 mm: 0.7 m/s over 72 Hz and 16 substeps is 0.6 mm.
+  // An offset of 4 mm needs smaller displacements per substep: 0.7 m/s at 72 Hz with 16 substeps gives 0.6 mm.
   const Scene s = with_collider(falling(0.03, 9), plane());
   const auto solver = make_solver(GetParam(), {{"collision_margin_m", 0.0}, {"substeps", 16}});
   const ClothState state = from_start(*solver, s, 72);
@@ -110,7 +110,7 @@ TEST_P(Bullet, StaysOnAnOpenMesh) {
 }
 
 /// A square or three capsules that hit a hanging cloth from behind and stop 0.15 m past it: a hanging cloth yields. (A
-/// cloth stretched between two edges does not, and bullet-soft lets the square through.)
+/// cloth stretched between two edges does not yield, and bullet-soft lets the square through.)
 TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
   for (bool capsules : {false, true}) {
     Collider c = square(0.1, true);
@@ -137,7 +137,7 @@ TEST_P(Bullet, IsPushedByAMovingMeshAndByCapsules) {
     for (std::size_t v = 0; v < 17 * 17; ++v) {
       const Vec3 p = vertex_at(state.position, v);
       if (!(std::abs(p[0]) < 0.08 && std::abs(p[1] + 0.35) < 0.05)) continue;
-      EXPECT_GT(p[2], way(60)) << v << " is before what pushes it, " << (capsules ? "capsules" : "square");
+      EXPECT_GT(p[2], way(60)) << v << " must be in front of the " << (capsules ? "capsules" : "square");
       ++before;
     }
     EXPECT_GT(before, 10);

@@ -75,7 +75,8 @@ RunRecord drawn_run(const Spread& s, double frame_s, std::mt19937& random) {
   return r;
 }
 
-/// Fraction of `repeats` comparisons of `count` processes each, of 1 ms and `frame_s` per frame, that report a change.
+/// Fraction of `repeats` comparisons that report a change: `count` processes at 1 ms per frame against as many at
+/// `frame_s` per frame.
 double called(const Spread& s, std::size_t count, double frame_s, int repeats, std::mt19937& random) {
   int n = 0;
   for (int k = 0; k < repeats; ++k) {
@@ -95,8 +96,7 @@ double called(const Spread& s, std::size_t count, double frame_s, int repeats, s
 constexpr Spread kSpreads[] = {{0, 0.01, 0.05},    {0.01, 0.01, 0.05}, {0.05, 0.01, 0.05},
                                {0.02, 0.005, 0.3}, {0.2, 0.01, 0.01},  {0.01, 0.01, 0.05, true}};
 
-/// 5 % +- 2 % of all comparisons of one build with itself report a difference, however processes, trials and frames
-/// vary.
+/// 5 % +- 2 % of comparisons of a build with itself report a difference, however processes, trials and frames vary.
 TEST(CompareTimes, FalseAlarmsAreAsRareAsStated) {
   std::mt19937 random(11);
   for (const std::size_t count : {std::size_t{5}, std::size_t{6}})
@@ -106,8 +106,8 @@ TEST(CompareTimes, FalseAlarmsAreAsRareAsStated) {
     }
 }
 
-/// 5 processes per side find a change of twice the standard deviation of processes in four of five comparisons, and a
-/// change of three times almost always; more processes find more.
+/// With 5 processes per side, about four of five comparisons find a change of twice the standard deviation between
+/// processes, and almost all find a change of three times it. With 8 processes almost all find the smaller change.
 TEST(CompareTimes, FindsChangesOfTheSizeStated) {
   std::mt19937 random(12);
   const Spread s = {0.02, 0.001, 0.001};

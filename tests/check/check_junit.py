@@ -1,4 +1,4 @@
-"""Parses a JUnit file and compares it with what it should say.
+"""Parses a JUnit file and compares it with the expected content.
 
 usage: check_junit.py CHECK.xml EXPECTED.json
 """

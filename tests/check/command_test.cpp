@@ -100,7 +100,7 @@ TEST_F(CheckCommand, BadInputExitsTwo) {
   std::ofstream(baseline()) << bad.dump();
   EXPECT_EQ(check(), 2);
   EXPECT_NE(text_.find("baseline.json: /runs/1/scalars/depth_max"), std::string::npos) << text_;
-  EXPECT_EQ(check("--update"), 2) << "what cannot be read is not written over";
+  EXPECT_EQ(check("--update"), 2) << "an unreadable baseline is not overwritten";
   EXPECT_EQ(json::parse(content_of(baseline())), bad);
 }
 
@@ -127,7 +127,7 @@ TEST_F(CheckCommand, PositionsAreLookedAt) {
     EXPECT_EQ(check(), 1) << text_;
     EXPECT_NE(text_.find("is not finite"), std::string::npos) << text_;
     EXPECT_NE(text_.find("sweep__xpbd__default"), std::string::npos) << text_;
-    EXPECT_EQ(check("--update"), 2) << "no baseline of it";
+    EXPECT_EQ(check("--update"), 2) << "no baseline is made from it";
     EXPECT_EQ(command("compare " + run().string() + " " + run().string()), 2) << text_;
     EXPECT_NE(text_.find("is not finite"), std::string::npos) << text_;
   }

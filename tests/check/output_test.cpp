@@ -55,14 +55,14 @@ TEST(Annotations, AreALinePerFailure) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
   EXPECT_TRUE(text.starts_with("::error::desk__bad")) << text;
   EXPECT_NE(text.find("100 %25: d]]>%0A%0Anext"), std::string::npos) << text;
-  EXPECT_EQ(text.find("stretch_max"), std::string::npos) << "an improvement is none";
+  EXPECT_EQ(text.find("stretch_max"), std::string::npos) << "an improvement is not annotated";
 }
 
 TEST(Console, ShowsWhatDiffersAndAVerdict) {
   const std::string text = check_text(sample(), "base.json");
   EXPECT_NE(text.find("check FAILED: 4 runs: 1 failed, 1 improved, 1 new, 1 as in base.json\n"), std::string::npos)
       << text;
-  EXPECT_EQ(text.find("good"), std::string::npos) << "what is as it was is not listed";
+  EXPECT_EQ(text.find("good"), std::string::npos) << "an unchanged run is not listed";
   EXPECT_LT(text.find("bad"), text.find("better"));
   EXPECT_LT(text.find("better"), text.find("newcomer"));
   EXPECT_NE(text.find("100 %"), std::string::npos) << "the solver's own message";
@@ -159,7 +159,7 @@ TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(with_change("/runs/2/stages/0", 1).find("/runs/2/stages/0"), std::string::npos);
   EXPECT_NE(with_change("/format", "clothbench-run").find("/format"), std::string::npos);
   EXPECT_NE(with_change("/format_version", 2).find("/format_version"), std::string::npos);
-  EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "nothing to hold results to";
+  EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "no runs to compare with";
   EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run occurs twice"), std::string::npos);
   json bad = good;
   bad["runs"][1].erase("scalars");

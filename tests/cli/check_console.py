@@ -1,5 +1,5 @@
-"""usage: check_console.py CLOTHBENCH SOURCE: what people and machines see: a live line only on a terminal, JSON and examples for
-every command."""
+"""usage: check_console.py CLOTHBENCH SOURCE: output for people and for programs: a live line only on a terminal, JSON and examples
+for every command."""
 import fcntl
 import json
 import os
@@ -34,7 +34,7 @@ class Console(unittest.TestCase):
         return done.stdout, done.stderr
 
     def on_terminal(self, *words, **environment):
-        """stdout, stderr and exit code of a command that has a terminal for each."""
+        """stdout, stderr and exit code of a command whose output streams are terminals."""
         ends = [pty.openpty() for _ in range(2)]
         for ours, _ in ends:
             fcntl.ioctl(ours, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
@@ -65,7 +65,7 @@ class Console(unittest.TestCase):
         self.assertTrue(any(re.match(r"\[\d+/\d+\] \S+", line) for line in lines), lines)
         self.assertTrue(any(re.search(r"about \d+ (s|min) left$", line) for line in lines), lines)
         self.assertLess(max(map(len, lines)), COLUMNS)
-        self.assertEqual(lines[-1], "", "nothing of it is left")
+        self.assertEqual(lines[-1], "", "the live line is cleared at the end")
         self.assertEqual(self.piped(*study, "--out", self.out + "-2")[1], "")
 
     def test_lists_and_help_fit_the_width(self):

@@ -137,7 +137,7 @@ TEST_F(Cli, SolversThatWereNotBuiltAreRows) {
   EXPECT_FALSE(absent.header.environment.contains("solver_features"));
   const RunRecord here = read_run(out / "sphere-drop__ballistic__default.h5");
   EXPECT_EQ(here.outcome.status, "ok");
-  EXPECT_EQ(here.accuracy.time_s.size(), 19u) << "the whole of the scene as this solver runs it";
+  EXPECT_EQ(here.accuracy.time_s.size(), 19u) << "all frames of the scene, and the start";
   EXPECT_EQ(here.trials.at(0).frames(), 18) << "frames 0: from beginning to end";
   EXPECT_TRUE(here.header.environment.at("solver_features").at("ignores").is_array());
   const std::string report = (dir_ / "report").string();
@@ -206,14 +206,14 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
   j["gravity_m_per_s2"] = {0, -1, 0};
   std::ofstream(scene) << j.dump();
   const std::string manifest = content_of(out / "study.json"), manifest_of_run = content_of(one / "study.json");
-  // Run 1 has not been executed: it would be added to runs of another scene.
+  // Run 1 has not been executed yet; with --job 1 it would be added to runs of another scene.
   for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
     const Answer a = command(words);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;
     EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
   }
-  EXPECT_EQ(command(run).code, 2) << "finished, and not to be gone on with";
+  EXPECT_EQ(command(run).code, 2) << "a finished run is not continued";
   EXPECT_EQ(content_of(out / "study.json"), manifest);
   EXPECT_EQ(content_of(one / "study.json"), manifest_of_run);
   EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 3)
@@ -231,7 +231,7 @@ TEST_F(Cli, KilledAnywhereResumeCompletes) {
 
 TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a sanitizer's build is not what is timed";
+  GTEST_SKIP() << "builds with sanitizers are not timed";
 #endif
   const fs::path out = dir_ / "run";
   ASSERT_EQ(

@@ -120,7 +120,7 @@ TEST_F(DrawnStudy, RunsResumesReportsAndItsScenesRunAgain) {
   const Answer first = command(study + " --count 2 --jobs 2");
   ASSERT_EQ(first.code, 0) << first.text;
   EXPECT_NE(first.text.find("contact-5-stretch: speed"), std::string::npos) << first.text;
-  EXPECT_NE(first.text.find("0 of 2 runs passed"), std::string::npos) << "what touches nothing passes nothing";
+  EXPECT_NE(first.text.find("0 of 2 runs passed"), std::string::npos) << "without contact no scene is passed";
   const Answer more = command(study + " --count 3 --resume");
   ASSERT_EQ(more.code, 0) << more.text;
   EXPECT_NE(more.text.find("0 of 3 runs passed"), std::string::npos) << more.text;
@@ -128,7 +128,7 @@ TEST_F(DrawnStudy, RunsResumesReportsAndItsScenesRunAgain) {
   ASSERT_EQ(command("report " + out() + " -o " + report.string()).code, 0);
   const std::string tables = content_of(report / "report.md");
   EXPECT_NE(tables.find("stretch (procedural)"), std::string::npos) << tables;
-  EXPECT_NE(tables.find("box (procedural)"), std::string::npos) << "every row says so\n" << tables;
+  EXPECT_NE(tables.find("box (procedural)"), std::string::npos) << "every row says \"procedural\"\n" << tables;
   EXPECT_NE(tables.find("| ballistic | all (procedural) |"), std::string::npos) << tables;
   EXPECT_NE(tables.find("0/3 ("), std::string::npos) << tables;
 

@@ -1,4 +1,4 @@
-"""usage: check_runs.py CLOTHBENCH: `study --list-jobs` and `--job`: parts of a study, computed apart, are the study."""
+"""usage: check_runs.py CLOTHBENCH: `study --list-jobs` and `--job`: parts of a study, run in separate processes, complete it."""
 import json
 import os
 import subprocess
@@ -27,8 +27,8 @@ with tempfile.TemporaryDirectory() as home:
     done = {f[:-3] for f in os.listdir(out) if f.endswith(".h5")}
     assert done == {names[1]} and made["ok"] == len(made["runs"]) == 1 and made["runs"][0]["summary"], (done, made)
     with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
-        assert json.load(text)["runs"] == names, "the folder says what belongs to it"
-    # The other runs concurrently in two processes; one of them begins with a run that exists already.
+        assert json.load(text)["runs"] == names, "study.json lists all runs"
+    # Two concurrent processes compute the other runs; one process begins with a run that exists already.
     parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--job", c]) for c in ("0-1", f"2-{len(names) - 1}")]
     assert [p.wait() for p in parts] == [0, 0]
     assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(names)

@@ -1,7 +1,7 @@
 """usage: check_slurm.py CLOTHBENCH SOURCE: a study as a Slurm array, on a Slurm of one node that this script starts.
 
-Needs to be root, with Debian's slurm-wlm and munge installed; else it says so and counts as skipped. Everything lives in a
-folder of its own and is stopped by process number.
+Needs root, and Debian's slurm-wlm and munge; otherwise it prints what is missing and counts as skipped. All files are in a
+temporary folder, and all processes are stopped by process number.
 """
 import json
 import os

@@ -34,7 +34,7 @@ bool chosen(const std::string& scene, std::size_t combination) {
   return (combination + shift) % 12 == 0;
 }
 
-/// Skipped combinations; capstan-hold and cantilever-10 need the same features.
+/// Combinations that are skipped because they take long; capstan-hold and cantilever-10 test the same features.
 bool takes_long(const std::string& solver, const std::string& scene) {
   if (scene == "validation/capstan-slip") return true;  // a cylinder of 384 sides, minutes on a software device
   return solver == "bullet-deformable" && (scene == "validation/cantilever-1" || scene == "validation/cantilever-100");
@@ -118,7 +118,7 @@ const std::map<std::string, double> kMaxSkipped = {
     {"bullet-deformable", 0.4}, {"reference", 0.74}, {"example-xpbd", 0.83}};
 
 TEST(ConformanceSkips, AreNoMoreThanStated) {
-  std::map<std::string, Scene> scenes;  // what a scene needs doesn't depend on the grid
+  std::map<std::string, Scene> scenes;  // needed features do not depend on the grid
   const std::vector<Case> all = cases();
   for (const SolverEntry& e : under_test()) {
     ASSERT_TRUE(kMaxSkipped.contains(e.info.name)) << e.info.name;

@@ -86,7 +86,7 @@ TEST(Relations, EachFaultBreaksItsRelation) {
   for (const auto& [fault, relation] : kFaults)
     EXPECT_NE(found(fault, relation).find("a vertex is"), std::string::npos) << relation;
   EXPECT_EQ(found(Fault::Numbering, "mirror"), "pass");
-  EXPECT_EQ(found(Fault::Counts, "restart"), "unsupported") << "it says that it cannot";
+  EXPECT_EQ(found(Fault::Counts, "restart"), "unsupported") << "the solver reports that it cannot restart";
 }
 
 TEST(Relations, ANanAtOneVertexIsNotLostAmongTheOthers) {

@@ -11,7 +11,7 @@
 namespace clothbench::contact {
 namespace {
 
-/// By solid angles (van Oosterom & Strackee 1983, eq. 8), independent of ray crossings.
+/// Winding number from solid angles (van Oosterom & Strackee 1983, eq. 8), independent of ray crossings.
 double winding_number(const Point<3>& p, const TriangleTree& mesh) {
   double sum = 0;
   for (const Simplex<3>& v : mesh.triangles()) {
@@ -24,7 +24,7 @@ double winding_number(const Point<3>& p, const TriangleTree& mesh) {
 
 TEST(Inside, AgreesWithSolidAngles) {
   const Mesh ball = bumpy_ball(10, 0.2);
-  // A second one through the first: the winding number is 2 where both are.
+  // Two meshes that intersect: the winding number is 2 where they overlap.
   const Mesh both = together(ball, ball.moved({0.15, 0.02, 0.01}));
   const TriangleTree tree(both.view());
   std::mt19937 random(5);
@@ -102,7 +102,7 @@ void nearly_singular() {
     std::array<std::array<long, N>, N> m;
     for (auto& row : m)
       for (long& x : row) x = entry(random);
-    // The last row is a small combination of the others, give or take 1.
+    // The last row is a linear combination of the others with small coefficients, plus or minus 1.
     for (int j = 0; j < N; ++j) {
       m[N - 1][j] = trial % 2 ? small(random) : 0;
       for (int i = 0; i < N - 1; ++i) m[N - 1][j] += (i + 1) * m[i][j];
@@ -137,7 +137,7 @@ TEST(Predicates, ExtremeSizes) {
   }
 }
 
-// One end in the plane, one beyond it, all around a fan: exactly one triangle is crossed by a path through the hub.
+// A path through any point of a flat fan crosses exactly one triangle, and exactly one half of the path crosses it.
 TEST(Predicates, PathThroughAVertexMeetsOneTriangleOfTheFan) {
   const Point<3> hub(0, 0, 0);
   const Point<3> rim[6] = {{1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {1, -1, 0}};
@@ -164,7 +164,7 @@ TEST(Predicates, Degenerate) {
   EXPECT_EQ(crossing<3>(Point<3>(0, 0, 1), Point<3>(1, 2, -3), {a, a, b}), 0);
 }
 
-// Cloth against itself: lengths computed by hand, and the same pairs as a test of all pairs finds.
+// Self-contact: contour lengths are compared with values computed by hand, and pairs with a brute-force search.
 
 TEST(SelfContour, FlatRolledAndFoldedClothCrossesNowhere) {
   const Mesh flat = sheet(12, 12, Point<3>(0, 0, 0), Point<3>(1, 0, 0), Point<3>(0, 0, 1));

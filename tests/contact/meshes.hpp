@@ -103,7 +103,7 @@ inline ContactSample against(const Mesh& cloth, const Mesh& object, bool has_ins
   return mesh_contact(cloth.view(), edges_of(cloth.triangles), TriangleTree(object.view()), has_inside);
 }
 
-/// Both in one mesh.
+/// Both meshes in one.
 inline Mesh together(const Mesh& a, const Mesh& b) {
   Mesh all = a;
   const auto first = static_cast<std::uint32_t>(a.positions.size() / 3);

@@ -43,7 +43,7 @@ TEST(Robustness, DegenerateAndUnsharedTrianglesChangeNothing) {
     EXPECT_GT(p[i], 0) << i;
     EXPECT_NEAR(p[i], q[i], 1e-12 * p[i]) << i;
   }
-  // A degenerate cell on the cloth's side too.
+  // The cloth may have a degenerate cell, too.
   Mesh collapsed = cloth;
   for (int k = 0; k < 3; ++k) collapsed.positions[3 * 200 + k] = collapsed.positions[3 * 201 + k];
   for (const double x : fields(against(collapsed, ball))) EXPECT_TRUE(std::isfinite(x));
@@ -64,7 +64,7 @@ TEST(Robustness, NotFiniteIsNaN) {
   for (const double x : fields(against(burst, ball))) EXPECT_FALSE(std::isnan(x)) << "far too large, but finite";
 }
 
-// A power of two changes only exponents.
+// Scaling by a power of two changes only exponents.
 TEST(Robustness, ScaleInvarianceBitForBit) {
   const Mesh cloth = wavy(20), ball = bumpy_ball(10, 0.15);
   const ContactSample one = against(cloth, ball);
@@ -109,7 +109,7 @@ TEST(Robustness, EmptyAndDamagedObjects) {
   EXPECT_PRED2(mentions, refusal([&] { TriangleTree tree(bad_index.view()); }), "triangle 5 names vertex 100000");
 }
 
-// A flat sheet pushed by d into a sphere of radius R: circle of radius a = sqrt(2Rd - d^2).
+// A flat sheet pushed by d into a sphere of radius R: the contour is a circle of radius sqrt(2Rd - d^2).
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.1;
@@ -136,7 +136,7 @@ ContactSample mesh_sample(int level, double d) {
   return against(cloth, object);
 }
 
-/// Three levels, each with half the resolution: close to the exact value, with observed order 2 +- 0.3.
+/// Three levels, each with twice the resolution of the one before: observed order 2 +- 0.3.
 TEST(UnitNumbers, SphereMesh) {
   for (const double d : {0.005, 0.01, 0.02}) {
     const double exact = exact_contour(d);
@@ -148,8 +148,8 @@ TEST(UnitNumbers, SphereMesh) {
   }
 }
 
-/// The contour of a capsule's triangles lies between the contour of the capsule and that of one whose radius is smaller
-/// by the stated error.
+/// The contour of a capsule's triangles is at most as long as the exact capsule's contour, and at least as long as the
+/// contour of a capsule whose radius is smaller by the stated error.
 void expect_contour(double found, double at_radius, double at_less, const char* what) {
   EXPECT_LE(found, at_radius * (1 + 1e-12)) << what;
   EXPECT_GE(found, at_less * (1 - kCapsuleError)) << what;
@@ -211,7 +211,7 @@ TEST(UnitNumbers, UnionOfCapsules) {
               0.01 * length({{a, b, kRadius}}));
 }
 
-// A fingertip smaller than a cloth triangle and between its vertices, which cannot detect it.
+// A fingertip inside a larger cloth triangle: tests of the triangle's vertices cannot detect it.
 TEST(UnitNumbers, FingertipInsideOneTriangle) {
   const Mesh cloth = sheet(2, 2, {-0.5, 0, -0.5}, {0, 0, 1}, {1, 0, 0});
   const double r = 0.02, d = 0.005;

@@ -20,7 +20,7 @@ class Watched {
     counts_.assign(cloth.positions.size() / 3, 0);
   }
 
-  /// Fraction of the vertices that are on the other side than at the start.
+  /// Fraction of vertices that are on a different side than at the start.
   double move(const Mesh& to) {
     contour_m_ = contour(to.view(), tree_).length_m;
     const auto step = proven_crossings(cloth_.positions, to.positions, object_.view(), tree_, links_);
@@ -41,8 +41,8 @@ class Watched {
   double contour_m_ = 0;
 };
 
-// With an even number of cells, a row of vertices lies in the plane of the patch; z = 0 is along edges of an even
-// patch.
+// If the curtain has an even number of cells, a row of its vertices lies in the plane of the patch. If the patch has an
+// even number of cells, a curtain at z = 0 lies along edges of the patch.
 TEST(Tunnel, CurtainLoweredHalfWayThroughAPatch) {
   for (const int cells : {31, 32, 33})
     for (const int patch_cells : {1, 2, 5, 8})
@@ -119,7 +119,7 @@ TEST(Tunnel, ALevelClothThatFallsThroughCounts) {
   EXPECT_NEAR(through, inside / 169.0, 1e-12);
 }
 
-// Equal motion between frames, but through the patch, 10 cm inside the rim.
+// The same motion between frames as before, but 10 cm inside the rim, so that the cloth passes through the patch.
 TEST(Tunnel, ClothThatIsPulledThroughCounts) {
   Watched w(patch(5), sliding_off(0).moved({-0.1, 0, 0}));
   double last = 0;
@@ -156,8 +156,8 @@ TEST(Tunnel, LatticePathsThroughAClosedMeshKeepTheBalance) {
   }
 }
 
-// Turning, shrinking, jerking about: whatever a closed mesh does, the points inside at the end are those that crossed
-// once more inwards than outwards.
+// However a closed mesh rotates, deforms and jumps, a point is inside at the end if and only if it has crossed inwards
+// once more than outwards.
 TEST(Tunnel, ClosedMeshThatTurnsAndDeforms) {
   const Mesh cloth = sheet(20, 20, {-0.5, -0.5, 0.01}, {1, 0, 0}, {0, 1, 0});
   const Mesh ball = octasphere(8, 0.3);

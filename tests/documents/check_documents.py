@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that every relative link of a document leads to a file, and to a heading of it where it names one.
+"""Checks that every relative link of a document leads to an existing file and, if the link names a heading, to that heading.
 
 Prints one line per fault and exits with 1.
 """

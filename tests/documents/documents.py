@@ -1,4 +1,4 @@
-"""What the checks of documents share: which documents there are, and the shell commands in them."""
+"""Shared by the checks of documents: the list of documents, and the shell commands in them."""
 import dataclasses
 import re
 import subprocess
@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 # Files that the program writes, or that grow with every release.
 GENERATED = re.compile(r"^(CHANGELOG\.md|harness/metrics/REGISTRY\.md|results/reference/.*(?<!README)\.md)$")
-# A fenced block, after a mark such as <!-- needs hardware: a headset --> if it has one.
+# A fenced block, with the mark before it, if any, such as <!-- needs hardware: a headset -->.
 BLOCK = re.compile(r"^(?:[ ]*<!-- needs (hardware|network|root): (.+?) -->\n)?([ ]*)```(?:sh|bash)\n(.*?)^\3```", flags=re.M | re.S)
 
 
@@ -35,7 +35,7 @@ class Command:
     document: str
     line: int
     text: str  # without its comment
-    mark: str  # "hardware", "network" or "root" where it cannot be run here, else empty
+    mark: str  # "hardware", "network" or "root" if it cannot be run here, otherwise empty
 
     @property
     def key(self):
@@ -57,7 +57,7 @@ def without_comment(text):
 
 
 def commands_of(name, text):
-    """The commands of the fenced sh blocks, in order. One may go on over several lines."""
+    """The commands of the fenced sh blocks, in order. A command may span several lines."""
     for block in BLOCK.finditer(text):
         pending = ""
         first = line = text.count("\n", 0, block.start(4)) + 1

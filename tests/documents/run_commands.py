@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the shell commands of the documents: each in a copy of the tree, in order, as it stands or in its short form.
+"""Runs the shell commands of each document in order, in a copy of the tree; each command runs unchanged or in a short form.
 
 usage: run_commands.py CLOTHBENCH NULL_XR_RUNTIME.json [--only PREFIX] [--except PREFIX] [--times]
 
-CLOTHBENCH lies in its build folder. commands.txt gives the short forms, and the commands that a stage of CI runs; a document marks what
-needs hardware, the network or root. Prints one line a fault and exits with 1.
+CLOTHBENCH must be in its build folder. commands.txt gives the short forms, and the commands that a stage of CI runs. A document marks
+commands that need hardware, the network or root. Prints one line per fault and exits with 1.
 """
 import argparse
 import collections
@@ -21,7 +21,7 @@ from pathlib import Path
 from documents import ROOT, all_commands, tracked
 
 TABLE = Path(__file__).with_name("commands.txt")
-MOST_SECONDS = 60  # of a command
+MOST_SECONDS = 60  # maximum for one command
 # Files that no documented command reads; the published results are large and used only in their own documents.
 ASIDE = re.compile(r"^(tests/|results/reference/.*\.(?!md$)\w+$)")
 ASIDE_OF_RESULTS = re.compile(r"^tests/")
@@ -44,7 +44,7 @@ def table():
 
 
 def scripts_of_ci():
-    """.ci/run and every script that it runs, or that one of those runs."""
+    """.ci/run and every script that it runs, directly or through another script."""
     found, new = set(), {".ci/run"}
     while new:
         name = new.pop()
@@ -99,7 +99,7 @@ def run_document(name, commands, arguments):
             if status != "0":
                 fault = f"`{text}`: {status}\n" + log.read_text(encoding="utf-8", errors="replace")[-2000:]
             elif took > MOST_SECONDS:
-                fault = f"`{text}`: {took:.0f} s; at most {MOST_SECONDS}: it needs a short form in {TABLE.name}"
+                fault = f"`{text}`: {took:.0f} s; expected at most {MOST_SECONDS}; add a short form to {TABLE.name}"
             yield command, took, fault
             if status != "0":
                 return
@@ -109,8 +109,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("clothbench", type=lambda p: Path(p).resolve())
     parser.add_argument("runtime", type=lambda p: Path(p).resolve())
-    parser.add_argument("--only", default="", help="documents whose names begin so")
-    parser.add_argument("--except", dest="but", help="all documents but those")
+    parser.add_argument("--only", default="", help="run only documents whose names start with PREFIX")
+    parser.add_argument("--except", dest="but", help="skip documents whose names start with PREFIX")
     parser.add_argument("--times", action="store_true")
     arguments = parser.parse_args()
     rows, used, faults = table(), set(), []
@@ -122,7 +122,7 @@ def main():
         if command.mark:
             counts[f"needs {command.mark}"] += 1
             if kind:
-                faults.append(f"{command.document}:{command.line}: marked as not to be run, and listed in {TABLE.name}")
+                faults.append(f"{command.document}:{command.line}: marked as not to be run, but listed in {TABLE.name}")
         elif kind == "@":
             counts["run by a stage of CI"] += 1
             if fault := stage_fault(what):

@@ -1,4 +1,4 @@
-"""usage: check_examples.py CLOTHBENCH MAKE_SAMPLE SOURCE: every script in scripts/examples answers its question."""
+"""usage: check_examples.py CLOTHBENCH MAKE_SAMPLE SOURCE: every script in scripts/examples answers the question in its docstring."""
 import pathlib
 import subprocess
 import sys

@@ -52,7 +52,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
   }
   void TearDown() override { faults::disarm(); }
 
-  /// Without an existing device, so that creating one is part of the run.
+  /// Discards the existing device, so that creating one is part of the run.
   static void forget_device() { vulkan::Device::get({})->mark_lost(); }
 
   RunResult run(const std::string& folder, bool resume = false) {
@@ -65,7 +65,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
 
   static void expect_same(const RunRecord& a, const RunRecord& b) {
     ASSERT_EQ(a.accuracy.position.size(), b.accuracy.position.size());
-    // paper's atomic sums have no fixed order: differences of a few units in the last place of a metre.
+    // paper's atomic sums have no fixed order, so positions may differ by some float32 rounding steps of coordinates.
     const float off = std::string(GetParam()) == "paper" ? 1e-5F : 0;
     for (std::size_t k = 0; k < a.accuracy.position.size(); ++k)
       ASSERT_LE(std::abs(a.accuracy.position[k] - b.accuracy.position[k]), off) << "number " << k;
@@ -89,7 +89,7 @@ class Faults : public WithFolder, public ::testing::WithParamInterface<const cha
     const std::string failed = faults::failed_call();
     faults::disarm();
     SCOPED_TRACE(failed + ", call " + std::to_string(call) + " of the run, gave " + std::to_string(result) +
-                 (sticky ? " and so on" : ""));
+                 (sticky ? ", like every later call" : ""));
     ASSERT_FALSE(failed.empty());
     if (error.empty()) {
       ASSERT_EQ(got.files.size(), 1u);

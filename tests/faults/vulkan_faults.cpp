@@ -55,8 +55,8 @@ std::map<std::string, long> alive() {
     const VkResult injected = clothbench::faults::next(#name);          \
     return injected != VK_SUCCESS ? injected : __real_##name arguments; \
   }
-// The wait is executed nevertheless: a lost device would have stopped, but this one still runs its work, and the caller
-// then destroys what that work uses.
+// The wait is executed although it reports an error. A lost device would have stopped, but this device still runs its
+// work, and the caller then destroys objects that this work uses.
 #define WAITS(name, parameters, arguments)                     \
   extern "C" VkResult __real_##name parameters;                \
   extern "C" VkResult __wrap_##name parameters {               \

@@ -9,8 +9,8 @@
 /// vulkan_calls.def). It counts calls, makes one fail, and tracks which objects are alive.
 namespace clothbench::faults {
 
-/// From the next call on, call number `call` (0 is the next) returns `result` without being made; if `sticky`, all
-/// later ones too. -1: none. Resets the count.
+/// Resets the count of calls. From now on, call number `call` (0 is the next) returns `result` without being executed;
+/// if `sticky`, all later calls too. -1: no call fails.
 void arm(int call, VkResult result, bool sticky);
 void disarm();
 

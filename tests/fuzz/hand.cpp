@@ -1,5 +1,5 @@
-// Hands: binary glTF to a skinned mesh. An input that begins with { is the JSON, a zero byte and the binary part of a
-// file; this program adds the container.
+// Hands: binary glTF to a skinned mesh. An input that begins with { has the JSON of a file, a zero byte and the binary
+// part; this program adds the container.
 #include "assets/hand.hpp"
 
 #include <algorithm>

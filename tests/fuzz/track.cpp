@@ -1,4 +1,4 @@
-// Hand tracks: text to keys, and those at another speed; recordings, and their first hand.
+// Hand tracks: text to keys, and the keys at another speed. Hand recordings: text to the capsules of the first frame.
 #include "assets/hand_track.hpp"
 #include "fuzz.hpp"
 

@@ -94,7 +94,7 @@ class Tree(unittest.TestCase):
         again = pathlib.Path(self.out())
         again.mkdir()
         subprocess.run(["node", script, out + "-report/index.html", again], check=True)
-        self.assertEqual((again / "fig4.svg").read_text(encoding="utf-8"), picture, "the program draws what the file beside it draws")
+        self.assertEqual((again / "fig4.svg").read_text(encoding="utf-8"), picture, "the program and figures.cjs draw the same figure")
 
     def test_only_a_fitting_version_is_found(self):
         version = re.search(r"clothbench (\d+)\.(\d+)", self.command("--version"))

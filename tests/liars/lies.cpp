@@ -78,22 +78,22 @@ std::vector<Index> loose(const Right& r) {
   return out;
 }
 
-// Conditions on scenes for a lie, and whether positions determine that it is one.
+// Conditions of lies: whether a lie applies to a scene, and whether positions determine that the motion is wrong.
 
 bool always(const Facts&) { return true; }
 bool surely(const Right&, const Motion&) { return true; }
 bool never(const Right&, const Motion&) { return false; }
-/// A lie about forces is determined if attachments leave an equation and it changes the force beyond a tolerance.
+/// For a lie about forces: attachments leave a momentum equation, and the lie changes the force beyond its tolerance.
 bool judged(const Right& r, const Motion& told) { return r.facts.equations > 0 && changes_force(r, told); }
 bool stiff(const Right& r, const Motion&) { return r.facts.soft_strain < 0.05; }
-/// If normals differ, a force without friction on some vertices may equal one with friction on others.
+/// If contact normals differ, frictionless forces on some vertices may equal a force with friction on others.
 bool drags(const Right& r, const Motion& told) { return r.facts.slides && judged(r, told); }
 bool attached(const Facts& f) { return f.attached; }
 bool flies(const Facts& f) { return !f.air.empty(); }
 bool drops(const Facts& f) { return f.falls && !f.attached && f.collider; }
 bool lies_still(const Facts& f) { return drops(f) && f.at_rest + 24 < f.frames; }
 bool has_kinematic(const Facts& f) { return f.kinematic && f.deepest_touch < f.frames; }
-/// One displaced vertex in one frame looks like an impact unless it moves more than the vertices around it accelerate.
+/// A vertex displaced in one frame looks like an impact, unless the displacement exceeds the second differences nearby.
 template <int Millimetres>
 bool beyond_impact(const Right& r, const Motion& told) {
   const Facts& f = r.facts;

@@ -26,7 +26,7 @@ struct Facts {
   std::size_t at_rest = 0;        ///< first frame from which on the cloth stays within 0.2 % of its length
   std::size_t fastest = 0;        ///< frame of the highest RMS speed
   std::size_t deepest_touch = 0;  ///< if kinematic: the frame with most contacts; otherwise `frames`
-  std::vector<std::size_t> air;   ///< frames without contact in them and in both neighbours
+  std::vector<std::size_t> air;   ///< frames without contact, also in both neighbouring frames
   double speed_m_per_s = 0;       ///< at `fastest`
   double frame_s = 0;             ///< duration of a frame
   double length_m = 1;
@@ -47,8 +47,8 @@ struct Right {
 
 Facts facts_of(const Motion&);
 
-/// Whether a lie changes a force or moment that attachments cannot exert by more than the check's tolerance: in one
-/// interval, or on average over 3 or 12.
+/// Whether a lie changes, by more than the check's tolerance, a force or moment that attachments cannot exert; in one
+/// interval, or on average over 3 or 12 intervals.
 bool changes_force(const Right&, const Motion& told);
 
 /// One way of falsifying a motion. Attached vertices stay at their prescribed positions unless the lie is about them.

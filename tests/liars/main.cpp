@@ -59,10 +59,10 @@ nlohmann::json cost_of(const std::string& name, const std::string& solver) {
 
 int main(int argc, char** argv) {
   using namespace clothbench::liars;
-  CLI::App app{"Wrong motions, and which of them the check of motions fails: a line of JSON each."};
+  CLI::App app{"Makes wrong motions and prints for each whether the motion check rejects it, as one line of JSON."};
   Matrix matrix;
   std::string cost;
-  app.add_option("--seed", matrix.seed, "of the first motion; each motion has the next");
+  app.add_option("--seed", matrix.seed, "seed of the first motion; each later motion has the next seed");
   app.add_option("--motions", matrix.motions, "number of right motions")->check(CLI::NonNegativeNumber);
   app.add_option("--kind", matrix.kinds, "kinds of scenes; default: all");
   app.add_option("--solver", matrix.solver, "only this solver, such as \"xpbd accurate\"");

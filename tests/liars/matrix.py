@@ -1,7 +1,7 @@
 """Judges lies and right motions in parallel: `matrix.py run LIARS RESULT`, then `matrix.py table RESULT`.
 
-RESULT has a line of JSON for every judged motion and one for every seed that is done, so that a call goes on where the
-last one was stopped. `liars` finds scenes by CLOTHBENCH_SCENARIOS and CLOTHBENCH_ASSETS."""
+RESULT has one line of JSON per judged motion and one per finished seed, so that a call continues where the last one was
+stopped. `liars` finds scenes through CLOTHBENCH_SCENARIOS and CLOTHBENCH_ASSETS."""
 import argparse
 import collections
 import concurrent.futures
@@ -19,7 +19,7 @@ RIGHT, NOISY = "the right motion", "noise of 0.1 mm per m"
 
 
 def short(x):
-    """Three digits; what is no finite number as text."""
+    """Three significant digits; a number that is not finite becomes text."""
     return x if not isinstance(x, float) else float(f"{x:.3g}") if math.isfinite(x) else str(x)
 
 
@@ -79,7 +79,7 @@ def run(a):
 
 
 def wilson(some, of):
-    """Count, share and 95 % interval (Wilson)."""
+    """Count, fraction and 95 % interval (Wilson)."""
     if of == 0:
         return "none"
     z, p = 1.96, some / of
@@ -122,12 +122,12 @@ def main():
     command = commands.add_parser("run")
     command.add_argument("liars", type=lambda path: pathlib.Path(path).resolve(), help="the program")
     command.add_argument("result", type=pathlib.Path)
-    command.add_argument("--lies", type=int, nargs=2, default=[970000, 0], metavar=("SEED", "COUNT"), help="right motions that all lies are told of")
-    command.add_argument("--right", type=int, nargs=2, default=[980000, 0], metavar=("SEED", "COUNT"), help="right motions that no lies are told of")
+    command.add_argument("--lies", type=int, nargs=2, default=[970000, 0], metavar=("SEED", "COUNT"), help="right motions for every lie")
+    command.add_argument("--right", type=int, nargs=2, default=[980000, 0], metavar=("SEED", "COUNT"), help="right motions without lies")
     command.add_argument("--costs", action="store_true", help="time the check first")
     command.add_argument("--jobs", type=int, default=1, help="at once")
-    command.add_argument("--limit", type=float, default=300, help="seconds for a seed")
-    command.add_argument("--stop-after", type=float, default=math.inf, help="seconds; seeds that are not done then are left for the next call")
+    command.add_argument("--limit", type=float, default=300, help="seconds per seed")
+    command.add_argument("--stop-after", type=float, default=math.inf, help="seconds after which the remaining seeds are left for the next call")
     command.set_defaults(work=run)
     command = commands.add_parser("table")
     command.add_argument("result", type=pathlib.Path)

@@ -24,8 +24,8 @@ struct Motion {
   void put(std::size_t frame, std::size_t vertex, const Vec3& x);
 };
 
-/// Kinds of scenes: those of the studies `contact` and `physics`, scenes of the paper, and thin bodies on which a cloth
-/// falls. Grids have 12 to 20 vertices per side if the kind allows. Frame rates are 60 to 144 Hz, or as in the study.
+/// Kinds of scenes: the kinds of the studies `contact` and `physics`, scenes of the paper, and thin bodies on which a
+/// cloth falls. Grids have 12 to 20 vertices per side if the kind allows. Frame rates are 60 to 144 Hz or the study's.
 const std::vector<std::string>& scene_kinds();
 /// Equal kind and seed give an equal scene.
 Scene draw_scene(const std::string& kind, std::uint64_t seed);

@@ -8,8 +8,8 @@
 
 namespace clothbench::liars {
 
-/// Selects the motions to falsify: one per seed. The seed alone decides the kind of scene and the solver, so that a
-/// large matrix can be split.
+/// Selects the motions to falsify: one per seed. The kind of scene and the solver depend only on the seed, so that
+/// a large matrix can be split.
 struct Matrix {
   std::uint64_t seed = 1000;
   int motions = 40;
@@ -28,11 +28,11 @@ struct Trial {
   std::vector<motion_check::Finding> findings;
 
   const motion_check::Finding& worst() const { return *motion_check::worst(findings); }
-  /// The rule by which runs fail, without the bounds in the scene's file.
+  /// Applies the rule for runs, without the bounds in the scene's file.
   bool failed() const { return !(worst().ratio <= 1) || solution > 1; }
 };
 
-/// Motions of the matrix that pass with their lies, and correct motions that fail.
+/// Trials of the matrix: each correct motion, and its lies if the correct motion passes.
 std::vector<Trial> tell_all(const Matrix&);
 
 /// A line of a result file: a trial without its motion.

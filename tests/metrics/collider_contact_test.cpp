@@ -46,7 +46,7 @@ TEST(ColliderContact, CapsulesAreWhereTheirFrameHasThem) {
     EXPECT_LE(s.depth_m, deepest + 0.04) << "frame " << frame << ": half a diagonal of a cell of 1/16 m";
     inside += deepest > 0;
   }
-  EXPECT_GT(inside, 10) << "the hand must meet the cloth for this to say anything";
+  EXPECT_GT(inside, 10) << "the test needs a hand that touches the cloth";
 }
 
 TEST(ColliderContact, SeveralCollidersAddUp) {

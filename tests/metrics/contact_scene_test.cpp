@@ -43,7 +43,7 @@ TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfARun) {
     if (e.info.name == "xpbd" && e.make) {
       EXPECT_EQ(margins(0.004), std::vector<double>{0.004});
       ASSERT_EQ(margins(0.0001).size(), 1u);
-      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "runs of 0.1 m";
+      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "a hundredth of an edge of 0.1 m";
       return;
     }
   GTEST_SKIP() << "no xpbd in this build";
@@ -81,7 +81,7 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_GE(at("contact_length_settled_m"), 0.26148 * 0.99);
   EXPECT_NEAR(at("contact_length_max_m"), at("contact_length_settled_m"), 1e-12);
   EXPECT_NEAR(at("depth_max_m"), 0.01, 1e-12);
-  EXPECT_THROW(series(r, "self_contact_pairs"), std::runtime_error) << "a scene without it does not pay for it";
+  EXPECT_THROW(series(r, "self_contact_pairs"), std::runtime_error) << "the scene has no self-contact";
   EXPECT_NEAR(at("stretch_max"), 0, 1e-12);
   EXPECT_TRUE(own_bounds_hold(r)) << r.outcome.expect;
   EXPECT_EQ(at("expect.outcome"), 1);
@@ -123,7 +123,7 @@ const char* const kSelfScene = R"({"name":"over","why":"A sheet laid over itself
   "material":{"membrane_stiffness_N_per_m":1000},"time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","self_contact_pairs_max":{"at_most":0}}})";
 
-/// Its right half is folded over its left half, 5 cm above it; in frames 5 to 9 the far end dips through.
+/// The sheet's right half is folded over its left half, 5 cm above it; in frames 5 to 9 the far end dips through.
 void laid_over(int frame, std::vector<double>& x) {
   for (std::size_t v = 0; v < x.size(); v += 3) {
     const double u = x[v] + 0.5;

@@ -119,8 +119,8 @@ TEST(Popping, IsNoneInAFallAndWhereASheetStopsOnAPlane) {
   }
 }
 
-/// A wave runs along the sheet to its free edge, which it moves at over twice its speed. That is not popping, but the
-/// same motion of only the edge is.
+/// A wave runs along the sheet and moves the free edge at twice the speed of the other vertices. That is not popping,
+/// but the same motion of only the edge is.
 TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   const Scene scene = scene_of(72);
   const auto cracked = [](double from_column, double doubled) -> Motion {
@@ -136,7 +136,7 @@ TEST(Popping, OfAWhipIsWhatItsWaveDoesNotExplain) {
   EXPECT_GT(pop_of(scene, cracked(8, 2)), 10 * bound_m());
 }
 
-/// A wave that runs along the diagonal moves the corner at up to four times its speed.
+/// A wave along the diagonal may move the corner at up to four times the other vertices' speed without popping.
 TEST(Popping, OfACornerIsWhatItsWaveDoesNotExplain) {
   const Scene scene = scene_of(72);
   const auto cracked = [](double quadrupled, bool only_corner = false) -> Motion {
@@ -180,8 +180,8 @@ TEST(Popping, OfOneFrameIsTheSameAtEveryFrameRate) {
   }
 }
 
-/// A snap may begin at any time within a frame. Its value is between the values of two snaps that begin with a frame:
-/// one as long, and one a frame longer. So a snap that is a frame longer never has a larger value.
+/// A snap may begin at any time within a frame. Its value is then at most the value of an equally long snap that begins
+/// with a frame, and at least the value of such a snap that lasts one frame longer.
 TEST(Popping, OfASnapThatBeginsWithinAFrameIsBounded) {
   for (const double rate : {36.0, 60.0, 72.0, 90.0, 120.0}) {
     const Scene scene = scene_of(rate);
@@ -223,7 +223,7 @@ TEST(Popping, OfAPositionThatIsNoNumberIsNotKnown) {
   }
 }
 
-/// Rows at heights a and -a: the Laplacian is 4a/3 long, its mean over the neighbours 4a/9 the other way.
+/// Rows at heights a and -a: the Laplacian is 4a/3 long; its mean over the neighbours is 4a/9 long and opposite.
 TEST(Roughness, OfRowsUpAndDownIsItsClosedForm) {
   const Scene scene = scene_of(72);
   constexpr double kHeight_m = 1e-4, kEdge_m = 0.075 * (144 + 64 * std::numbers::sqrt2) / 208;

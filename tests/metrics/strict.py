@@ -1,9 +1,9 @@
-"""Computes from the positions of stored runs, by other code, what the strict verdict on contact rests on; brute force on
-small grids. usage: strict.py FOLDER
+"""Recomputes the values behind the strict verdict on contact from the positions of stored runs, with independent code: brute
+force on small grids. usage: strict.py FOLDER
 
-Fails where a stored value is farther from the one computed here than the accuracy of this code, where a verdict does not follow
-from its value, or where fewer values were compared than once were. Not computed here: crossings, which need the motion between
-frames, and the contour of a hand of capsules, whose fingers are thinner than the points below are apart.
+Fails if a stored value differs from the value computed here by more than this code's accuracy, if a verdict does not follow from
+its value, or if fewer values were compared than COMPARED expects. Not computed here: crossings, which need the motion between
+frames, and the contour of a hand of capsules, whose fingers are thinner than the distance between the sample points.
 """
 import functools
 import itertools
@@ -15,10 +15,10 @@ import h5py
 import numpy as np
 
 COMPARED = {"stretch_max": 15, "stretch_max_end": 15, "pop_max_m": 15, "contact_length_max_m": 12, "contact_length_settled_m": 12, "depth_max_m": 8,
-            "self_contact_length_max_m": 1}  # runs at least
-EXACT = (1e-6, 1e-9)         # of the value; in its unit
-SAMPLED = (0.02, 1e-4)       # contours of curved colliders, which are level lines between the points below
-CELLS = 12                   # points along the side of a triangle
+            "self_contact_length_max_m": 1}  # minimum number of runs
+EXACT = (1e-6, 1e-9)         # relative; absolute, in the value's unit
+SAMPLED = (0.02, 1e-4)       # contours of curved colliders, which are level lines between sample points
+CELLS = 12                   # intervals between sample points along the side of a triangle
 norm = functools.partial(np.linalg.norm, axis=-1)
 dot = functools.partial(np.einsum, "...k,...k->...")
 
@@ -48,14 +48,14 @@ def segment_in_triangle(p, q, t):
 
 
 def shared_length(a, b):
-    """Length of the segments in which pairs of triangles meet, in general position: between the two ends of each."""
+    """Length of the segments in which pairs of triangles in general position intersect; each segment has two ends."""
     ends = [segment_in_triangle(mine[:, i], mine[:, (i + 1) % 3], other) for mine, other in ((a, b), (b, a)) for i in range(3)]
     two = sum(hit.astype(int) for hit, _ in ends) == 2
     return sum(norm(p[two & hit & also] - q[two & hit & also]).sum() for (hit, p), (also, q) in itertools.combinations(ends, 2))
 
 
 def vertices_of(c, frame):
-    """Of a mesh: its positions, or for a skinned one the sums of what its joints do with them."""
+    """Vertices of a mesh collider; a skinned mesh is posed by linear blend skinning."""
     x = c["position_m"].astype(float)
     if "joint_matrix" not in c:
         return x
@@ -86,7 +86,7 @@ SMALL = np.array([[INDEX[k] for k in t] for i, j in INDEX for t in (
 
 
 def level_line(c, frame, t):
-    """Length of the line where the depth is 0, linear in parts of triangles, and the greatest depth at their corners."""
+    """Length of the line where the depth is 0, interpolated in parts of triangles, and the maximum depth at the corners of the parts."""
     p = np.einsum("wk,tkx->twx", WEIGHTS, t)
     depth = depth_in(c, frame, p)
     d, corner = depth[:, SMALL].reshape(-1, 3), p[:, SMALL].reshape(-1, 3, 3)
@@ -102,7 +102,7 @@ def level_line(c, frame, t):
 
 
 def contact(run):
-    """Contour in each frame, its accuracy, and the greatest depth at vertices and at points of triangles; None where it is not defined."""
+    """Contour in each frame, its accuracy, and the maximum depth at vertices and at sample points; None instead of an undefined depth."""
     contours, depths, accuracy, closed = [], [], EXACT, all(c["shape"] != "mesh" for c in run.colliders)
     for f, x in enumerate(run.x):
         t, length = x[run.triangles], 0.0
@@ -121,7 +121,7 @@ def contact(run):
 
 
 def driven(run):
-    """Displacement of the fastest collider or held vertex, summed up to each frame."""
+    """Displacement of the fastest collider or attached vertex, summed up to each frame."""
     step = np.zeros(len(run.time))
     for c in run.colliders:
         if c["shape"] == "capsules":
@@ -138,8 +138,8 @@ def driven(run):
 
 
 def popping(run):
-    """Greatest displacement in 1/36 s beyond what explains it: twice the path of what drives the cloth, twice the vertex's own displacement
-    before or after, and twice (corners: four times) the path of a vertex up to two edges away, before or after."""
+    """Maximum excess of a displacement in 1/36 s over the largest of these: twice the path of the fastest collider or attached vertex; twice the
+    vertex's own displacement before or after; twice (for corners, four times) the path of a vertex up to two edges away, before or after."""
     rate, count = run.scene["time"]["frame_rate_hz"], run.x.shape[1]
     window = max(2, np.ceil(rate / 36 - 1e-9)) / rate
     linked = np.zeros((count, count), int)
@@ -164,7 +164,7 @@ def popping(run):
 
 
 def ranges(run):
-    """Least and greatest value that each scalar may have."""
+    """Minimum and maximum that each scalar may have."""
     def about(value, accuracy=EXACT):
         by = max(accuracy[1], accuracy[0] * abs(value))
         return value - by, value + by

@@ -64,7 +64,7 @@ TEST(StrictContact, TheSetIsAddedToWhatASceneStates) {
   EXPECT_EQ(bound_of(s, "contact_length_settled_m")->at_most, 0);
   EXPECT_EQ(bound_of(s, "depth_max_m")->at_most, 0.001);
   EXPECT_EQ(bound_of(s, "crossings_max")->at_most, 0);
-  EXPECT_EQ(bound_of(s, "self_contact_length_max_m"), nullptr) << "its cloth does not meet itself";
+  EXPECT_EQ(bound_of(s, "self_contact_length_max_m"), nullptr) << "the scene has no self-contact";
   EXPECT_EQ(s.json.find("\"strict\""), std::string::npos) << "stored results state the bounds themselves";
 }
 

@@ -36,7 +36,7 @@ TEST(Touch, SlidingOnAPlaneIsTheWaySlid) {
                                    }));
   EXPECT_EQ(series(run, "touching_fraction")[9], 0);
   EXPECT_NEAR(series(run, "touching_fraction")[10], 1, 1e-12);
-  EXPECT_EQ(series(run, "slip_m")[10], 0) << "it has only just come to lie";
+  EXPECT_EQ(series(run, "slip_m")[10], 0) << "the cloth has only just come to rest";
   EXPECT_EQ(series(run, "slip_m")[20], 0);
   EXPECT_NEAR(series(run, "slip_m")[21], 1e-3, 1e-12);
   EXPECT_NEAR(run.summary.at("slip_m"), 1e-3 * (scene.time.frames() - 20), 1e-9);
@@ -53,10 +53,10 @@ TEST(Touch, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
     return series(stored_run(scene, prescribed(path, margins)), "touching_fraction")[0];
   };
   EXPECT_EQ(touching(0.02, {}), 0) << "the scene's margin is 4 mm";
-  EXPECT_EQ(touching(0.02, {kMissing}), 0) << "without one, the scene's counts";
+  EXPECT_EQ(touching(0.02, {kMissing}), 0) << "if the solver states no margin, the scene's counts";
   EXPECT_NEAR(touching(0.02, {0.02}), 1, 1e-12);
   EXPECT_NEAR(touching(0.004, {}), 1, 1e-12);
-  EXPECT_EQ(touching(0.004, {0.001}), 0) << "a solver that holds it nearer does not touch it there";
+  EXPECT_EQ(touching(0.004, {0.001}), 0) << "beyond the contact offset of this solver";
 }
 
 TEST(Touch, ACapsuleThatCarriesTheClothDoesNotSlip) {

@@ -1,4 +1,4 @@
-"""usage: check_peer.py CLOTHBENCH PLUGIN SOURCE: what the adapter of an engine must do in whole scenes."""
+"""usage: check_peer.py CLOTHBENCH PLUGIN SOURCE: requirements on the adapter of an engine, in whole scenes."""
 import os
 import pathlib
 import shutil
@@ -32,7 +32,7 @@ class Peer(unittest.TestCase):
         outcome, summary, first = self.run_on("validation/hang")
         self.assertEqual(outcome["status"], "ok", self.text)
         self.assertLess(summary["stretch_max_last_second"], {"nvcloth": 0.08, "jolt": 0.3}[ENGINE])
-        self.assertTrue(numpy.array_equal(first, self.run_on("validation/hang")[2]), "not the same bits")
+        self.assertTrue(numpy.array_equal(first, self.run_on("validation/hang")[2]), "not bit-identical")
 
     def test_a_plane_holds_the_cloth_at_its_margin(self):
         outcome, summary, _ = self.run_on("contact/plane")
@@ -45,8 +45,8 @@ class Peer(unittest.TestCase):
         self.assertEqual(summary["contact_length_max_m"], 0)
 
     def test_friction_on_a_slope(self):
-        # 0.67 m without friction; by Coulomb's law 0.08 m here, and nothing on the gentler slope, where both engines
-        # creep by 7 to 8 % of the length in 2 s.
+        # By Coulomb's law the sheet slips by 0.08 m (without friction by 0.67 m). On the gentler slope it should stick, but both
+        # engines let it creep by 7 to 8 % of its length in 2 s.
         outcome, summary, _ = self.run_on("validation/incline-stick")
         self.assertTrue(outcome["expect"].startswith("fail: truth_"), self.text)
         self.assertLess(summary["truth_quantity_error"], 0.1)

@@ -45,7 +45,7 @@ void a_frame_late(std::vector<double>& v) {
   v[0] = 0;
 }
 
-/// A fault in the place that a member of Fault names.
+/// A fault that sets only this member of Fault.
 template <class Place>
 Fault in(Place Fault::*place, const char* name, const char* stage, std::type_identity_t<Place> what) {
   Fault f{name, stage};
@@ -61,9 +61,9 @@ Fault kernel(const char* name, const char* stage, const char* file, const char* 
 
 std::vector<Fault> faults() {
   return {
-      kernel("one family of lines skipped", "pulled", "xpbd/lines/line_frame.comp", "colour = colours - 1u - turn;",
+      kernel("one colour of lines skipped", "pulled", "xpbd/lines/line_frame.comp", "colour = colours - 1u - turn;",
              "colour = max(colours - 1u - turn, 1u);"),
-      kernel("stretch compliance of the border as inside", "heavy", "xpbd/lines/grid_lines.glsl",
+      kernel("border with the inner stretch compliance", "heavy", "xpbd/lines/grid_lines.glsl",
              "chain + 1u == chain_count()) ? 2.0 : 1.0;", "chain + 1u == chain_count()) ? 1.0 : 1.0;"),
       kernel("bending with the wrong sign", "cantilever", "xpbd/lines/grid_lines.glsl",
              "w[k] * (last - 2.0 * lambda[k] + next)", "w[k] * (2.0 * lambda[k] - last - next)"),
@@ -75,29 +75,28 @@ std::vector<Fault> faults() {
       kernel("grips forgotten by the kernel", "pulled", "xpbd/lines/line_frame.comp", "if (GRIPS > 0u) move_held(s);",
              "if (GRIPS > 999999u) move_held(s);"),
       // A fault in every phase of contact. In "struck", planes keep the cloth out even if responses are wrong; in
-      // "wrapped", responses alone determine a rope's friction on a drum.
-      kernel("points of pieces stand still within the frame", "struck",
+      // "wrapped", only responses determine a rope's friction on a drum.
+      kernel("points of shapes do not move within the frame", "struck",
              "xpbd/contact/broad_phase/contact_update_shapes.comp", "ShapePoint(c.b0, c.b1)", "ShapePoint(c.b0, c.b0)"),
       kernel("a hundredth of the motion bound", "struck", "xpbd/contact/displacement_filter/contact_motion_bounds.glsl",
              "motion_bounds[i] = vec4(at.xyz, bound);", "motion_bounds[i] = vec4(at.xyz, 0.01 * bound);"),
       kernel("one pair in three not listed", "struck", "xpbd/contact/broad_phase/contact_broad_phase.glsl", "return n;",
              "return n - n / 3u;"),
-      kernel("half of each element's pairs not found again", "struck", "xpbd/contact/contact.comp",
+      kernel("half of each primitive's pairs lost", "struck", "xpbd/contact/contact.comp",
              "ranges[k] = uvec4(at, room, 0u, 0u);", "ranges[k] = uvec4(at, room / 2u, 0u, 0u);"),
-      kernel("start of the substep not what it was", "struck",
-             "xpbd/contact/displacement_filter/contact_vertex_step.glsl", "at.xyz += p.h * (vel ",
-             "at.xyz += -9.0 * p.h * (vel "),
+      kernel("wrong start of the substep", "struck", "xpbd/contact/displacement_filter/contact_vertex_step.glsl",
+             "at.xyz += p.h * (vel ", "at.xyz += -9.0 * p.h * (vel "),
       kernel("no friction on half-spaces", "ramp", "xpbd/contact/response/contact_accumulate.glsl",
              "at.xyz - start, s.friction)", "at.xyz - start, 0.0)"),
       kernel("normal of the nearest points flipped", "struck", "xpbd/contact/narrow_phase/contact_nearest_points.glsl",
              "s.normal = vec4(r.n, gap);", "s.normal = vec4(-r.n, gap);"),
       kernel("friction along the slip", "wrapped", "xpbd/contact/response/friction.glsl", "by -= min(1.0, friction",
              "by += min(1.0, friction"),
-      kernel("what was struck fixed in the lines", "struck", "xpbd/contact/response/contact_accumulate.glsl",
+      kernel("struck vertices fixed in the line solve", "struck", "xpbd/contact/response/contact_accumulate.glsl",
              "at.w / (1.0 + held)", "0.0"),
       kernel("a hull that misses a corner", "struck", "xpbd/contact/narrow_phase/contact_distance.glsl",
              "uint first = 0u; first < shape.count;", "uint first = 1u; first < shape.count;"),
-      kernel("planes a millimetre inside the piece", "struck",
+      kernel("planes a millimetre inside the shape", "struck",
              "xpbd/contact/displacement_filter/contact_select_plane.glsl", "dot(n, around) + smallest);",
              "dot(n, around) + smallest - 1e-3);"),
       kernel("planes forgotten", "struck", "xpbd/contact/displacement_filter/contact_project.glsl",

@@ -20,7 +20,7 @@ const Stage& stage(const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
-/// Contact by planes takes half of the time, so only the slow tier (planted.whole) runs it.
+/// The stages with contact planes take half of the time, so only the slow tier (planted.whole) runs them.
 bool left_to_slow_tier(const std::string& stage) {
   return std::getenv("CLOTHBENCH_WHOLE_MATRIX") == nullptr &&
          (stage == "struck" || stage == "wrapped" || stage == "heaped");
@@ -79,7 +79,7 @@ TEST(Planted, AFaultThatIsNowhereIsAnError) {
   gone.shader = ShaderFault{"lines.glsl", "no such text", ""};
   EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error);
   gone.shader = ShaderFault{"paper/collision_pass.comp", "void main() {", "void main() { return;"};
-  EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error) << "no kernel of the run has it";
+  EXPECT_THROW(execute_run(stage("fall"), &gone), std::runtime_error) << "no kernel of the run contains the fault";
 }
 
 }  // namespace

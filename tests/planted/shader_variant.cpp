@@ -72,7 +72,7 @@ const Code* faulty(const VkShaderModuleCreateInfo& info) {
   const auto* bytes = reinterpret_cast<const char*>(info.pCode);
   const Code code(bytes, bytes + info.codeSize);
   const auto at = built().find(code);
-  if (at == built().end()) throw std::runtime_error("a kernel came to the driver that is none of " CLOTHBENCH_KERNELS);
+  if (at == built().end()) throw std::runtime_error("the driver received a kernel that is not in " CLOTHBENCH_KERNELS);
   if (!active->compiled.contains(at->second)) {
     const std::string out = (active->folder / "out.spv").string();
     const std::string command = replaced(replaced(command_of(at->second), at->second, out),

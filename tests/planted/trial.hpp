@@ -19,7 +19,7 @@ struct Stage {
   nlohmann::json settings = nlohmann::json::object();
 };
 
-/// One fault. Only one of the members that select its place is set.
+/// One fault. Exactly one of the optional members and functions is set.
 struct Fault {
   std::string name, stage;
   // In the solver: a kernel, its input, its output, or its declarations.
@@ -37,11 +37,11 @@ struct Fault {
   std::function<void(RunRecord&)> record = {};
 };
 
-/// Small scenes that can run many times and together need every part of a solver with planted faults.
+/// Small scenes that can run many times and together use every part of the solver that has a planted fault.
 std::vector<Stage> stages();
 std::vector<Fault> faults();
 
-/// The run as its execution leaves it, with the fault if one is given.
+/// Executes the stage, with the fault if one is given, and returns the record of the run.
 RunRecord execute_run(const Stage&, const Fault* fault = nullptr);
 
 }  // namespace clothbench

@@ -1,4 +1,4 @@
-"""usage: check_authors.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: what authors of solvers ask of the command."""
+"""usage: check_authors.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: commands that authors of solvers use."""
 import hashlib
 import json
 import os
@@ -87,7 +87,7 @@ class Authors(PluginTest):
             self.assertIn(word, " ".join(row["faults"]))
         (row,) = self.conform(self.library("faulty_STRETCHES"), *scene, code=1)
         self.assertIn("stages:", " ".join(row["faults"]))
-        # Six frames show no fault, but the whole scene does: where hands move, a loose attachment is not held.
+        # Six frames show no fault, but the whole scene does: after 12 frames attached vertices no longer follow the hands.
         (row,) = self.conform(self.library("faulty_LATE"), "--scene", "paper/two-hand-stretch-0p5mps", code=1)
         self.assertTrue(all(f.startswith("whole scene: ") and "from its hand" in f for f in row["faults"]), row)
         self.assertEqual(self.command("conformance", "ballistic", "--scene", "paper/gravitiy"), 2)

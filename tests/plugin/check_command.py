@@ -1,4 +1,4 @@
-"""usage: check_command.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: solvers from elsewhere through the command."""
+"""usage: check_command.py CLOTHBENCH EXAMPLE LIBRARIES SOURCE: plugins through the command."""
 import json
 import os
 import shutil
@@ -22,7 +22,7 @@ class Plugin(PluginTest):
     def faulty(self, fault="NONE"):
         return self.library(f"faulty_{fault}")
 
-    # --- one that is right
+    # --- a correct plugin
 
     def test_a_run(self):
         code = self.command(
@@ -79,7 +79,7 @@ class Plugin(PluginTest):
         self.assertTrue(any("example-xpbd" in c for c in runs) and any("ballistic" in c for c in runs))
         self.assertIn("example-xpbd", self.text)
 
-    # --- those that are wrong
+    # --- faulty plugins
 
     def test_a_motion_that_no_law_allows_fails_in_run_and_study(self):
         run = ["run", "paper/gravity", *SMALL, "--trials", "0", "--solver", "plugin:" + EXAMPLE, "--out", self.out]

@@ -36,7 +36,7 @@ class PluginTest(unittest.TestCase):
         return process.returncode
 
     def rows(self, *words, code=0, **environment):
-        """The JSON that the command prints; what it says on standard error may stand before and after."""
+        """The JSON that the command prints; text on standard error may come before and after it."""
         self.assertEqual(self.command("--json", *words, **environment), code, self.text)
         starts = [k for k in (self.text.find(s) for s in ("[\n", "{\n", "[]")) if k >= 0]
         return json.JSONDecoder().raw_decode(self.text[min(starts) :])[0]

@@ -1,6 +1,6 @@
-/* A plugin that is wrong in the way it was compiled for (FAULT_…) or that $FAULT names while it runs: crash:N, hang:N, exit:N,
- * nan:N (at the Nth step of a solver), load, create (a crash there); with $CHATTER it prints on standard output wherever it
- * can. Otherwise its cloth stands still. */
+/* A plugin with one fault, selected by a macro FAULT_… when it is compiled or by $FAULT at run time: crash:N, hang:N,
+ * exit:N, nan:N (in the Nth step of a solver), load (refuses), create (crashes). With $CHATTER it prints on standard
+ * output wherever it can. Without a fault its cloth stands still. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,7 +42,7 @@ static void* create(const double* settings, const ClothbenchScene* scene, const 
   return restart(s, &(ClothbenchRestart){.index = -1}), s;
 }
 
-/* As a solver whose grips come loose after 12 frames. */
+/* FAULT_LATE: attached vertices follow their hands only for 12 frames. */
 static void follow(Solver* s, const ClothbenchFrame* frame) {
 #ifdef FAULT_LATE
   if (frame->grip_position_m == NULL || frame->index >= 12) return;
@@ -77,13 +77,13 @@ static const ClothbenchStage* stages(void* self, uint32_t* count) {
   return &((Solver*)self)->stage;
 }
 
-/* Of a static body. */
+/* A cloth that stands still does not fall. */
 static double free_fall(const double* settings, double dt, double gravity, double velocity, double damping, int32_t frames) {
   (void)settings, (void)dt, (void)gravity, (void)velocity, (void)damping, (void)frames;
   return 0;
 }
 
-/* 3 cm off the first collider; the others as the scene says. */
+/* 3 cm for the first collider, and the scene's margin for the others. */
 static double contact_margin(void* self, uint32_t collider) {
   (void)self;
   return collider == 0 ? 0.03 : NAN;

@@ -1,7 +1,6 @@
-/* A plugin that uses the whole interface and checks what it is given: its cloth flies on without
- * forces. What it finds wrong fails `create` or a step. $FAULT names what is wrong with its own values: unsupported,
- * driver, properties, device_time; or that it refuses a scene: refuse. $LOG: a file for
- * the calls that a test counts. */
+/* A plugin that uses the whole interface and checks its input: wrong input fails `create` or a step. Its cloth moves on
+ * uniformly, without forces. $FAULT selects one of its own values to be wrong (unsupported, driver, properties,
+ * device_time), or makes it refuse a scene (refuse). $LOG: a file for the calls that a test counts. */
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -50,7 +49,7 @@ static const char* wrong_shape(const ClothbenchScene* c) {
   return NULL;
 }
 
-/* On square cells: 3/4 of Y b / a along the grid, with b halved on the border, and 3/8 of Y on diagonals. */
+/* Expected on square cells: 3/4 Y b / a for edges of the grid, with b halved on the border, and 3/8 Y for diagonals. */
 static const char* wrong_springs(const ClothbenchScene* c) {
   if (!(c->needs & CLOTHBENCH_SHEAR) || (c->needs & CLOTHBENCH_CLOTH_MESH)) return NULL;
   if (!near(c->width_m / (c->columns - 1), c->height_m / (c->rows - 1)) || (c->needs & CLOTHBENCH_UNEVEN_GRID))
@@ -112,7 +111,7 @@ static int32_t restart(void* self, const ClothbenchRestart* at) {
   return 1;
 }
 
-/* What was the end of the last frame must be this one's beginning. */
+/* Each frame must begin with the poses at the end of the frame before. */
 static int follows(const Solver* s, const ClothbenchFrame* f) {
   const ClothbenchScene* c = s->scene;
   if (f->index != s->frame + 1) return 0;

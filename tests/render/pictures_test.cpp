@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Pictures, Files,
 TEST_F(Pictures, MakesAMovieWhereFfmpegIs) {
   const Stored s("contact/sphere", {"cloth.grid=[9,9]", "time.duration_s=0.1"}, dir_);
   Shots shots;
-  shots.width = 161;  // odd: a movie's are even
+  shots.width = 161;  // odd, although movies need even sizes
   shots.height = 121;
   shots.out = dir_;
   shots.frames = {0, 2, 4};

@@ -20,7 +20,7 @@ class Pixels : public ::testing::Test {
  protected:
   void TearDown() override { EXPECT_EQ(device_->validation_messages(), 0); }
 
-  /// Seen along z from the side `from`; -1: from behind (the sheet is rotated, not the camera).
+  /// Draws the cloth as seen along z from the side `from`; -1: from behind (the sheet is rotated, not the camera).
   Picture draw(const Cloth& cloth, const std::vector<double>& x, const Surfaces& s = {}) {
     renderer_.set_cloth(cloth, {0, 0, 0});
     renderer_.write_positions(x);
@@ -62,7 +62,7 @@ Surfaces of(const Collider& c) {
 }
 
 TEST_F(Pixels, SquaresAreLightAndDarkInTurn) {
-  const Cloth cloth = upright(9, 9);  // 8 squares: one a run
+  const Cloth cloth = upright(9, 9);  // 8 x 8 cells, and as many squares
   const Picture p = draw(cloth, positions_of(cloth));
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 8; ++i) {
@@ -94,9 +94,9 @@ TEST_F(Pixels, AMeshLooksAsItsGridDoes) {
         }
     }
   EXPECT_GT(drawn, 1000);
-  EXPECT_LT(differ, drawn / 50) << "other diagonals, and so slightly other normals";
+  EXPECT_LT(differ, drawn / 50) << "different diagonals give slightly different normals";
   x[3 * 40] = NAN;
-  EXPECT_TRUE(white(pixel(draw(as_mesh(s).cloth, x), {0.02, 0.01, 0}))) << "what is not finite is left out";
+  EXPECT_TRUE(white(pixel(draw(as_mesh(s).cloth, x), {0.02, 0.01, 0}))) << "triangles with a NaN are not drawn";
   EXPECT_TRUE(orange(pixel(draw(as_mesh(s).cloth, x), {0.4, 0.4, 0.032})));
 }
 
@@ -224,7 +224,7 @@ TEST_F(Pixels, SaysWhatDoesNotFit) {
 }
 
 TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
-  // As in a headset's loop: its image, its matrices, its command buffer.
+  // Like a headset's loop, which has its own image, matrices and command buffer.
   const Cloth cloth = upright(9, 9);
   const Picture expected = draw(cloth, positions_of(cloth));
   const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,
@@ -247,7 +247,7 @@ TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
   ASSERT_EQ(vkQueueWaitIdle(device_->queue()), VK_SUCCESS);
   renderer_.forget(image.handle());
   vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands);
-  EXPECT_EQ(shoot().rgb, expected.rgb) << "and its own pictures are as before";
+  EXPECT_EQ(shoot().rgb, expected.rgb) << "the renderer's own images are unchanged";
 }
 
 /// Clip coordinates of a point, as the vertex shader computes them.

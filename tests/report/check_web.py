@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The page of a report against the result files and the static report, read independently. Exit 77 where the
-build has no page.
+"""Compares the page of a report with the result files and the static report, which it reads independently. Exit 77 if
+the build has no page.
 
-usage: check_web.py SAMPLE      what web_sample.py made
+usage: check_web.py SAMPLE      SAMPLE: the folder that web_sample.py made
 """
 import base64
 import json
@@ -33,7 +33,7 @@ for path in sorted((sample / "runs").rglob("*.h5")):
         files.setdefault(tuple(f.attrs[k] for k in ("scene", "solver", "setting")), path)
 same = lambda a, b: a is None and not np.isfinite(b) or a is not None and a == b  # noqa: E731
 
-# Loads nothing from elsewhere; at most 20 MB.
+# The page loads nothing from elsewhere and has at most 20 MB.
 assert len(html) < 20e6, len(html)
 markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
 assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
@@ -64,7 +64,7 @@ for t in tables:
         assert [[(c if isinstance(c, str) else c[0]).strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
 assert any(r[0].startswith("published") for r in static["Table 3: speed and error"])
 
-# Numbers in the tables, text and value, each recomputed from the run's file.
+# Every number in the tables, as text and as value, is recomputed from the run's file.
 STORED = {"crossings": ("crossings_max", 1), "contour, max / settled [mm]": ("contact_length_max_m", 1e3), "depth [mm]": ("depth_max_m", 1e3), "popping [mm]": ("pop_max_m", 1e3),
           "strain, max / end [%]": ("stretch_max", 100), "stretch [%]": ("stretch_max_last_second", 100), "free-fall error [g T²/2]": ("free_fall_error", 1), "load [ms]": ("load_s", 1e3)}
 TIMES = {"frame p50 [ms]": (0.5, 1e3), "p95 / p99 / worst [ms]": (0.95, 1e3), "missed 72 / 90 Hz [%]": (None, 1)}  # quantile; text over value
@@ -73,7 +73,7 @@ text_of = lambda c: c if isinstance(c, str) else c[0]  # noqa: E731
 
 
 def run_of(t, cells, row, name):
-    """The run behind a cell: of the column's solver or resolution; in tables of resolutions otherwise of the largest mesh."""
+    """The run behind a cell: with the column's solver or resolution; otherwise, in tables of resolutions, the run with the largest mesh."""
     of_solver = [r for r in doc["runs"] if t["title"].startswith("Verdict") and (r["scene"], r["label"]) == (text_of(cells[0]), name)]
     line = [r for r in doc["runs"] if all(r.get(k) == row.get(k) for k in ("label", "sides", "family"))]
     return (of_solver + [r for r in line if r.get("resolution") == name] + [max(line, key=lambda r: r["width"]) if "128²" in t["rows"][0] else row])[0]

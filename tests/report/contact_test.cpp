@@ -58,7 +58,7 @@ TEST(Penetration, TableShowsNumbersInTheirUnits) {
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "crossings"), "0");
   EXPECT_EQ(entry(t, "desk-flat-low", "paper", "crossings"), "34");
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "contour, max / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "depth [mm]"), "0.00300") << "what is not nothing never reads as nothing";
+  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "depth [mm]"), "0.00300") << "a nonzero value is never printed as 0";
   EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "verdict"), "pass");
   EXPECT_EQ(entry(t, "desk-flat-low", "paper", "verdict"), "fail");
   EXPECT_EQ(t.markdown().find("self-contact"), std::string::npos) << "a column without a value is left out";
@@ -75,7 +75,7 @@ TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   c.summary["expect.stretch_max"] = kMissing;
   EXPECT_TRUE(tables_titled({c}, "Acceptance criteria that are violated").empty());
   const RunTable table({c});
-  EXPECT_EQ(tiles_of(table).at(0).value, "0/1") << "it has not passed either";
+  EXPECT_EQ(tiles_of(table).at(0).value, "0/1") << "a run that was not measured has not passed";
   std::string all;
   for (const View& v : views())
     for (const Table& t : tables_of(v, table)) all += t.markdown();
@@ -108,7 +108,7 @@ TEST(Penetration, CellsHaveTheNumberAndToneOfTheirText) {
       EXPECT_STREQ(t.cells.at(0).at(column("verdict")).tone, "bad");
       EXPECT_STREQ(t.cells.at(1).at(column("verdict")).tone, "good");
       EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("contour, max / settled [mm]")).value, 12.3);
-      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("depth [mm]")).value, 0.003) << "not as its text is rounded";
+      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("depth [mm]")).value, 0.003) << "the exact value, not the rounded text";
     }
 }
 

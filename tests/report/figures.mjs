@@ -48,7 +48,7 @@ for (const figure of Object.values(figures))
     assert.ok(!/NaN|undefined|var\(/.test(svg), `${figure.id}: ${svg.match(/.{80}(NaN|undefined|var\().{40}/)?.[0]}`);
   }
 
-const kLeastDistance = 15, kLeastSpare = 11, kLeastContrast = 3;  // CIEDE2000, of two known solvers and of any other; WCAG 2 for graphics
+const kLeastDistance = 15, kLeastSpare = 11, kLeastContrast = 3;  // CIEDE2000: between known solvers, and with a spare look; WCAG 2 for graphics
 const kBack = {light: '#ffffff', dark: '#12161c'};
 // Machado, Oliveira and Fernandes (2009), severity 1.
 const kVision = {

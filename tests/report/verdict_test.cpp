@@ -24,7 +24,7 @@ RunRecord judged(const std::string& solver, bool passed, const std::string& scen
   return c;
 }
 
-/// As `ballistic` declares it.
+/// A run of a solver that ignores contact, as `ballistic` declares it.
 RunRecord without_contact() {
   RunRecord c = judged("ballistic", true);
   nlohmann::json ignored = {name_of(Feature::MovingPins)};
@@ -84,7 +84,7 @@ TEST(Verdict, AScenesOutcomeAloneIsNoBound) {
   EXPECT_EQ(bounds_of(ended), 0u);
   RunRecord crashed = with_outcome(judged("b", true, R"({"cloth":{},"truth":{"case":"free-fall"}})"), "crashed", 4, "");
   crashed.summary.clear();
-  EXPECT_EQ(count_verdicts({crashed}).text(), "0 of 1 runs passed, 1 failed") << "it has no motion that is right";
+  EXPECT_EQ(count_verdicts({crashed}).text(), "0 of 1 runs passed, 1 failed") << "a crashed run did not pass";
   RunRecord missing = judged("c", true);
   missing.outcome.status = "missing";
   EXPECT_EQ(count_verdicts({ended, missing, judged("d", true)}).text(), "1 of 1 runs passed");
@@ -146,7 +146,7 @@ TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
 TEST(Overview, TilesAreOfTheRunsPresent) {
   const std::vector<Tile> tiles = tiles_of(RunTable(study()));
   ASSERT_EQ(tiles.size(), 1u) << "rates only";
-  EXPECT_EQ(tiles[0].title, "Frames per second at 128², bullet-soft") << "no solver has a place of its own";
+  EXPECT_EQ(tiles[0].title, "Frames per second at 128², bullet-soft") << "no solver is preferred";
   EXPECT_EQ(tiles[0].value, "1000");
   EXPECT_EQ(tiles[0].others, "xpbd 50.0 (0 trials)") << "without the harness's own cost";
   const Heading h = heading_of(RunTable(study()), {"table3"});

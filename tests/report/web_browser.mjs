@@ -1,7 +1,7 @@
-// The page of a report in headless Chromium: no console error, every point of the figures there, the viewer moves.
+// The page of a report in headless Chromium: there is no console error, every figure has all its points, the viewer moves.
 //   node web_browser.mjs PACKAGES INDEX.html LARGE.html [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a page
-//   of which only the budgets are checked; SHOTS: folder for screenshots
-// Exit 77 where Chromium or the packages are missing.
+//   for which only the budgets are checked; SHOTS: folder for screenshots
+// Exit 77 if Chromium or the packages are missing.
 import {existsSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join, resolve} from 'node:path';
@@ -159,7 +159,7 @@ async function check_filter() {
   equal(await count(), before, 'and back');
 }
 
-/// At three widths: first screen, no sideways scroll, closed menu on a phone, no violation found by axe.
+/// At three widths: checks the first screen, no sideways scroll, a closed menu on a phone, and no violation found by axe.
 async function check_widths() {
   const axe = readFileSync(join(packages, 'axe-core', 'axe.min.js'), 'utf8');
   await page.evaluate(axe);

@@ -11,7 +11,7 @@ import sys
 
 command, out = sys.argv[1], pathlib.Path(sys.argv[2])
 shutil.rmtree(out, ignore_errors=True)
-os.environ["CLOTHBENCH_JOBS"] = "1"  # other tests run beside this one; its times are not read as measurements
+os.environ["CLOTHBENCH_JOBS"] = "1"  # other tests run at the same time; the times are not used as measurements
 solvers = ["--solver", "bullet-soft", "ballistic"]
 
 

@@ -30,7 +30,7 @@ RunRecord run(const std::string& solver, const std::string& setting, double fram
 constexpr const char* kWork = "Error against run time";
 constexpr const char* kCases = "Reference cases and their reference solutions";
 
-/// Value in the row of `solver` in the scene, refused or not.
+/// Cell of the first scene in the solver's row, even if ranking is refused.
 std::string value(const std::vector<RunRecord>& runs, const std::string& title, const std::string& solver,
                   const std::string& head) {
   const Table t = table_of(runs, title);
@@ -53,7 +53,7 @@ TEST(WorkTable, FindsTheFrontAndTimesToAccuracy) {
   EXPECT_EQ(value(runs, kWork, "a", "failed"), "1 of 5");
   EXPECT_EQ(value(runs, kWork, "b", "best error"), "≤ 0.002 (tiny)") << "no solver is better than the mesh itself";
   EXPECT_EQ(value(runs, kWork, "b", "failed"), "1 of 2");
-  EXPECT_EQ(value({run("a", "x", NAN, 5e-3)}, kWork, "a", "best error"), "0.005 (x)") << "it has no time";
+  EXPECT_EQ(value({run("a", "x", NAN, 5e-3)}, kWork, "a", "best error"), "0.005 (x)") << "the run has no time";
   EXPECT_EQ(refused(runs), "")
       << "the best error is below 3 U_ref, and so below the mesh's own: no solver is ranked there";
 }

@@ -1,4 +1,4 @@
-"""h5py and xarray read what results/README.md promises. usage: check_h5py.py FOLDER"""
+"""h5py and xarray can read the contents that results/README.md describes. usage: check_h5py.py FOLDER"""
 import json
 import pathlib
 import sys

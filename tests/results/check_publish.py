@@ -1,4 +1,4 @@
-"""scripts/publish.sh: it resumes, skips what is complete and refuses mixed sources; and what is published has one commit and the hashes it names.
+"""scripts/publish.sh resumes, skips complete studies and refuses mixed sources; the published files have one commit and the stated hashes.
 
 usage: check_publish.py ROOT CLOTHBENCH
 """

@@ -103,7 +103,7 @@ TEST_F(Hdf5, WhatAKilledRunLeftIsRemovedAndNothingElse) {
     std::ofstream(litter) << "half";
   remove_leftovers(dir_, run);
   for (const char* kind : {".part.tmp.77", ".h5.tmp.77", ".xdmf.tmp.77"}) EXPECT_FALSE(fs::exists(dir_ / (run + kind)));
-  EXPECT_TRUE(fs::exists(dir_ / "another__run.h5.tmp.77")) << "another run's, maybe of a running process";
+  EXPECT_TRUE(fs::exists(dir_ / "another__run.h5.tmp.77")) << "it belongs to another run, whose process may be alive";
   EXPECT_EQ(writer.recovered().trials.size(), 1u) << "a finished trial stays";
   // Killed between the rename of the file and the removal of its part file.
   write_hdf5(dir_ / (run + ".h5"), r);
@@ -138,7 +138,7 @@ TEST_F(Hdf5, AnUnfinishedRunIsNotImported) {
   RunWriter writer(dir_, h, Finish::Cbor);
   EXPECT_TRUE(import_runs(dir_).empty());
   const std::string part = (dir_ / "s__none__default.part").string();
-  EXPECT_PRED2(mentions, refusal([&] { import_runs(part); }), part) << "a part file is not passed over in silence";
+  EXPECT_PRED2(mentions, refusal([&] { import_runs(part); }), part) << "a part file is not ignored silently";
   EXPECT_EQ(import_runs(writer.finish({}, {})), std::vector<fs::path>{dir_ / "s__none__default.h5"});
   EXPECT_TRUE(fs::exists(dir_ / "s__none__default.h5"));
 }

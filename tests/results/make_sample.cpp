@@ -1,5 +1,5 @@
-// usage: make_sample FOLDER [START_UNIX_S]: writes one finished run for the readers' tests; with a time, the CBOR file
-// that a device would leave, of three trials of 0.4 s, half a second apart, the first 0.2 s after that time.
+// usage: make_sample FOLDER [START_UNIX_S]: writes one finished run for the readers' tests; with START_UNIX_S, the CBOR
+// file that a device would leave. Its three trials of 0.4 s begin at START_UNIX_S + 0.2 s, half a second apart.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

@@ -86,7 +86,7 @@ TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
   EXPECT_TRUE(batches.next_drop());
   EXPECT_EQ(indices(), (std::vector<int>{0, 1}));
   EXPECT_TRUE(batches.next_drop() && batches.next_drop());
-  EXPECT_EQ(batches.index(), 4) << "of a drop its first";
+  EXPECT_EQ(batches.index(), 4) << "the first frame of the last drop";
   EXPECT_FALSE(batches.next_drop());
   EXPECT_EQ(indices(), (std::vector<int>{0, 1, 0}));
   FrameLoop timed(*solver, s, {.frames = 5, .max_wall_s = 1e-12, .min_frames = 3});
@@ -96,7 +96,7 @@ TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
   FrameLoop fails(*solver, s, {.first = 2, .frames = 5});
   EXPECT_FALSE(fails.next([](const FrameInput&) { return StepStatus::Diverged; }));
   EXPECT_TRUE(fails.failed());
-  EXPECT_FALSE(fails.next()) << "nothing goes on from there";
+  EXPECT_FALSE(fails.next()) << "the loop ends after a failure";
   EXPECT_EQ(fails.index(), 2);
 }
 
@@ -166,7 +166,7 @@ TEST(SolverEnds, EveryKindOfFailureCountsAlike) {
     EXPECT_EQ(faults({{"mine", status}}),
               std::vector<std::string>{std::string("mine: finished none of 1 runs; the last: ") + status + ": why"});
     EXPECT_TRUE(faults({{"mine", status}, {"mine", "ok"}}).empty()) << status;
-    EXPECT_EQ(faults({{"mine", status}, {"other", "ok"}}).size(), 1u) << "of each solver by itself: " << status;
+    EXPECT_EQ(faults({{"mine", status}, {"other", "ok"}}).size(), 1u) << "each solver counts separately: " << status;
     EXPECT_EQ(faults({{"mine", status}, {"mine", "unsupported"}}).size(), 1u) << status;
   }
 }

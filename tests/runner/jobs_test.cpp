@@ -36,7 +36,7 @@ TEST_F(Jobs, AreProcessesOfTheProgramBesideThisOne) {
   EXPECT_EQ(jobs_in(dir_, 11), 11) << "ten more started by the same shell";
   process(20, "clothbench", 10, 'Z');
   process(21, "clothbench", 10, 'T');
-  EXPECT_EQ(jobs_in(dir_, 11), 9) << "a dead and a stopped one take no time";
+  EXPECT_EQ(jobs_in(dir_, 11), 9) << "dead and stopped processes use no CPU";
   process(40, "a) S 1 (clothbench", 1);
   process(41, "clothbench-report", 1);
   EXPECT_EQ(jobs_in(dir_, 11), 9) << "other names";

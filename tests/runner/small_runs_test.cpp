@@ -1,4 +1,4 @@
-// Runs of a small scene: paused in the middle of a trial as by a paused activity, in a settings sweep, resumed.
+// Runs of a small scene: paused within a trial (as if an Android activity were paused), in a settings sweep, resumed.
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -223,7 +223,7 @@ TEST_F(Resume, UntimedPassesAreNotRepeated) {
     EXPECT_EQ(a.outcome.failed_frame, b.outcome.failed_frame);
     EXPECT_EQ(a.outcome.trajectory_sha256, b.outcome.trajectory_sha256);
     EXPECT_EQ(a.trials.size(), b.trials.size());
-    EXPECT_EQ(jobs_of(b), 1) << "processes beside the untimed pass withhold no time of a trial";
+    EXPECT_EQ(jobs_of(b), 1) << "other jobs during the untimed pass do not affect trials";
   }
   unsetenv("CLOTHBENCH_JOBS");
 }

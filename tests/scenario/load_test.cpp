@@ -46,7 +46,7 @@ TEST(Load, NeedsFollowTheScene) {
   EXPECT_TRUE(scene_of(changed("1000}", "1000,\"damping_per_s\":0.1}")).needs.has(Feature::Damping));
   EXPECT_TRUE(scene_of(changed("single", "double-duplicated")).needs.has(Feature::DuplicatedLayer));
   EXPECT_FALSE(scene_of(changed("single", "double")).needs.has(Feature::DoubleSided))
-      << "with nothing to touch, two-sided contact is nothing";
+      << "two-sided contact needs something to touch";
 }
 
 TEST(Load, PinsBecomeVertices) {
@@ -79,7 +79,7 @@ TEST(Load, SelfCollisionIsAsThickAsItsTrianglesAreHighAtMost) {
   EXPECT_NEAR(s.cloth.least_height_m(), 0.024, 1e-15);
   EXPECT_PRED2(mentions, refusal([&] { load("cloth.self_collision={\"thickness_m\":0.0241}"); }),
                "/cloth/self_collision/thickness_m: expected at most")
-      << "it would touch itself where it lies flat";
+      << "the flat cloth would already touch itself";
   for (const char* bad :
        {"{\"thickness_m\":0}", "{\"thickness_m\":-1}", "{}", "true", "{\"thickness_m\":0.01,\"width\":1}"})
     EXPECT_THROW(load(std::string("cloth.self_collision=") + bad), Error) << bad;

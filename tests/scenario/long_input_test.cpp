@@ -1,5 +1,5 @@
-// Readers' messages about wrong input of any length: the place, briefly, and not the input itself. Also about radii
-// unknown to a headset, and about more runs than a study may have.
+// Readers' messages about wrong input state the place briefly and do not repeat long input. Also tests messages about
+// unknown radii in hand recordings, and about studies with too many runs.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

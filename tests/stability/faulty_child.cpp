@@ -1,4 +1,4 @@
-// Replaces `clothbench run-child` by solvers that fail in frame 3 in the way that their names say.
+// Replaces `clothbench run-child`. Each solver fails at the load or in frame 3, in the way that its name says.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -14,7 +14,7 @@
 namespace clothbench {
 namespace {
 
-/// Falls as a stone, until it does not.
+/// Falls freely until it fails.
 class Faulty final : public StillSolver {
  public:
   using StillSolver::StillSolver;

@@ -3,7 +3,7 @@
 
 usage: check_structure.py
 
-Prints one line per fault and exits with 1; with 77 (skipped) where a needed program is missing and there is no fault.
+Prints one line per fault and exits with 1. If there is no fault but a needed program is missing, it exits with 77 (skipped).
 """
 import ast
 import re

@@ -104,7 +104,7 @@ TEST(Norms, LatticeErrors) {
     moved[i + 2] -= 0.4;
   }
   EXPECT_NEAR(lattice_rms_error(lattice, moved, truth, 2), 0.25, 1e-14);
-  one[3 * 34] += 1;  // an inner point: one cell of 1024
+  one[3 * 34] += 1;  // an inner point, which stands for one cell of 1024
   EXPECT_NEAR(lattice_rms_error(lattice, one, truth, 1), 1.0 / 32, 1e-14);
   for (const double bad : {kNan, std::numeric_limits<double>::infinity()}) {
     one[0] = bad;

@@ -148,7 +148,7 @@ TEST(HeavyStrip, HasThePublishedStretchAlsoInRows) {
   for (const double at : {0.2, 0.9, 1.4}) {
     const double h = 1e-5,
                  slope = (hang_displacement_m(loaded, at + h) - hang_displacement_m(loaded, at - h)) / (2 * h);
-    EXPECT_NEAR(slope, (0.3 * 9.81 * (1.5 - at) + 7) / 200, 1e-8) << "the strain carries what hangs below";
+    EXPECT_NEAR(slope, (0.3 * 9.81 * (1.5 - at) + 7) / 200, 1e-8) << "the strain carries the weight below";
   }
   for (const int n : {1, 7, 32}) {
     double moved = 0;  // each spring carries half of its own cell and everything below
@@ -289,7 +289,7 @@ TEST(Capstan, HasThePublishedRatiosAndOverhangs) {
 
 TEST(Capstan, SlidesByTheBalanceOfItsElements) {
   const State times{0, 0.1, 0.2, 0.3};
-  // Without friction it is Atwood's: L s'' = 2 g s, so s = s0 cosh(sqrt(2g/L) t).
+  // Without friction it is an Atwood machine: L s'' = 2 g s, so s = s0 cosh(sqrt(2g/L) t).
   const auto atwood = slide_over({0, 0.05, 0.2, 9.81, 0}, 0.3, 0.5, times);
   const double k = std::sqrt(2 * 9.81 / (0.8 + 0.05 * pi));
   for (std::size_t f = 0; f < times.size(); ++f) {
@@ -311,7 +311,7 @@ TEST(Capstan, SlidesByTheBalanceOfItsElements) {
     const double slow = slide_over(rough, 0.2, 1.001 * most, times).back().distance_m;
     EXPECT_TRUE(slow > 0 && slow < 1e-3) << slow;
   }
-  EXPECT_THROW(slide_over({}, 0.2, 5, State{0, 0.5}), Error) << "the light end is over";
+  EXPECT_THROW(slide_over({}, 0.2, 5, State{0, 0.5}), Error) << "the light end has left the cylinder";
 }
 
 }  // namespace

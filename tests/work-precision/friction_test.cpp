@@ -1,4 +1,4 @@
-// V14 and V15: friction of `xpbd` against closed forms. The bounds are what it reaches on a software device.
+// V14 and V15: friction of `xpbd` against closed forms. The bounds are errors that it reaches on a software device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,7 +53,7 @@ TEST_F(Friction, StickSlipStop) {
   EXPECT_LE(end_error("incline-stick"), 1e-4);
   settings_["substeps"] = 256;
   EXPECT_LE(end_error("incline-stick"), 1e-3)
-      << "what a substep falls, 3e-8 m, is less than the rounding of a position";
+      << "the fall in one substep, 3e-8 m, is less than the rounding of a position";
   EXPECT_LE(end_error("incline-slip"), 0.02);
 }
 
@@ -66,7 +66,7 @@ TEST_F(Friction, CriticalAngleWithinATenthOfADegree) {
   EXPECT_GE(quantity(15.9), 0.01) << "m in 2 s";
 }
 
-/// The error falls with more substeps; by default, a finer strip has more of them.
+/// The error decreases with more substeps; by default, a finer strip uses more substeps.
 TEST_F(Friction, CapstanSlidesWithinFivePerCent) { EXPECT_LE(end_error("capstan-slip"), 0.05); }
 
 }  // namespace

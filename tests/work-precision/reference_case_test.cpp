@@ -91,7 +91,7 @@ TEST(MeshCases, DoNotDependOnTheTriangles) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(end[k], there[k], 1e-12) << name << ": vertices lie on edge u1";
     if (coarse.reference_case == "cantilever") continue;  // its clamp is a cell wide
     EXPECT_NEAR(a->quantity(a->columns(last)), b->quantity(b->columns(last)), 0.02 * b->quantity_scale) << name;
-    EXPECT_TRUE(std::isnan(TruthJudge(coarse).space_error())) << "a mesh has no truth of its own";
+    EXPECT_TRUE(std::isnan(TruthJudge(coarse).space_error())) << "a mesh has no exact solution of its own";
   }
 }
 

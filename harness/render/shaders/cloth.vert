@@ -1,19 +1,19 @@
 #version 450
 #include "../render_shared.h"
-// Draws 3 vertices per triangle of the cloth, which pull their positions from the solver's own buffer (or one like it).
-// There are no indices, so that every vertex knows its triangle and one with a corner that is not finite can be left out
-// whole.
+// Draws the cloth's triangles, 3 vertices each. The shader reads positions from the solver's own buffer, or from a buffer
+// of the same layout. The draw is not indexed, so that every vertex knows its triangle, and a triangle with a corner that
+// is not finite can be omitted.
 layout(push_constant) uniform Constants { Drawn d; };
 layout(std430, set = 0, binding = 0) readonly buffer Positions { vec4 position[]; };
-// 3 words per corner of a triangle: its vertex and its position on the checker (bits of floats). Then for each vertex
-// where its triangles begin, and the end of the last; then these triangles.
+// 3 words per corner of a triangle: its vertex and its position on the checker (two floats). Then the triangles of each
+// vertex in CSR form: the offsets (one per vertex and the end), then the triangles.
 layout(std430, set = 0, binding = 3) readonly buffer Mesh { uint mesh[]; };
 layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec2 out_square;
 layout(location = 3) flat out int out_look;
 
-const float kFar = 1e18;  // further away counts as not finite; its square still is in float32
+const float kFar = 1e18;  // larger coordinates count as not finite; float32 can still represent its square
 
 bool finite(vec3 x) { return all(lessThan(abs(x), vec3(kFar))); }  // NaN fails
 
@@ -21,7 +21,7 @@ uint vertex_of(int triangle, int corner) { return mesh[9 * triangle + 3 * corner
 
 vec3 corner_of(int triangle, int corner) { return position[vertex_of(triangle, corner)].xyz; }
 
-/// Mean normal of the triangles of a vertex, by area.
+/// Mean normal of a vertex's triangles, weighted by area.
 vec3 normal_of(uint v, int triangles, int vertices) {
   const int first = 9 * triangles + int(v), lists = 9 * triangles + vertices + 1;
   vec3 sum = vec3(0);
@@ -40,7 +40,7 @@ void main() {
   out_look = LOOK_SMOOTH;
   for (int k = 0; k < 3; ++k)
     if (!finite(corner_of(triangle, k))) {
-      gl_Position = vec4(0, 0, 2, 1);  // behind the far plane, as the other two
+      gl_Position = vec4(0, 0, 2, 1);  // behind the far plane, like the triangle's other corners
       return;
     }
   const int word = 9 * triangle + 3 * corner;
