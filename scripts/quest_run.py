@@ -129,21 +129,52 @@ def fixed_settings(adb, a):
         listen(signal.default_int_handler)
 
 
-@contextlib.contextmanager
-def traced(adb, into):
-    """Perfetto's GPU counters while the block runs, as the file `into`. Yields whether the device offers them."""
+def start_hzdb(adb, into):
+    """Meta's hzdb, if it is installed: functions that end its capture and fetch it, else None. Its documentation does not say where `stop` puts the file."""
+    program, name = shutil.which("hzdb"), f"clothbench-{STAMP}"
+    if not program:
+        return None
+
+    def call(*words):
+        words = [program, "--device", adb.serial, "perf", *words]
+        return subprocess.run(words, cwd=into.parent, stdin=subprocess.DEVNULL, capture_output=True, timeout=1800, check=False, start_new_session=True).stdout.decode("utf-8", "replace")
+
+    pid = re.search(r"\bpid\b\W*(\d+)", call("start", "--mode", "custom", "--app", PACKAGE, "--output", name), re.I)
+
+    def fetch():
+        folders = [into.parent, *(pathlib.Path.home() / f for f in ("Documents", "Downloads"))]
+        for file in [file for folder in folders for file in folder.glob(name + "*.pftrace")][:1]:
+            shutil.move(file, into)
+
+    return pid and (lambda: call("stop", pid[1], name), fetch)
+
+
+def start_perfetto(adb, into):
+    """The device's perfetto, as start_hzdb; None if it offers no GPU counters."""
     source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
     chosen = [ids[name] for name in samples.WANTED if name in ids]
     start = f"echo {shlex.quote(perfetto.config(source, chosen))} | perfetto --txt -c - --background -o {TRACE}"
     pid = "".join(re.findall(r"^\d+$", adb.shell(start, check=False), re.M)[:1]) if chosen else ""
-    try:
-        yield bool(pid)
-    finally:
-        if pid:  # wait until the process has written the rest of the trace
-            adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done")
-    if pid:
+
+    def fetch():
         adb.call("pull", TRACE, into, timeout=1800)
         adb.shell(f"rm -f {TRACE}")
+
+    # The process writes the rest of the trace before it ends.
+    return (lambda: adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done"), fetch) if pid else None
+
+
+@contextlib.contextmanager
+def traced(adb, into):
+    """GPU counters while the block runs, as a Perfetto trace in the file `into`. Yields whether there are any."""
+    capture = start_hzdb(adb, into) or start_perfetto(adb, into)
+    try:
+        yield bool(capture)
+    finally:
+        if capture:
+            capture[0]()
+    if capture:
+        capture[1]()
 
 
 class Run:
@@ -240,7 +271,7 @@ def run(adb, a):
         one.follow(is_traced)
     try:
         counters = perfetto.samples(trace.read_bytes()) if is_traced else one.counters.samples
-    except ValueError as e:
+    except (OSError, ValueError) as e:
         counters = print(f"quest_run: no counters: {trace}: {e}", file=sys.stderr) or []
     samples.write(os.path.join(a.out, "samples.json"), device, samples.groups(one.vrapi, counters, "perfetto" if is_traced else "ovrgpuprofiler", requested))
     pathlib.Path(a.out, "logcat.txt").write_text("\n".join(one.log), encoding="utf-8")

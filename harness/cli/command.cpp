@@ -1,6 +1,9 @@
 #include "cli/command.hpp"
 
+#include <charconv>
 #include <cstdio>
+
+#include "base/words.hpp"
 
 namespace clothbench {
 
@@ -33,6 +36,22 @@ void DeviceFlags::add_to(CLI::App& app) {
                  "Limit the device to a device class: adreno-like (32 KiB shared memory, groups of 256)");
   app.add_flag("--validate", options.validation,
                "Vulkan core and synchronization validation; any message fails the run");
+}
+
+void SustainedFlag::add_to(CLI::App& app) {
+  app.add_flag("--sustained{600}", seconds,
+               "Instead of trials, step each run at its scene's frame rate for this many seconds, in windows of 10 s "
+               "(--sustained=60; default 600): shows how a device slows as it gets warm");
+}
+
+void SustainedFlag::apply_to(RunPlan& plan) const {
+  if (seconds.empty()) return;
+  constexpr int kDay_s = 86400;
+  int s = 0;
+  const auto [end, error] = std::from_chars(seconds.data(), seconds.data() + seconds.size(), s);
+  if (error != std::errc() || *end != '\0' || s < 1 || s > kDay_s)
+    throw Error("--sustained=" + shortened(seconds, 40) + ": expected whole seconds, from 1 to 86400");
+  sustain(plan, s);
 }
 
 CLI::Option* add_solvers(CLI::App& app, const std::string& option, std::vector<std::string>& names,

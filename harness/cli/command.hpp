@@ -79,6 +79,13 @@ struct SolverFlags {
   std::vector<ChosenSolver> chosen(const std::vector<std::string>& by_default) const;
 };
 
+/// --sustained[=SECONDS]: windows at the scene's frame rate instead of trials.
+struct SustainedFlag {
+  std::string seconds;  ///< empty: not given
+  void add_to(CLI::App&);
+  void apply_to(RunPlan&) const;  ///< throws Error if the length is not 1 s to a day
+};
+
 /// Options that decide how a command executes a plan.
 struct RunFlags {
   std::string out;  ///< empty: results/runs/<study>-<UTC>

@@ -9,6 +9,7 @@ struct RunArguments {
   std::string out;
   int trials = 1;
   bool require_assets = false, resume = false;
+  SustainedFlag sustained;
 };
 
 }  // namespace
@@ -20,6 +21,7 @@ void add_run(CLI::App& app, Console& console) {
   cmd->add_option("scene", a.scenes, "Scene files or names")->required();
   a.with.add_to(*cmd, "--solver", "Solvers (default xpbd)", "Override: cloth.grid=[64,64], solver.substeps=20");
   cmd->add_option("--trials", a.trials, "Timed trials")->check(CLI::Range(0, 1000))->capture_default_str();
+  a.sustained.add_to(*cmd);
   cmd->add_option("--out", a.out, "Folder for the result files; default results/runs/run-<UTC>");
   add_require_assets(*cmd, a.require_assets);
   cmd->add_flag("--resume", a.resume, "Continue the interrupted run in the folder of --out");
@@ -43,6 +45,7 @@ void add_run(CLI::App& app, Console& console) {
         group.push_back({&scene, entry, settings, setting});
       plan.groups.push_back(std::move(group));
     }
+    a.sustained.apply_to(plan);
     StudyManifest manifest;
     manifest.study = "run";
     execute_study(plan, manifest, {.out = a.out, .resume = a.resume, .device = a.with.device}, console);

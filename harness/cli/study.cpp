@@ -26,6 +26,7 @@ struct StudyArguments {
   std::optional<std::uint64_t> seed;
   std::string eye = "2064x2208", chosen;
   bool with_rendering = false, list_jobs = false;
+  SustainedFlag sustained;
   bool quick = false, require_assets = false, procedural = false;
   RunFlags run;
 };
@@ -62,7 +63,10 @@ void check_options(const Study& study, const StudyArguments& a) {
     const std::string of = ": studies of protocol " + study.protocol + " have no timed trials";
     if (a.with_rendering) throw Error("--with-rendering" + of);
     if (a.trials > 0) throw Error("--trials" + of);
+    if (!a.sustained.seconds.empty()) throw Error("--sustained" + of);
   }
+  if (!a.sustained.seconds.empty() && (a.with_rendering || a.trials > 0))
+    throw Error("--sustained excludes --with-rendering and --trials; leave one out");
   if (is_drawn(study)) return;
   if (a.count > 0 || a.seed)
     throw Error(
@@ -89,6 +93,7 @@ void run_study(StudyArguments& a, Console& console) {
   RunPlan plan = plan_study(study);
   if (a.trials > 0) plan.rules.trials = a.trials;
   if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
+  a.sustained.apply_to(plan);
   const std::vector<std::string> names = run_names(plan);
   if (a.list_jobs) return print_jobs(names, console);
   StudyManifest manifest;
@@ -118,6 +123,7 @@ void add_study(CLI::App& app, Console& console) {
   cmd->add_flag("--quick", a.quick,
                 "The study's quick form, with fewer scenes and solvers: for a software device on 2 cores");
   cmd->add_option("--trials", a.trials, "Number of trials per run, instead of the study's")->check(CLI::Range(1, 1000));
+  a.sustained.add_to(*cmd);
   add_solvers(*cmd, "--solver", a.only,
               "Only these solvers. One that the study does not name is added with its default settings; a plugin with "
               "settings substeps or iterations takes part in settings sweeps");

@@ -115,7 +115,13 @@ std::string trials_csv(const RunTable& table) {
     out.insert(out.end(), {{"trial", t.index},
                            {"frames", t.frames()},
                            {"start_unix_s", t.start_unix_s},
+                           {"end_unix_s", t.end_unix_s},
                            {"jobs", t.jobs},
+                           {"cpu_clock_Hz", t.cpu_clock_Hz},
+                           {"gpu_clock_Hz", t.gpu_clock_Hz},
+                           {"temperature_C", t.temperature_C},
+                           {"power_W", t.power_W},
+                           {"gpu_power_W", t.gpu_power_W},
                            {"pipelined_wall_s", t.pipelined_wall_s}});
     out.emplace_back("not_trusted", environment_of(*r.run, "distrusted_trials")[std::to_string(t.index)]);
     for (const auto& [name, times] :

@@ -232,6 +232,7 @@ std::pair<double, double> Row::offset_m() const {
 std::string Row::trust() const {
   if (run->trials.empty()) return "";
   std::string out = jobs_of(*run) == 1 ? "alone" : "not alone";
+  if (environment_of(*run, "window_s").is_number()) out += ", with pauses between frames";
   const double start = value("gpu_clock_start_Hz"), end = value("gpu_clock_end_Hz");
   if (end < kThrottled * start) out += fmt::format(", throttled ({:.0f} to {:.0f} MHz)", 1e-6 * start, 1e-6 * end);
   if (!std::isfinite(start) && !std::isfinite(value("cpu_clock_start_Hz"))) out += ", clocks not readable";

@@ -244,9 +244,10 @@ std::string words(std::string_view text) {
   return name;
 }
 
-constexpr const char* kStated[] = {"gpu",         "gpu_is_software", "device_profile", "driver",   "cpu",
-                                   "cpu_threads", "shader_compiler", "clock_policy",   "protocol", "git_commit",
-                                   "git_dirty",   "source_sha256",   "build_type",     "assets"};
+constexpr const char* kStated[] = {"gpu",         "gpu_is_software", "device_profile", "driver",        "cpu",
+                                   "cpu_threads", "shader_compiler", "clock_policy",   "power_limit_W", "ecc",
+                                   "protocol",    "git_commit",      "git_dirty",      "source_sha256", "build_type",
+                                   "assets"};
 
 std::string stated(const Row& r, const char* name) {
   const json e = environment_of(*r.run, name);

@@ -148,6 +148,55 @@ View memory() {
   return v;
 }
 
+/// Starts of a sustained run's windows [s after the first one], as keys.
+Keys windows_of(const Row& r) {
+  Keys out;
+  for (const TimedTrial& t : r.run->trials)
+    out.emplace_back(fmt::format("{:.0f}", t.start_unix_s - r.run->trials.front().start_unix_s));
+  return out;
+}
+
+View sustained() {
+  View v{"time", "Frame times over time",
+         "Runs with `--sustained`: frames begin at the scene's frame rate, and a row shows one window. Late: frames "
+         "longer than their period. Clocks and temperature: after the window, of the fastest core, the GPU and the "
+         "hottest zone. Power: mean of the CPU packages, or the power drawn from the battery. A column is missing if "
+         "the platform does not let the program read it.",
+         [](const Row& r) { return environment_of(*r.run, "window_s").is_number() && !r.run->trials.empty(); }};
+  v.keys = {scene_key(), solver_key(), {"from [s]", windows_of}};
+  const auto add = [&](const char* head, std::function<Cell(const Row&, const TimedTrial&)> cell) {
+    v.columns.push_back({head, [cell](const Group& g, const Keys& keys) {
+                           const Keys windows = windows_of(*g.front());
+                           const auto at = std::find(windows.begin(), windows.end(), keys.back()) - windows.begin();
+                           return cell(*g.front(), g.front()->run->trials[static_cast<std::size_t>(at)]);
+                         }});
+  };
+  const auto add_quantiles = [&](const char* head, std::vector<double> TimedTrial::*times) {
+    add(head, [times](const Row&, const TimedTrial& t) {
+      FrameTimes all{t.*times};
+      std::erase_if(all.sorted, [](double s) { return !std::isfinite(s); });
+      std::sort(all.sorted.begin(), all.sorted.end());
+      return all.sorted.empty() ? Cell() : Cell(milliseconds(all.at(0.5)) + " / " + tails_cell(all).text, all.at(0.5));
+    });
+  };
+  add_quantiles("wall: p50 / p95 / p99 / worst [ms]", &TimedTrial::frame_wall_s);
+  add_quantiles("GPU: p50 / p95 / p99 / worst [ms]", &TimedTrial::frame_device_s);
+  add("late [%]", [](const Row& r, const TimedTrial& t) {
+    const auto late = std::count_if(t.frame_wall_s.begin(), t.frame_wall_s.end(),
+                                    [&](double s) { return !(s <= 1 / r.frame_rate_hz()); });
+    return number_cell(100.0 * static_cast<double>(late) / t.frames(), 3);
+  });
+  add("length [s]", [](const Row&, const TimedTrial& t) { return number_cell(t.end_unix_s - t.start_unix_s, 3); });
+  add("CPU clock [MHz]", [](const Row&, const TimedTrial& t) { return number_cell(1e-6 * t.cpu_clock_Hz, 4); });
+  add("GPU clock [MHz]", [](const Row&, const TimedTrial& t) { return number_cell(1e-6 * t.gpu_clock_Hz, 4); });
+  add("temperature [°C]", [](const Row&, const TimedTrial& t) { return number_cell(t.temperature_C, 3); });
+  add("GPU power [W]", [](const Row&, const TimedTrial& t) { return number_cell(t.gpu_power_W, 3); });
+  add("power [W]", [](const Row&, const TimedTrial& t) { return number_cell(t.power_W, 3); });
+  v.in_full = true;
+  v.timed = true;
+  return v;
+}
+
 View in_short(std::function<bool(const Row&)> where) {
   View v{
       "overview", "In short",
@@ -212,7 +261,7 @@ void add_tail_columns(View& v, const Pick& pick) {
 std::vector<View> rate_views() {
   View leading = in_short(&Row::leads);
   leading.title = "Leading scenes with contact";
-  return {std::move(leading), frame_times(), memory()};
+  return {std::move(leading), frame_times(), sustained(), memory()};
 }
 
 Table in_short_table(const RunTable& table) {

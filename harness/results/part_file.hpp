@@ -42,6 +42,11 @@ inline constexpr TrialNumber kTrialNumbers[] = {
     {"trial_start_unix_s", "s", "when the trial's first timed frame began, since 1970 UTC", &TimedTrial::start_unix_s},
     {"trial_end_unix_s", "s", "when the trial's last timed frame ended, since 1970 UTC", &TimedTrial::end_unix_s},
     {"jobs", "1", "clothbench jobs on the machine during the trial, this one included", &TimedTrial::jobs},
+    {"cpu_clock_Hz", "Hz", "clock of the fastest CPU core after the trial", &TimedTrial::cpu_clock_Hz},
+    {"gpu_clock_Hz", "Hz", "clock of the GPU after the trial", &TimedTrial::gpu_clock_Hz},
+    {"temperature_C", "degC", "temperature of the hottest zone after the trial", &TimedTrial::temperature_C},
+    {"gpu_power_W", "W", "mean power of the GPU", &TimedTrial::gpu_power_W},
+    {"power_W", "W", "mean power of CPU packages, or power drawn from the battery", &TimedTrial::power_W},
 };
 
 nlohmann::json to_json(const TimedTrial&);

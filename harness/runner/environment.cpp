@@ -16,6 +16,7 @@
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/record.hpp"
+#include "runner/nvml.hpp"
 
 namespace clothbench {
 namespace {
@@ -70,6 +71,11 @@ void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
   if (!info.engine.empty()) environment["plugin"]["engine"] = info.engine;
 }
 
+std::string uuid_of_gpu(const nlohmann::json& environment) {
+  const nlohmann::json gpu = environment.value("gpu_properties", nlohmann::json());
+  return gpu.is_object() ? gpu.value("uuid", "") : "";
+}
+
 nlohmann::json describe_environment(const DeviceInfo& device, const std::string& protocol) {
   nlohmann::json e;
   e["gpu"] = device.name;
@@ -88,7 +94,9 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["git_dirty"] = build_info::kGitDirty;
   e["source_sha256"] = build_info::kSourceSha256;
   e["created"] = utc_now();
-  e["sensors"] = read_sensors();
+  e["sensors"] = read_sensors("/", uuid_of_gpu(e));
+  for (const char* stated : {"power_limit_W", "ecc"})
+    if (const auto& gpu = e["sensors"]["gpu"]; gpu.contains(stated)) e[stated] = gpu[stated];
   e["clock_policy"] = clock_policy(e["sensors"]);
   e["protocol"] = protocol;
   e["jobs"] = jobs_now();
@@ -138,7 +146,7 @@ double greatest(const json& list, const char* key) {
 
 }  // namespace
 
-json read_sensors(const fs::path& root) {
+json read_sensors(const fs::path& root, const std::string& gpu_uuid) {
   constexpr double kKiloHertz = 1e3, kMilliDegree = 1e-3;
   json all = {{"cpus", json::array()}, {"gpu", json::object()}, {"temperatures", json::array()}};
   for (const auto& [number, folder] : numbered(root / "sys/devices/system/cpu", "cpu")) {
@@ -154,6 +162,7 @@ json read_sensors(const fs::path& root) {
   put_number(all["gpu"], "frequency_Hz", adreno / "gpuclk", 1);
   put_text(all["gpu"], "governor", adreno / "devfreq/governor");
   put_number(all["gpu"], "temperature_C", adreno / "temp", kMilliDegree);
+  all["gpu"].update(nvidia_state(gpu_uuid));
   for (const auto& [unused, folder] : numbered(root / "sys/class/thermal", "thermal_zone")) {
     json zone;
     // A zone that is switched off gives an error or a value below absolute zero.
@@ -165,12 +174,66 @@ json read_sensors(const fs::path& root) {
   return all;
 }
 
-void summarise_sensors(const json& sensors, const std::string& when, std::map<std::string, double>& summary) {
-  summary["cpu_clock_" + when + "_Hz"] = greatest(sensors.value("cpus", json::array()), "frequency_Hz");
-  summary["gpu_clock_" + when + "_Hz"] = sensors.value("gpu", json::object()).value("frequency_Hz", kMissing);
+void store_sensors(const json& sensors, TimedTrial& t) {
+  t.cpu_clock_Hz = greatest(sensors.value("cpus", json::array()), "frequency_Hz");
+  t.gpu_clock_Hz = sensors.value("gpu", json::object()).value("frequency_Hz", kMissing);
   json zones = sensors.value("temperatures", json::array());
   zones.push_back(sensors.value("gpu", json::object()));
-  summary["temperature_" + when + "_C"] = greatest(zones, "temperature_C");
+  t.temperature_C = greatest(zones, "temperature_C");
+}
+
+void summarise_sensors(const TimedTrial& t, const std::string& when, std::map<std::string, double>& summary) {
+  summary["cpu_clock_" + when + "_Hz"] = t.cpu_clock_Hz;
+  summary["gpu_clock_" + when + "_Hz"] = t.gpu_clock_Hz;
+  summary["temperature_" + when + "_C"] = t.temperature_C;
+}
+
+namespace {
+
+/// Energy that all CPU packages have used since some moment; NaN if not readable.
+double package_energy_J(const fs::path& root) {
+  constexpr double kMicro = 1e-6;
+  double sum = kMissing;
+  for (const auto& [unused, package] : numbered(root / "sys/class/powercap", "intel-rapl:")) {
+    json j;
+    put_number(j, "energy_J", package / "energy_uj", kMicro);
+    if (!j.is_null()) sum = (std::isnan(sum) ? 0 : sum) + j["energy_J"].get<double>();
+  }
+  return sum;
+}
+
+/// Power that is drawn from the battery; NaN without one, or if it is not discharging.
+double battery_W(const fs::path& root) {
+  constexpr double kMicro = 1e-6;
+  const fs::path battery = root / "sys/class/power_supply/battery";
+  json j;
+  put_number(j, "A", battery / "current_now", kMicro);
+  put_number(j, "V", battery / "voltage_now", kMicro);
+  if (line_of(battery / "status") != "Discharging" || j.size() != 2) return kMissing;
+  return std::abs(j["A"].get<double>()) * j["V"].get<double>();  // drivers differ in the sign of the current
+}
+
+}  // namespace
+
+PowerMeter::PowerMeter(fs::path root, std::string gpu_uuid)
+    : root_(std::move(root)),
+      gpu_uuid_(std::move(gpu_uuid)),
+      start_(std::chrono::steady_clock::now()),
+      start_J_(package_energy_J(root_)),
+      gpu_start_J_(nvidia_state(gpu_uuid_).value("energy_J", kMissing)) {}
+
+double PowerMeter::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double PowerMeter::mean_gpu_W() const {
+  return (nvidia_state(gpu_uuid_).value("energy_J", kMissing) - gpu_start_J_) / seconds();
+}
+
+double PowerMeter::mean_W() const {
+  const double used_J = package_energy_J(root_) - start_J_;
+  if (std::isnan(used_J)) return battery_W(root_);
+  return used_J >= 0 ? used_J / seconds() : kMissing;
 }
 
 std::string clock_policy(const json& sensors) {

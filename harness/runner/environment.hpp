@@ -1,9 +1,11 @@
 #pragma once
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 
 namespace clothbench {
@@ -24,15 +26,39 @@ std::string utc_now();
 
 /// Clocks and temperatures from Linux and Android in Hz and degrees Celsius, without the values that cannot be read:
 ///   cpus: [{cpu, frequency_Hz, governor}]   /sys/devices/system/cpu/cpuN/cpufreq
-///   gpu: {model, frequency_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno)
+///   gpu: {model, frequency_Hz, governor, temperature_C}   /sys/class/kgsl/kgsl-3d0 (Adreno); with `gpu_uuid` also
+///     nvidia_state()
 ///   temperatures: [{type, temperature_C}]   /sys/class/thermal
 /// Units and files: Linux, Documentation/admin-guide/pm/cpufreq.rst and driver-api/thermal/sysfs-api.rst; Qualcomm's
 /// kgsl driver. `root` replaces "/".
-nlohmann::json read_sensors(const std::filesystem::path& root = "/");
+nlohmann::json read_sensors(const std::filesystem::path& root = "/", const std::string& gpu_uuid = {});
 
-/// Scalars of one reading: cpu_clock_<when>_Hz (fastest core), gpu_clock_<when>_Hz, temperature_<when>_C (hottest
-/// zone); NaN if not readable.
-void summarise_sensors(const nlohmann::json& sensors, const std::string& when, std::map<std::string, double>& summary);
+/// UUID of the GPU in an environment, as 32 hexadecimal digits; empty for a CPU solver.
+std::string uuid_of_gpu(const nlohmann::json& environment);
+
+/// The trial's clocks and temperature: fastest core, GPU, hottest zone; NaN if not readable.
+void store_sensors(const nlohmann::json& sensors, TimedTrial&);
+
+/// Scalars cpu_clock_<when>_Hz, gpu_clock_<when>_Hz and temperature_<when>_C from these values of a trial.
+void summarise_sensors(const TimedTrial&, const std::string& when, std::map<std::string, double>& summary);
+
+/// Mean power since its construction, from the energy counters of CPU packages (RAPL,
+/// /sys/class/powercap/intel-rapl:N), which usually only root may read; on battery instead the power drawn at present
+/// (/sys/class/power_supply). Files and units: Linux, Documentation/power/powercap and ABI/testing/sysfs-class-power.
+class PowerMeter {
+ public:
+  explicit PowerMeter(std::filesystem::path root = "/", std::string gpu_uuid = {});
+  double mean_W() const;      ///< NaN if not readable, or if a counter wrapped around
+  double mean_gpu_W() const;  ///< of an NVIDIA GPU; NaN if not readable
+
+ private:
+  double seconds() const;
+
+  std::filesystem::path root_;
+  std::string gpu_uuid_;
+  std::chrono::steady_clock::time_point start_;
+  double start_J_, gpu_start_J_;
+};
 
 /// "cpu governor schedutil, gpu governor msm-adreno-tz", or "not readable".
 std::string clock_policy(const nlohmann::json& sensors);

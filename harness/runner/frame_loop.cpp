@@ -53,7 +53,16 @@ bool FrameLoop::begin() {
   index_ = next;
   behind_ = 0;
   if (index_ > rules_.first && in_drop() == 0) solver_.reset();
+  if (rules_.period_s > 0) wait_for_period();
   return true;
+}
+
+/// A frame that is late by more than a period does not make later frames hurry.
+void FrameLoop::wait_for_period() {
+  std::this_thread::sleep_until(due_);
+  const std::chrono::duration<double> period(rules_.period_s);
+  const auto now = Clock::now();
+  due_ = (now - due_ > period ? now : due_) + std::chrono::duration_cast<Clock::duration>(period);
 }
 
 bool FrameLoop::next_drop() {

@@ -27,6 +27,7 @@ struct FrameRules {
   int min_frames = 0;                       ///< minimum number of frames, even beyond `max_wall_s`
   const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: ignore Ctrl-C
   bool cpu_clock = false;                   ///< also read the CPU clock, outside the wall-clock interval
+  double period_s = 0;  ///< frames begin this long after each other, if they are on time; 0 = at once
 };
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
@@ -72,6 +73,7 @@ class FrameLoop {
   using Clock = std::chrono::steady_clock;
 
   bool begin();
+  void wait_for_period();
   /// CPU time of the process [s]: the stepping thread and all threads that a solver has started.
   static double process_cpu_s() {
     timespec t{};
@@ -90,6 +92,7 @@ class FrameLoop {
   const FrameRules rules_;
   int index_, behind_ = 0;  ///< behind_: number of frames of the last drop after its first one
   StepStatus status_ = StepStatus::Ok;
+  Clock::time_point due_;  ///< of the next frame, if frames have a period
   double wall_s_ = 0, elapsed_s_ = 0, cpu_s_ = 0;
 };
 

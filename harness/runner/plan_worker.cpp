@@ -37,6 +37,7 @@ void each_rule(Rules& r, With with) {
   with("agree", r.agree);
   with("pipelined", r.pipelined);
   with("profiled_frames", r.profiled_frames);
+  with("window_s", r.window_s);
 }
 
 json to_json(const RunPlan& plan) {

@@ -244,11 +244,18 @@ TimedTrial SolverRun::run_trial(int index, const TrialRules& rules, int frames) 
 
 void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) {
   const int jobs_before = jobs_now();
-  warm_up(rules);
-  const int asked = rules.frames > 0 ? rules.frames : spec_.scene->time.frames();
+  const TimeSpan& time = spec_.scene->time;
+  const bool in_windows = rules.window_s > 0;
+  if (!in_windows || trial.index == 0) warm_up(rules);
+  const int asked = rules.frames > 0 ? rules.frames : time.frames();
   trial.start_unix_s = trial.end_unix_s = unix_now();
   solver_->reset();
   FrameRules timed = frames > 0 ? frame_rules(rules, frames) : frame_rules(rules, asked, rules.max_wall_s);
+  if (in_windows) {
+    timed = frame_rules(rules, static_cast<int>(std::lround(rules.window_s * time.frame_rate_hz)));
+    timed.period_s = time.dt();
+    timed.drop_frames = time.frames();
+  }
   timed.cpu_clock = !spec_.entry->info.on_gpu;
   FrameLoop loop(*solver_, *spec_.scene, timed);
   while (loop.next()) {
@@ -277,8 +284,10 @@ void SolverRun::run_pipelined(TimedTrial& trial, const TrialRules& rules) {
   if (!loop.failed()) trial.pipelined_wall_s = loop.elapsed_s() / trial.frames();
 }
 
-void SolverRun::describe(const Rendering& rendering) {
-  if (rendering.describe && solver_) header_.environment["rendering"] = rendering.describe(spec_.entry->info);
+void SolverRun::describe(const TrialRules& rules) {
+  const auto& text = rules.rendering.describe;
+  if (text && solver_) header_.environment["rendering"] = text(spec_.entry->info);
+  if (rules.window_s > 0) header_.environment["window_s"] = rules.window_s;
 }
 
 /// Runs the trial's frames again and draws each before the next begins; fewer frames if drawing exceeds the trial's

@@ -51,6 +51,8 @@ struct TrialRules {
   bool pipelined = false;    ///< also time a trial's frames without waiting for each, if the solver supports it
   int profiled_frames = 12;  ///< frames per trial that run again with stage timestamps; 0: none, and no byte counts
   Rendering rendering = {};  ///< also time frames with rendering
+  /// A trial is this long, at the scene's frame rate, with pauses between frames; 0: `frames` without pauses.
+  double window_s = 0;
 };
 
 /// Outcome of a run whose step returned this status in frame `frame`.
@@ -75,8 +77,8 @@ class SolverRun {
 
   const RunSpec& spec() const { return spec_; }
   const RunHeader& header() const { return header_; }
-  /// Adds the description of the rendering to the header; call before the header is written.
-  void describe(const Rendering&);
+  /// Adds the description of the rendering and the length of windows to the header; call before the header is written.
+  void describe(const TrialRules&);
   const Outcome& outcome() const { return outcome_; }
   bool alive() const { return solver_ != nullptr && outcome_.status == "ok"; }
   const Plan& plan() const { return plan_; }

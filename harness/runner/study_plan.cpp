@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -123,6 +124,20 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
     }
   }
   return plan;
+}
+
+void sustain(RunPlan& plan, double duration_s) {
+  constexpr double kWindow_s = 10;
+  TrialRules& r = plan.rules;
+  r.window_s = std::min(kWindow_s, duration_s);
+  r.trials = static_cast<int>(std::ceil(duration_s / r.window_s));
+  r.agree = 0;
+  r.pipelined = false;
+  r.profiled_frames = 0;
+  std::vector<std::vector<RunSpec>> apart;
+  for (const auto& group : plan.groups)
+    for (const RunSpec& spec : group) apart.push_back({spec});
+  plan.groups = std::move(apart);
 }
 
 std::vector<std::string> run_names(const RunPlan& plan) {

@@ -23,6 +23,10 @@ std::map<std::string, std::vector<std::string>> knobs_of_plugins(const std::vect
 /// `unsupported` runs. Throws Error for any other unknown solver and for an unknown setting.
 RunPlan plan_study(const Study&, const std::function<const SolverEntry*(const std::string&)>& lookup = known_solver);
 
+/// Makes the trials of every run windows of up to 10 s that follow each other for `duration_s`, at the scene's frame
+/// rate, and the runs follow each other: shows how clocks and frame times change as a device gets warm.
+void sustain(RunPlan&, double duration_s);
+
 /// Names of all runs of the plan; a run's number is its index here, from 0.
 std::vector<std::string> run_names(const RunPlan&);
 

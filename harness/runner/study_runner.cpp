@@ -24,8 +24,7 @@ struct Running {
   std::unique_ptr<SolverRun> run;
   std::unique_ptr<RunWriter> writer;
   RunRecord record;
-  double untimed_s = 0;    ///< wall time of load and untimed pass
-  nlohmann::json sensors;  ///< read after its last trial, before the device cools down
+  double untimed_s = 0;  ///< wall time of load and untimed pass
 
   bool has_trial(int k) const {
     for (const TimedTrial& t : record.trials)
@@ -121,7 +120,7 @@ class GroupRun {
     note(name + ": load");
     Running r;
     r.run = std::make_unique<SolverRun>(spec, options_.device, plan_.protocol);
-    r.run->describe(plan_.rules.rendering);
+    r.run->describe(plan_.rules);
     r.record.header = r.run->header();
     r.writer = std::make_unique<RunWriter>(options_.out, r.run->header());
     if (options_.resume) {
@@ -153,13 +152,17 @@ class GroupRun {
 
   void trial(Running& r, int k, const TrialRules& rules) {
     note(fmt::format("{}: trial {} of {}", r.name(), k + 1, plan_.rules.trials));
+    const std::string gpu = uuid_of_gpu(r.run->header().environment);
     TimedTrial t;
     int before = 0;
     do {
       before = times_held();
+      const PowerMeter power("/", gpu);
       t = r.run->run_trial(k, rules, r.frames());
+      t.power_W = power.mean_W();
+      t.gpu_power_W = power.mean_gpu_W();
     } while (times_held() != before && r.run->alive());
-    r.sensors = read_sensors();
+    store_sensors(read_sensors("/", gpu), t);  // before the device cools down
     if (t.frames() == 0) return;
     r.writer->write_trial(t);
     r.record.trials.push_back(std::move(t));
@@ -170,8 +173,10 @@ class GroupRun {
     if (outcome.status == "error" && outcome.klass != "F3") result_.faults.push_back(r.name() + ": " + outcome.message);
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
-    summarise_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), "start", summary);
-    summarise_sensors(r.sensors.is_null() ? nlohmann::json::object() : r.sensors, "end", summary);
+    TimedTrial start;
+    store_sensors(r.record.header.environment.value("sensors", nlohmann::json::object()), start);
+    summarise_sensors(start, "start", summary);
+    summarise_sensors(r.record.trials.empty() ? TimedTrial{} : r.record.trials.back(), "end", summary);
     summary[kUntimed] = r.untimed_s;
     Judgement verdict = judge(*r.run->spec().scene, outcome, r.record.accuracy, summary);
     outcome.expect = std::move(verdict.text);

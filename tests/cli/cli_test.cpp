@@ -76,6 +76,9 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
     EXPECT_EQ(unknown.code, 2) << words;
     EXPECT_NE(unknown.text.find(std::string("nearest known: ") + near), std::string::npos) << unknown.text;
   }
+  for (const char* arguments : {"run paper/gravity --sustained=soon", "run paper/gravity --sustained=0",
+                                "study table3 --sustained --trials 2", "study contact --sustained"})
+    EXPECT_EQ(command(arguments).code, 2) << arguments;
   const Answer setting =
       command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
   EXPECT_EQ(setting.code, 2) << setting.text;
@@ -117,6 +120,16 @@ TEST_F(Cli, StudyThenReport) {
   const Answer report = command("report " + out.string() + " -o " + (dir_ / "report").string());
   EXPECT_EQ(report.code, 0) << report.text;
   EXPECT_TRUE(fs::exists(dir_ / "report" / "report.md"));
+}
+
+TEST_F(Cli, ASustainedRunShowsItsWindows) {
+  const std::string out = (dir_ / "warm").string(), report = (dir_ / "report").string();
+  const Answer run = command("run paper/gravity --solver ballistic --set cloth.grid=[4,4] --sustained=1 --out " + out);
+  ASSERT_EQ(run.code, 0) << run.text;
+  ASSERT_EQ(command("report " + out + " -o " + report).code, 0);
+  const std::string text = read_text(fs::path(report) / "report.md"),
+                    table = text.substr(text.find("Frame times over"));
+  EXPECT_NE(table.find("| paper/gravity | ballistic | 0 |"), std::string::npos) << table.substr(0, 2000);
 }
 
 TEST_F(Cli, SolversThatWereNotBuiltAreRows) {

@@ -28,12 +28,14 @@ class Driver(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
         self.out = os.path.join(self.home, "out")
         os.mkdir(os.path.join(self.home, "bin"))
-        os.symlink(os.path.join(HERE, "fake_adb.py"), os.path.join(self.home, "bin", "adb"))
 
     def start(self, *words, **plan):
         with open(os.path.join(self.home, "plan.json"), "w", encoding="utf-8") as out:
             json.dump({"props": BEFORE, "make_sample": MAKE_SAMPLE, "run_s": 2.2, **plan}, out)
-        env = {**os.environ, "FAKE_ADB": self.home, "PATH": os.path.join(self.home, "bin") + ":" + os.environ["PATH"]}
+        for program in ("adb", *(["hzdb"] if "hzdb" in plan else [])):
+            if not os.path.islink(os.path.join(self.home, "bin", program)):
+                os.symlink(os.path.join(HERE, "fake_adb.py"), os.path.join(self.home, "bin", program))
+        env = {**os.environ, "HOME": self.home, "FAKE_ADB": self.home, "PATH": os.path.join(self.home, "bin") + ":" + os.environ["PATH"]}
         return subprocess.Popen([sys.executable, "-S", DRIVER, "--clothbench", CLOTHBENCH, *words], env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def drive(self, *words, **plan):
@@ -66,9 +68,10 @@ class Driver(unittest.TestCase):
     def test_a_run_from_end_to_end(self):
         import h5py
 
-        for source in ("ovrgpuprofiler", "perfetto"):
-            self.out = os.path.join(self.home, source)
-            plan = {"clock_ahead_s": 3.5, "perfetto": source == "perfetto"}
+        for by in ("ovrgpuprofiler", "perfetto", "hzdb"):
+            source = "perfetto" if by == "hzdb" else by
+            self.out = os.path.join(self.home, by)
+            plan = {"clock_ahead_s": 3.5, "perfetto": by == "perfetto", **({"hzdb": "there"} if by == "hzdb" else {})}
             self.assertEqual(self.drive("run", "study table3 --set 'a b'", "--out", self.out, **plan), 0, self.text)
             self.assert_restored()
             self.assertRegex(self.world()["extra"], f"""^'study table3 --set '"'"'a b'"'"' --out {RUNS}/study-table3-set-a-b--20[0-9]{{6}}T[0-9]{{6}}Z'$""", "one argument for the device's shell")
@@ -88,15 +91,16 @@ class Driver(unittest.TestCase):
                 for name in group:
                     t = group[name]["time_unix_s"][:]
                     self.assertTrue((t[1:] > t[:-1]).all() and t[0] > start - 5 and t[-1] < end + 5, name)
-            os.rename(os.path.join(self.home, "world.json"), os.path.join(self.home, source + ".json"))
+            os.rename(os.path.join(self.home, "world.json"), os.path.join(self.home, by + ".json"))
         with open(os.path.join(self.home, "perfetto.json"), encoding="utf-8") as text:
             self.assertEqual(json.load(text)["removed"], "/data/misc/perfetto-traces/clothbench.pftrace")
 
     def test_a_refused_trace_leaves_the_profiler_and_a_damaged_one_loses_only_counters(self):
         import h5py
 
-        for plan, groups in (({"perfetto": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"perfetto": True, "trace_bytes": 1000}, {"vrapi"})):
-            self.out = os.path.join(self.home, f"out{len(groups)}")
+        for plan, groups in (({"perfetto": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"perfetto": True, "trace_bytes": 1000}, {"vrapi"}),
+                             ({"hzdb": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"hzdb": "lost"}, {"vrapi"})):
+            self.out = os.path.join(self.home, "-".join(plan) + f"{len(groups)}")
             self.assertEqual(self.run_app(**plan), 0, self.text)
             self.assertEqual("no counters" in self.text, groups == {"vrapi"}, self.text)
             with h5py.File(self.result()) as f:

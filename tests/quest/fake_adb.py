@@ -161,8 +161,25 @@ def shell(command):
         die(f"/system/bin/sh: {words[0]}: inaccessible or not found", 127)
 
 
+def hzdb(words):
+    """Options and arguments: docs/hzdb.md in meta-quest/agentic-tools. Where it leaves the trace and how it names the process are guesses."""
+    assert words[:3] == ["--device", "1WMHH000000000", "perf"], words
+    if PLAN["hzdb"] == "refused":
+        die("Error: no Perfetto on this device")
+    if words[3] == "start":
+        change(tracing=clock(), hzdb=words[words.index("--output") + 1])
+        return print("PID        777\nOutput     " + world()["hzdb"])
+    assert words[3:] == ["stop", "777", world()["hzdb"]], words
+    change(traced=clock())
+    if PLAN["hzdb"] != "lost":
+        with open(world()["hzdb"] + ".pftrace", "wb") as out:
+            out.write(trace())
+
+
 def main():
     words = sys.argv[1:]
+    if os.path.basename(sys.argv[0]) == "hzdb":
+        return hzdb(words)
     with open(os.path.join(HOME, "calls.log"), "a", encoding="utf-8") as out:
         out.write(json.dumps(words) + "\n")
     if words[0] == "devices":

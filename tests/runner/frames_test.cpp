@@ -1,7 +1,9 @@
 // Uneven frames (hitch or jitter of the scene's clock) reach the solver in every kind of run.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "refusal.hpp"
 #include "runner/frame_loop.hpp"
@@ -98,6 +100,28 @@ TEST(FrameLoop, BeginsTheSceneAnewWithEveryDropAndStopsWhereItShould) {
   EXPECT_TRUE(fails.failed());
   EXPECT_FALSE(fails.next()) << "the loop ends after a failure";
   EXPECT_EQ(fails.index(), 2);
+}
+
+TEST(FrameLoop, WithAPeriodWaitsOutsideTheClockAndDoesNotHurryAfterALateFrame) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kPeriod_s = 0.03, kLate_s = 0.1;
+  const Scene s = load_scene("conformance/sheet");
+  const auto solver = load_solver(find_solver("ballistic"), nlohmann::json::object(), {}, s);
+  std::vector<Clock::time_point> begun;
+  FrameLoop loop(*solver, s, {.frames = 5, .period_s = kPeriod_s});
+  while (loop.next([&](const FrameInput& f) {
+    begun.push_back(Clock::now());
+    if (f.index == 2) std::this_thread::sleep_for(std::chrono::duration<double>(kLate_s));
+    return StepStatus::Ok;
+  })) {
+    if (loop.index() != 2) EXPECT_LT(loop.wall_s(), kPeriod_s / 2);
+  }
+  ASSERT_EQ(begun.size(), 5u);
+  const auto gap_s = [&](std::size_t k) { return std::chrono::duration<double>(begun[k] - begun[k - 1]).count(); };
+  // A frame that wakes up late shortens the next gap.
+  EXPECT_GT(gap_s(1) + gap_s(2), 1.5 * kPeriod_s);
+  EXPECT_GE(gap_s(3), kLate_s);
+  EXPECT_GT(gap_s(4), 0.5 * kPeriod_s);
 }
 
 TEST(UnevenFrames, ReachTheSolverInAWholeRun) {

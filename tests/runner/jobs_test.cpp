@@ -1,12 +1,15 @@
 // Number of clothbench jobs that share the machine.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "runner/environment.hpp"
 #include "with_folder.hpp"
@@ -125,7 +128,9 @@ TEST_F(Sensors, ReadsAPhonesTree) {
   ASSERT_EQ(s["temperatures"].size(), 2u);
   EXPECT_EQ(s["temperatures"][0]["type"], "cpu-0-0");
   std::map<std::string, double> summary;
-  summarise_sensors(s, "end", summary);
+  TimedTrial trial;
+  store_sensors(s, trial);
+  summarise_sensors(trial, "end", summary);
   EXPECT_EQ(summary.at("cpu_clock_end_Hz"), 2054400e3);
   EXPECT_EQ(summary.at("gpu_clock_end_Hz"), 456e6);
   EXPECT_NEAR(summary.at("temperature_end_C"), 41.3, 1e-9);
@@ -138,10 +143,53 @@ TEST_F(Sensors, NothingReadableIsMissingNotZero) {
   const nlohmann::json s = read_sensors(dir_);
   EXPECT_TRUE(s["cpus"].empty() && s["gpu"].empty() && s["temperatures"].empty()) << s;
   std::map<std::string, double> summary;
-  summarise_sensors(s, "start", summary);
+  TimedTrial trial;
+  store_sensors(s, trial);
+  summarise_sensors(trial, "start", summary);
   ASSERT_EQ(summary.size(), 3u);
   for (const auto& [name, value] : summary) EXPECT_TRUE(std::isnan(value)) << name;
   EXPECT_EQ(clock_policy(s), "not readable");
+}
+
+TEST_F(Sensors, PowerComesFromCountersElseFromTheBattery) {
+  EXPECT_TRUE(std::isnan(PowerMeter(dir_).mean_W())) << "nothing is readable";
+  const std::string battery = "sys/class/power_supply/battery/", package = "sys/class/powercap/intel-rapl:";
+  put(battery + "current_now", "-1500000");
+  put(battery + "voltage_now", "4000000");
+  put(battery + "status", "Discharging");
+  EXPECT_NEAR(PowerMeter(dir_).mean_W(), 6, 1e-9);
+  put(battery + "status", "Charging");
+  EXPECT_TRUE(std::isnan(PowerMeter(dir_).mean_W()));
+  put(package + "0/energy_uj", "5000000");
+  put(package + "1/energy_uj", "7000000");
+  put(package + "0:0/energy_uj", "900");  // a part of package 0
+  const auto start = std::chrono::steady_clock::now();
+  const PowerMeter meter(dir_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  put(package + "0/energy_uj", "8000000");
+  const double mean_W = meter.mean_W();
+  const std::chrono::duration<double> at_most = std::chrono::steady_clock::now() - start;
+  EXPECT_LE(mean_W, 3 / 0.05);
+  EXPECT_GE(mean_W, 3 / at_most.count());
+  put(package + "1/energy_uj", "100");  // wrapped around
+  EXPECT_TRUE(std::isnan(meter.mean_W()));
+}
+
+TEST_F(Sensors, OfAnNvidiaGpuComeFromItsLibrary) {
+  // Loaded first, the stand-in is found by its name instead of a driver's library.
+  ASSERT_NE(dlopen(CLOTHBENCH_FAKE_NVML, RTLD_NOW), nullptr) << dlerror();
+  const std::string uuid = "00112233445566778899aabbccddeeff";
+  const nlohmann::json s = read_sensors(dir_, uuid);
+  EXPECT_EQ(s["gpu"]["power_limit_W"], 700);
+  EXPECT_FALSE(s["gpu"].contains("ecc")) << "which it does not report";
+  TimedTrial trial;
+  store_sensors(s, trial);
+  EXPECT_EQ(trial.gpu_clock_Hz, 1980e6);
+  EXPECT_EQ(trial.temperature_C, 41);
+  const PowerMeter meter(dir_, uuid);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_NEAR(meter.mean_gpu_W(), 300, 10);
+  EXPECT_TRUE(std::isnan(PowerMeter(dir_, std::string(32, '0')).mean_gpu_W())) << "a GPU of another vendor";
 }
 
 TEST_F(Sensors, StandInEveryRunsEnvironment) {

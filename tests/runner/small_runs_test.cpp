@@ -8,6 +8,7 @@
 
 #include "refusal.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/study_plan.hpp"
 #include "runner/study_runner.hpp"
 #include "scenario/load.hpp"
 #include "solvers.hpp"
@@ -102,6 +103,27 @@ TEST_F(Hold, AnInterruptEndsAHeldRun) {
   clear_interrupt();
   hold_runs(false);
   EXPECT_NO_THROW(run.run_accuracy(rules));
+}
+
+TEST_F(SmallRuns, WindowsLastTheirTimeAtTheScenesRate) {
+  const SolverEntry& ballistic = find_solver("ballistic");
+  RunPlan plan = plan_of(
+      {{&scene_, &ballistic, nlohmann::json::object()}, {&scene_, &ballistic, nlohmann::json::object(), "again"}}, 1,
+      20);
+  sustain(plan, 25);
+  EXPECT_EQ(plan.groups.size(), 2u) << "one run after the other";
+  EXPECT_EQ(plan.rules.trials, 3);
+  EXPECT_EQ(plan.rules.window_s, 10);
+  plan.rules.window_s = 0.1;
+  const RunRecord r = read_run(execute_runs(plan, options_).files.at(0));
+  ASSERT_EQ(r.trials.size(), 3u);
+  EXPECT_EQ(r.header.environment.at("window_s"), 0.1);
+  const double rate_hz = scene_.time.frame_rate_hz;
+  for (const TimedTrial& t : r.trials) {
+    EXPECT_EQ(t.frames(), std::lround(0.1 * rate_hz));
+    EXPECT_GT(t.end_unix_s - t.start_unix_s, 0.09 - 1 / rate_hz);
+    EXPECT_LT(t.frame_wall_s[0], 0.5 / rate_hz) << "without the pauses";
+  }
 }
 
 // Settings sweeps: where they end, and what is stored for the remaining settings; and trials that agree.

@@ -57,6 +57,9 @@ struct TimedTrial {
   /// System times [s since 1970 UTC] of the first timed frame's start and the last one's end, to match device logs.
   double start_unix_s = kMissing, end_unix_s = kMissing;
   double jobs = kMissing;  ///< concurrent clothbench jobs on the machine, this one included
+  /// After the trial: clocks of the fastest core and the GPU, temperature of the hottest zone. Mean power during it.
+  double cpu_clock_Hz = kMissing, gpu_clock_Hz = kMissing, temperature_C = kMissing, power_W = kMissing,
+         gpu_power_W = kMissing;
   int frames() const { return static_cast<int>(frame_wall_s.size()); }
 };
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -11,7 +12,10 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
   VkPhysicalDeviceSubgroupProperties subgroup{};
   subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
-  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup, {}};
+  VkPhysicalDeviceIDProperties id{};
+  id.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES;
+  id.pNext = &subgroup;
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &id, {}};
   vkGetPhysicalDeviceProperties2(physical, &all);
   const VkPhysicalDeviceProperties& p = all.properties;
   const VkPhysicalDeviceLimits& l = p.limits;
@@ -32,6 +36,7 @@ DeviceInfo describe(VkPhysicalDevice physical) {
                  {"maxComputeWorkGroupInvocations", l.maxComputeWorkGroupInvocations},
                  {"maxComputeWorkGroupSize", l.maxComputeWorkGroupSize},
                  {"timestampPeriod", l.timestampPeriod}};
+  j["uuid"] = fmt::format("{:02x}", fmt::join(id.deviceUUID, ""));
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     j["memory_heaps"].push_back({{"bytes", memory.memoryHeaps[i].size}, {"flags", memory.memoryHeaps[i].flags}});
 
