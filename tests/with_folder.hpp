@@ -28,7 +28,7 @@ class Variable {
   std::optional<std::string> before_;
 };
 
-/// A folder only for this process and test, empty at its start and gone with it: tests of two builds may run at once.
+/// A new folder only for this process and test, so that tests of two builds can run at once. It is removed at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -37,7 +37,7 @@ std::vector<std::size_t> parse_runs(const std::string& text, std::size_t count);
 /// The plan reduced to these runs, with their groups unchanged.
 RunPlan only_runs(RunPlan, const std::vector<std::size_t>& runs);
 
-/// Arguments of `--set`: `solver.<name>=<JSON>` changes a setting of the solver, any other key the scene.
+/// Arguments of `--set`: `solver.<name>=<JSON>` changes a setting of the solver; any other key changes the scene.
 struct Overrides {
   std::vector<std::string> scene;
   nlohmann::json solver = nlohmann::json::object();

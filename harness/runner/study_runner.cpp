@@ -256,7 +256,7 @@ const SolverEntry* RunPlan::add_not_built(const std::string& solver) {
 std::vector<std::string> solver_faults(const std::vector<RunRecord>& runs) {
   struct Ends {
     int finished = 0, failed = 0;
-    std::string last;  ///< failure of the solver's last such run
+    std::string last;  ///< failure of the solver's last run that did not finish
   };
   std::map<std::string, Ends> by_solver;
   for (const RunRecord& r : runs) {

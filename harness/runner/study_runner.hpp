@@ -25,7 +25,7 @@ struct RunPlan {
   std::vector<std::shared_ptr<const SolverEntry>> not_built;
   bool apart = false;       ///< untimed runs of whole scenes, each in its own process
   bool untimed = false;     ///< loads and untimed passes only; the same plan with trials continues from them
-  bool references = false;  ///< store with the runs of each scene its reference solution
+  bool references = false;  ///< store each scene's reference solution with its runs
 
   std::size_t size() const;
   const SolverEntry* add_not_built(const std::string& solver);  ///< the new entry in `not_built`

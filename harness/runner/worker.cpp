@@ -62,7 +62,7 @@ std::filesystem::path own_program() {
 }
 
 int run_child_main(const WorkerFunctions& functions) {
-  // The parent handles Ctrl-C; here it would end a run that is to be repeated with a result.
+  // Only the parent handles Ctrl-C. If it ended this process, the current run would be stored as crashed.
   signal(SIGINT, SIG_IGN);
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -36,7 +36,7 @@ Collider square(double half_m, bool moves) {
   return c;
 }
 
-/// A cloth at rest at height y that falls.
+/// A cloth that falls from rest at height y.
 Scene falling(double y, int n = 17) {
   Scene s = with_damping(with_bending(sheet(n, n, 0.5, 0.5)), 2);
   s.cloth.center_m = {0, y, 0};

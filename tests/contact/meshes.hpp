@@ -73,7 +73,7 @@ inline Mesh octasphere(int n, double radius) {
   return mesh;
 }
 
-/// A closed surface with bumps of every direction on a sphere.
+/// A closed sphere with bumps in all directions.
 inline Mesh bumpy_ball(int n, double radius) {
   return octasphere(n, 1).mapped([&](const Point<3>& p) {
     const double bump = std::sin(9 * p[0] + 1) * std::sin(11 * p[1] + 2) * std::sin(13 * p[2] + 3);

@@ -102,7 +102,7 @@ TEST(Tunnel, ClothThatSlidesOffARimHasNotTunnelled) {
   }
 }
 
-// Horizontal in every frame, so that no frame has a contour, and wider than the patch.
+// The cloth is horizontal in every frame, so that no frame has a contour, and it is wider than the patch.
 TEST(Tunnel, ALevelClothThatFallsThroughCounts) {
   const Mesh cloth = sheet(12, 12, {-0.8, 0, -0.8}, {0, 0, 1.6}, {1.6, 0, 0});
   Watched w(patch(5), cloth.moved({0, 0.3, 0}));

@@ -35,7 +35,7 @@ struct RightSolver {
   std::string name, settings_json;
   std::string label() const;
 };
-/// Solvers that give a correct motion of the scene. `only`: label of one to use, which need not be correct.
+/// Solvers that give a correct motion of the scene. `only`: label of the one solver to use, correct or not.
 std::vector<RightSolver> right_solvers(const Scene&, const std::string& only);
 
 /// The motion by a solver; none if a step fails. `changed`: scene that the solver gets instead.

@@ -31,7 +31,7 @@ const std::string& build_commands() {
   return ninja;
 }
 
-/// Kernels as built, by their code; without old files of an earlier build.
+/// Names of the kernels of this build, by their code; old files of an earlier build are excluded.
 const std::map<Code, std::string>& built() {
   static const std::map<Code, std::string> all = [] {
     std::map<Code, std::string> out;

@@ -287,7 +287,7 @@ TEST_F(MeshInput, RegionsAreTheTrianglesOfAGroup) {
   const Scene s = regions({{{"group", "waist"}, {"membrane_stiffness_N_per_m", 100}}});
   EXPECT_TRUE(s.needs.has(Feature::Regions));
   EXPECT_EQ(triangle_stiffnesses(s), (std::vector<std::optional<double>>{100, 1000}));
-  // The seam is the longest edge; each of its two triangles contributes half of it.
+  // The seam is the longest edge; its stiffness is the mean over its two triangles.
   const ClothMesh& mesh = *s.cloth.mesh;
   const std::vector<std::optional<double>> of_edges = edge_stiffnesses(s);
   ASSERT_EQ(of_edges.size(), mesh.edges.size());

@@ -167,7 +167,7 @@ TEST(StabilityCases, AreAllThereAndLoad) {
       cases.insert(item.scene.stability.name);
       const std::string number = item.scene.name.substr(1, 2);
       EXPECT_EQ(item.scene.stability.name, "S" + number) << item.scene.name;
-      // A separate process receives the scene that --resume looks for.
+      // A separate process must read a scene with the same hash, which --resume compares.
       if (length == StudyLength::Quick) {
         EXPECT_EQ(scene_from_json(nlohmann::json::parse(item.scene.json), item.scene.source).sha256, item.scene.sha256)
             << item.scene.name;

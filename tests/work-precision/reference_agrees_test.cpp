@@ -35,7 +35,7 @@ TEST(SheetReferences, AgreeWithTheClosedForm) {
   EXPECT_LT(r.uncertainty, 1e-3);
 }
 
-/// The mesh's own error falls with cell size, exceeds its uncertainty, and is not below that of the continuum.
+/// The mesh's own error decreases with cell size, is well above the uncertainty of the reference, and is small.
 TEST(MeshReferences, StateTheErrorOfTheMesh) {
   const std::vector<std::string> short_ones[] = {{}, {"time.duration_s=1", "material.damping_per_s=30"}, {}};
   const char* const names[] = {"swing-strip-mesh", "heavy-strip-mesh", "cantilever-10-mesh"};

@@ -51,7 +51,7 @@ TEST_P(ReferenceCases, TheTruthIsNoDistanceFromItself) {
   EXPECT_TRUE(std::isnan(judge.judge(last, state).quantity_error));
 }
 
-/// Attached vertices of the solution are at the scene's prescribed positions; moving solutions start at its start.
+/// Attached vertices of the solution are at the scene's prescribed positions; moving solutions begin at its start.
 TEST_P(ReferenceCases, AgreeWithTheScene) {
   const Scene s = scene(GetParam());
   const auto known = truth::reference_case_of(s);
