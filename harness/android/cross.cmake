@@ -14,7 +14,7 @@ function(clothbench_header_link name)
   endif()
   file(CREATE_LINK ${CLOTHBENCH_HEADERS}/${name} ${staged}/${name} SYMBOLIC)
 endfunction()
-# clothbench_header_package(<package> <target> <folder to link> <include folder below the links> [definitions])
+# clothbench_header_package(<package> <target> <folder to link> <include path below that folder> [definitions])
 function(clothbench_header_package package target folder include)
   clothbench_header_link(${folder})
   # Every later find_package(<package>) finds this file first.

@@ -16,7 +16,7 @@
 namespace clothbench::android {
 namespace {
 
-/// Held by the running session, because log and interrupt belong to the process.
+/// Held by the running session: a process has one log and one interrupt flag, so sessions follow each other.
 std::mutex& running_session() {
   static auto* const mutex = new std::mutex;  // outlives every thread
   return *mutex;

@@ -20,8 +20,8 @@ struct Condition {
 /// The condition kinds, in order: "scene", "machine", "device", "precision", "length", "trials", "order".
 const std::vector<std::string>& condition_kinds();
 
-/// All conditions of a run, in the order of the kinds. A run that is not "ok" has no "length", because an
-/// early end is a result. A run without timed trials has no "trials".
+/// All conditions of a run, in the order of the kinds. A run that is not "ok" has neither "length" nor
+/// "trials": its early end is a result to compare. A run without timed trials has no "trials".
 std::vector<Condition> conditions_of(const RunRecord&);
 
 struct ConditionDifference {

@@ -43,10 +43,10 @@ std::map<std::string, double> truth_dependence(const Scene&);
 
 /// Bounds on two scalars of a complete run of a scene with an exact solution: the distance of the positions
 /// (`truth_e2`) and the error of the reference case's quantity (`truth_quantity_error`). Both are norms of a
-/// difference, so values that are too small or too large both fail. Each bound is
-///   tolerance * moved + mesh + rounding
-/// moved: the scalar of a cloth that stays at its start (if 0, the tolerance at rest replaces this term); mesh: error
-/// of a triangle mesh itself; rounding: change of the scalar if positions are rounded to float32.
+/// difference, so a motion that is too small fails as one that is too large does. Each bound is
+///   (tolerance + mesh) * moved + rounding, or, if moved is 0: tolerance at rest + rounding
+/// moved: the scalar of a cloth that stays at its start; mesh: error of a triangle mesh or of a strip with a smooth
+/// law, relative to the exact motion; rounding: change of the scalar if positions are rounded to float32.
 struct ExactBound {
   double e2 = kMissing, quantity_error = kMissing;
 };

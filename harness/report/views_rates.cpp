@@ -173,7 +173,8 @@ View sustained() {
   };
   const auto add_quantiles = [&](const char* head, std::vector<double> TimedTrial::*times) {
     add(head, [times](const Row&, const TimedTrial& t) {
-      FrameTimes all{t.*times};
+      FrameTimes all;
+      all.sorted = t.*times;
       std::erase_if(all.sorted, [](double s) { return !std::isfinite(s); });
       std::sort(all.sorted.begin(), all.sorted.end());
       return all.sorted.empty() ? Cell() : Cell(milliseconds(all.at(0.5)) + " / " + tails_cell(all).text, all.at(0.5));

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr const char* kPublished = "published: PBD";
 constexpr double kUnfit = 25;  // residual [%] above which times are not a straight line over particles
 
-/// A point of the box of settings, with the numbers of claims that were run and that hold there.
+/// One combination of drawn settings, with the numbers of claims that were run and that hold with it.
 struct Point {
   std::size_t claims = 0, held = 0;
   double dispatches = 0;

@@ -311,7 +311,7 @@ Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& grou
   Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
                                  {[&](json&) { return restore_mesh(groups, header.triangles); },
                                   [&](json&, Scene& s) { restore_replay(groups, s); }});
-  // A study renames scenes, but the scenario keeps the name in its file.
+  // A study renames scenes (header.scene); scenario_json still has the name in the scene's file.
   scene.name = header.scene;
   scene.json = header.scenario_json;
   scene.sha256 = header.scenario_sha256;

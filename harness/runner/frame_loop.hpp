@@ -58,7 +58,7 @@ class FrameLoop {
     cpu_s_ = rules_.cpu_clock ? process_cpu_s() - cpu_start_s : 0;
     return stepped;
   }
-  /// Times all frames of the next drop as one interval, without waiting after each frame (ClothSolver::run_frames).
+  /// Times all frames up to the next restart (see drop_frames) as one interval, by ClothSolver::run_frames.
   bool next_drop();
 
   int index() const { return index_; }  ///< of the last frame begun, or a drop's first frame; initially `first` - 1

@@ -41,7 +41,7 @@ double clamp_of_mesh_m(const Strip& s) {
   for (const std::uint32_t v : s.scene.pins.vertices)
     width_m = std::max(width_m, c.mesh->vertices[v][0] + c.width_m / 2);
   s.need(width_m > Strip::kFlat * c.width_m && width_m < 0.5 * c.width_m,
-         "a clamp: the vertices of edge u0 and of a line next to it pinned");
+         "a clamp: pinned vertices from edge u0 on, beyond it but over less than half of the width");
   s.need_pins(s.up_to(width_m), "every vertex from edge u0 to the end of the clamp pinned, and no other pins or grips");
   return width_m;
 }

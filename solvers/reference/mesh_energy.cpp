@@ -48,7 +48,8 @@ Eigen::Vector3d curvature(const Flat& f, int k, const Eigen::Vector2d& of) {
   return {n.x() * of.x(), n.y() * of.y(), (n.x() * of.y() + n.y() * of.x()) / std::sqrt(2.0)};
 }
 
-/// Unknowns: positions of vertices, then derivatives across edges, outward from the triangle with ascending corners.
+/// Unknowns: positions of vertices, then one derivative across each edge: outward from the triangle whose corners pass
+/// the edge from its lower vertex index to the higher.
 class Unknowns {
  public:
   Unknowns(const ClothMesh& mesh, const std::vector<std::uint32_t>& pinned) : vertices_(mesh.vertices.size()) {

@@ -79,7 +79,7 @@ std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-// A build without a solver of the tree must still know its name for studies.
+// Studies may name a solver that a build lacks, so the names are a list, which must contain every solver.
 TEST(SolverNames, OfEverySolverThatIsBuilt) {
   const std::vector<std::string>& names = solver_names_of_tree();
   for (const SolverEntry& e : solvers())

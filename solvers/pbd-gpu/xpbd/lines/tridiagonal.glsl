@@ -10,7 +10,7 @@
 void reduce_rows(uint rounds, MATRIX a, MATRIX c, inout VECTOR d, out VECTOR d_below) {
   MATRIX f, a_below, c_below, a_above, c_above;
   VECTOR d_above;
-  // Beyond a chain's ends a and c are 0, so the values of missing neighbours have no effect.
+  // Where a row has no neighbour below or above, a or c is 0, so what is read for that neighbour has no effect.
 #define REDUCE(n) \
     exchange_row(n, a, c, d, a_below, c_below, d_below, a_above, c_above, d_above); \
     f = inverse_of(MATRIX(1.0) - a * c_below - c * a_above); \

@@ -11,8 +11,8 @@
 namespace clothbench::pbd_gpu {
 namespace {
 
-/// Maximum trace of a deformed triangle's matrix relative to that at rest, and the factor on the bound of eigenvalues
-/// that covers such a triangle together with the transverse stiffness of its tension (kMaxTurn).
+/// The kernel limits the trace of a deformed triangle's matrix to kMaxTrace times the trace at rest. kRoom times the
+/// bound of eigenvalues at rest covers such a triangle with the transverse stiffness of its tension (up to kMaxTurn).
 constexpr double kMaxTrace = 1.25, kRoom = 1.75;
 
 /// Maximum iterations per substep. A mesh that needs more is solved by chains.
