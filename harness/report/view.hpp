@@ -139,11 +139,12 @@ int grade_of(const Row&);
 struct ClaimPoint {
   std::string claim;
   double iterations = 1, substeps = 1;
-  std::size_t bounds = 0, unmet = 0;  ///< without the motion check, which is not part of a claim
+  std::size_t bounds = 0;  ///< without the motion check, which is not part of a claim
+  Texts missed = {};       ///< names of the violated or not measured ones
   bool ended = false;
-  bool holds() const { return ended && bounds > 0 && unmet == 0; }
+  bool holds() const { return ended && bounds > 0 && missed.empty(); }
   /// Exactly one of several bounds is violated.
-  bool is_near() const { return ended && bounds > 1 && unmet == 1; }
+  bool is_near() const { return ended && bounds > 1 && missed.size() == 1; }
 };
 ClaimPoint claim_point(const Row&);
 /// Table 4: features by solver, from the environments of these runs (describe_features); "not built" for a solver that

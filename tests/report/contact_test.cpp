@@ -238,11 +238,12 @@ RunRecord claim(const std::string& kind, int iterations, double held, double dis
   return c;
 }
 
+constexpr const char* kClaimTable = "Claims of the article, over what it leaves open";
 TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   const std::vector<RunRecord> runs = {claim("c8", 2, 0, 9),    claim("c10", 2, 1, 7),   claim("c8", 20, 1, 90),
                                        claim("c10", 20, 1, 70), claim("c8", 40, 1, 180), claim("c10", 40, NAN, 150),
                                        claim("c8", 100, 1, 400)};  // its other claim was not run
-  const Table t = table_of(runs, "Claims of the article, over what it leaves open");
+  const Table t = table_of(runs, kClaimTable);
   const auto cell = [&](const std::string& kind, const std::string& column) { return entry(t, "paper", kind, column); };
   EXPECT_EQ(cell("c8", "holds").substr(0, 3), "3/4");
   EXPECT_EQ(cell("c10", "holds").substr(0, 3), "2/3") << "a bound that was not measured does not hold";
@@ -271,14 +272,22 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "100–299 iterations"), "–") << "one claim says nothing about all";
   // At the cheapest point one claim was not run, so it is unknown whether both hold there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
-  EXPECT_EQ(entry(table_of(apart, "Claims of the article, over what it leaves open"), "paper", "all", "paper, best"),
+  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "paper, best"),
             "1 of 2 claims: clothbench study contact --seed 4 --count 2");
   const std::vector<RunRecord> never = {claim("c8", 2, 1, 9), claim("c10", 20, 1, 7)};
-  EXPECT_EQ(entry(table_of(never, "Claims of the article, over what it leaves open"), "paper", "all", "reading"), "–");
+  EXPECT_EQ(entry(table_of(never, kClaimTable), "paper", "all", "reading"), "–");
+  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "missed there").substr(0, 4), "c8: ");
+  EXPECT_EQ(cell("c8", "at all points with"), "iterations ≥ 20 (3 points)");
+  EXPECT_NE(t.note.find("; friction false to true; paper.iterations 2 to 100."), std::string::npos);
+  RunRecord swept = claim("c10-sweep", 2, NAN, 7);
+  swept.header.scenario_json.insert(1, R"("cloth":{"grid":[32,32]},)");
+  swept.summary["roughness_end"] = 0.04;
+  EXPECT_EQ(entry(table_of({swept}, kClaimTable), "paper", "c11-folds", "reading"), "reproduced");
+  swept.summary["roughness_end"] = 0.05;
+  EXPECT_EQ(entry(table_of({swept}, kClaimTable), "paper", "c11-folds", "reading"), "not reproduced in the box");
   RunRecord unbounded = claim("c8", 2, 1, 9);
   unbounded.summary.erase("expect.contact_length_max_m");
-  EXPECT_EQ(entry(table_of({unbounded}, "Claims of the article, over what it leaves open"), "paper", "c8", "reading"),
-            "not reproduced in the box");
+  EXPECT_EQ(entry(table_of({unbounded}, kClaimTable), "paper", "c8", "reading"), "not reproduced in the box");
   EXPECT_TRUE(tables_titled(runs, kRates).empty());
 }
 

@@ -66,6 +66,8 @@ TEST(Overview, WorkPerFrameFitsAPlantedLawAndThePublishedRates) {
   EXPECT_EQ(cell("published: PBD", "C2: 128² / 64²"), "1.55");
   EXPECT_EQ(cell("published: PBD", "C3: doubled / single at 128²"), "2.62");
   EXPECT_EQ(cell("published: PBD", "iterations"), "–");
+  EXPECT_EQ(cell("published: PBD", "C3: doubled / single slope"), "4.45");
+  EXPECT_EQ(cell("paper", "C3: doubled / single slope"), "2.00");
   EXPECT_EQ(cell("paper", "iterations at the published slope"), "32 (17–46)");
   runs.pop_back();
   EXPECT_EQ(entry(table_of(runs, "Table 3: work per frame"), "paper", "fixed [ms]"), "incomplete")

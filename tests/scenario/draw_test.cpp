@@ -12,6 +12,7 @@
 #include "base/files.hpp"
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
+#include "clothbench/solver.hpp"
 #include "refusal.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
@@ -325,6 +326,7 @@ std::set<std::string> open_settings(const Scene& s) {
 }
 
 TEST(PaperScenes, ListTheSettingsThatTheArticleLeavesOpen) {
+  std::set<std::string> known = {"readback", "stage_times", "count_bytes"};
   for (const auto& file : std::filesystem::directory_iterator(scenario_root() / "paper")) {
     const Scene s = load_scene(file.path().string());
     std::set<std::string> listed;
@@ -333,7 +335,19 @@ TEST(PaperScenes, ListTheSettingsThatTheArticleLeavesOpen) {
       if (const auto text = entry.get<std::string>(); text.starts_with("solver:paper."))
         listed.insert(text.substr(std::string("solver:paper.").size()));
     EXPECT_EQ(listed, open_settings(s)) << file.path();
+    known.merge(listed);
+    json values = given;
+    for (const char* key : {"/name", "/why", "/paper", "/expect", "/cloth/grid", "/cloth/sides", "/time/frame_rate_hz"})
+      values[json::json_pointer(key)] = nullptr;  // stated by the article, or no property of the cloth
+    for (const json& entry : given["assumed"])
+      if (entry.get<std::string>()[0] == '/') values[json::json_pointer(entry.get<std::string>())] = nullptr;
+    values.erase("assumed");
+    const json left = values.flatten();
+    for (const auto& [key, value] : left.items()) EXPECT_TRUE(value.is_null()) << file.path() << key;
   }
+  for (const SolverEntry& s : solvers())
+    for (const SettingSpec& x : s.info.settings)
+      EXPECT_TRUE(s.info.name != "paper" || known.contains(x.name)) << x.name;
 }
 
 }  // namespace
