@@ -28,7 +28,7 @@ class Library {
     constexpr double kMega = 1e6, kMilli = 1e-3;
     constexpr int kSmClock = 1, kGpuSensor = 0;
     nlohmann::json j = nlohmann::json::object();
-    if (!works_ || uuid.size() != 32) return j;
+    if (!works_) return j;
     std::string name = "GPU-" + uuid;
     for (const std::size_t dash : {12u, 17u, 22u, 27u}) name.insert(dash, "-");
     void* device = nullptr;
@@ -56,6 +56,7 @@ class Library {
 }  // namespace
 
 nlohmann::json nvidia_state(const std::string& uuid) {
+  if (uuid.size() != 32) return nlohmann::json::object();  // no GPU: nothing is loaded
   static Library library;
   return library.state(uuid);
 }

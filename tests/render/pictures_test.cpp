@@ -158,7 +158,7 @@ TEST_P(WithRendering, FramesAreTimedWithTheirPictures) {
   const SolverEntry& entry = find_solver(GetParam());
   SolverRun run({&scene, &entry, complete_settings(entry.info, nlohmann::json::object())}, kValidated, "test");
   const TrialRules with = some_frames(true);
-  run.describe(with.rendering);
+  run.describe(with);
   EXPECT_NE(run.header().environment.value("rendering", "").find("48 x 40"), std::string::npos);
   const TimedTrial t = run.run_trial(0, with, 0);
   ASSERT_EQ(run.outcome().status, "ok");
