@@ -138,6 +138,20 @@ async function check_filter() {
   check(after[0] < before[0] || after[1] < before[1], `without ${solver}: marks and rows ${before} become ${after}`);
   check((await page.evaluate(() => location.hash)).includes(`off=${solver}`), 'the address keeps the filter');
   equal(await click(), before, 'and back');
+  // A tile shows the best of the shown solvers, with its own value.
+  const tiles = off => page.evaluate(off => {
+    const buttons = [...document.querySelectorAll('#chips button')], toggle = () => buttons.filter(b => off.includes(b.textContent)).forEach(b => b.click());
+    toggle();
+    const texts = [...document.querySelectorAll('.tile')].map(t => [...t.children].map(e => e.textContent.trim()));
+    return toggle(), texts;
+  }, off);
+  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter';
+  check(all.length > 2 && all.some(([, , others]) => others) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
+  for (const [k, [title, , others]] of all.entries()) {
+    const [, what, best] = title.match(/^(.*), (\S+)$/), [, next, value, interval] = others.match(/^(\S+) (\S+) \((.*)\)$/) ?? [];
+    equal((await tiles([best]))[k], next ? [`${what}, ${next}`, `${value} ${interval}`, ''] : [what, hidden, ''], `without ${best}, a tile`);
+  }
+  equal(await tiles([]), all, 'and back');
 }
 
 /// At three widths: first screen, no sideways scroll, closed menu on a phone, no violation found by axe.
