@@ -5,7 +5,6 @@
 
 #include "clothbench/feature.hpp"
 #include "fake_runs.hpp"
-#include "metrics/registry.hpp"
 
 namespace clothbench {
 namespace {
@@ -47,29 +46,6 @@ RunRecord of_scene(RunRecord c, const std::string& scene, const std::string& sce
 constexpr const char* kContact = "Contact";
 constexpr const char* kVerdicts = "Verdict on the acceptance criteria of each scene";
 
-TEST(Penetration, TableShowsNumbersInTheirUnits) {
-  std::vector<RunRecord> runs = {desk_run("xpbd", "default", "any_vertex_inside"),
-                                 desk_run("paper", "default", "any_vertex_inside")};
-  runs[1].summary["crossings_max"] = 34;
-  runs[1].summary["expect.crossings_max"] = 0;
-  runs[1].summary["depth_max_m"] = 0.012;
-  runs[1].summary["expect.depth_max_m"] = 0;
-  const Table t = table_of(runs, kContact);
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "crossings"), "0");
-  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "crossings"), "34");
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "contour, max / settled [mm]"), "12.3 / 0");
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "depth [mm]"), "0.00300") << "a nonzero value is never printed as 0";
-  EXPECT_EQ(entry(t, "desk-flat-low", "xpbd", "verdict"), "pass");
-  EXPECT_EQ(entry(t, "desk-flat-low", "paper", "verdict"), "fail");
-  EXPECT_EQ(t.markdown().find("self-contact"), std::string::npos) << "a column without a value is left out";
-  EXPECT_EQ(t.markdown().find("nan"), std::string::npos);
-  const Table broken = table_of(runs, "Acceptance criteria that are violated");
-  ASSERT_EQ(broken.rows.size(), 3u);
-  EXPECT_EQ(broken.rows[1], (std::vector<std::string>{"desk-flat-low", "paper", "crossings_max", "34", "at most 0",
-                                                      find_scalar("crossings_max")->doc}));
-  EXPECT_EQ(broken.rows[2][3], "12 mm") << "with its unit";
-}
-
 TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   RunRecord c = desk_run("xpbd", "default", "none");
   c.summary["expect.stretch_max"] = kMissing;
@@ -93,23 +69,6 @@ TEST(Penetration, VerdictsHaveAColumnForEverySettingAndASum) {
                            {"ball", "not run", "not run", "pass"},
                            {"desk-flat-low", "unsupported", "pass", "pass"},
                            {"all", "unsupported", "pass", "2/2 (34–100 %)"}}));
-}
-
-TEST(Penetration, CellsHaveTheNumberAndToneOfTheirText) {
-  std::vector<RunRecord> runs = {desk_run("xpbd", "default", "none"), desk_run("paper", "default", "none")};
-  runs[1].summary["expect.crossings_max"] = 0;
-  const RunTable table(runs);
-  for (const View& v : views())
-    if (v.title == kContact) {
-      const ViewTable t = tables_of(v, table).at(0);
-      const auto column = [&](const char* head) {
-        return std::find(t.rows[0].begin(), t.rows[0].end(), head) - t.rows[0].begin();
-      };
-      EXPECT_STREQ(t.cells.at(0).at(column("verdict")).tone, "bad");
-      EXPECT_STREQ(t.cells.at(1).at(column("verdict")).tone, "good");
-      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("contour, max / settled [mm]")).value, 12.3);
-      EXPECT_DOUBLE_EQ(t.cells.at(1).at(column("depth [mm]")).value, 0.003) << "the exact value, not the rounded text";
-    }
 }
 
 TEST(Penetration, SeriesHaveOneRowPerFrame) {

@@ -74,17 +74,6 @@ TEST(Overview, WorkPerFrameFitsAPlantedLawAndThePublishedRates) {
       << "a size is missing";
 }
 
-TEST(Tables, BytesAndMemory) {
-  const std::vector<RunRecord> runs = study();
-  const auto value = [&](const char* title, const std::string& head) {
-    return entry(table_of(runs, title), "gravity-128-single", "xpbd", head);
-  };
-  EXPECT_EQ(value(kMemory, "MB per frame, read / written"), "0.256 / 0.128");
-  EXPECT_EQ(value(kMemory, kBandwidth), "4.00 / 2.00");
-  EXPECT_EQ(value(kMemory, "memory [MB]"), "0.00899");
-  EXPECT_EQ(value(kMemory, "dispatches") + " " + value(kMemory, "window [s]"), "14 0.50");
-}
-
 TEST(Tables, WithoutValuesThereIsNoTable) {
   std::vector<RunRecord> runs;
   for (const char* solver : {"bullet-soft", "other"}) runs.push_back(fake_run(solver, 8, "single", 1e-3, false));

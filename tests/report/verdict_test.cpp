@@ -158,15 +158,6 @@ TEST(Overview, TilesAreOfTheRunsPresent) {
   EXPECT_TRUE(tiles_of(RunTable({})).empty());
 }
 
-TEST(Environment, OneRowPerMachine) {
-  std::vector<RunRecord> runs = {fake_run("xpbd", 8, "single", 1), fake_run("xpbd", 9, "single", 1),
-                                 fake_run("bullet-soft", 8, "single", 1, false)};
-  const Table t = table_of(runs, "Machines of the runs");
-  ASSERT_EQ(t.rows.size(), 3u);
-  EXPECT_EQ(entry(t, "Fake GPU", "runs") + ", " + entry(t, "CPU", "runs"), "xpbd (2), bullet-soft (1)");
-  EXPECT_EQ(entry(t, "CPU", "clocks"), "") << "a column without any value is left out";
-}
-
 TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   std::vector<RunRecord> runs = study();
   const auto facts = [&] {

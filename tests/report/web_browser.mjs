@@ -8,50 +8,38 @@ import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 const [packages, page_file, large_file, shots] = process.argv.slice(2);
-const browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : [
-                       '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'
-                     ]).find(existsSync);
-const skip = why => {
-  console.log(`SKIPPED: ${why}`);
-  process.exit(77);
-};
+const browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']).find(existsSync);
+const skip = why => (console.log(`SKIPPED: ${why}`), process.exit(77));
 if (!browser_path) skip('no Chromium (Debian: chromium)');
-for (const name of ['puppeteer-core', 'axe-core'])
-  if (!existsSync(join(packages, name))) skip(`no ${name} in ${packages}`);
+for (const name of ['puppeteer-core', 'axe-core']) existsSync(join(packages, name)) || skip(`no ${name} in ${packages}`);
 const puppeteer = createRequire(join(resolve(packages), 'x.js'))('puppeteer-core');
 
 let failures = 0;
 const check = (ok, what) => {
-  if (!ok) {
-    ++failures;
-    console.error(`FAILED: ${what}`);
-  } else console.log(`ok: ${what}`);
+  failures += !ok;
+  console[ok ? 'log' : 'error'](`${ok ? 'ok' : 'FAILED'}: ${what}`);
 };
-const equal = (a, b, what) => check(
-    JSON.stringify(a) === JSON.stringify(b),
-    `${what}: ${JSON.stringify(a)}${JSON.stringify(a) === JSON.stringify(b) ? '' : `, expected ${JSON.stringify(b)}`}`);
+const equal = (a, b, what) => ((x, y) => check(x === y, `${what}: ${x}${x === y ? '' : `, expected ${y}`}`))(JSON.stringify(a), JSON.stringify(b));
 
 const browser = await puppeteer.launch({
   executablePath: browser_path,
   headless: true,
-  args: [
-    '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--allow-file-access-from-files',
-    '--hide-scrollbars'
-  ]
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--allow-file-access-from-files', '--hide-scrollbars']
 });
 const problems = [], requests = [];
 const page = await browser.newPage();
-page.on('console', m => {
-  if (['error', 'warn'].includes(m.type())) problems.push(`console: ${m.text()}`);
-});
+page.on('console', m => ['error', 'warn'].includes(m.type()) && problems.push(`console: ${m.text()}`));
 page.on('pageerror', e => problems.push(`exception: ${e.message}`));
-page.on('request', r => {
-  if (!/^(file|data|blob):/.test(r.url())) requests.push(r.url());
-});
+page.on('request', r => /^(file|data|blob):/.test(r.url()) || requests.push(r.url()));
 await page.setViewport({width: 1280, height: 900});
 await page.emulateMediaFeatures([{name: 'prefers-color-scheme', value: 'light'}]);
 await page.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
 
+const opened = async (file, prepare) => {
+  const page = await browser.newPage();
+  await prepare(page);
+  return await page.goto(pathToFileURL(resolve(file)).href, {waitUntil: 'load'}), page;
+};
 const ready_ms = page => page.waitForFunction('window.clothbench?.ready_ms').then(h => h.jsonValue());
 await ready_ms(page);
 const doc = await page.evaluate(() => window.clothbench.document);
@@ -85,8 +73,7 @@ async function check_tables() {
   equal(await page.$eval('.table th[aria-sort]', e => e.getAttribute('aria-sort')), 'ascending', 'a click on the first head sorts by it');
   check((await page.evaluate(() => location.hash)).includes('.sort='), 'the address keeps the order of a table');
   const held = await page.$$eval('.held', list => list.map(b => {
-    b.scrollLeft = 1e6;
-    const [first, second] = [...b.querySelector('tbody tr').cells].map(c => c.getBoundingClientRect());
+    const [first, second] = (b.scrollLeft = 1e6, [...b.querySelector('tbody tr').cells].map(c => c.getBoundingClientRect()));
     return Math.abs(second.left - first.right) < 2 && b.scrollLeft > 0;
   }));
   check(held.filter(Boolean).length > 1, `the second key stays in sight in ${held.filter(Boolean).length} of ${held.length} tables`);
@@ -117,17 +104,15 @@ async function check_places(id, fields) {
 /// Every figure shows as many marks as it has values, for every choice; its table has the stored values.
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
-  equal(ids, ['error-time', 'rates', 'verdicts', 'frame-times'], 'figures');
+  equal(ids, ['error-time', 'rates', 'verdicts', 'forest', 'stability', 'frame-times'], 'figures');
   equal(await page.$$eval('.pair > div > .table h3', list => list.map(e => e.firstChild.textContent)), ['Leading scenes with contact', 'Table 3: speed and error'], 'tables of the first screen');
+  const figure = id => page.evaluateHandle(i => window.clothbench.figures.find(x => x.entry.id === i), id);
   for (const id of ids) {
     const options = await page.$$eval(`#${id} .head select`, list => list[0] && !list[0].closest('label').hidden ? [...list[0].options].map(o => o.value) : []);
     for (const option of options.length ? options.slice(0, 8) : [null]) {
       if (option !== null) await page.select(`#${id} .head select`, option);
       await wait(60);
-      const [rows, marks, drawn] = await page.evaluate(i => {
-        const f = window.clothbench.figures.find(x => x.entry.id === i);
-        return [f.rows.length, f.marks.length, new Set([...f.plot.querySelectorAll('[data-i]')].map(e => e.dataset.i)).size];
-      }, id);
+      const [rows, marks, drawn] = await page.evaluate(f => [f.rows.length, f.marks.length, new Set([...f.plot.querySelectorAll('[data-i]')].map(e => e.dataset.i)).size], await figure(id));
       equal(drawn, marks, `${id} ${option ?? ''}: marks drawn`);
       check(rows > 0, `${id} ${option ?? ''}: ${rows} values`);
     }
@@ -148,15 +133,25 @@ async function check_figures() {
 
 async function check_filter() {
   const count = () => page.evaluate(() => [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]);
-  const before = await count();
-  await page.click('#chips button');
-  await wait(200);
-  const after = await count(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
+  const click = async () => (await page.click('#chips button'), await wait(200), count());
+  const before = await count(), after = await click(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
   check(after[0] < before[0] || after[1] < before[1], `without ${solver}: marks and rows ${before} become ${after}`);
   check((await page.evaluate(() => location.hash)).includes(`off=${solver}`), 'the address keeps the filter');
-  await page.click('#chips button');
-  await wait(200);
-  equal(await count(), before, 'and back');
+  equal(await click(), before, 'and back');
+  // A tile shows the best of the shown solvers, with its own value.
+  const tiles = off => page.evaluate(off => {
+    const buttons = [...document.querySelectorAll('#chips button')], toggle = () => buttons.filter(b => off.includes(b.textContent)).forEach(b => b.click());
+    toggle();
+    const texts = [...document.querySelectorAll('.tile')].map(t => [...t.children].map(e => e.textContent.trim()));
+    return toggle(), texts;
+  }, off);
+  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter';
+  check(all.length > 2 && all.some(([, , others]) => others) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
+  for (const [k, [title, , others]] of all.entries()) {
+    const [, what, best] = title.match(/^(.*), (\S+)$/), [, next, value, interval] = others.match(/^(\S+) (\S+) \((.*)\)$/) ?? [];
+    equal((await tiles([best]))[k], next ? [`${what}, ${next}`, `${value} ${interval}`, ''] : [what, hidden, ''], `without ${best}, a tile`);
+  }
+  equal(await tiles([]), all, 'and back');
 }
 
 /// At three widths: checks the first screen, no sideways scroll, a closed menu on a phone, and no violation found by axe.
@@ -212,12 +207,8 @@ async function check_budgets(file) {
   const html = readFileSync(file, 'utf8'), without = html.replace(/<script type="text\/plain" id="blob-\d+">[^<]*<\/script>/g, '').length;
   check(without < 2e6, `${(without / 1e6).toFixed(2)} MB without motions`);
   const switched = await page.evaluate(() => {
-    const start = performance.now();
-    document.getElementById('theme').click();
-    document.body.getBoundingClientRect();
-    const took = performance.now() - start;
-    document.getElementById('theme').click();
-    return took;
+    const start = performance.now(), click = () => document.getElementById('theme').click();
+    return click(), document.body.getBoundingClientRect(), [performance.now() - start, click()][0];
   });
   check(switched < 600, `the theme switches in ${switched.toFixed(0)} ms (asked for: 200)`);
   await page.emulateCPUThrottling(4);
@@ -228,9 +219,7 @@ async function check_budgets(file) {
 }
 
 async function check_without_script() {
-  const plain = await browser.newPage();
-  await plain.setJavaScriptEnabled(false);
-  await plain.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
+  const plain = await opened(page_file, p => p.setJavaScriptEnabled(false));
   const counts = await plain.evaluate(() => ['.tile', '#first-table tr', '#hero svg'].map(e => document.querySelectorAll(e).length));
   check(counts[0] > 0 && counts[1] > 2 && counts[2] === 1, `without JavaScript: ${counts[0]} tiles, ${counts[1]} rows, ${counts[2]} figure`);
   await plain.close();
@@ -275,18 +264,16 @@ async function check_motion() {
   await page.evaluate(() => document.querySelector('#stage').scrollIntoView({behavior: 'instant'}));
   await page.evaluate(() => window.clothbench.viewer.ready);
   equal(await page.evaluate(() => window.clothbench.viewer.scene), 'hand-push', 'first motion');
+  const press = async key => (await page.keyboard.press(key), drawn());
   await page.focus('#scrub');
-  await page.keyboard.press('Home');
-  await drawn();
+  await press('Home');
   const before = await positions(), picture_before = await picture();
-  await page.keyboard.press('End');
-  await drawn();
+  await press('End');
   const after = await positions(), picture_after = await picture();
   check(before.every((p, k) => p.every(Number.isFinite) && after[k].some((x, n) => x !== p[n])), 'End moves the vertices of every panel');
   const changed = picture_before.filter((x, k) => x !== picture_after[k]).length / picture_before.length;
   check(changed > 0.005, `the picture changes (${(100 * changed).toFixed(1)} % of the pixels)`);
-  await page.keyboard.press('Home');
-  await drawn();
+  await press('Home');
   check(JSON.stringify(await positions()) === JSON.stringify(before), 'Home brings them back');
   await page.keyboard.press('ArrowRight');
   check(await page.evaluate(() => window.clothbench.viewer.time === window.clothbench.viewer.times[1]), 'an arrow goes to the next frame');
@@ -305,20 +292,14 @@ async function check_motion() {
 
 /// Without WebGL a motion is still drawn, and moves with the slider.
 async function check_without_webgl() {
-  const plain = await browser.newPage();
-  await plain.evaluateOnNewDocument(() => HTMLCanvasElement.prototype.getContext = () => null);
-  await plain.goto(pathToFileURL(resolve(page_file)).href, {waitUntil: 'load'});
+  const plain = await opened(page_file, p => p.evaluateOnNewDocument(() => HTMLCanvasElement.prototype.getContext = () => null));
   await ready_ms(plain);
   const paths = await plain.evaluate(async () => {
     window.clothbench.load_viewer();
     const v = window.clothbench.viewer, drawn = () => v.panels.map(p => p.place.querySelector('svg').innerHTML);
     await v.ready;
-    v.seek(0);
-    v.draw();
-    const first = drawn();
-    v.seek(v.end);
-    v.draw();
-    return {panels: v.panels.length, absent: v.absent.textContent, moved: drawn().filter((svg, k) => svg !== first[k]).length, told: document.querySelector('#viewer .warning').textContent};
+    const [first, last] = [0, v.end].map(time => (v.seek(time), v.draw(), drawn()));
+    return {panels: v.panels.length, absent: v.absent.textContent, moved: last.filter((svg, k) => svg !== first[k]).length, told: document.querySelector('#viewer .warning').textContent};
   });
   check(paths.panels > 0 && paths.moved === paths.panels && /no WebGL/.test(paths.told) && /nvcloth: not run/.test(paths.absent), `without WebGL: ${JSON.stringify(paths)}`);
   await plain.close();
@@ -329,40 +310,26 @@ async function check_colours() {
   const results = await page.evaluate(async () => {
     const v = window.clothbench.viewer, out = [];
     for (const run of v.motions.runs) {
-      if (!run.metrics.stretch_max) continue;
+      if (!run.metrics.stretch_max || run.row.solver === 'xpbd') continue;  // xpbd: copies of other motions
       await v.set([run]);
       const contour = run.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
       const [p] = v.panels, f = touching > 0 ? touching : run.frames.length - 1;
       const tolerance = 4 * run.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
-      const strain = p.show(run.time_s[f], 'strain', 1).greatest,
-            penetration = p.show(run.time_s[f], 'penetration', 1);
-      out.push({
-        name: `${run.row.scene} ${run.row.label}`,
-        strain,
-        stored: run.metrics.stretch_max[f],
-        tolerance,
-        depth: penetration.greatest,
-        crossing: penetration.crossing,
-        stored_depth: run.metrics.depth_m?.[f],
-        stored_contour: run.metrics.contact_length_m?.[f]
-      });
+      const strain = p.show(run.time_s[f], 'strain', 1).greatest, penetration = p.show(run.time_s[f], 'penetration', 1);
+      const stored = {stored: run.metrics.stretch_max[f], stored_depth: run.metrics.depth_m?.[f], stored_contour: run.metrics.contact_length_m?.[f]};
+      out.push({name: `${run.row.scene} ${run.row.label}`, strain, tolerance, depth: penetration.greatest, crossing: penetration.crossing, ...stored});
     }
     return out;
   });
   const off = results.filter(r => !(r.strain >= r.stored - r.tolerance));
   equal(off, [], `strain of ${results.length} motions below what the file says`);
   // The page's value may be larger, because it also counts edges that are too short.
-  const stretched = results.filter(r => r.stored > 0.005),
-        agree = stretched.filter(r => Math.abs(r.strain - r.stored) <= r.tolerance);
+  const stretched = results.filter(r => r.stored > 0.005), agree = stretched.filter(r => Math.abs(r.strain - r.stored) <= r.tolerance);
   check(agree.length > 0 && 2 * agree.length >= stretched.length, `strain is the file's in ${agree.length} of ${stretched.length} stretched motions`);
   const crossed = results.filter(r => r.stored_contour > 0.1);
-  check(crossed.every(r => r.crossing > 0 || r.depth > 0),
-      `what crosses is coloured (${crossed.map(r => `${r.name} ${r.crossing}`).join(', ') || 'none'})`);
+  check(crossed.every(r => r.crossing > 0 || r.depth > 0), `what crosses is coloured (${crossed.map(r => `${r.name} ${r.crossing}`).join(', ') || 'none'})`);
   const deep = results.filter(r => r.stored_depth > 0.005);
-  check(
-      deep.every(r => r.depth > 0 || r.crossing > 0),
-      `what is deep in a collider is coloured (${
-          deep.map(r => `${r.name} ${(1e3 * r.depth).toFixed(1)} mm`).join(', ') || 'none'})`);
+  check(deep.every(r => r.depth > 0 || r.crossing > 0), `what is deep in a collider is coloured (${deep.map(r => `${r.name} ${(1e3 * r.depth).toFixed(1)} mm`).join(', ') || 'none'})`);
   const clear = results.filter(r => r.stored_depth === 0 && r.stored_contour === 0);
   check(clear.every(r => (r.depth ?? 0) < 1e-4 && r.crossing === 0), `what touches nothing is not (${clear.length} motions)`);
 }

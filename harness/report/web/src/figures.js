@@ -68,8 +68,7 @@ function error_time(doc) {
         ]
       };
     },
-    tip: r =>
-        [`${r.label}, ${r.scene}`, good(r) ? `error ${number(r.error)}, ${number(r.wall_ms_per_s)} ms per simulated second` : r.status],
+    tip: r => [`${r.label}, ${r.scene}`, good(r) ? `error ${number(r.error)}, ${number(r.wall_ms_per_s)} ms per simulated second` : r.status],
     columns: ['solver', 'setting', 'status', 'wall_ms_per_s', 'device_ms_per_s', 'error'],
     stills: scenes.map(v => ({file: `work-precision-${v}`, state: {Scene: v}}))
   };
@@ -106,8 +105,7 @@ function rates(doc) {
       choice('Show', ['plain', 'all'], 'plain', v => ({plain: 'one layer, default settings', all: 'all layers and settings'})[v])
     ],
     rows: s => {
-      const mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))),
-            plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
+      const mine = without_floor(doc, of(s).filter(has(kRates[s.Value]))), plain = mine.filter(r => r.setting === 'default' && (!r.sides || r.sides === 'single'));
       return (s.Show === 'all' || !plain.length ? mine : plain).map(r => ({...r, line: line(r), value: kRates[s.Value].of(r), size: is_grid(s) ? r.width : Math.round(r.width * r.width)}));
     },
     spec: (rows, s, look) => {
@@ -137,12 +135,7 @@ function rates(doc) {
 
 // Frame times ----------------------------------------------------------------
 
-const kClocks = {
-  contact_gpu_time: 'GPU time, frames with contact',
-  contact_wall: 'wall time, frames with contact',
-  gpu_time: 'GPU time, all frames',
-  wall: 'wall time, all frames'
-};
+const kClocks = {contact_gpu_time: 'GPU time, frames with contact', contact_wall: 'wall time, frames with contact', gpu_time: 'GPU time, all frames', wall: 'wall time, all frames'};
 
 function frame_times(doc) {
   const all = doc.runs.filter(r => r.wall && r.setting === 'default'), clocks = Object.keys(kClocks).filter(c => all.some(r => r[c]));

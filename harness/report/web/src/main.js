@@ -34,6 +34,23 @@ function chips(doc, look) {
   tell();
 }
 
+/// A tile shows the best of the solvers that are shown: the report lists it first, and up to four others in the last line.
+function start_tiles(doc) {
+  const solver = Object.fromEntries(doc.runs.flatMap(r => [[r.label, r.solver], [r.solver, r.solver]])), names = Object.keys(solver).sort((a, b) => b.length - a.length);
+  for (const [title, value, others] of [...document.querySelectorAll('.tile')].map(t => t.children)) {
+    const best = names.find(n => title.textContent.endsWith(`, ${n}`)), what = title.textContent.slice(0, -best.length), [big, small] = value.childNodes;
+    const rest = others.textContent.split(' · ').map(text => [names.find(n => text.startsWith(`${n} `)), text]).filter(([name]) => name);
+    const all = [[best, big.data, small.textContent], ...rest.map(([name, text]) => [name, ...text.slice(name.length + 1).match(/(\S+ ?)\(?(.*?)\)?$/).slice(1)])];
+    const tell = () => {
+      const [[name, number, interval], ...left] = [...all.filter(([n]) => shown(solver[n])), ['', '– ', 'hidden by the solver filter']];
+      [title.textContent, big.data, small.textContent] = [name ? what + name : what.slice(0, -2), number, interval];
+      others.textContent = left.slice(0, -1).map(([n, v, i]) => `${n} ${v.trim()}${i && ` (${i})`}`).join(' · ');
+    };
+    addEventListener('solvers', tell);
+    tell();
+  }
+}
+
 /// The first screen has the first figure, below it the leading scenes, and next to them Table 3. All else follows in sections.
 function sections(doc, look, motions) {
   const figures = make_figures(doc), hero = figures.find(f => f.hero), lead = doc.sections.flatMap(s => s.tables).slice(0, 2),
@@ -42,10 +59,7 @@ function sections(doc, look, motions) {
   $('hero').replaceChildren(hero ? figure_block(doc, look, hero) : '', ...first.slice(0, below));
   $('first-table').replaceChildren(...first.slice(below));
   for (const s of doc.sections) {
-    const blocks = [
-      ...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)),
-      ...s.tables.filter(t => !lead.includes(t)).map(t => table_block(doc, look, t))
-    ];
+    const blocks = [...figures.filter(f => f !== hero && f.section === s.id).map(f => figure_block(doc, look, f)), ...s.tables.filter(t => !lead.includes(t)).map(t => table_block(doc, look, t))];
     if (kMethod.includes(s.id)) {
       $('method-tables').append(...blocks);
     } else if (blocks.length) {
@@ -119,6 +133,7 @@ async function start() {
   window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
   start_theme();
   chips(doc, look);
+  start_tiles(doc);
   sections(doc, look, motions);
   $('conditions').append(...doc.notes.map(n => element('p', {class: 'note'}, n)));
   $('commands').append(...doc.studies.filter(s => s.command).map(s => element('p', {class: 'note'}, `${s.folder}: `, element('code', {}, s.command))));

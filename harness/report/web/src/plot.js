@@ -23,12 +23,7 @@ function show_tip(lines, x, y, controls = []) {
 class Figure {
   constructor(doc, look, entry) {
     Object.assign(this, {doc, look, entry, marks: [], at: -1, drawn: 0});
-    this.plot = element('div', {
-      class: 'plot',
-      tabindex: '0',
-      role: 'group',
-      'aria-label': 'Figure. Left and right arrow: next value. Enter: copy the command of its run.'
-    });
+    this.plot = element('div', {class: 'plot', tabindex: '0', role: 'group', 'aria-label': 'Figure. Left and right arrow: next value. Enter: copy the command of its run.'});
     this.heading = element('span', {});
     this.remark = element('p', {class: 'note'});
     this.values = element('div', {});
@@ -39,10 +34,8 @@ class Figure {
     }));
     this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
     this.again = element('span', {});
-    this.block = element(
-        'figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
-        element('figcaption', {}, entry.caption), this.remark,
-        element('div', {class: 'bar small'}, this.details));
+    this.block = element('figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
+                         element('figcaption', {}, entry.caption), this.remark, element('div', {class: 'bar small'}, this.details));
     this.listen();
     figures.push(this);
   }

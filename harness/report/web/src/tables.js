@@ -46,8 +46,7 @@ export class ShownTable {
   }
 
   sorted() {
-    const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'),
-                   k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
+    const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'), k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
     this.sort = {k, down: way === 'down'};
     const words = this.find.value.toLowerCase().match(/"[^"]+"|[^\s"]+/g) ?? [];
     const has = r => words.every(w => r.cells.some(c => w[0] === '"' ? `"${c.text.toLowerCase()}"` === w : c.text.toLowerCase().includes(w)));
