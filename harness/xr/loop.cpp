@@ -118,13 +118,19 @@ class Loop {
     try {
       show(state);
     } catch (...) {
-      if (live) log_.add(row);  // it was stepped and recorded
+      if (live) add(row);  // it was stepped and recorded
       throw;
     }
     row.frame_s = seconds(start, Clock::now());
     if (!live) return;
-    log_.add(row);
+    add(row);
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
+  }
+
+  /// Logs a frame, and the runtime's counters, which are read outside all measured times.
+  void add(const FrameRow& row) {
+    log_.add(row);
+    counters_->read();
   }
 
   /// Draws both eyes, unless the device is lost.
@@ -139,6 +145,7 @@ class Loop {
   /// Handles frames before the session's first one, until rate and hands are known. The session begins twice: the first
   /// time, solvers compile their kernels, during which the hands move on.
   void prepare(const XrFrameState& state) {
+    if (!counters_) counters_.emplace(session_);
     if (done_ || !rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
     LiveScene::Begin b;
     b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
@@ -281,6 +288,8 @@ class Loop {
     moved.motion = live_.motion();
     std::vector<StoredGroup> groups = replay_of(moved);
     groups.push_back(group(end));
+    r.counters = counters_->group();
+    if (!r.counters.arrays.empty()) groups.push_back(r.counters);
     RunRecord record;
     record.header = run_->header();
     record.outcome = outcome_;
@@ -303,6 +312,7 @@ class Loop {
   std::shared_ptr<vulkan::Device> device_;
   Painter painter_;
   std::optional<Hands> hands_;
+  std::optional<Counters> counters_;  ///< from the first frame on
   std::unique_ptr<SolverRun> run_;
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;

@@ -29,6 +29,7 @@ struct LoopOptions {
 
 struct LoopResult {
   FrameLog log;
+  StoredGroup counters;  ///< of the runtime, frame by frame; no array if it has none
   Outcome outcome;
   std::filesystem::path scenario;  ///< file that replays the session
   std::filesystem::path file;      ///< the result file

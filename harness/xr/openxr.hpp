@@ -28,4 +28,26 @@ struct AndroidInfo {
   void* activity;  ///< for the loader: a Context; an activity is one
 };
 
+/// XR_ANDROID_performance_metrics and XR_META_performance_metrics: equal layouts, different suffixes and types.
+struct Metrics {
+  const char *extension, *suffix;
+  XrStructureType state, counter;
+};
+inline constexpr Metrics kMetrics[] = {
+    {"XR_ANDROID_performance_metrics", "ANDROID", XrStructureType(1000465000), XrStructureType(1000465001)},
+    {"XR_META_performance_metrics", "META", XrStructureType(1000232001), XrStructureType(1000232002)}};
+struct MetricsState {
+  XrStructureType type;
+  const void* next;
+  XrBool32 enabled;
+};
+inline constexpr XrFlags64 kWholeValid = 2, kRealValid = 4;
+struct MetricsCounter {
+  XrStructureType type;
+  const void* next;
+  XrFlags64 flags;
+  std::uint32_t unit, whole;
+  float real;
+};
+
 }  // namespace clothbench::xr

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/record.hpp"
-
 namespace clothbench::xr {
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include "assets/hand_track.hpp"
 #include "clothbench/collider.hpp"
+#include "clothbench/record.hpp"
 #include "render/scene_renderer.hpp"
 #include "xr/instance.hpp"
 
@@ -88,6 +89,22 @@ class Hands {
   bool capsules_ = false;
   PFN_xrLocateHandJointsEXT locate_ = nullptr;
   std::array<XrHandTrackerEXT, 2> trackers_{};
+};
+
+/// Performance counters of the runtime: XR_ANDROID_performance_metrics, otherwise XR_META_performance_metrics.
+class Counters {
+ public:
+  explicit Counters(const Session&);  ///< switches them on; the session must run
+  void read();                        ///< for the next frame; NaN if the call fails or the value is not valid
+  /// Group "xr/counters" of a result file, one value per frame; no array if the runtime has no counters.
+  const StoredGroup& group() const { return group_; }
+
+ private:
+  const Session& session_;
+  const Metrics* kind_ = nullptr;
+  XrResult(XRAPI_PTR* query_)(XrSession, XrPath, MetricsCounter*) = nullptr;
+  std::vector<XrPath> paths_;
+  StoredGroup group_{"xr/counters", {}, {}};
 };
 
 /// Renders both eyes into the session's images in one submission, without waiting; the next frame waits.

@@ -185,6 +185,8 @@ TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.05);
+  EXPECT_EQ(reported_["counter_calls"], 0);
+  EXPECT_TRUE(r.counters.arrays.empty());
   const Scene saved = load_scene(r.scenario.string());
   EXPECT_EQ(saved.time.frame_rate_hz, 90) << "by the frames' predicted period";
   EXPECT_EQ(replayed(r, o), r.final_position_m);
@@ -216,6 +218,29 @@ TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
   const LoopResult r = run(o, "blind=1");
   EXPECT_EQ(load_scene(r.scenario.string()).assets, "procedural");
   EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
+class Counting : public Sessions, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Runtimes, Counting, testing::Values("ANDROID=1", "META=1", "ANDROID=1,META=1"));
+
+/// The null runtime's counters count frames; in four frames reading them fails.
+TEST_P(Counting, CountersOfTheRuntimeAreStored) {
+  const LoopResult r = run(options("paper/gravity", 20), std::string("blind=1,unmeasured=12:16,") + GetParam());
+  EXPECT_EQ(reported_["counter_calls"], 3 + 20 * null_xr::kCounters.size()) << "one reading per frame";
+  ASSERT_EQ(r.counters.arrays.size(), null_xr::kCounters.size());
+  const double first = r.counters.arrays[1].values.at(0);
+  ASSERT_LT(first, 12);
+  for (std::size_t c = 0; c < null_xr::kCounters.size(); ++c) {
+    const auto& [path, units, unit, flags] = null_xr::kCounters[c];
+    const StoredArray& a = r.counters.arrays[c];
+    EXPECT_EQ(a.name, std::string(path).replace(std::string(path).find('/'), 1, "_"));
+    EXPECT_EQ(a.units, units) << a.name;
+    ASSERT_EQ(a.values.size(), 20u) << a.name;
+    for (double frame = first; frame < first + 20; ++frame) {
+      const double value = a.values[static_cast<std::size_t>(frame - first)];
+      EXPECT_TRUE(frame >= 12 && frame < 16 ? std::isnan(value) : value == ((flags & 4) != 0 ? frame / 2 : frame));
+    }
+  }
 }
 
 TEST_F(Sessions, ACpuSolverIsUploaded) {

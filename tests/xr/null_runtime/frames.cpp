@@ -7,6 +7,8 @@
 namespace null_xr {
 namespace {
 
+namespace cb = clothbench::xr;
+
 template <class T>
 XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t* count, T* out) {
   *count = static_cast<std::uint32_t>(items.size());
@@ -161,6 +163,42 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
   return XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB;
 }
 
+/// The kind of performance counters that is enabled: the first if both are.
+const cb::Metrics& metrics() { return cb::kMetrics[runtime()->enabled.contains(cb::kMetrics[0].extension) ? 0 : 1]; }
+
+XrResult XRAPI_CALL enumerate_counters(XrInstance, std::uint32_t capacity, std::uint32_t* count, XrPath* out) {
+  ++runtime()->counter_calls;
+  return list<XrPath>({1, 2, 3, 4, 5}, capacity, count, out);
+}
+
+XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t, std::uint32_t* count, char* out) {
+  *count = static_cast<std::uint32_t>(
+      std::sprintf(out, "/perfmetrics_%s/%s", metrics().suffix, kCounters.at(path - 1).path) + 1);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL set_metrics(XrSession, const cb::MetricsState* state) {
+  Runtime& r = *runtime();
+  ++r.counter_calls;
+  if (state->type != metrics().state || !r.running)
+    return r.fault("xrSetPerformanceMetricsState: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
+  r.measures = state->enabled == XR_TRUE;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL query_counter(XrSession, XrPath path, cb::MetricsCounter* out) {
+  Runtime& r = *runtime();
+  ++r.counter_calls;
+  if (out->type != metrics().counter || !r.measures)
+    return r.fault("xrQueryPerformanceMetricsCounter: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
+  const Counter& c = kCounters.at(path - 1);
+  out->flags = c.flags;
+  out->unit = c.unit;
+  out->whole = static_cast<std::uint32_t>(r.frames);
+  out->real = 0.5f * static_cast<float>(r.frames);
+  return r.within("unmeasured") ? XR_ERROR_RUNTIME_FAILURE : XR_SUCCESS;  // its output is then undefined
+}
+
 XrResult XRAPI_CALL create_reference_space(XrSession, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
   Runtime& r = *runtime();
   if (info->referenceSpaceType != XR_REFERENCE_SPACE_TYPE_LOCAL)
@@ -186,12 +224,7 @@ XrResult XRAPI_CALL destroy_tracker(XrHandTrackerEXT) {
   return XR_SUCCESS;
 }
 
-bool seen(const Runtime& r) {
-  const auto found = r.options.find("unseen");
-  if (found == r.options.end()) return true;
-  return !(r.frames >= std::stoi(found->second) &&
-           r.frames < std::stoi(found->second.substr(found->second.find(':') + 1)));
-}
+bool seen(const Runtime& r) { return !r.within("unseen"); }
 
 XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLocateInfoEXT* info,
                                   XrHandJointLocationsEXT* out) {
@@ -225,6 +258,7 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
+  if (runtime() == nullptr) return nullptr;
   NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
   NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
   NULL_XR("xrBeginSession", begin_session)
@@ -235,6 +269,10 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrEndFrame", end_frame)
   NULL_XR("xrLocateViews", locate_views)
   NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
+  NULL_XR("xrPathToString", path_to_string)
+  NULL_XR(std::string("xrEnumeratePerformanceMetricsCounterPaths") + metrics().suffix, enumerate_counters)
+  NULL_XR(std::string("xrSetPerformanceMetricsState") + metrics().suffix, set_metrics)
+  NULL_XR(std::string("xrQueryPerformanceMetricsCounter") + metrics().suffix, query_counter)
   NULL_XR("xrCreateReferenceSpace", create_reference_space)
   NULL_XR("xrDestroySpace", destroy_space)
   NULL_XR("xrCreateHandTrackerEXT", create_tracker)

@@ -70,4 +70,16 @@ inline std::array<std::array<int, 2>, 19> capsule_joints() {
   return c;
 }
 
+/// A performance counter: it reads as the frame's number, as half of it if it is not whole.
+struct Counter {
+  const char *path, *units;
+  unsigned unit;   ///< XrPerformanceMetricsCounterUnitMETA
+  unsigned flags;  ///< 1: any value; 2: a whole value; 4: a real value
+};
+inline constexpr std::array<Counter, 5> kCounters = {{{"app/gpu_frametime", "ms", 2, 5},
+                                                      {"compositor/dropped_frame_count", "1", 0, 3},
+                                                      {"device/cpu_utilization", "%", 1, 5},
+                                                      {"device/gpu_frequency", "Hz", 4, 3},
+                                                      {"device/memory", "B", 3, 7}}};
+
 }  // namespace null_xr
