@@ -52,6 +52,8 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
 
     told = json.loads(run("--json", "xr", "paper/capsule-sweep", "--frames", 5, "--set", "cloth.grid=[8,8]", "--out", top / "json"))
     assert told["summary"]["xr_frames"] == 5 and told["status"] == "ok", told
+    text = run("xr", "paper/desk-flat-low", "--table", "--frames", 3, "--out", top / "table", CLOTHBENCH_NULL_XR="planes=1,blind=1")
+    assert "on the user's table" in text, text
     text = run("xr", "paper/capsule-sweep", "--out", top / "none", code=3, XR_RUNTIME_JSON="/nowhere")
     assert "OpenXR" in text, text
     print("ok: as JSON, without a runtime")

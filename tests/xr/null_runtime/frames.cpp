@@ -177,12 +177,12 @@ XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t, std::
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL set_metrics(XrSession, const cb::MetricsState* state) {
+XrResult XRAPI_CALL set_metrics(XrSession, const cb::Block<0>* state) {
   Runtime& r = *runtime();
   ++r.counter_calls;
   if (state->type != metrics().state || !r.running)
     return r.fault("xrSetPerformanceMetricsState: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
-  r.measures = state->enabled == XR_TRUE;
+  r.measures = state->number == XR_TRUE;
   return XR_SUCCESS;
 }
 
@@ -204,7 +204,7 @@ XrResult XRAPI_CALL create_reference_space(XrSession, const XrReferenceSpaceCrea
   if (info->referenceSpaceType != XR_REFERENCE_SPACE_TYPE_LOCAL)
     return r.fault("xrCreateReferenceSpace: another than LOCAL", XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
   *out = handle<XrSpace>(++r.handles);
-  r.spaces[r.handles] = from_xr(info->poseInReferenceSpace);
+  r.spaces[r.handles] = r.space = from_xr(info->poseInReferenceSpace);
   return XR_SUCCESS;
 }
 
@@ -212,6 +212,50 @@ XrResult XRAPI_CALL destroy_space(XrSpace s) {
   return runtime()->spaces.erase(number_of(s)) == 1
              ? XR_SUCCESS
              : runtime()->fault("xrDestroySpace: no such space", XR_ERROR_HANDLE_INVALID);
+}
+
+/// Begins to create a context or a snapshot of planes.
+XrResult XRAPI_CALL search_planes(void*, const cb::Block<0>* info, const void** future) {
+  Runtime& r = *runtime();
+  ++r.plane_calls;
+  const bool context = info->type == XrStructureType(1000740001);
+  const auto& wanted = context ? **static_cast<const cb::Block<0>* const*>(info->data) : *info;
+  const bool with_labels = (context ? static_cast<int>(wanted.count) : wanted.number) > 2;
+  if (with_labels && r.number("labels", 1) == 0) return cb::kComponentUnsupported;
+  r.planes_ready = r.frames + 3;
+  *future = &r;
+  return XR_SUCCESS;
+}
+
+/// Completes it; `info` is the future or a structure.
+XrResult XRAPI_CALL complete_planes(void*, const cb::SnapshotCompletionInfo* info, cb::Block<0>* done) {
+  Runtime& r = *runtime();
+  if (r.frames < r.planes_ready) return cb::kFuturePending;
+  if (done->type == XrStructureType(1000740005)) r.base = r.spaces.at(number_of(info->base));
+  ++r.plane_handles;
+  done->data = &r;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL destroy_planes(void*) { return --runtime()->plane_handles, XR_SUCCESS; }
+
+XrResult XRAPI_CALL query_planes(void*, const cb::Block<0>*, cb::QueryResult* out) {
+  const Runtime& r = *runtime();
+  out->id_count = r.number("planes", 0) == 2 ? 3 : 4;
+  for (std::size_t k = 0; k < out->id_count; ++k) {
+    const auto& [pose, width_m, height_m, alignment, label, state] = kSurroundings.at(k);
+    const XrExtent2Df size{static_cast<float>(width_m), static_cast<float>(height_m)};
+    out->states[k] = state;
+    for (auto* list = static_cast<const cb::Block<0>*>(out->next); list != nullptr;
+         list = static_cast<const cb::Block<0>*>(list->next)) {
+      auto* data = const_cast<void*>(list->data);
+      if (list->type == XrStructureType(1000740009))
+        static_cast<cb::Bounds2D*>(data)[k] = {as_xr(inverse(r.base) * pose), size};
+      else
+        static_cast<int*>(data)[k] = list->type == XrStructureType(1000741001) ? alignment : label;
+    }
+  }
+  return XR_SUCCESS;
 }
 
 XrResult XRAPI_CALL create_tracker(XrSession, const XrHandTrackerCreateInfoEXT* info, XrHandTrackerEXT* out) {
@@ -270,6 +314,13 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrLocateViews", locate_views)
   NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
   NULL_XR("xrPathToString", path_to_string)
+  NULL_XR("xrCreateSpatialContextAsyncEXT", search_planes)
+  NULL_XR("xrCreateSpatialContextCompleteEXT", complete_planes)
+  NULL_XR("xrCreateSpatialDiscoverySnapshotAsyncEXT", search_planes)
+  NULL_XR("xrCreateSpatialDiscoverySnapshotCompleteEXT", complete_planes)
+  NULL_XR("xrDestroySpatialContextEXT", destroy_planes)
+  NULL_XR("xrDestroySpatialSnapshotEXT", destroy_planes)
+  NULL_XR("xrQuerySpatialComponentDataEXT", query_planes)
   NULL_XR(std::string("xrEnumeratePerformanceMetricsCounterPaths") + metrics().suffix, enumerate_counters)
   NULL_XR(std::string("xrSetPerformanceMetricsState") + metrics().suffix, set_metrics)
   NULL_XR(std::string("xrQueryPerformanceMetricsCounter") + metrics().suffix, query_counter)

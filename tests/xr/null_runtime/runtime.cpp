@@ -39,11 +39,16 @@ struct Offer {
 };
 bool offers(const Runtime& r, const Offer& o) { return r.number(o.key, o.unless_told) != 0; }
 
-constexpr Offer kOffers[] = {
-    {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"}, {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
-    {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},   {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
-    {cb::kMetrics[0].extension, "ANDROID", 0},        {cb::kMetrics[1].extension, "META", 0},
-    {"XR_KHR_android_create_instance", "android"}};
+constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
+                             {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
+                             {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},
+                             {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
+                             {cb::kMetrics[0].extension, "ANDROID", 0},
+                             {cb::kMetrics[1].extension, "META", 0},
+                             {cb::kPlanes[0], "planes", 0},
+                             {cb::kPlanes[1], "planes", 0},
+                             {cb::kPlanes[2], "planes", 0},
+                             {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
                                          XrExtensionProperties* out) {
@@ -88,12 +93,14 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
   if (r.session) r.faults.push_back("the instance is destroyed before the session");
   if (!r.spaces.empty()) r.faults.push_back("spaces are left");
   if (!r.swapchains.empty()) r.faults.push_back("swapchains are left");
+  if (r.plane_handles != 0) r.faults.push_back("spatial contexts or snapshots are left");
   if (r.trackers != 0) r.faults.push_back("hand trackers are left");
   const auto log = r.options.find("log");
   if (log != r.options.end()) {
-    const nlohmann::json j = {
-        {"frames", r.ended},    {"rate_hz", r.rate_hz}, {"projection_frames", r.projection_frames}, {"drawn", r.drawn},
-        {"android", r.android}, {"faults", r.faults},   {"counter_calls", r.counter_calls}};
+    nlohmann::json j = {{"frames", r.ended}, {"rate_hz", r.rate_hz}, {"projection_frames", r.projection_frames},
+                        {"drawn", r.drawn},  {"android", r.android}, {"faults", r.faults}};
+    j.update({{"counter_calls", r.counter_calls}, {"plane_calls", r.plane_calls}});
+    j["space"] = {r.space.p.x, r.space.p.y, r.space.p.z};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }
   held() = nullptr;

@@ -16,6 +16,7 @@
 ///   multiple=200   from the sixth frame on, reports that multiple of the display's period, as after slow frames
 ///   hands|capsules|rate=0   omits an extension
 ///   ANDROID|META=1   offers performance counters, by XR_ANDROID_… or XR_META_performance_metrics
+///   planes=1   offers planes, after some frames; planes=2: without the table; labels=0: without labels
 ///   unseen=10:20   hands are not tracked from the 10th frame up to the 20th
 ///   unmeasured=10:20   reading a counter fails in these frames
 ///   blind=1        requests no images, which take lavapipe most of the time
@@ -69,7 +70,8 @@ struct Runtime {
   bool android = false;
   std::set<std::string> enabled;  ///< extensions
   bool measures = false;
-  int counter_calls = 0;
+  int counter_calls = 0, plane_calls = 0, plane_handles = 0, planes_ready = 0;
+  Pose base, space;  ///< of planes; the last space that was created
 
   std::map<std::uint64_t, Pose> spaces;  ///< in LOCAL
   std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;

@@ -70,6 +70,18 @@ inline std::array<std::array<int, 2>, 19> capsule_joints() {
   return c;
 }
 
+/// The user's surroundings in LOCAL: floor, wall, a table that is no longer tracked, and a table.
+struct Plane {
+  Pose pose;
+  double width_m, height_m;
+  int alignment, label, state;
+};
+inline const Q kLevel = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, kTurned = Q{0, 0.6, 0, 0.8} * kLevel;
+inline const std::array<Plane, 4> kSurroundings = {{{{kLevel, {0, -1.2, 0}}, 5, 4, 0, 2, 3},
+                                                    {{{}, {0, 0, -2}}, 5, 2.4, 2, 3, 3},
+                                                    {{kLevel, {0, -0.6, 0}}, 3, 3, 0, 5, 2},
+                                                    {{kTurned, {0.4, -0.5, -0.8}}, 1.2, 0.8, 0, 5, 3}}};
+
 /// A performance counter: it reads as the frame's number, as half of it if it is not whole.
 struct Counter {
   const char *path, *units;
