@@ -59,7 +59,7 @@ struct MetricsCounter {
 
 /// XR_EXT_spatial_plane_tracking and the extensions that it requires. Handles and futures are pointers (64-bit
 /// systems).
-inline constexpr std::array kPlanes = {"XR_EXT_future", "XR_EXT_spatial_entity", "XR_EXT_spatial_plane_tracking"};
+inline constexpr std::array kPlanes = {"XR_EXT_spatial_plane_tracking", "XR_EXT_spatial_entity", "XR_EXT_future"};
 inline constexpr int kPlaneTracking = 1000741000, kBounds = 1, kAlignment = 1000741000, kLabel = 1000741003;
 inline constexpr int kTracked = 3, kFacesUp = 0, kTable = 5;
 inline constexpr auto kFuturePending = XrResult(-1000469001), kComponentUnsupported = XrResult(-1000740004);

@@ -304,7 +304,7 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   expect_error(o, ExitCode::BadInput, "1 to 8640");
   o = options("paper/capsule-sweep", 10);
   o.table = true;
-  expect_error(o, ExitCode::NoDevice, "XR_EXT_future, which --table needs");
+  expect_error(o, ExitCode::NoDevice, "XR_EXT_spatial_plane_tracking, which --table needs");
   setenv("CLOTHBENCH_NULL_XR", "planes=2,blind=1", 1);
   o.timeout_s = 4;
   expect_error(o, ExitCode::CheckFailed, "no table was found");
