@@ -52,6 +52,7 @@ void add_xr(CLI::App& app, Console& console) {
   cmd->add_option("--timeout", o.timeout_s, "The session ends after this time without tracked hands [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  cmd->add_flag("--table", o.table, "Put the cloth over the user's table, instead of the scene's static colliders");
   cmd->add_option("--out", a.out, "Folder for the result file and the recorded scene; default results/runs/xr-<UTC>");
   a.device.add_to(*cmd);
   cmd->footer("Example: clothbench xr paper/capsule-sweep --frames 720");

@@ -17,8 +17,15 @@ AndroidContext& context() {
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
 /// Optional extensions; XR_KHR_vulkan_enable2 is required.
-constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
-                                 XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME};
+constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
+                                 XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+                                 XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME,
+                                 kMetrics[0].extension,
+                                 kMetrics[1].extension,
+                                 "XR_KHR_maintenance1",
+                                 kPlanes[0],
+                                 kPlanes[1],
+                                 kPlanes[2]};
 
 /// XR_KHR_vulkan_enable2: the runtime creates Vulkan objects from our requests and its own.
 class RuntimeMaker : public vulkan::Maker {

@@ -9,7 +9,7 @@ namespace clothbench::xr {
 
 // clang-format off
 #define CLOTHBENCH_XR_FUNCTIONS(X)                                                                                     \
-  X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrGetSystem)                    \
+  X(xrDestroyInstance) X(xrGetInstanceProperties) X(xrPollEvent) X(xrResultToString) X(xrPathToString) X(xrGetSystem)  \
   X(xrGetSystemProperties) X(xrEnumerateEnvironmentBlendModes) X(xrCreateSession) X(xrDestroySession)                  \
   X(xrCreateReferenceSpace) X(xrDestroySpace)                                                                            \
   X(xrEnumerateViewConfigurationViews) X(xrEnumerateSwapchainFormats) X(xrCreateSwapchain) X(xrDestroySwapchain)       \
@@ -53,8 +53,13 @@ class Instance {
 
   /// A function of an extension; null if the runtime lacks it.
   template <class Function>
-  Function function(const char* name) const {
-    return reinterpret_cast<Function>(address(name));
+  Function function(const std::string& name) const {
+    return reinterpret_cast<Function>(address(name.c_str()));
+  }
+  /// Calls a function of an extension; the types of the arguments must be those of the function.
+  template <class... Arguments>
+  XrResult call(const std::string& name, Arguments... arguments) const {
+    return function<XrResult(XRAPI_PTR*)(Arguments...)>(name)(arguments...);
   }
   /// Throws Error with the call and the runtime's name for the result, unless the result is a success.
   void check(XrResult result, const char* call) const;

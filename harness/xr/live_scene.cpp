@@ -81,7 +81,31 @@ bool LiveScene::wants(Side side) const {
 
 Vec3 LiveScene::place_m() const {
   const render::Bounds cloth = render::Bounds::of(initial_positions(written_));
-  return minus({0, -0.1, -0.6}, scaled(0.5, plus(cloth.low, cloth.high)));
+  return minus(kMiddle_m, scaled(0.5, plus(cloth.low, cloth.high)));
+}
+
+Vec3 LiveScene::put_on(json table) {
+  json& pose = document_["cloth"]["pose"];
+  const double drop_m = pose.contains("over_table") ? pose["over_table"]["drop_m"].get<double>() : 0.3;
+  const Cloth& c = written_.cloth;
+  pose.update({{"center_m", c.center_m}, {"axis_u", c.axis_u}, {"axis_v", c.axis_v}});
+  pose.erase("over_table");
+  const render::Bounds cloth = render::Bounds::of(initial_positions(written_));
+  Vec3 center = scaled(0.5, plus(cloth.low, cloth.high));
+  center[1] = cloth.low[1] - drop_m - table["size_m"][2].get<double>() / 2;
+  const Vec3 by_m = minus(center, std::exchange(table["center_m"], center).get<Vec3>());
+  json& list = document_["colliders"];
+  for (std::size_t k = list.size(); k-- > 0;) {
+    for (const char* key : {"margin_m", "friction"})
+      if (list[k].contains(key)) table[key] = list[k][key];
+    const auto type = list[k]["type"].get<std::string>();
+    if (type.starts_with("hand_") || type == "capsule") continue;
+    list.erase(k);
+    for (LiveHand& h : hands_) h.collider -= h.collider > k ? 1 : 0;
+  }
+  list.push_back(table);
+  document_.erase("assumed");  // it may point to what was removed
+  return by_m;
 }
 
 const Scene& LiveScene::begin(const Begin& b) {

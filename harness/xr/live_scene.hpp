@@ -33,6 +33,11 @@ class LiveScene {
   /// The scene's origin in the user's space [m]: the initial cloth's middle is 60 cm in front of the eyes and 10 cm
   /// below.
   Vec3 place_m() const;
+  static constexpr Vec3 kMiddle_m = {0, -0.1, -0.6};  ///< of the initial cloth in the user's space
+
+  /// Puts the user's table (a box as a scene's file has it) under the middle of the cloth instead of all static
+  /// colliders, as far below the cloth as the scene's own table, otherwise 0.3 m. Returns the displacement of the box.
+  Vec3 put_on(nlohmann::json table);
 
   struct Begin {
     double frame_rate_hz = 0;

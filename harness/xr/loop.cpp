@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "clothbench/vector.hpp"
 #include "common/gpu_solver.hpp"
 #include "results/store.hpp"
 #include "runner/frame_loop.hpp"
@@ -37,6 +38,7 @@ class Loop {
        std::shared_ptr<vulkan::Device> device)
       : o_(options), live_(live), session_(session), device_(device), painter_(device, session) {
     if (live.wants(Side::Left) || live.wants(Side::Right)) hands_.emplace(session);
+    if (options.table) search_.emplace(session, minus(LiveScene::kMiddle_m, live.place_m()));
     show_at_rest();
     tell(fmt::format("{} on {}; {} x {} pixels per eye", xr.system_name(), xr.runtime_name(), session.extent().width,
                      session.extent().height));
@@ -118,12 +120,13 @@ class Loop {
     try {
       show(state);
     } catch (...) {
-      if (live) log_.add(row);  // it was stepped and recorded
+      if (live) log_.add(row), counters_->read();  // it was stepped and recorded
       throw;
     }
     row.frame_s = seconds(start, Clock::now());
     if (!live) return;
     log_.add(row);
+    counters_->read();  // outside all measured times
     done_ = done_ || static_cast<int>(log_.rows().size()) == frames_;
   }
 
@@ -139,7 +142,9 @@ class Loop {
   /// Handles frames before the session's first one, until rate and hands are known. The session begins twice: the first
   /// time, solvers compile their kernels, during which the hands move on.
   void prepare(const XrFrameState& state) {
+    if (!counters_) counters_.emplace(session_);
     if (done_ || !rate_settled(static_cast<double>(state.predictedDisplayPeriod) * 1e-9)) return;
+    if (search_ && !found_table(state.predictedDisplayTime)) return;
     LiveScene::Begin b;
     b.hands = hands_at(hands_, live_, state.predictedDisplayTime);
     for (const Side side : {Side::Left, Side::Right})
@@ -165,6 +170,19 @@ class Loop {
     run_ = std::move(run);
     show_live();
     tell(fmt::format("{} frames at {:g} Hz", frames_, b.frame_rate_hz));
+  }
+
+  /// Whether the scene is on the user's table.
+  bool found_table(XrTime time) {
+    if (const nlohmann::json table = search_->step(time); !table.is_null()) {
+      session_.create_space(minus(live_.place_m(), live_.put_on(table)));
+      search_.reset();
+      tell("on the user's table, size " + table["size_m"].dump() + " m");
+    } else if (seconds(first_frame_, Clock::now()) > std::min(10.0, o_.timeout_s / 2)) {
+      throw Error("no table was found: mark it in the headset's room settings, or leave --table out",
+                  ExitCode::CheckFailed);
+    }
+    return !search_;
   }
 
   /// A display changes to a requested rate after some frames, if it offers that rate. Otherwise the highest rate seen
@@ -247,13 +265,9 @@ class Loop {
                               : hands_->has_capsules() ? "live, capsules of the runtime"
                                                        : "live, joints and radii"}};
     const std::uint64_t n = live_.scene().cloth.vertex_count();
-    g.arrays.push_back({"final_position_m",
-                        "m",
-                        "positions of the cloth after the last frame",
-                        {"vertex", "xyz"},
-                        {n, 3},
-                        false,
-                        end.position});
+    g.arrays.push_back(
+        {"final_position_m", "m", "positions of the cloth after the last frame", {"vertex", "xyz"}, {n, 3}});
+    g.arrays.back().values = end.position;
     return g;
   }
 
@@ -281,6 +295,8 @@ class Loop {
     moved.motion = live_.motion();
     std::vector<StoredGroup> groups = replay_of(moved);
     groups.push_back(group(end));
+    r.counters = counters_->group();
+    if (!r.counters.arrays.empty()) groups.push_back(r.counters);
     RunRecord record;
     record.header = run_->header();
     record.outcome = outcome_;
@@ -303,6 +319,8 @@ class Loop {
   std::shared_ptr<vulkan::Device> device_;
   Painter painter_;
   std::optional<Hands> hands_;
+  std::optional<Counters> counters_;   ///< from the first frame on
+  std::optional<TableSearch> search_;  ///< until the table is found
   std::unique_ptr<SolverRun> run_;
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;

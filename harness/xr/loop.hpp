@@ -23,12 +23,14 @@ struct LoopOptions {
   double rate_hz = 72;     ///< requested refresh rate of the display
   int frames = 0;          ///< 0: the scene's length
   double timeout_s = 120;  ///< for hands to become tracked
+  bool table = false;      ///< the cloth is put over the user's table, which replaces the scene's static colliders
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< receives messages for the user; may be empty
 };
 
 struct LoopResult {
   FrameLog log;
+  StoredGroup counters;  ///< of the runtime, frame by frame; no array if it has none
   Outcome outcome;
   std::filesystem::path scenario;  ///< file that replays the session
   std::filesystem::path file;      ///< the result file

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clothbench/record.hpp"
-
 namespace clothbench::xr {
 namespace {
 
@@ -16,6 +14,9 @@ constexpr auto kViews = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 constexpr std::array kFormats = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB};
 
 using assets::Side;
+
+/// Calls an OpenXR function of the member xr_; throws as Instance::check.
+#define CHECKED(function, ...) xr_.check(xr_.xr().function(__VA_ARGS__), #function)
 
 static_assert(assets::kRecordedJointCount == XR_HAND_JOINT_COUNT_EXT);
 static_assert(std::extent_v<decltype(XrHandTrackingCapsulesStateFB::capsules)> == assets::kCapsuleCount);
@@ -83,35 +84,33 @@ void Session::create_session() {
   auto info = blank<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
   info.next = &vulkan;
   info.systemId = xr_.system();
-  xr_.check(xr_.xr().xrCreateSession(xr_.handle(), &info, &session_), "xrCreateSession");
+  CHECKED(xrCreateSession, xr_.handle(), &info, &session_);
 }
 
 void Session::create_space(const Vec3& origin_m) {
+  if (space_ != XR_NULL_HANDLE) xr_.xr().xrDestroySpace(std::exchange(space_, XR_NULL_HANDLE));
   auto info = blank<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
   info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
   info.poseInReferenceSpace.orientation.w = 1;
   info.poseInReferenceSpace.position = {static_cast<float>(origin_m[0]), static_cast<float>(origin_m[1]),
                                         static_cast<float>(origin_m[2])};
-  xr_.check(xr_.xr().xrCreateReferenceSpace(session_, &info, &space_), "xrCreateReferenceSpace");
+  CHECKED(xrCreateReferenceSpace, session_, &info, &space_);
 }
 
 void Session::create_eyes() {
   std::uint32_t count = 0;
-  xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
-            "xrEnumerateViewConfigurationViews");
+  CHECKED(xrEnumerateViewConfigurationViews, xr_.handle(), xr_.system(), kViews, 0, &count, nullptr);
   std::vector<XrViewConfigurationView> views(count, blank<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW));
-  xr_.check(xr_.xr().xrEnumerateViewConfigurationViews(xr_.handle(), xr_.system(), kViews, count, &count, views.data()),
-            "xrEnumerateViewConfigurationViews");
+  CHECKED(xrEnumerateViewConfigurationViews, xr_.handle(), xr_.system(), kViews, count, &count, views.data());
   if (count != eyes_.size()) throw Error(fmt::format("OpenXR: {} views; expected 2", count), ExitCode::NoDevice);
   // Equal sizes for both eyes, so that the renderer keeps one set of targets.
   for (const auto& v : views) {
     extent_.width = std::max(extent_.width, v.recommendedImageRectWidth);
     extent_.height = std::max(extent_.height, v.recommendedImageRectHeight);
   }
-  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, 0, &count, nullptr), "xrEnumerateSwapchainFormats");
+  CHECKED(xrEnumerateSwapchainFormats, session_, 0, &count, nullptr);
   std::vector<std::int64_t> formats(count);
-  xr_.check(xr_.xr().xrEnumerateSwapchainFormats(session_, count, &count, formats.data()),
-            "xrEnumerateSwapchainFormats");
+  CHECKED(xrEnumerateSwapchainFormats, session_, count, &count, formats.data());
   for (const VkFormat f : kFormats)
     if (format_ == VK_FORMAT_UNDEFINED && std::find(formats.begin(), formats.end(), f) != formats.end()) format_ = f;
   if (format_ == VK_FORMAT_UNDEFINED)
@@ -124,13 +123,12 @@ void Session::create_eyes() {
     info.width = extent_.width;
     info.height = extent_.height;
     info.faceCount = info.arraySize = info.mipCount = 1;
-    xr_.check(xr_.xr().xrCreateSwapchain(session_, &info, &eye.swapchain), "xrCreateSwapchain");
-    xr_.check(xr_.xr().xrEnumerateSwapchainImages(eye.swapchain, 0, &count, nullptr), "xrEnumerateSwapchainImages");
+    CHECKED(xrCreateSwapchain, session_, &info, &eye.swapchain);
+    CHECKED(xrEnumerateSwapchainImages, eye.swapchain, 0, &count, nullptr);
     std::vector<XrSwapchainImageVulkan2KHR> images(
         count, blank<XrSwapchainImageVulkan2KHR>(XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR));
-    xr_.check(xr_.xr().xrEnumerateSwapchainImages(eye.swapchain, count, &count,
-                                                  reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
-              "xrEnumerateSwapchainImages");
+    CHECKED(xrEnumerateSwapchainImages, eye.swapchain, count, &count,
+            reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data()));
     for (const auto& image : images) eye.images.push_back(image.image);
   }
 }
@@ -138,11 +136,9 @@ void Session::create_eyes() {
 /// Chooses a mode in which the user sees only the scene, if the headset has one.
 void Session::choose_blend_mode() {
   std::uint32_t count = 0;
-  xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, 0, &count, nullptr),
-            "xrEnumerateEnvironmentBlendModes");
+  CHECKED(xrEnumerateEnvironmentBlendModes, xr_.handle(), xr_.system(), kViews, 0, &count, nullptr);
   std::vector<XrEnvironmentBlendMode> modes(count);
-  xr_.check(xr_.xr().xrEnumerateEnvironmentBlendModes(xr_.handle(), xr_.system(), kViews, count, &count, modes.data()),
-            "xrEnumerateEnvironmentBlendModes");
+  CHECKED(xrEnumerateEnvironmentBlendModes, xr_.handle(), xr_.system(), kViews, count, &count, modes.data());
   if (modes.empty()) throw Error("OpenXR: the runtime has no environment blend mode", ExitCode::NoDevice);
   const bool opaque = std::find(modes.begin(), modes.end(), XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end();
   blend_ = opaque ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
@@ -151,8 +147,7 @@ void Session::choose_blend_mode() {
 void Session::request_rate(double rate_hz) const {
   if (!xr_.has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
   // A rate that the display lacks is not an error, because the log records the actual rate.
-  xr_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB")(session_,
-                                                                                   static_cast<float>(rate_hz));
+  xr_.call("xrRequestDisplayRefreshRateFB", session_, static_cast<float>(rate_hz));
 }
 
 bool Session::pump() {
@@ -172,12 +167,12 @@ void Session::change(XrSessionState state) {
   if (state == XR_SESSION_STATE_READY) {
     auto info = blank<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
     info.primaryViewConfigurationType = kViews;
-    xr_.check(xr_.xr().xrBeginSession(session_, &info), "xrBeginSession");
+    CHECKED(xrBeginSession, session_, &info);
     running_ = true;
     request_rate(rate_hz_);
   } else if (state == XR_SESSION_STATE_STOPPING) {
     running_ = false;
-    xr_.check(xr_.xr().xrEndSession(session_), "xrEndSession");
+    CHECKED(xrEndSession, session_);
   } else if (state == XR_SESSION_STATE_EXITING || state == XR_SESSION_STATE_LOSS_PENDING) {
     running_ = false;
     over_ = true;
@@ -185,19 +180,19 @@ void Session::change(XrSessionState state) {
 }
 
 void Session::request_exit() {
-  if (running_) xr_.check(xr_.xr().xrRequestExitSession(session_), "xrRequestExitSession");
+  if (running_) CHECKED(xrRequestExitSession, session_);
 }
 
 XrFrameState Session::wait_frame() {
   auto state = blank<XrFrameState>(XR_TYPE_FRAME_STATE);
   const auto info = blank<XrFrameWaitInfo>(XR_TYPE_FRAME_WAIT_INFO);
-  xr_.check(xr_.xr().xrWaitFrame(session_, &info, &state), "xrWaitFrame");
+  CHECKED(xrWaitFrame, session_, &info, &state);
   return state;
 }
 
 void Session::begin_frame() {
   const auto info = blank<XrFrameBeginInfo>(XR_TYPE_FRAME_BEGIN_INFO);
-  xr_.check(xr_.xr().xrBeginFrame(session_, &info), "xrBeginFrame");
+  CHECKED(xrBeginFrame, session_, &info);
 }
 
 std::vector<XrView> Session::views(XrTime time) const {
@@ -208,9 +203,7 @@ std::vector<XrView> Session::views(XrTime time) const {
   auto state = blank<XrViewState>(XR_TYPE_VIEW_STATE);
   std::vector<XrView> views(eyes_.size(), blank<XrView>(XR_TYPE_VIEW));
   std::uint32_t count = 0;
-  xr_.check(
-      xr_.xr().xrLocateViews(session_, &info, &state, static_cast<std::uint32_t>(views.size()), &count, views.data()),
-      "xrLocateViews");
+  CHECKED(xrLocateViews, session_, &info, &state, static_cast<std::uint32_t>(views.size()), &count, views.data());
   constexpr XrViewStateFlags kKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
   if ((state.viewStateFlags & kKnown) != kKnown || count != views.size()) views.clear();
   return views;
@@ -238,26 +231,25 @@ void Session::end_frame(const XrFrameState& frame, const std::vector<XrView>& vi
   info.environmentBlendMode = blend_;
   info.layerCount = views.empty() ? 0 : 1;
   info.layers = &layer;
-  xr_.check(xr_.xr().xrEndFrame(session_, &info), "xrEndFrame");
+  CHECKED(xrEndFrame, session_, &info);
 }
 
 Hands::Hands(const Session& session) : session_(session) {
   const Instance& xr = session.instance();
   capsules_ = xr.has(XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME);
   locate_ = xr.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
-  const auto create = xr.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
   for (const Side side : {Side::Left, Side::Right}) {
     auto info = blank<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
     info.hand = side == Side::Left ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
     info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
-    xr.check(create(session.handle(), &info, &trackers_[static_cast<std::size_t>(side)]), "xrCreateHandTrackerEXT");
+    xr.check(xr.call("xrCreateHandTrackerEXT", session.handle(), &info, &trackers_[static_cast<std::size_t>(side)]),
+             "xrCreateHandTrackerEXT");
   }
 }
 
 Hands::~Hands() {
-  const auto destroy = session_.instance().function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
   for (const XrHandTrackerEXT t : trackers_)
-    if (t != XR_NULL_HANDLE) destroy(t);
+    if (t != XR_NULL_HANDLE) session_.instance().call("xrDestroyHandTrackerEXT", t);
 }
 
 std::optional<assets::RecordedHand> Hands::at(Side side, XrTime time) const {

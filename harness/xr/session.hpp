@@ -6,6 +6,7 @@
 
 #include "assets/hand_track.hpp"
 #include "clothbench/collider.hpp"
+#include "clothbench/record.hpp"
 #include "render/scene_renderer.hpp"
 #include "xr/instance.hpp"
 
@@ -36,6 +37,7 @@ class Session {
   bool pump();
   bool running() const { return running_; }
   void request_exit();
+  void create_space(const Vec3& origin_m);  ///< the scene's space, again if its origin changes
   XrFrameState wait_frame();
   void begin_frame();
   /// Shows the rendered images, or nothing if `views` is empty.
@@ -52,7 +54,6 @@ class Session {
 
  private:
   void create_session();
-  void create_space(const Vec3& origin_m);
   void create_eyes();
   void choose_blend_mode();
   void request_rate(double rate_hz) const;
@@ -88,6 +89,41 @@ class Hands {
   bool capsules_ = false;
   PFN_xrLocateHandJointsEXT locate_ = nullptr;
   std::array<XrHandTrackerEXT, 2> trackers_{};
+};
+
+/// Performance counters of the runtime: XR_ANDROID_performance_metrics, otherwise XR_META_performance_metrics.
+class Counters {
+ public:
+  explicit Counters(const Session&);  ///< switches them on; the session must run
+  void read();                        ///< for the next frame; NaN if the call fails or the value is not valid
+  /// Group "xr/counters" of a result file, one value per frame; no array if the runtime has no counters.
+  const StoredGroup& group() const { return group_; }
+
+ private:
+  const Session& session_;
+  const Metrics* kind_ = nullptr;
+  std::vector<XrPath> paths_;
+  StoredGroup group_{"xr/counters", {}, {}};
+};
+
+/// Search for the user's table by XR_EXT_spatial_plane_tracking: of the planes that face up and are labelled as tables,
+/// the one with the largest area / (1 m² + squared distance from `near_m`). If the runtime has no labels, planes 0.4 to
+/// 1.3 m above the lowest one that faces up count as tables, or the only one.
+class TableSearch {
+ public:
+  /// Throws Error with ExitCode::NoDevice if the runtime lacks an extension.
+  TableSearch(const Session&, const Vec3& near_m);
+  /// One step of the asynchronous search, once per frame. Null until a table is found, then a box as scene files have
+  /// them, 4 cm thick, in the scene's space.
+  nlohmann::json step(XrTime);
+
+ private:
+  nlohmann::json choose(const void* snapshot) const;
+
+  const Session& session_;
+  const Vec3 near_m_;
+  const void *future_ = nullptr, *context_ = nullptr;
+  std::vector<int> components_ = {kBounds, kAlignment, kLabel};
 };
 
 /// Renders both eyes into the session's images in one submission, without waiting; the next frame waits.

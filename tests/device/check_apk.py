@@ -22,6 +22,7 @@ aapt2, zipalign, apksigner = make_apk.find_tool("aapt2"), make_apk.find_tool("zi
 badging = must([aapt2, "dump", "badging", apk])
 for wanted in ["package: name='org.clothbench.quest'", "sdkVersion:'29'", "targetSdkVersion:'32'",
                "uses-permission: name='com.oculus.permission.HAND_TRACKING'", "uses-permission: name='android.permission.HAND_TRACKING'",
+               "uses-permission: name='com.oculus.permission.USE_SCENE'", "uses-permission: name='android.permission.SCENE_UNDERSTANDING_COARSE'",
                "launchable-activity: name='android.app.NativeActivity'", "uses-permission: name='android.permission.INTERNET'"]:
     assert wanted in badging, (wanted, badging)
 # aapt2 also takes a "lib/" in an asset's path for an ABI's folder.

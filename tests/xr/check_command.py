@@ -28,7 +28,7 @@ def run(*words, code=0, **environment):
 with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
     top = pathlib.Path(top)
     text = run("xr", "paper/capsule-sweep", "--frames", 30, "--set", "cloth.grid=[12,12]", "--validate", "--out", top / "live",
-               CLOTHBENCH_NULL_XR="stalls=20:0.02")
+               CLOTHBENCH_NULL_XR="stalls=20:0.02,META=1")
     assert "null headset on clothbench null runtime 1.0.0" in text, text
     assert "slowest 36.0" in text and "late frames        3.4 %" in text, text
     file = top / "live" / "capsule-sweep-live__xpbd__default.h5"
@@ -41,6 +41,8 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
         assert abs(f["summary"].attrs["xr_fps_worst"] - 36) < 1e-3
         assert f["colliders/0/capsules"].shape == (31, 19, 7)
         assert f["timing/trial_end_unix_s"][0] > f["timing/trial_start_unix_s"][0] > 1.6e9
+        busy = xr["counters/app_gpu_frametime"]
+        assert busy.attrs["units"] == "ms" and (numpy.diff(busy) == 0.5).all(), busy[:]
         live = xr["final_position_m"][:]
     run("run", top / "live/scenario/scenario.json", "--trials", 0, "--out", top / "replay")
     with h5py.File(next((top / "replay").glob("*.h5"))) as f:
@@ -50,6 +52,8 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
 
     told = json.loads(run("--json", "xr", "paper/capsule-sweep", "--frames", 5, "--set", "cloth.grid=[8,8]", "--out", top / "json"))
     assert told["summary"]["xr_frames"] == 5 and told["status"] == "ok", told
+    text = run("xr", "paper/desk-flat-low", "--table", "--frames", 3, "--out", top / "table", CLOTHBENCH_NULL_XR="planes=1,blind=1")
+    assert "on the user's table" in text, text
     text = run("xr", "paper/capsule-sweep", "--out", top / "none", code=3, XR_RUNTIME_JSON="/nowhere")
     assert "OpenXR" in text, text
     print("ok: as JSON, without a runtime")

@@ -185,6 +185,8 @@ TEST_F(Sessions, WithoutAnyExtensionButVulkanTheScriptIsShown) {
   EXPECT_EQ(r.log.rows().size(), 12u);
   EXPECT_EQ(reported_["rate_hz"], 90.0);
   EXPECT_GT(reported_["drawn"][0].get<double>(), 0.05);
+  EXPECT_EQ(reported_["counter_calls"], 0);
+  EXPECT_TRUE(r.counters.arrays.empty());
   const Scene saved = load_scene(r.scenario.string());
   EXPECT_EQ(saved.time.frame_rate_hz, 90) << "by the frames' predicted period";
   EXPECT_EQ(replayed(r, o), r.final_position_m);
@@ -218,6 +220,65 @@ TEST_F(Sessions, ARoomStaysThatOfTheScenario) {
   EXPECT_EQ(replayed(r, o), r.final_position_m);
 }
 
+class Counting : public Sessions, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Runtimes, Counting, testing::Values("ANDROID=1", "META=1", "ANDROID=1,META=1"));
+
+/// The null runtime's counters count frames; in four frames reading them fails.
+TEST_P(Counting, CountersOfTheRuntimeAreStored) {
+  const LoopResult r =
+      run(options("paper/gravity", 20), std::string("blind=1,planes=1,unmeasured=12:16,") + GetParam());
+  EXPECT_EQ(reported_["plane_calls"], 0) << "without --table";
+  EXPECT_EQ(reported_["counter_calls"], 2 + 20 * null_xr::kCounters.size()) << "one reading per frame";
+  ASSERT_EQ(r.counters.arrays.size(), null_xr::kCounters.size());
+  const double first = r.counters.arrays[1].values.at(0);
+  ASSERT_LT(first, 12);
+  for (std::size_t c = 0; c < null_xr::kCounters.size(); ++c) {
+    const auto& [path, units, unit, flags] = null_xr::kCounters[c];
+    const StoredArray& a = r.counters.arrays[c];
+    EXPECT_EQ(a.name, std::string(path).replace(std::string(path).find('/'), 1, "_"));
+    EXPECT_EQ(a.units, units) << a.name;
+    ASSERT_EQ(a.values.size(), 20u) << a.name;
+    for (double frame = first; frame < first + 20; ++frame) {
+      const double value = a.values[static_cast<std::size_t>(frame - first)];
+      EXPECT_TRUE(frame >= 12 && frame < 16 ? std::isnan(value) : value == ((flags & 4) != 0 ? frame / 2 : frame));
+    }
+  }
+}
+
+/// With labels and without, by its height. A cloth falls onto it as onto the scene's own table, which is gone.
+class OnATable : public Sessions, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Labels, OnATable, testing::Values("planes=1", "planes=1,labels=0"));
+
+TEST_P(OnATable, TheUsersReplacesTheScenes) {
+  LoopOptions o = options("paper/desk-corner-low", 30);
+  o.table = true;
+  o.overrides = {"cloth.grid=[12,12]", "cloth.pose.over_table.drop_m=0.2", "colliders.0.friction=0.7",
+                 "colliders.1={\"type\":\"hand_capsules\",\"track\":\"assets/right-hand-sweep.json\"}"};
+  const LoopResult r = run(o, std::string("blind=1,") + GetParam());
+  const Scene scene = load_scene(r.scenario.string());
+  ASSERT_EQ(scene.colliders.size(), 2u);
+  EXPECT_EQ(scene.motion.back().colliders.at(0).capsules.size(), 19u);
+  const Collider& box = scene.colliders[1];
+  const auto space = reported_["space"].get<Vec3>();
+  const auto& [pose, width_m, height_m, alignment, label, state] = null_xr::kSurroundings.back();
+  const null_xr::V up = turned(pose.q, {0, 0, 1}), along = turned(pose.q, {1, 0, 0}), top = pose.p + -0.02 * up;
+  const Vec3 half = {width_m / 2, height_m / 2, 0.02}, center = {top.x, top.y, top.z}, x = {along.x, along.y, along.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(box.half_extent_m[k], half[k], kFloat_m);
+    EXPECT_NEAR(box.axes[0][k], x[k], kFloat_m);
+    EXPECT_NEAR(box.center_m[k] + space[k], center[k], kFloat_m);
+  }
+  EXPECT_EQ(box.friction, 0.7);
+  const auto above = [&](const std::vector<double>& p) {
+    return render::Bounds::of(p).low[1] - box.center_m[1] - 0.02;
+  };
+  EXPECT_NEAR(above(initial_positions(scene)), 0.2, kFloat_m);
+  EXPECT_NEAR(above(r.final_position_m), 0.004, 0.002) << "it lies on the table";
+  const assets::HandRecording hand = recording_of(r.scenario.parent_path() / "right-hand.json");
+  EXPECT_NEAR(static_cast<double>(hand.frames[0].joints[0].position_m[1]) + space[1], -0.15, kFloat_m);
+  EXPECT_EQ(replayed(r, o), r.final_position_m);
+}
+
 TEST_F(Sessions, ACpuSolverIsUploaded) {
   const LoopOptions o = options("paper/gravity", 10, "ballistic");
   const LoopResult r = run(o, "look=10");
@@ -241,6 +302,12 @@ TEST_F(Sessions, WhatIsMissingIsSaid) {
   o.frames = 9000;
   o.timeout_s = 60;
   expect_error(o, ExitCode::BadInput, "1 to 8640");
+  o = options("paper/capsule-sweep", 10);
+  o.table = true;
+  expect_error(o, ExitCode::NoDevice, "XR_EXT_spatial_plane_tracking, which --table needs");
+  setenv("CLOTHBENCH_NULL_XR", "planes=2,blind=1", 1);
+  o.timeout_s = 4;
+  expect_error(o, ExitCode::CheckFailed, "no table was found");
   o = options("garments/sleeve", 10);
   o.overrides = {R"(cloth.mesh.file="none.obj")"};
   expect_error(o, ExitCode::BadInput, "/cloth/mesh/file");

@@ -7,6 +7,8 @@
 namespace null_xr {
 namespace {
 
+namespace cb = clothbench::xr;
+
 template <class T>
 XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t* count, T* out) {
   *count = static_cast<std::uint32_t>(items.size());
@@ -161,12 +163,48 @@ XrResult XRAPI_CALL request_rate(XrSession, float rate) {
   return XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB;
 }
 
+/// The kind of performance counters that is enabled: the first if both are.
+const cb::Metrics& metrics() { return cb::kMetrics[runtime()->enabled.contains(cb::kMetrics[0].extension) ? 0 : 1]; }
+
+XrResult XRAPI_CALL enumerate_counters(XrInstance, std::uint32_t capacity, std::uint32_t* count, XrPath* out) {
+  ++runtime()->counter_calls;
+  return list<XrPath>({1, 2, 3, 4, 5}, capacity, count, out);
+}
+
+XrResult XRAPI_CALL path_to_string(XrInstance, XrPath path, std::uint32_t, std::uint32_t* count, char* out) {
+  *count = static_cast<std::uint32_t>(
+      std::sprintf(out, "/perfmetrics_%s/%s", metrics().suffix, kCounters.at(path - 1).path) + 1);
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL set_metrics(XrSession, const cb::Block<0>* state) {
+  Runtime& r = *runtime();
+  ++r.counter_calls;
+  if (state->type != metrics().state || !r.running)
+    return r.fault("xrSetPerformanceMetricsState: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
+  r.measures = state->number == XR_TRUE;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL query_counter(XrSession, XrPath path, cb::MetricsCounter* out) {
+  Runtime& r = *runtime();
+  ++r.counter_calls;
+  if (out->type != metrics().counter || !r.measures)
+    return r.fault("xrQueryPerformanceMetricsCounter: asked wrongly", XR_ERROR_VALIDATION_FAILURE);
+  const Counter& c = kCounters.at(path - 1);
+  out->flags = c.flags;
+  out->unit = c.unit;
+  out->whole = static_cast<std::uint32_t>(r.frames);
+  out->real = 0.5f * static_cast<float>(r.frames);
+  return r.within("unmeasured") ? XR_ERROR_RUNTIME_FAILURE : XR_SUCCESS;  // its output is then undefined
+}
+
 XrResult XRAPI_CALL create_reference_space(XrSession, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
   Runtime& r = *runtime();
   if (info->referenceSpaceType != XR_REFERENCE_SPACE_TYPE_LOCAL)
     return r.fault("xrCreateReferenceSpace: another than LOCAL", XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
   *out = handle<XrSpace>(++r.handles);
-  r.spaces[r.handles] = from_xr(info->poseInReferenceSpace);
+  r.spaces[r.handles] = r.space = from_xr(info->poseInReferenceSpace);
   return XR_SUCCESS;
 }
 
@@ -174,6 +212,50 @@ XrResult XRAPI_CALL destroy_space(XrSpace s) {
   return runtime()->spaces.erase(number_of(s)) == 1
              ? XR_SUCCESS
              : runtime()->fault("xrDestroySpace: no such space", XR_ERROR_HANDLE_INVALID);
+}
+
+/// Begins to create a context or a snapshot of planes.
+XrResult XRAPI_CALL search_planes(void*, const cb::Block<0>* info, const void** future) {
+  Runtime& r = *runtime();
+  ++r.plane_calls;
+  const bool context = info->type == XrStructureType(1000740001);
+  const auto& wanted = context ? **static_cast<const cb::Block<0>* const*>(info->data) : *info;
+  const bool with_labels = (context ? static_cast<int>(wanted.count) : wanted.number) > 2;
+  if (with_labels && r.number("labels", 1) == 0) return cb::kComponentUnsupported;
+  r.planes_ready = r.frames + 3;
+  *future = &r;
+  return XR_SUCCESS;
+}
+
+/// Completes it; `info` is the future or a structure.
+XrResult XRAPI_CALL complete_planes(void*, const cb::SnapshotCompletionInfo* info, cb::Block<0>* done) {
+  Runtime& r = *runtime();
+  if (r.frames < r.planes_ready) return cb::kFuturePending;
+  if (done->type == XrStructureType(1000740005)) r.base = r.spaces.at(number_of(info->base));
+  ++r.plane_handles;
+  done->data = &r;
+  return XR_SUCCESS;
+}
+
+XrResult XRAPI_CALL destroy_planes(void*) { return --runtime()->plane_handles, XR_SUCCESS; }
+
+XrResult XRAPI_CALL query_planes(void*, const cb::Block<0>*, cb::QueryResult* out) {
+  const Runtime& r = *runtime();
+  out->id_count = r.number("planes", 0) == 2 ? 3 : 4;
+  for (std::size_t k = 0; k < out->id_count; ++k) {
+    const auto& [pose, width_m, height_m, alignment, label, state] = kSurroundings.at(k);
+    const XrExtent2Df size{static_cast<float>(width_m), static_cast<float>(height_m)};
+    out->states[k] = state;
+    for (auto* list = static_cast<const cb::Block<0>*>(out->next); list != nullptr;
+         list = static_cast<const cb::Block<0>*>(list->next)) {
+      auto* data = const_cast<void*>(list->data);
+      if (list->type == XrStructureType(1000740009))
+        static_cast<cb::Bounds2D*>(data)[k] = {as_xr(inverse(r.base) * pose), size};
+      else
+        static_cast<int*>(data)[k] = list->type == XrStructureType(1000741001) ? alignment : label;
+    }
+  }
+  return XR_SUCCESS;
 }
 
 XrResult XRAPI_CALL create_tracker(XrSession, const XrHandTrackerCreateInfoEXT* info, XrHandTrackerEXT* out) {
@@ -186,12 +268,7 @@ XrResult XRAPI_CALL destroy_tracker(XrHandTrackerEXT) {
   return XR_SUCCESS;
 }
 
-bool seen(const Runtime& r) {
-  const auto found = r.options.find("unseen");
-  if (found == r.options.end()) return true;
-  return !(r.frames >= std::stoi(found->second) &&
-           r.frames < std::stoi(found->second.substr(found->second.find(':') + 1)));
-}
+bool seen(const Runtime& r) { return !r.within("unseen"); }
 
 XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLocateInfoEXT* info,
                                   XrHandJointLocationsEXT* out) {
@@ -225,6 +302,7 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
+  if (runtime() == nullptr) return nullptr;
   NULL_XR("xrEnumerateEnvironmentBlendModes", blend_modes)
   NULL_XR("xrEnumerateViewConfigurationViews", configuration_views)
   NULL_XR("xrBeginSession", begin_session)
@@ -235,6 +313,17 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
   NULL_XR("xrEndFrame", end_frame)
   NULL_XR("xrLocateViews", locate_views)
   NULL_XR("xrRequestDisplayRefreshRateFB", request_rate)
+  NULL_XR("xrPathToString", path_to_string)
+  NULL_XR("xrCreateSpatialContextAsyncEXT", search_planes)
+  NULL_XR("xrCreateSpatialContextCompleteEXT", complete_planes)
+  NULL_XR("xrCreateSpatialDiscoverySnapshotAsyncEXT", search_planes)
+  NULL_XR("xrCreateSpatialDiscoverySnapshotCompleteEXT", complete_planes)
+  NULL_XR("xrDestroySpatialContextEXT", destroy_planes)
+  NULL_XR("xrDestroySpatialSnapshotEXT", destroy_planes)
+  NULL_XR("xrQuerySpatialComponentDataEXT", query_planes)
+  NULL_XR(std::string("xrEnumeratePerformanceMetricsCounterPaths") + metrics().suffix, enumerate_counters)
+  NULL_XR(std::string("xrSetPerformanceMetricsState") + metrics().suffix, set_metrics)
+  NULL_XR(std::string("xrQueryPerformanceMetricsCounter") + metrics().suffix, query_counter)
   NULL_XR("xrCreateReferenceSpace", create_reference_space)
   NULL_XR("xrDestroySpace", destroy_space)
   NULL_XR("xrCreateHandTrackerEXT", create_tracker)

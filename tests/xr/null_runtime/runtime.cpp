@@ -35,11 +35,19 @@ std::unique_ptr<Runtime>& held() {
 
 struct Offer {
   const char *extension, *key;
+  double unless_told = 1;
 };
+bool offers(const Runtime& r, const Offer& o) { return r.number(o.key, o.unless_told) != 0; }
+
 constexpr Offer kOffers[] = {{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "vulkan"},
                              {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, "rate"},
                              {XR_EXT_HAND_TRACKING_EXTENSION_NAME, "hands"},
                              {XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME, "capsules"},
+                             {cb::kMetrics[0].extension, "ANDROID", 0},
+                             {cb::kMetrics[1].extension, "META", 0},
+                             {cb::kPlanes[0], "planes", 0},
+                             {cb::kPlanes[1], "planes", 0},
+                             {cb::kPlanes[2], "planes", 0},
                              {"XR_KHR_android_create_instance", "android"}};
 
 XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capacity, std::uint32_t* count,
@@ -48,7 +56,7 @@ XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capaci
   const Runtime options;  // an instance need not be there
   std::vector<const char*> names;
   for (const Offer& o : kOffers)
-    if (options.offers(o.key)) names.push_back(o.extension);
+    if (offers(options, o)) names.push_back(o.extension);
   *count = static_cast<std::uint32_t>(names.size());
   if (capacity == 0) return XR_SUCCESS;
   if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
@@ -65,8 +73,9 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance
   for (std::uint32_t k = 0; k < info->enabledExtensionCount; ++k) {
     bool known = false;
     for (const Offer& o : kOffers)
-      known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && made->offers(o.key));
+      known = known || (std::strcmp(o.extension, info->enabledExtensionNames[k]) == 0 && offers(*made, o));
     if (!known) return XR_ERROR_EXTENSION_NOT_PRESENT;
+    made->enabled.insert(info->enabledExtensionNames[k]);
   }
   // The activity's data that XR_KHR_android_create_instance requires.
   const auto* android = static_cast<const cb::AndroidInfo*>(info->next);
@@ -84,11 +93,14 @@ XrResult XRAPI_CALL destroy_instance(XrInstance) {
   if (r.session) r.faults.push_back("the instance is destroyed before the session");
   if (!r.spaces.empty()) r.faults.push_back("spaces are left");
   if (!r.swapchains.empty()) r.faults.push_back("swapchains are left");
+  if (r.plane_handles != 0) r.faults.push_back("spatial contexts or snapshots are left");
   if (r.trackers != 0) r.faults.push_back("hand trackers are left");
   const auto log = r.options.find("log");
   if (log != r.options.end()) {
-    const nlohmann::json j = {{"frames", r.ended}, {"rate_hz", r.rate_hz}, {"projection_frames", r.projection_frames},
-                              {"drawn", r.drawn},  {"android", r.android}, {"faults", r.faults}};
+    nlohmann::json j = {{"frames", r.ended}, {"rate_hz", r.rate_hz}, {"projection_frames", r.projection_frames},
+                        {"drawn", r.drawn},  {"android", r.android}, {"faults", r.faults}};
+    j.update({{"counter_calls", r.counter_calls}, {"plane_calls", r.plane_calls}});
+    j["space"] = {r.space.p.x, r.space.p.y, r.space.p.z};
     std::ofstream(log->second) << j.dump(1) << "\n";
   }
   held() = nullptr;
@@ -163,6 +175,12 @@ Runtime::Runtime() {
 double Runtime::number(const std::string& key, double otherwise) const {
   const auto found = options.find(key);
   return found == options.end() ? otherwise : std::strtod(found->second.c_str(), nullptr);
+}
+
+bool Runtime::within(const std::string& key) const {
+  const auto found = options.find(key);
+  return found != options.end() && frames >= std::stoi(found->second) &&
+         frames < std::stoi(found->second.substr(found->second.find(':') + 1));
 }
 
 void Runtime::go(XrSessionState to) {

@@ -3,6 +3,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,10 @@
 ///   stalls=20:0.02;40:0.03   after 20 (40) frames the application counts as 0.02 s (0.03 s) late
 ///   multiple=200   from the sixth frame on, reports that multiple of the display's period, as after slow frames
 ///   hands|capsules|rate=0   omits an extension
+///   ANDROID|META=1   offers performance counters, by XR_ANDROID_… or XR_META_performance_metrics
+///   planes=1   offers planes, after some frames; planes=2: without the table; labels=0: without labels
 ///   unseen=10:20   hands are not tracked from the 10th frame up to the 20th
+///   unmeasured=10:20   reading a counter fails in these frames
 ///   blind=1        requests no images, which take lavapipe most of the time
 ///   quit=30        the user takes off the headset at that frame
 ///   look=25        the images of that frame are read and checked
@@ -33,7 +37,8 @@ struct Runtime {
   Runtime();
   std::map<std::string, std::string> options;
   double number(const std::string& key, double otherwise) const;
-  bool offers(const std::string& key) const { return number(key, 1) != 0; }
+  /// Whether this frame is in the span of frames that the option `key` has, such as 10:20.
+  bool within(const std::string& key) const;
 
   std::vector<std::string> faults;
   XrResult fault(const std::string& what, XrResult result) {
@@ -63,6 +68,10 @@ struct Runtime {
   int projection_frames = 0;
   std::array<double, 2> drawn{-1, -1};
   bool android = false;
+  std::set<std::string> enabled;  ///< extensions
+  bool measures = false;
+  int counter_calls = 0, plane_calls = 0, plane_handles = 0, planes_ready = 0;
+  Pose base, space;  ///< of planes; the last space that was created
 
   std::map<std::uint64_t, Pose> spaces;  ///< in LOCAL
   std::map<std::uint64_t, std::unique_ptr<Swapchain>> swapchains;

@@ -70,4 +70,28 @@ inline std::array<std::array<int, 2>, 19> capsule_joints() {
   return c;
 }
 
+/// The user's surroundings in LOCAL: floor, wall, a table that is no longer tracked, and a table.
+struct Plane {
+  Pose pose;
+  double width_m, height_m;
+  int alignment, label, state;
+};
+inline const Q kLevel = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, kTurned = Q{0, 0.6, 0, 0.8} * kLevel;
+inline const std::array<Plane, 4> kSurroundings = {{{{kLevel, {0, -1.2, 0}}, 5, 4, 0, 2, 3},
+                                                    {{{}, {0, 0, -2}}, 5, 2.4, 2, 3, 3},
+                                                    {{kLevel, {0, -0.6, 0}}, 3, 3, 0, 5, 2},
+                                                    {{kTurned, {0.4, -0.5, -0.8}}, 1.2, 0.8, 0, 5, 3}}};
+
+/// A performance counter: it reads as the frame's number, as half of it if it is not whole.
+struct Counter {
+  const char *path, *units;
+  unsigned unit;   ///< XrPerformanceMetricsCounterUnitMETA
+  unsigned flags;  ///< 1: any value; 2: a whole value; 4: a real value
+};
+inline constexpr std::array<Counter, 5> kCounters = {{{"app/gpu_frametime", "ms", 2, 5},
+                                                      {"compositor/dropped_frame_count", "1", 0, 3},
+                                                      {"device/cpu_utilization", "%", 1, 5},
+                                                      {"device/gpu_frequency", "Hz", 4, 3},
+                                                      {"device/memory", "B", 3, 7}}};
+
 }  // namespace null_xr
