@@ -154,8 +154,8 @@ class Painter {
   double device_s_;
 };
 
-/// View matrix of an eye in metres relative to `origin_m`, and projection matrix of its field of view to Vulkan's clip
-/// space (y down, depth 0 at near_m to 1 at far_m).
+/// View matrix of an eye, for positions in metres relative to `origin_m`; and the projection of its field of view into
+/// Vulkan's clip space (y down, depth 0 at near_m to 1 at far_m).
 render::Mat4 view_of(const XrPosef&, const Vec3& origin_m);
 render::Mat4 projection_of(const XrFovf&, double near_m, double far_m);
 
