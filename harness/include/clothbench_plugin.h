@@ -7,7 +7,7 @@
  * valid until `destroy`, those in a frame or a restart until the call returns, texts and arrays that the plugin returns
  * until its next call. Calls come from one thread at a time. No exception or longjmp may cross them.
  *
- * Version 1. CLOTHBENCH_PLUGIN_HEADER states it with the sizes of the structs. A library whose version or sizes differ
+ * Version 2. CLOTHBENCH_PLUGIN_HEADER states it with the sizes of the structs. A library whose version or sizes differ
  * was built with another header and is refused. See solvers/plugin/README.md; solvers/plugin/example is a complete
  * solver.
  *
@@ -22,7 +22,7 @@
 extern "C" {
 #endif
 
-#define CLOTHBENCH_PLUGIN_VERSION 1u
+#define CLOTHBENCH_PLUGIN_VERSION 2u
 
 #if defined(__GNUC__)
 #define CLOTHBENCH_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -196,6 +196,12 @@ typedef struct ClothbenchStage {
   double read_B, write_B; /* bytes per frame that its shaders load and store, NAN if not known */
 } ClothbenchStage;
 
+/* A number that a solver counts in each frame, such as contacts, dropped contacts or iterations. */
+typedef struct ClothbenchCount {
+  const char *name, *doc; /* small letters, digits, _ ; one line */
+  double value;           /* of the last frame; 0 before the first */
+} ClothbenchCount;
+
 typedef struct ClothbenchPlugin {
   /* CLOTHBENCH_PLUGIN_HEADER fills these. */
   uint32_t version, plugin_size, scene_size, frame_size, edge_size, collider_size, pose_size, setting_size, stage_size;
@@ -245,6 +251,10 @@ typedef struct ClothbenchPlugin {
   /* Engine from elsewhere that the solver wraps, in its authors' spelling: "NvCloth". A report puts the solver beside
    * published results of the same engine. NULL: none. */
   const char* engine;
+
+  /* Counts of the last frame: after every frame of a scene as many, in the same order. Each is stored as a series
+   * `solver_<name>`. */
+  const ClothbenchCount* (*counts)(void*, uint32_t* count);
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                                 \
