@@ -196,6 +196,12 @@ typedef struct ClothbenchStage {
   double read_B, write_B; /* bytes per frame that its shaders load and store, NAN if not known */
 } ClothbenchStage;
 
+/* A number that a solver counts in each frame, such as contacts, dropped contacts or iterations. */
+typedef struct ClothbenchCount {
+  const char *name, *doc; /* small letters, digits, _ ; one line */
+  double value;           /* of the last frame; 0 before the first */
+} ClothbenchCount;
+
 typedef struct ClothbenchPlugin {
   /* CLOTHBENCH_PLUGIN_HEADER fills these. */
   uint32_t version, plugin_size, scene_size, frame_size, edge_size, collider_size, pose_size, setting_size, stage_size;
@@ -245,6 +251,10 @@ typedef struct ClothbenchPlugin {
   /* Third-party engine that the solver wraps, in its authors' spelling: "NvCloth". A report compares the solver with
    * published results of the same engine. NULL: none. */
   const char* engine;
+
+  /* Counts of the last frame: after every frame of a scene as many, in the same order. Each is stored as a series
+   * `solver_<name>`. */
+  const ClothbenchCount* (*counts)(void*, uint32_t* count);
 } ClothbenchPlugin;
 
 #define CLOTHBENCH_PLUGIN_HEADER                                                                                 \

@@ -119,6 +119,8 @@ class Conformer {
     if (std::isfinite(cost.device_s) != info_.on_gpu)
       fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
                          : "device time: given, though the solver runs on the CPU");
+    for (const SolverCount& c : solver_.counts())
+      if (!std::isfinite(c.count)) fault(fmt::format("count {}: not finite", c.name));
   }
 
   void check_reset() {

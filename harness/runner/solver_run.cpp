@@ -47,7 +47,13 @@ nlohmann::json plan_json(const Plan& plan, const Scene& scene) {
 /// Appends the solver's counts after a frame, one series per count. Returns the reason if a count is an error.
 std::string add_counts(const ClothSolver& solver, std::size_t frames, std::vector<MetricSeries>& series) {
   std::string fault;
-  const std::vector<SolverCount> counts = solver.counts();
+  std::vector<SolverCount> counts;
+  try {
+    counts = solver.counts();
+  } catch (const SolverError& e) {
+    for (MetricSeries& s : series) s.values.push_back(kMissing);
+    return e.what();
+  }
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const SolverCount& c = counts[k];
     if (series.size() <= k) series.push_back({c.name, "1", c.long_name, std::vector<double>(frames - 1, kMissing)});

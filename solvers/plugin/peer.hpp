@@ -111,7 +111,8 @@ inline std::vector<Point> vertex_normals(const ClothbenchCollider& c, const doub
 constexpr std::uint32_t kColliders = CLOTHBENCH_SPHERE | CLOTHBENCH_BOX | CLOTHBENCH_PLANE | CLOTHBENCH_CAPSULES |
                                      CLOTHBENCH_STATIC_MESH | CLOTHBENCH_MOVING_MESH;
 
-/// All features except self-collision and a duplicated layer. An engine's function `obstacle` refuses more scenes.
+/// All features except self-collision and a duplicated layer, unless an adapter declares its own `kSupports`. An
+/// engine's function `obstacle` refuses more scenes.
 constexpr std::uint32_t kSupports = CLOTHBENCH_STRETCH | CLOTHBENCH_SHEAR | CLOTHBENCH_BEND | CLOTHBENCH_DAMPING |
                                     CLOTHBENCH_PINS | CLOTHBENCH_MOVING_PINS | kColliders | CLOTHBENCH_FRICTION |
                                     CLOTHBENCH_DOUBLE_SIDED | CLOTHBENCH_UNEVEN_GRID | CLOTHBENCH_REGIONS |
@@ -122,12 +123,13 @@ inline double margin(double setting_m, const ClothbenchCollider& c) { return set
 
 /// Base of an adapter's solver.
 struct Adapter {
-  Adapter(const char* step, const ClothbenchScene& s)
-      : scene(s), origin(centre(s)), stage{step, s.needs & kSupports, 0, std::nan(""), std::nan("")} {}
+  Adapter(const char* step, const ClothbenchScene& s, std::uint32_t supports = kSupports)
+      : scene(s), origin(centre(s)), stage{step, s.needs & supports, 0, std::nan(""), std::nan("")} {}
 
   const ClothbenchScene& scene;
   Point origin;           ///< origin of the engine's coordinates [m]
   ClothbenchStage stage;  ///< only one, because an engine's step cannot be divided from outside
+  std::vector<ClothbenchCount> counts;
 };
 
 /// The scene's start as a restart before frame 0.
@@ -155,8 +157,9 @@ inline const char* kept(const std::string& text) {
 
 /// Description of an adapter.
 struct About {
-  const char *name, *engine, *summary, *version;
+  const char *name, *engine, *precision, *summary, *version;
   double (*free_fall_m)(const double*, double, double, double, double, std::int32_t);
+  std::uint32_t supports = kSupports;
 };
 
 /// Makes the C interface of an adapter from three parts: `Settings`, made from an array of values in the order of
@@ -170,9 +173,9 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
   p.engine = about.engine;
   p.summary = about.summary;
   p.solver_version = about.version;
-  p.precision = "float32";
+  p.precision = about.precision;
   p.time_order = 1;
-  p.supports = kSupports;
+  p.supports = about.supports;
   p.setting_count = kCount;
   p.settings = settings;
   p.free_fall_m = about.free_fall_m;
@@ -191,6 +194,11 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
     *count = 1;
     return &static_cast<Solver*>(self)->stage;
   };
+  p.counts = [](void* self, std::uint32_t* count) -> const ClothbenchCount* {
+    const std::vector<ClothbenchCount>& all = static_cast<Solver*>(self)->counts;
+    *count = static_cast<std::uint32_t>(all.size());
+    return all.data();
+  };
   p.restart = [](void* self, const ClothbenchRestart* at) -> std::int32_t {
     auto* solver = static_cast<Solver*>(self);
     solver->restart(at->index < 0 ? start_of(solver->scene) : *at);
@@ -208,10 +216,11 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
 
 }  // namespace clothbench::peer
 
-/// Defines the library's function for the adapter in `space`, which has Solver, Settings, kSettings and free_fall_m.
-#define CLOTHBENCH_PEER(space, name, engine, summary)                                                \
-  extern "C" const ClothbenchPlugin* clothbench_plugin(void) {                                       \
-    static const ClothbenchPlugin plugin = clothbench::peer::plugin<space::Solver, space::Settings>( \
-        {name, engine, summary, "1", space::free_fall_m}, space::kSettings);                         \
-    return &plugin;                                                                                  \
+/// Defines the library's function for the adapter in `space`, which has Solver, Settings, kSettings, free_fall_m and
+/// kSupports.
+#define CLOTHBENCH_PEER(space, name, engine, precision, summary)                                          \
+  extern "C" const ClothbenchPlugin* clothbench_plugin(void) {                                            \
+    static const ClothbenchPlugin plugin = clothbench::peer::plugin<space::Solver, space::Settings>(      \
+        {name, engine, precision, summary, "1", space::free_fall_m, space::kSupports}, space::kSettings); \
+    return &plugin;                                                                                       \
   }

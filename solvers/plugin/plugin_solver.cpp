@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -44,6 +45,8 @@ class PluginSolver final : public ClothSolver {
     if (self_ == nullptr) fault("create", why != nullptr ? why : "the plugin made no solver and gave no reason");
     device_ = described_device();
     plan_ = described_plan();
+    count_names_.clear();
+    for (const SolverCount& c : described_counts()) count_names_.push_back(c.name);
   }
 
   void reset() override {
@@ -78,6 +81,14 @@ class PluginSolver final : public ClothSolver {
   }
 
   Plan plan() const override { return plan_; }
+
+  std::vector<SolverCount> counts() const override {
+    std::vector<SolverCount> out = described_counts();
+    if (!std::equal(out.begin(), out.end(), count_names_.begin(), count_names_.end(),
+                    [](const SolverCount& c, const std::string& name) { return c.name == name; }))
+      fault("counts", "expected the same names after every frame");
+    return out;
+  }
 
  private:
   void drop() {
@@ -115,6 +126,20 @@ class PluginSolver final : public ClothSolver {
     return out;
   }
 
+  std::vector<SolverCount> described_counts() const {
+    std::uint32_t count = 0;
+    const ClothbenchCount* all = c_.counts != nullptr ? c_.counts(self_, &count) : nullptr;
+    std::vector<SolverCount> out;
+    for (std::uint32_t k = 0; all != nullptr && k < count; ++k) {
+      const std::string name = all[k].name != nullptr ? all[k].name : "", doc = all[k].doc != nullptr ? all[k].doc : "";
+      if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+        fault("counts", "expected a name of small letters, digits, _; found \"" + name + "\"");
+      if (doc.empty() || !std::isfinite(all[k].value)) fault("counts", name + ": expected a text and a finite value");
+      out.push_back({"solver_" + name, doc, all[k].value});
+    }
+    return out;
+  }
+
   const ClothbenchPlugin& c_;
   const SolverInfo info_;
   const std::vector<double> settings_;
@@ -122,6 +147,7 @@ class PluginSolver final : public ClothSolver {
   void* self_ = nullptr;  ///< this and the next members are valid after a scene is loaded
   DeviceInfo device_ = {"CPU", "", "plugin", false, "{}"};
   Plan plan_;
+  std::vector<std::string> count_names_;
 };
 
 }  // namespace

@@ -59,6 +59,14 @@ class Interface(PluginTest):
             self.assertNotIn("frame_cpu_s", f["timing"], "a solver on a GPU")
             self.assertTrue((f["timing/frame_device_s"][...] == 1e-4).all())
 
+    def test_its_counts_are_series(self):
+        self.run_on("paper/gravity", *SMALL, trials=0)
+        with self.stored("gravity__full__default") as f:
+            steps = f["metrics/solver_steps"]
+            self.assertEqual(list(steps[...]), list(range(len(f["metrics/time_s"]))))
+            self.assertEqual(steps.attrs["long_name"], "steps so far")
+            self.assertFalse(f["metrics/solver_never"][...].any())
+
     def test_a_scene_that_it_cannot_run_is_unsupported_because_it_says_so(self):
         self.run_on("paper/gravity", "--set", "cloth.grid=[13,8]", "--set", "cloth.sides=single")
         with self.stored("gravity__full__default") as f:
@@ -85,6 +93,10 @@ class Interface(PluginTest):
         self.assertIn(self.command("conformance", self.library(), "--scene", "conformance/sheet", "--no-whole"), (0, 1), self.text)
         self.assertRegex(self.noted(), r"restart index=[1-9]\d* time=0\.[0-9]+")
 
+    def test_conformance_checks_counts(self):
+        self.command("conformance", self.library(), "--scene", "conformance/sheet", "--no-whole", FAULT="count_missing")
+        self.assertIn("counts: expected the same names after every frame", self.text)
+
     def test_another_size_is_refused(self):
         self.assertEqual(self.command("run", "paper/gravity", "--solver", self.library("full_TOO_SMALL"), "--out", self.out), 2, self.text)
         self.assertIn("its ClothbenchPlugin has", self.text)
@@ -95,6 +107,9 @@ class Interface(PluginTest):
             ("driver", "device_info: driver: expected a text"),
             ("properties", "device_info: properties_json: expected a JSON object; found [3]"),
             ("device_time", "device_s: expected a time of 0 s or more, or NAN; found -1"),
+            ("count_name", 'counts: expected a name of small letters, digits, _; found "Steps"'),
+            ("count_value", "counts: never: expected a text and a finite value"),
+            ("count_missing", "counts: expected the same names after every frame"),
         ):
             shutil.rmtree(self.out, ignore_errors=True)
             with self.subTest(fault=fault):

@@ -1,6 +1,7 @@
 /* A plugin that uses the whole interface and checks its input: wrong input fails `create` or a step. Its cloth moves on
  * uniformly, without forces. $FAULT selects one of its own values to be wrong (unsupported, driver, properties,
- * device_time), or makes it refuse a scene (refuse). $LOG: a file for the calls that a test counts. */
+ * device_time, count_name, count_value, count_missing), or makes it refuse a scene (refuse). $LOG: a file for the calls
+ * that a test counts. */
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -160,6 +161,14 @@ static void device_info(void* self, ClothbenchDevice* out) {
 
 static double device_s(void* self) { return (void)self, fault("device_time") ? -1 : 1e-4; }
 
+static const ClothbenchCount* counts(void* self, uint32_t* count) {
+  static ClothbenchCount all[2];
+  const int32_t frame = ((Solver*)self)->frame;
+  all[0] = (ClothbenchCount){fault("count_name") ? "Steps" : "steps", "steps so far", frame + 1};
+  all[1] = (ClothbenchCount){"never", "what never happens", fault("count_value") ? NAN : 0};
+  return *count = fault("count_missing") && frame > 1 ? 1 : 2, all;
+}
+
 CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
   static ClothbenchPlugin plugin = {CLOTHBENCH_PLUGIN_HEADER, .name = "full", .summary = "uses the whole interface"};
   plugin.solver_version = "4", plugin.precision = "float64", plugin.time_order = 1;
@@ -169,7 +178,7 @@ CLOTHBENCH_PLUGIN_EXPORT const ClothbenchPlugin* clothbench_plugin(void) {
   plugin.unsupported = unsupported, plugin.restart = restart;
   plugin.device_info = device_info,
   plugin.device_s = device_s;
-  plugin.engine = "Engine";
+  plugin.engine = "Engine", plugin.counts = counts;
 #ifdef FAULT_TOO_SMALL
   plugin.plugin_size = offsetof(ClothbenchPlugin, engine);
 #endif

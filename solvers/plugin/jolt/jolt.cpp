@@ -27,7 +27,7 @@
 namespace clothbench::jolt {
 namespace {
 
-using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::Point;
+using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::kSupports, peer::Point;
 using Shared = JPH::SoftBodySharedSettings;
 
 constexpr JPH::ObjectLayer kCloth = 0, kObstacle = 1;
@@ -333,4 +333,4 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::jolt
 
-CLOTHBENCH_PEER(clothbench::jolt, "jolt", "Jolt Physics", "Jolt Physics' soft bodies on one CPU core")
+CLOTHBENCH_PEER(clothbench::jolt, "jolt", "Jolt Physics", "float32", "Jolt Physics' soft bodies on one CPU core")

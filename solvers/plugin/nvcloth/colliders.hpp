@@ -7,7 +7,7 @@
 
 namespace clothbench::nvcloth {
 
-using peer::Point, physx::PxVec3, physx::PxVec4;
+using peer::kSupports, peer::Point, physx::PxVec3, physx::PxVec4;
 
 /// Lengths are in centimetres here, because the engine's epsilons are absolute (1.2e-7 on squared lengths): in metres
 /// the cloth stretches two to three times more.

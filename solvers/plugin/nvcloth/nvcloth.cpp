@@ -295,4 +295,5 @@ const ClothbenchSetting kSettings[] = {
 }  // namespace
 }  // namespace clothbench::nvcloth
 
-CLOTHBENCH_PEER(clothbench::nvcloth, "nvcloth", "NvCloth", "NvCloth 1.1.6 on one CPU core (SSE2), lengths in cm")
+CLOTHBENCH_PEER(clothbench::nvcloth, "nvcloth", "NvCloth", "float32",
+                "NvCloth 1.1.6 on one CPU core (SSE2), lengths in cm")
