@@ -227,7 +227,8 @@ double PowerMeter::seconds() const {
 }
 
 double PowerMeter::mean_gpu_W() const {
-  return (nvidia_state(gpu_uuid_).value("energy_J", kMissing) - gpu_start_J_) / seconds();
+  const double used_J = nvidia_state(gpu_uuid_).value("energy_J", kMissing) - gpu_start_J_;
+  return used_J / seconds();
 }
 
 double PowerMeter::mean_W() const {
