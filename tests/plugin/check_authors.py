@@ -35,7 +35,7 @@ class Authors(PluginTest):
         report = os.path.join(self.home, "report")
         self.assertEqual(self.command("report", self.out, "-o", report), 0, self.text)
         words = pathlib.Path(report, "report.md").read_text(encoding="utf-8")  # the page has the same notes
-        self.assertIn(" is a plugin, version 1", words)
+        self.assertIn(" is a plugin, version 2", words)
         self.assertIn(plugin["sha256"][:16], words)
 
     def test_a_misspelt_solver_of_a_study_is_an_error(self):
