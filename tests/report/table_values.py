@@ -205,8 +205,8 @@ def compare_rows(runs):
         s, grid = r.scenario, r.scenario["cloth"].get("grid", [0, 0])
         told = {"status": r.status, "verdict": r.verdict(), "sides": s["cloth"].get("sides"), "cpu": r.environment.get("gpu") == "CPU", "message": r.outcome["message"], "trials": r.value("trials"), "width": math.sqrt(grid[0] * grid[1]),
                 "resolution": f"{grid[0]}²" if grid[0] == grid[1] else f"{grid[0]}×{grid[1]}", "paper_table": s.get("paper", {}).get("table", 0), "grade": r.grade if "stability" in s else None, "wall_ms_per_s": r.wall_ms, "device_ms_per_s": r.device_ms,
-                "error": r.error, "space_error": fact(r, "truth_space_error"), "reference_uncertainty": fact(r, "reference_uncertainty"), "case": "stability" in s and KEYS["case"](r, None), "speed": s.get("drawn", {}).get("speed_m_per_s", r.value("imposed_speed_m_per_s")),
-                "kind": s["drawn"]["kind"] if "drawn" in s else ", ".join(sorted({c["type"] for c in s.get("colliders", [])} | ({f"{len(s['grips'])} grips"} if s.get("grips") else set())))}
+                "error": r.error, "space_error": fact(r, "truth_space_error"), "reference_uncertainty": fact(r, "reference_uncertainty"), "case": "stability" in s and KEYS["case"](r, None), "speed": s.get("drawn", {}).get("speed_m_per_s"),
+                "kind": s.get("drawn", {}).get("kind")}
         for name, v in ((n, v) for n, v in r.row.items() if n not in left_out):
             t = r.time.get({"wall": "wall", "gpu_time": "GPU", "contact_wall": "wall, with contact", "contact_gpu_time": "GPU, with contact"}.get(name))
             shown, wanted = ([v[0], *v[3:]], [quantile(t, q) for q in (0.5, 0.95, 0.99, 1)]) if t is not None else ([v], [told[name] if name in told else r.value(name)])

@@ -104,7 +104,7 @@ async function check_places(id, fields) {
 /// Every figure shows as many marks as it has values, for every choice; its table has the stored values.
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
-  equal(ids, ['error-time', 'rates', 'verdicts', 'forest', 'stability', 'frame-times'], 'figures');
+  equal(ids, ['error-time', 'rates', 'verdicts', 'forest', 'failure-speed', 'stability', 'frame-times'], 'figures');
   equal(await page.$$eval('.pair > div > .table h3', list => list.map(e => e.firstChild.textContent)), ['Leading scenes with contact', 'Table 3: speed and error'], 'tables of the first screen');
   const figure = id => page.evaluateHandle(i => window.clothbench.figures.find(x => x.entry.id === i), id);
   for (const id of ids) {
@@ -222,6 +222,8 @@ async function check_without_script() {
   const plain = await opened(page_file, p => p.setJavaScriptEnabled(false));
   const counts = await plain.evaluate(() => ['.tile', '#first-table tr', '#hero svg'].map(e => document.querySelectorAll(e).length));
   check(counts[0] > 0 && counts[1] > 2 && counts[2] === 1, `without JavaScript: ${counts[0]} tiles, ${counts[1]} rows, ${counts[2]} figure`);
+  const [figure, page_width] = await plain.evaluate(() => [document.querySelector('#hero svg').getBoundingClientRect().width, document.documentElement.scrollWidth - innerWidth]);
+  check(figure > 400 && page_width <= 0, `without JavaScript: a figure ${figure} wide, ${page_width} beyond the window`);
   await plain.close();
 }
 

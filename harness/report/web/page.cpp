@@ -39,15 +39,6 @@ void add_times(const Row& r, json& out) {
         out[name].push_back(rounded(s));
 }
 
-/// Kinds of the objects that touch a scene's cloth: "2 grips", "hand_capsules". Their speeds do not count.
-std::string kind_of_contact(const json& scenario) {
-  std::set<std::string> out;
-  for (const json& c : scenario.value("colliders", json::array())) out.insert(c.value("type", ""));
-  if (const json grips = scenario.value("grips", json::array()); !grips.empty())
-    out.insert(fmt::format("{} {}", grips.size(), grips.size() == 1 ? "grip" : "grips"));
-  return joined(out);
-}
-
 /// A run or published value as data for figures. Missing = null.
 json figure_row(const Row& r) {
   json out = {{"part", kParts[static_cast<int>(r.part)]},
@@ -70,8 +61,6 @@ json figure_row(const Row& r) {
     for (const std::string& name : violated_bounds(*r.run))
       out["violated"].push_back({name, found_of(r, name).text, expected_of(r, name)});
   add_times(r, out);
-  if (r.part == Part::Contact)
-    out.update({{"kind", kind_of_contact(r.scenario)}, {"speed", finite_or_null(r.value("imposed_speed_m_per_s"))}});
   if (r.part == Part::Generated)
     out.update(
         {{"kind", r.drawn().value("kind", "")}, {"speed", finite_or_null(r.drawn().value("speed_m_per_s", kMissing))}});

@@ -223,14 +223,16 @@ function verdicts(doc) {
   };
 }
 
+/// Runs of generated scenes with contact: those of the study `physics` have no speed.
+const contact_scenes = doc => judged(doc, 'generated').filter(r => r.status !== 'missing' && r.speed > 0);
+
 function failure_speed(doc) {
-  const all = doc.runs.filter(r => r.part === 'contact' && r.speed > 0 && ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default');
-  const rows = all.filter(r => all.some(q => q.kind === r.kind && q.speed !== r.speed)).map(r => ({...r, name: `${r.kind} · ${r.solver}`}));
+  const rows = contact_scenes(doc).filter(r => ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default').map(r => ({...r, name: `${r.kind} · ${r.solver}`}));
   return rows.length && {
     id: 'failure-speed',
     section: 'contact',
-    title: () => 'Speeds that are passed and failed',
-    caption: 'Filled: the run passed at this speed of the hand; hollow: it failed. Runs whose criteria were not measured are not drawn.',
+    title: () => 'Speeds at which generated scenes are passed and failed',
+    caption: 'Filled: the run passed at this speed of the hand or the impact; hollow: it failed. Runs that are unsupported or were not measured are not drawn.',
     rows: () => rows,
     spec: (given, s, look) => ({
       height: 18 * look.shrink * unique(given.map(r => r.name)).length,
@@ -281,10 +283,10 @@ function shares(runs, field, is_good, more) {
   };
 }
 
-const forest = doc => shares(judged(doc, 'generated').filter(r => r.status !== 'missing'), 'kind', r => r.verdict === 'pass', {
+const forest = doc => shares(contact_scenes(doc), 'kind', r => r.verdict === 'pass', {
   id: 'forest',
   section: 'contact',
-  title: () => 'Pass rate by kind of generated scene',
+  title: () => 'Pass rate by kind of generated scene with contact',
   caption: 'Fraction of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
