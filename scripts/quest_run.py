@@ -28,6 +28,7 @@ PROPERTIES = ("debug.oculus.cpuLevel", "debug.oculus.gpuLevel", "debug.oculus.re
 LOG = ("logcat", "-v", "epoch", "-T", "1", "-s", "clothbench", "VrApi", "XrPerformanceManager")
 STAMP = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
 TRACE = "/data/misc/perfetto-traces/clothbench.pftrace"
+TRACE_TIMEOUT_S = 300  # to write the rest of a trace, or to fetch it
 # Output of adb if the headset is missing, as opposed to a failing command.
 NO_ANSWER = re.compile("no devices|device offline|device ('.*' )?not found|error: closed|protocol fault|connection reset|cannot connect")
 
@@ -135,33 +136,39 @@ def start_hzdb(adb, into):
     if not program:
         return None
 
-    def call(*words):
+    def call(*words, timeout):
         words = [program, "--device", adb.serial, "perf", *words]
-        return subprocess.run(words, cwd=into.parent, stdin=subprocess.DEVNULL, capture_output=True, timeout=1800, check=False, start_new_session=True).stdout.decode("utf-8", "replace")
+        return subprocess.run(words, cwd=into.parent, stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout, check=False, start_new_session=True).stdout.decode("utf-8", "replace")
 
-    pid = re.search(r"\bpid\b\W*(\d+)", call("start", "--mode", "custom", "--app", PACKAGE, "--output", name), re.I)
+    try:
+        pid = re.search(r"\bpid\b\W*(\d+)", call("start", "--mode", "custom", "--app", PACKAGE, "--output", name, timeout=30), re.I)
+    except (OSError, subprocess.SubprocessError) as e:
+        return print(f"quest_run: hzdb is not used: {e}", file=sys.stderr)
 
     def fetch():
         folders = [into.parent, *(pathlib.Path.home() / f for f in ("Documents", "Downloads"))]
         for file in [file for folder in folders for file in folder.glob(name + "*.pftrace")][:1]:
             shutil.move(file, into)
 
-    return pid and (lambda: call("stop", pid[1], name), fetch)
+    return pid and (lambda: call("stop", pid[1], name, timeout=TRACE_TIMEOUT_S), fetch)
 
 
 def start_perfetto(adb, into):
     """The device's perfetto, as start_hzdb; None if it offers no GPU counters."""
-    source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
+    try:
+        source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
+    except ValueError:  # an old or different perfetto
+        return None
     chosen = [ids[name] for name in samples.WANTED if name in ids]
     start = f"echo {shlex.quote(perfetto.config(source, chosen))} | perfetto --txt -c - --background -o {TRACE}"
     pid = "".join(re.findall(r"^\d+$", adb.shell(start, check=False), re.M)[:1]) if chosen else ""
 
     def fetch():
-        adb.call("pull", TRACE, into, timeout=1800)
+        adb.call("pull", TRACE, str(into), timeout=TRACE_TIMEOUT_S)
         adb.shell(f"rm -f {TRACE}")
 
     # The process writes the rest of the trace before it ends.
-    return (lambda: adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done"), fetch) if pid else None
+    return (lambda: adb.shell(f"kill {pid}; while kill -0 {pid} 2>/dev/null; do sleep 0.1; done", timeout=TRACE_TIMEOUT_S), fetch) if pid else None
 
 
 @contextlib.contextmanager
@@ -171,10 +178,13 @@ def traced(adb, into):
     try:
         yield bool(capture)
     finally:
-        if capture:
-            capture[0]()
-    if capture:
-        capture[1]()
+        listen(signal.SIG_IGN)  # each step has a time limit, and a capture that goes on would disturb the next run
+        for step in capture or ():
+            try:
+                step()
+            except (Problem, OSError, subprocess.SubprocessError) as e:  # the run's results do not depend on it
+                print(f"quest_run: no counters: {e}", file=sys.stderr)
+        listen(signal.default_int_handler)
 
 
 class Run:
@@ -280,6 +290,13 @@ def run(adb, a):
     return 0 if one.result == "PASS" and valid else 1
 
 
+def positive(text):
+    value = samples.number(text)
+    if not value or value < 0:
+        raise argparse.ArgumentTypeError(f"'{text}': expected a number above 0")
+    return value
+
+
 def arguments():
     p = argparse.ArgumentParser(prog="quest_run.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--serial", help="serial number of the headset, if several are plugged in")
@@ -293,8 +310,8 @@ def arguments():
     action.add_argument("command", help="study, run or xr with its arguments: 'study table3'")
     action.add_argument("--cpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
     action.add_argument("--gpu-level", type=int, default=4, choices=range(6), help="default %(default)s")
-    action.add_argument("--refresh-hz", type=float, default=72)
-    action.add_argument("--timeout-s", type=float, default=4 * 3600)
+    action.add_argument("--refresh-hz", type=positive, default=72)
+    action.add_argument("--timeout-s", type=positive, default=4 * 3600)
     return p.parse_args()
 
 

@@ -28,7 +28,7 @@ void add_run(CLI::App& app, Console& console) {
   a.with.device.add_to(*cmd);
   cmd->footer(
       "Example: clothbench run paper/gravity --solver paper --set cloth.grid=[64,64] --set solver.iterations=20");
-  cmd->callback([&console, &a] {
+  cmd->callback([&console, &a, cmd] {
     if (a.resume && a.out.empty()) throw Error("--resume needs --out DIR, the folder of the interrupted run");
     const std::vector<std::string> set = split_overrides(a.with.set).scene;
     std::vector<Scene> scenes;
@@ -45,6 +45,8 @@ void add_run(CLI::App& app, Console& console) {
         group.push_back({&scene, entry, settings, setting});
       plan.groups.push_back(std::move(group));
     }
+    if (!a.sustained.seconds.empty() && cmd->count("--trials") > 0)
+      throw Error("--sustained excludes --trials; leave one out");
     a.sustained.apply_to(plan);
     StudyManifest manifest;
     manifest.study = "run";

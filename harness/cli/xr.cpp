@@ -50,7 +50,7 @@ void add_xr(CLI::App& app, Console& console) {
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   cmd->add_option("--timeout", o.timeout_s, "The session ends after this time without tracked hands [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(0.001, 86400.0))
       ->capture_default_str();
   cmd->add_flag("--table", o.table, "Put the cloth over the user's table, instead of the scene's static colliders");
   cmd->add_option("--out", a.out, "Folder for the result file and the recorded scene; default results/runs/xr-<UTC>");

@@ -148,11 +148,10 @@ View memory() {
   return v;
 }
 
-/// Starts of a sustained run's windows [s after the first one], as keys.
+/// Numbers of a sustained run's windows, as keys.
 Keys windows_of(const Row& r) {
   Keys out;
-  for (const TimedTrial& t : r.run->trials)
-    out.emplace_back(fmt::format("{:.0f}", t.start_unix_s - r.run->trials.front().start_unix_s));
+  for (const TimedTrial& t : r.run->trials) out.emplace_back(std::to_string(t.index + 1));
   return out;
 }
 
@@ -163,7 +162,7 @@ View sustained() {
          "hottest zone. Power: mean of the CPU packages, or the power drawn from the battery. A column is missing if "
          "the platform does not let the program read it.",
          [](const Row& r) { return environment_of(*r.run, "window_s").is_number() && !r.run->trials.empty(); }};
-  v.keys = {scene_key(), solver_key(), {"from [s]", windows_of}};
+  v.keys = {scene_key(), solver_key(), sides_key(), {"window", windows_of}};
   const auto add = [&](const char* head, std::function<Cell(const Row&, const TimedTrial&)> cell) {
     v.columns.push_back({head, [cell](const Group& g, const Keys& keys) {
                            const Keys windows = windows_of(*g.front());
@@ -180,6 +179,10 @@ View sustained() {
       return all.sorted.empty() ? Cell() : Cell(milliseconds(all.at(0.5)) + " / " + tails_cell(all).text, all.at(0.5));
     });
   };
+  add("from [s]", [](const Row& r, const TimedTrial& t) {
+    const double from_s = t.start_unix_s - r.run->trials.front().start_unix_s;
+    return Cell(fmt::format("{:.0f}", from_s), from_s);
+  });
   add_quantiles("wall: p50 / p95 / p99 / worst [ms]", &TimedTrial::frame_wall_s);
   add_quantiles("GPU: p50 / p95 / p99 / worst [ms]", &TimedTrial::frame_device_s);
   add("late [%]", [](const Row& r, const TimedTrial& t) {

@@ -165,6 +165,8 @@ void add_case(const SolverEntry& entry, const json& settings, const DeviceOption
     try {
       result = run_conformance(entry, settings, device, scene, c, limit_s);
       why = result.unsupported;
+    } catch (const UnsupportedScene& e) {
+      why = entry.info.name + ": " + e.what();
     } catch (const SolverError& e) {
       result.faults = {e.what()};
     }

@@ -66,7 +66,7 @@ void describe_solver(const SolverInfo& info, nlohmann::json& environment) {
   static std::map<std::string, std::string> hashes;  // by path; a loaded library keeps its first hash
   const std::string path = info.folder.substr(std::string(kPluginPrefix).size());
   const auto [at, is_new] = hashes.try_emplace(path);
-  if (is_new) at->second = sha256(read_text(path));
+  if (is_new) at->second = sha256(read_text(path, std::uintmax_t{1} << 30));
   environment["plugin"] = {{"path", path}, {"sha256", at->second}, {"summary", info.summary}};
   if (!info.engine.empty()) environment["plugin"]["engine"] = info.engine;
 }

@@ -49,7 +49,11 @@ bool FrameLoop::begin() {
   const int next = index_ + 1 + behind_;
   if (failed() || next >= rules_.frames) return false;
   if (rules_.max_wall_s > 0 && elapsed_s_ >= rules_.max_wall_s && next >= rules_.min_frames) return false;
+  if (rules_.end_after_s > 0 && next > rules_.first &&
+      Clock::now() - first_begun_ >= std::chrono::duration<double>(rules_.end_after_s))
+    return false;
   if (rules_.interrupted != nullptr) stop_if_interrupted(rules_.interrupted);
+  if (next == rules_.first) first_begun_ = Clock::now();
   index_ = next;
   behind_ = 0;
   if (index_ > rules_.first && in_drop() == 0) solver_.reset();

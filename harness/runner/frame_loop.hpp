@@ -27,7 +27,8 @@ struct FrameRules {
   int min_frames = 0;                       ///< minimum number of frames, even beyond `max_wall_s`
   const char* interrupted = "interrupted";  ///< message thrown between frames on Ctrl-C; null: ignore Ctrl-C
   bool cpu_clock = false;                   ///< also read the CPU clock, outside the wall-clock interval
-  double period_s = 0;  ///< frames begin this long after each other, if they are on time; 0 = at once
+  double end_after_s = 0;  ///< no frame begins this long after the first, pauses included; 0 = no limit
+  double period_s = 0;     ///< frames begin this long after each other, if they are on time; 0 = at once
 };
 
 inline constexpr int kAsManyAsItTakes = std::numeric_limits<int>::max();
@@ -92,7 +93,7 @@ class FrameLoop {
   const FrameRules rules_;
   int index_, behind_ = 0;  ///< behind_: number of frames of the last drop after its first one
   StepStatus status_ = StepStatus::Ok;
-  Clock::time_point due_;  ///< of the next frame, if frames have a period
+  Clock::time_point first_begun_, due_;  ///< due_: of the next frame, if frames have a period
   double wall_s_ = 0, elapsed_s_ = 0, cpu_s_ = 0;
 };
 

@@ -252,7 +252,7 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
   const int jobs_before = jobs_now();
   const TimeSpan& time = spec_.scene->time;
   const bool in_windows = rules.window_s > 0;
-  if (!in_windows || trial.index == 0) warm_up(rules);
+  if (!in_windows || !std::exchange(warm_, true)) warm_up(rules);
   const int asked = rules.frames > 0 ? rules.frames : time.frames();
   trial.start_unix_s = trial.end_unix_s = unix_now();
   solver_->reset();
@@ -261,6 +261,7 @@ void SolverRun::measure(TimedTrial& trial, const TrialRules& rules, int frames) 
     timed = frame_rules(rules, static_cast<int>(std::lround(rules.window_s * time.frame_rate_hz)));
     timed.period_s = time.dt();
     timed.drop_frames = time.frames();
+    timed.end_after_s = rules.window_s;  // late frames: fewer of them
   }
   timed.cpu_clock = !spec_.entry->info.on_gpu;
   FrameLoop loop(*solver_, *spec_.scene, timed);

@@ -117,6 +117,7 @@ class SolverRun {
   std::unique_ptr<ClothSolver> solver_;
   std::unique_ptr<ClothSolver> profiled_;  ///< twin with per-stage timestamps, only on a GPU
   TimedTrial counted_;                     ///< bytes that a twin counted in the frames of a trial
+  bool warm_ = false;                      ///< windows follow each other, so only the first is preceded by a warm-up
   int counted_messages_ = 0;               ///< validation messages of that twin
 };
 

@@ -129,8 +129,8 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
 void sustain(RunPlan& plan, double duration_s) {
   constexpr double kWindow_s = 10;
   TrialRules& r = plan.rules;
-  r.window_s = std::min(kWindow_s, duration_s);
-  r.trials = static_cast<int>(std::ceil(duration_s / r.window_s));
+  r.trials = static_cast<int>(std::ceil(duration_s / kWindow_s));
+  r.window_s = duration_s / r.trials;
   r.agree = 0;
   r.pipelined = false;
   r.profiled_frames = 0;
@@ -247,7 +247,7 @@ void require_device(const RunPlan& plan, const DeviceOptions& chosen) {
     }
 }
 
-void require_same_run(const fs::path& folder, const RunSpec& run) {
+void require_same_run(const fs::path& folder, const RunSpec& run, std::optional<double> window_s = {}) {
   fs::path file;
   const std::optional<RunHeader> h = stored_header(folder, run_name(run), file);
   if (!h) return;
@@ -259,6 +259,10 @@ void require_same_run(const fs::path& folder, const RunSpec& run) {
                             shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";
+  if (const double stored_s = e.is_object() ? e.value("window_s", 0.0) : 0;
+      window_s && !version.empty() && stored_s != *window_s)
+    throw Error(fmt::format("{}: run with windows of {:g} s (0: trials), now {:g} s; {}", file.string(), stored_s,
+                            *window_s, kWhatToDo));
   const SolverInfo& solver = run.entry->info;
   if (run.entry->make && !version.empty() && version != solver.version)  // a crash before the start stores no version
     throw Error(fmt::format("{}: run with version {} of {}, which is now version {}; {}", file.string(), version,
@@ -283,7 +287,7 @@ void require_same_runs(const fs::path& folder, const RunPlan& plan, bool resume)
         throw Error("two runs would be stored as " + name + ": expected each scene, solver and setting once");
       require_short_name(folder, name);
       if (!resume && run_finished(folder, name)) refuse_finished_run(folder, name);
-      require_same_run(folder, run);
+      require_same_run(folder, run, plan.rules.window_s);
     }
 }
 

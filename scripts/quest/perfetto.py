@@ -2,6 +2,7 @@
 
 Field numbers are from protos/perfetto in google/perfetto. Android's producers describe their counters in the events
 themselves (docs/data-sources/gpu.md there)."""
+import math
 import struct
 
 PERIOD_NS = 10_000_000
@@ -39,11 +40,14 @@ def counter_names(descriptor):
 
 
 def offered(state):
-    """TracingServiceState (`perfetto --query-raw`) -> (name of the data source, {counter: id}); the vendor's suffix differs."""
-    for source in parts(state, 2):
-        found = dict(fields(source[1]))
-        if found[1].startswith(b"gpu.counters") and 5 in found:
-            return found[1].decode(), {name: at for at, name in counter_names(found[5]).items()}
+    """TracingServiceState (`perfetto --query-raw`) -> (name of the data source, {counter: id}); the vendor's suffix differs. Raises ValueError if it is damaged."""
+    try:
+        for source in parts(state, 2):
+            found = dict(fields(source[1]))
+            if found[1].startswith(b"gpu.counters") and 5 in found:
+                return found[1].decode(), {name: at for at, name in counter_names(found[5]).items()}
+    except (LookupError, TypeError, AttributeError) as e:
+        raise ValueError(f"not a state of Perfetto's service: {e!r}") from e
     return "", {}
 
 
@@ -64,7 +68,8 @@ def samples(trace):
                 ahead_ns.update({clock: real_ns - t for clock, t in clocks.items()})
             event = packet.get(52, b"")
             names.update(counter_names(dict(fields(event)).get(1, b"")))
-            if values := {names[c[1]]: struct.unpack("<d", c[3])[0] if 3 in c else c[2] - (c[2] >> 63 << 64) for c in parts(event, 2)}:
+            values = {names[c[1]]: struct.unpack("<d", c[3])[0] if 3 in c else c[2] - (c[2] >> 63 << 64) for c in parts(event, 2)}
+            if values := {name: v for name, v in values.items() if math.isfinite(v)}:
                 out.append(((packet[8] + ahead_ns[packet.get(58, BOOTTIME)]) * 1e-9, values))
     except (LookupError, TypeError, AttributeError, ValueError, struct.error) as e:
         raise ValueError(f"not a Perfetto trace of GPU counters: {e!r}") from e

@@ -77,8 +77,9 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
     EXPECT_EQ(unknown.code, 2) << words;
     EXPECT_NE(unknown.text.find(std::string("nearest known: ") + near), std::string::npos) << unknown.text;
   }
-  for (const char* arguments : {"run paper/gravity --sustained=soon", "run paper/gravity --sustained=0",
-                                "study table3 --sustained --trials 2", "study contact --sustained"})
+  for (const char* arguments :
+       {"run paper/gravity --sustained=soon", "run paper/gravity --sustained=0", "study table3 --sustained --trials 2",
+        "study contact --sustained", "run paper/gravity --sustained --trials 2"})
     EXPECT_EQ(command(arguments).code, 2) << arguments;
   const Answer setting =
       command("run paper/gravity --solver ballistic --set solver.x=1 --out " + (dir_ / "q").string());
@@ -130,7 +131,7 @@ TEST_F(Cli, ASustainedRunShowsItsWindows) {
   ASSERT_EQ(command("report " + out + " -o " + report).code, 0);
   const std::string text = read_text(fs::path(report) / "report.md"),
                     table = text.substr(text.find("Frame times over"));
-  EXPECT_NE(table.find("| gravity | ballistic | 0 |"), std::string::npos) << table.substr(0, 2000);
+  EXPECT_NE(table.find("| gravity | ballistic | single | 1 | 0 |"), std::string::npos) << table.substr(0, 2000);
 }
 
 TEST_F(Cli, SolversThatWereNotBuiltAreRows) {

@@ -99,8 +99,9 @@ class Driver(unittest.TestCase):
         import h5py
 
         for plan, groups in (({"perfetto": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"perfetto": True, "trace_bytes": 1000}, {"vrapi"}),
-                             ({"hzdb": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"hzdb": "lost"}, {"vrapi"})):
-            self.out = os.path.join(self.home, "-".join(plan) + f"{len(groups)}")
+                             ({"hzdb": "refused"}, {"vrapi", "ovrgpuprofiler"}), ({"hzdb": "lost"}, {"vrapi"}),
+                             ({"perfetto": "old"}, {"vrapi", "ovrgpuprofiler"}), ({"perfetto": "lost", "trace_lost": True}, {"vrapi"})):
+            self.out = os.path.join(self.home, "-".join(map(str, [*plan, *plan.values()])))
             self.assertEqual(self.run_app(**plan), 0, self.text)
             self.assertEqual("no counters" in self.text, groups == {"vrapi"}, self.text)
             with h5py.File(self.result()) as f:

@@ -3,6 +3,8 @@
 Origins: VrApi and XrPerformanceManager lines from Meta's page "Logcat stats definitions" (31 July 2025), with other
 values; Perfetto's messages from the .proto files of google/perfetto, encoded here; ovrgpuprofiler from Meta's page "Use ovrgpuprofiler for GPU profiling"; the rest written by hand.
 """
+import contextlib
+import math
 import os
 import random
 import sys
@@ -107,8 +109,19 @@ class Perfetto(unittest.TestCase):
             except ValueError:
                 refused += 1
                 continue
-            self.assertTrue(all(isinstance(v, (int, float)) for t, values in found for v in (t, *values.values())))
+            self.assertTrue(all(math.isfinite(v) for t, values in found for v in (t, *values.values())))
         self.assertGreater(refused, 1000)
+        state = message((2, message((1, message((1, b"gpu.counters.adreno"), (5, self.SPECS))), (2, 1))))
+        lines = [QUEST3, "     1.5  1  2 I VrApi   : FPS=72/72", " 17 Clocks / Second : 4.2", "XrPerformanceManager: SetClockLevels: x: 4,4 -> 4,2"]
+        for _ in range(4000):
+            damaged = bytearray(state)
+            damaged[random_bytes.randrange(len(damaged))] = random_bytes.randrange(256)
+            with contextlib.suppress(ValueError):
+                perfetto.offered(bytes(damaged))
+            text = list(random_bytes.choice(lines))
+            text[random_bytes.randrange(len(text))] = chr(random_bytes.randrange(32, 1000))
+            text = "".join(text)
+            (samples.logcat(text), samples.vrapi(text), samples.level_change(text), samples.counter_ids(text), samples.Counters().feed(0, text), samples.devices("\n" + text))
 
 
 class Validity(unittest.TestCase):

@@ -95,6 +95,8 @@ def specs():
 
 
 def perfetto(command):
+    if PLAN["perfetto"] == "old":
+        return print("perfetto: unknown option --query-raw")
     if "--query-raw" in command:
         source = message((1, b"gpu.counters.adreno"), (5, specs()))
         return print(base64.encodebytes(message((2, message((1, source), (2, 7))))).decode())
@@ -117,6 +119,8 @@ def trace():
 
 def pull(source, into):
     if source.endswith(".pftrace"):
+        if PLAN.get("trace_lost"):
+            die(f"adb: error: failed to stat remote object '{source}': Permission denied")
         with open(into, "wb") as out:
             out.write(trace()[:PLAN.get("trace_bytes", 1 << 30)])
         return

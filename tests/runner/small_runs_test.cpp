@@ -113,7 +113,7 @@ TEST_F(SmallRuns, WindowsLastTheirTimeAtTheScenesRate) {
   sustain(plan, 25);
   EXPECT_EQ(plan.groups.size(), 2u) << "one run after the other";
   EXPECT_EQ(plan.rules.trials, 3);
-  EXPECT_EQ(plan.rules.window_s, 10);
+  EXPECT_EQ(plan.rules.window_s, 25.0 / 3);
   plan.rules.window_s = 0.1;
   const RunRecord r = read_run(execute_runs(plan, options_).files.at(0));
   ASSERT_EQ(r.trials.size(), 3u);
@@ -124,6 +124,9 @@ TEST_F(SmallRuns, WindowsLastTheirTimeAtTheScenesRate) {
     EXPECT_GT(t.end_unix_s - t.start_unix_s, 0.09 - 1 / rate_hz);
     EXPECT_LT(t.frame_wall_s[0], 0.5 / rate_hz) << "without the pauses";
   }
+  EXPECT_NO_THROW(require_same_runs(options_.out, plan, true));
+  plan.rules.window_s = 0.2;
+  EXPECT_TRUE(mentions(refusal([&] { require_same_runs(options_.out, plan, true); }), "windows of 0.1 s"));
 }
 
 // Settings sweeps: where they end, and what is stored for the remaining settings; and trials that agree.
