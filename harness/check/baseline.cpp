@@ -138,7 +138,6 @@ std::vector<Condition> conditions_of(const RunRecord& r) {
     out.push_back({"length", "frames", std::to_string(time.empty() ? 0 : time.size() - 1)});
     out.push_back({"length", "simulated time [s]", time.empty() ? kNotStated : fmt::format("{:.6g}", time.back())});
     if (!r.trials.empty()) out.push_back({"trials", "frames of a trial", trial_frames(r)});
-    const nlohmann::json& e = r.header.environment;
     const double window_s = e.is_object() ? e.value("window_s", 0.0) : 0;
     if (!r.trials.empty()) out.push_back({"trials", "window [s], 0: none", fmt::format("{:g}", window_s)});
   }

@@ -23,7 +23,7 @@ constexpr const char* kRateNote =
     "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
     "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). All other columns are for "
     "the largest mesh. × bullet-soft, the baseline: ratio of the rates, with the extreme ratios of both intervals. "
-    "Rank: among rows with the same sides, on which the cloth would have contact. ";
+    "Rank: among rows with the same sides. ";
 /// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
