@@ -1,4 +1,5 @@
 // Runs of a small scene: paused within a trial (as if an Android activity were paused), in a settings sweep, resumed.
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -122,7 +123,7 @@ TEST_F(SmallRuns, WindowsLastTheirTimeAtTheScenesRate) {
   for (const TimedTrial& t : r.trials) {
     EXPECT_EQ(t.frames(), std::lround(0.1 * rate_hz));
     EXPECT_GT(t.end_unix_s - t.start_unix_s, 0.09 - 1 / rate_hz);
-    EXPECT_LT(t.frame_wall_s[0], 0.5 / rate_hz) << "without the pauses";
+    EXPECT_LT(*std::min_element(t.frame_wall_s.begin(), t.frame_wall_s.end()), 0.5 / rate_hz) << "without the pauses";
   }
   EXPECT_NO_THROW(require_same_runs(options_.out, plan, true));
   plan.rules.window_s = 0.2;
