@@ -190,7 +190,7 @@ TEST_F(Sensors, OfAnNvidiaGpuComeFromItsLibrary) {
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const double mean_W = meter.mean_gpu_W();
   EXPECT_LE(mean_W, 300.1);  // the time also contains the readings
-  EXPECT_GE(mean_W, 100);
+  EXPECT_GE(mean_W, 10);
   EXPECT_TRUE(std::isnan(PowerMeter(dir_, std::string(32, '0')).mean_gpu_W())) << "a GPU of another vendor";
 }
 
