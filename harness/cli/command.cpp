@@ -39,9 +39,10 @@ void DeviceFlags::add_to(CLI::App& app) {
 }
 
 void SustainedFlag::add_to(CLI::App& app) {
-  app.add_flag("--sustained{600}", seconds,
-               "Instead of trials, step each run at its scene's frame rate for this many seconds, in windows of 10 s "
-               "(--sustained=60; default 600): shows how a device slows as it gets warm");
+  app.add_flag(
+      "--sustained{600}", seconds,
+      "Instead of trials, step each run at its scene's frame rate for this many seconds, in windows of at most 10 s "
+      "(--sustained=60; default 600): shows how a device slows as it gets warm");
 }
 
 void SustainedFlag::apply_to(RunPlan& plan) const {

@@ -159,7 +159,7 @@ View sustained() {
   View v{"time", "Frame times over time",
          "Runs with `--sustained`: frames begin at the scene's frame rate, and a row shows one window. Late: frames "
          "longer than their period. Clocks and temperature: after the window, of the fastest core, the GPU and the "
-         "hottest zone. Power: mean of the CPU packages, or the power drawn from the battery. A column is missing if "
+         "hottest zone. Power: mean of the GPU; of the CPU packages, or drawn from the battery. A column is missing if "
          "the platform does not let the program read it.",
          [](const Row& r) { return environment_of(*r.run, "window_s").is_number() && !r.run->trials.empty(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"window", windows_of}};

@@ -220,14 +220,14 @@ PowerMeter::PowerMeter(fs::path root, std::string gpu_uuid)
       gpu_uuid_(std::move(gpu_uuid)),
       start_(std::chrono::steady_clock::now()),
       start_J_(package_energy_J(root_)),
-      gpu_start_J_(nvidia_state(gpu_uuid_).value("energy_J", kMissing)) {}
+      gpu_start_J_(nvidia_energy_J(gpu_uuid_)) {}
 
 double PowerMeter::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 double PowerMeter::mean_gpu_W() const {
-  const double used_J = nvidia_state(gpu_uuid_).value("energy_J", kMissing) - gpu_start_J_;
+  const double used_J = nvidia_energy_J(gpu_uuid_) - gpu_start_J_;
   return used_J / seconds();
 }
 

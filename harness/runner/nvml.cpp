@@ -2,7 +2,7 @@
 
 #include <dlfcn.h>
 
-#include <map>
+#include "clothbench/record.hpp"
 
 namespace clothbench {
 namespace {
@@ -24,26 +24,38 @@ class Library {
              load(ecc_, "nvmlDeviceGetEccMode") && init() == 0;
   }
 
-  nlohmann::json state(const std::string& uuid) {
+  nlohmann::json state(const std::string& uuid) const {
     constexpr double kMega = 1e6, kMilli = 1e-3;
     constexpr int kSmClock = 1, kGpuSensor = 0;
     nlohmann::json j = nlohmann::json::object();
-    if (!works_) return j;
-    std::string name = "GPU-" + uuid;
-    for (const std::size_t dash : {12u, 17u, 22u, 27u}) name.insert(dash, "-");
-    void* device = nullptr;
-    if (by_uuid_(name.c_str(), &device) != 0) return j;
+    void* const device = find(uuid);
+    if (device == nullptr) return j;
     unsigned value = 0, pending = 0;
-    unsigned long long energy_mJ = 0;
     if (clock_(device, kSmClock, &value) == 0) j["frequency_Hz"] = kMega * value;
     if (temperature_(device, kGpuSensor, &value) == 0) j["temperature_C"] = value;
-    if (energy_(device, &energy_mJ) == 0) j["energy_J"] = kMilli * static_cast<double>(energy_mJ);
     if (limit_(device, &value) == 0) j["power_limit_W"] = kMilli * value;
     if (ecc_(device, &value, &pending) == 0) j["ecc"] = value != 0;
     return j;
   }
 
+  double energy_J(const std::string& uuid) const {
+    constexpr double kMilli = 1e-3;
+    unsigned long long energy_mJ = 0;
+    void* const device = find(uuid);
+    const bool known = device != nullptr && energy_(device, &energy_mJ) == 0;
+    return known ? kMilli * static_cast<double>(energy_mJ) : kMissing;
+  }
+
  private:
+  /// Null if there is no such GPU.
+  void* find(const std::string& uuid) const {
+    void* device = nullptr;
+    if (!works_) return device;
+    std::string name = "GPU-" + uuid;
+    for (const std::size_t dash : {12u, 17u, 22u, 27u}) name.insert(dash, "-");
+    return by_uuid_(name.c_str(), &device) == 0 ? device : nullptr;
+  }
+
   bool works_ = false;
   int (*by_uuid_)(const char*, void**) = nullptr;
   int (*clock_)(void*, int, unsigned*) = nullptr;
@@ -53,12 +65,19 @@ class Library {
   int (*ecc_)(void*, unsigned*, unsigned*) = nullptr;
 };
 
+bool is_uuid(const std::string& uuid) { return uuid.size() == 32; }  // empty: no GPU, so nothing is loaded
+
+const Library& library() {
+  static const Library loaded;
+  return loaded;
+}
+
 }  // namespace
 
 nlohmann::json nvidia_state(const std::string& uuid) {
-  if (uuid.size() != 32) return nlohmann::json::object();  // no GPU: nothing is loaded
-  static Library library;
-  return library.state(uuid);
+  return is_uuid(uuid) ? library().state(uuid) : nlohmann::json::object();
 }
+
+double nvidia_energy_J(const std::string& uuid) { return is_uuid(uuid) ? library().energy_J(uuid) : kMissing; }
 
 }  // namespace clothbench

@@ -21,7 +21,8 @@ Counters::Counters(const Session& session) : session_(session) {
   std::uint32_t count = 0;
   const XrResult listed = xr.call(std::string("xrEnumeratePerformanceMetricsCounterPaths") + kind_->suffix, xr.handle(),
                                   std::uint32_t{paths.size()}, &count, paths.data());
-  if (XR_FAILED(listed)) return;  // counters are an extra: the session goes on
+  query_ = xr.function<decltype(query_)>(std::string("xrQueryPerformanceMetricsCounter") + kind_->suffix);
+  if (XR_FAILED(listed) || query_ == nullptr) return;  // counters are an extra: the session goes on
   for (const XrPath path : std::span(paths).first(count)) {
     char text[XR_MAX_PATH_LENGTH] = "";
     if (XR_FAILED(xr.xr().xrPathToString(xr.handle(), path, sizeof text, &count, text))) continue;
@@ -37,8 +38,7 @@ void Counters::read() {
   constexpr std::array kUnits = {"1", "%", "ms", "B", "Hz"};  // by XrPerformanceMetricsCounterUnitMETA
   for (std::size_t k = 0; k < paths_.size(); ++k) {
     auto c = blank<MetricsCounter>(kind_->counter);
-    const std::string query = std::string("xrQueryPerformanceMetricsCounter") + kind_->suffix;
-    if (XR_FAILED(session_.instance().call(query, session_.handle(), paths_[k], &c))) c = {};
+    if (XR_FAILED(query_(session_.handle(), paths_[k], &c))) c = {};
     StoredArray& a = group_.arrays[k];
     if (c.flags != 0 && c.unit < kUnits.size()) a.units = kUnits[c.unit];
     const double whole = (c.flags & kWholeValid) != 0 ? c.whole : kMissing;

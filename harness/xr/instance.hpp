@@ -56,10 +56,11 @@ class Instance {
   Function function(const std::string& name) const {
     return reinterpret_cast<Function>(address(name.c_str()));
   }
-  /// Calls a function of an extension; the types of the arguments must be those of the function.
+  /// Calls a function of an extension, which must take arguments of exactly these types.
   template <class... Arguments>
   XrResult call(const std::string& name, Arguments... arguments) const {
-    return function<XrResult(XRAPI_PTR*)(Arguments...)>(name)(arguments...);
+    const auto found = function<XrResult(XRAPI_PTR*)(Arguments...)>(name);
+    return found != nullptr ? found(arguments...) : XR_ERROR_FUNCTION_UNSUPPORTED;
   }
   /// Throws Error with the call and the runtime's name for the result, unless the result is a success.
   void check(XrResult result, const char* call) const;

@@ -102,7 +102,8 @@ class Counters {
  private:
   const Session& session_;
   const Metrics* kind_ = nullptr;
-  std::vector<XrPath> paths_;
+  XrResult(XRAPI_PTR* query_)(XrSession, XrPath, MetricsCounter*) = nullptr;
+  std::vector<XrPath> paths_;  ///< empty if the runtime has no counters
   StoredGroup group_{"xr/counters", {}, {}};
 };
 

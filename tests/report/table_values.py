@@ -17,7 +17,7 @@ SUMMARY = {  # column: scale, and the stored values
     "MB per frame, read / written": (1e-6, "read_B_per_frame", "write_B_per_frame"), "peak bandwidth, read / written [GB/s]": (1e-9, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s"),
     "window [s]": (1, "bandwidth_window_s"), "memory [MB]": (1e-6, "device_memory_B"), "space": (1, "truth_space_error"), "U_ref": (1, "reference_uncertainty"), "reference − exact": (1, "reference_truth_distance"),
     "order BDF2": (1, "reference_order_bdf2")}
-QUANTILES = {  # column: clock, or that of the row, and quantiles by nearest rank
+QUANTILES = {  # column: clock (empty: the row's), and quantiles by nearest rank
     "frame p50 [ms]": ("", 0.5), "p95 / p99 / worst [ms]": ("", 0.95, 0.99, 1), "GPU: p50 / p95 / p99 / worst [ms]": ("GPU", 0.5, 0.95, 0.99, 1), "GPU, with contact [ms]": ("GPU, with contact", 0.5, 0.95, 0.99, 1),
     "with contact: p50 / p95 / p99 / worst [ms]": ("wall, with contact", 0.5, 0.95, 0.99, 1)}
 RATES, BUDGETS_MS = "rate: 95 % interval", {"error within 0.1 ms": 0.1, "error within 1 ms": 1, "error within 13.9 ms": 13.9, "best error": math.inf}

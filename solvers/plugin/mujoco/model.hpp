@@ -68,7 +68,7 @@ inline void set_material(mjsFlex& cloth, bool nominal, double y, double b) {
   cloth.elastic2d = b > 0 ? 3 : 2;
 }
 
-/// Of two priorities the higher decides, so that friction is the collider's. The types exclude pairs of colliders.
+/// The part with the higher priority decides the friction: the collider. The types exclude pairs of colliders.
 template <typename Part>
 void set_contact(Part& part, double friction, int priority, int contype) {
   part.contype = contype;

@@ -223,7 +223,7 @@ function verdicts(doc) {
   };
 }
 
-/// Runs of generated scenes with contact: those of the study `physics` have no speed.
+/// Runs of generated scenes with contact. Scenes of the study `physics` have no speed.
 const contact_scenes = doc => judged(doc, 'generated').filter(r => r.status !== 'missing' && r.speed > 0);
 
 function failure_speed(doc) {
