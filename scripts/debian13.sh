@@ -10,21 +10,14 @@
 # Needs root (chroot). Without root the stage is skipped with a message, unless CLOTHBENCH_REQUIRE_DEBIAN13=1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-usage() {
-  echo "usage: scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]" >&2
-  exit 2
-}
+usage() { echo "usage: scripts/debian13.sh [--prepare | --keep] [--suite trixie | bookworm] [FOLDER]" >&2; exit 2; }
 keep='' prepare='' suite=trixie name=debian13
 while [ $# -gt 0 ]; do
   case $1 in
     --keep) keep=1 ;;
     --prepare) prepare=1 ;;
     --suite)
-      case ${2:-} in
-        trixie) ;;
-        bookworm) suite=bookworm name=bookworm ;;
-        *) usage ;;
-      esac
+      case ${2:-} in trixie) ;; bookworm) suite=bookworm name=bookworm ;; *) usage ;; esac
       shift ;;
     -*) usage ;;
     *) break ;;

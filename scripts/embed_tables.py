@@ -7,8 +7,10 @@ A document marks such a table by a line of one of these forms before it and `<!-
 
     <!-- table of FILE: HEADING -->                      the Markdown table of FILE below the heading that starts with HEADING
     <!-- table of FILE: HEADING: ROW, ROW -->            only its rows whose first cell is ROW or starts with `ROW:`
-    <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a
+    <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a,
+        or of all objects of list a; `KEY?` may be missing. `FILES FILES` instead of a command: JSON files (key `path`: folder/file), rows of .tsv files
 """
+import csv
 import json
 import pathlib
 import re
@@ -16,32 +18,42 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TABLE = re.compile(r"(<!-- table of (?:`clothbench (?P<command>[^`]+)`|(?P<file>[^:`]+)): (?P<what>.+?) -->\n).*?(<!-- end of table -->)", re.S)
+TABLE = re.compile(r"(<!-- table of (?:`(?P<source>[^`]+)`|(?P<file>[^:`]+)): (?P<what>.+?) -->\n).*?(<!-- end of table -->)", re.S)
 SCHEMA = "scenarios/schema/scene.schema.json"
-program = ROOT / "build/release/clothbench"
+check = "--check" in sys.argv
+program = next((a for a in sys.argv[1:] if a != "--check"), ROOT / "build/release/clothbench")
 
 
-def objects(command):
-    return json.loads(subprocess.run([program, *command.split(), "--json"], check=True, capture_output=True).stdout)
+def objects(source):
+    if source.startswith("clothbench "):
+        return json.loads(subprocess.run([program, *source.split()[1:], "--json"], check=True, capture_output=True).stdout)
+    found = []
+    for path in (path for pattern in source.split() for path in sorted(ROOT.glob(pattern))):
+        text, place = path.read_text(encoding="utf-8"), f"{path.parent.name}/{path.stem}"
+        found += [{"path": place, **json.loads(text)}] if path.suffix == ".json" else csv.DictReader(text.splitlines(), delimiter="\t")
+    return found or sys.exit(f"{source}: no such file")
 
 
 def cell(value):
-    text = "yes" if value is True else "" if value is False else ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-    return text.replace("|", "\\|")
+    text = "yes" if value is True else "" if value is False else ", ".join(map(cell, value)) if isinstance(value, list) else str(value)
+    return (f"{value:.4g}" if isinstance(value, float) else text).replace("|", "\\|")
 
 
-def table_of_objects(command, keys):
-    rows = []
-    for one in objects(command):
-        values = [one]
-        for key in keys:
-            value = one
-            for part in key.split("."):
-                value = value.get(part) if isinstance(value, dict) else None
-            values.append(value)
-        if None not in values:
-            rows.append([f"`{values[1]}`", *map(cell, values[2:])])
-    return "".join("| " + " | ".join(row) + " |\n" for row in [keys, ["---"] * len(keys), *rows])
+def find(value, key):
+    for part in key.rstrip("?").split("."):
+        if isinstance(value, list):
+            value = "; ".join(dict.fromkeys(cell(one[part]) for one in value if part in one)) or None
+        else:
+            value = value.get(part) if isinstance(value, dict) else None
+    return "–" if value is None and key.endswith("?") else value
+
+
+def table_of_objects(source, keys):
+    rows = [[find(one, key) for key in keys] for one in objects(source)]
+    rows = [[f"`{values[0]}`", *map(cell, values[1:])] for values in rows if None not in values]
+    last = [key.rstrip("?").split(".")[-1] for key in keys]
+    heads = [name if last.count(name) == 1 else key.rstrip("?") for name, key in zip(last, keys)]
+    return "".join("| " + " | ".join(row) + " |\n" for row in [heads, ["---"] * len(keys), *rows])
 
 
 def table_of_report(file, heading, rows):
@@ -55,18 +67,15 @@ def table_of_report(file, heading, rows):
 
 
 def table(match):
-    what = match["what"].split(": ")
-    if match["command"]:
-        new = table_of_objects(match["command"], what[0].split(", "))
-    else:
-        new = table_of_report(match["file"], what[0], what[1].split(", ") if len(what) > 1 else [])
+    what, _, rows = match["what"].partition(": ")
+    new = table_of_objects(match["source"], what.split(", ")) if match["source"] else table_of_report(match["file"], what, rows.split(", ") if rows else [])
     return match[1] + "\n" + new + "\n" + match[5]
 
 
 def bounds(match):
     """The names that a scene's `expect` may bound, with their descriptions."""
     row = '        {}: {{"$ref": "#/definitions/bounds", "description": {}}}'
-    return match[1] + ",\n".join(row.format(json.dumps(s["name"]), json.dumps(s["long_name"], ensure_ascii=False)) for s in objects("list scalars") if s["expect"]) + "\n" + match[2]
+    return match[1] + ",\n".join(row.format(json.dumps(s["name"]), json.dumps(s["long_name"], ensure_ascii=False)) for s in objects("clothbench list scalars") if s["expect"]) + "\n" + match[2]
 
 
 def embedded(name, text):
@@ -74,9 +83,6 @@ def embedded(name, text):
 
 
 def main():
-    global program
-    check = "--check" in sys.argv
-    program = next((a for a in sys.argv[1:] if a != "--check"), program)
     names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--", "*.md", SCHEMA], check=True, capture_output=True, text=True).stdout.split("\0")
     stale = []
     for path in (ROOT / name for name in names if name and (ROOT / name).exists()):
