@@ -50,7 +50,7 @@ def find(value, key):
 
 def table_of_objects(source, keys):
     rows = [[find(one, key) for key in keys] for one in objects(source)]
-    rows = [[f"`{values[0]}`", *map(cell, values[1:])] for values in rows if None not in values]
+    rows = [[f"`{values[0]}`", *map(cell, values[1:])] for values in rows if None not in values] or sys.exit(f"{source}: no object has all of {keys}")
     last = [key.rstrip("?").split(".")[-1] for key in keys]
     heads = [name if last.count(name) == 1 else key.rstrip("?") for name, key in zip(last, keys)]
     return "".join("| " + " | ".join(row) + " |\n" for row in [heads, ["---"] * len(keys), *rows])
