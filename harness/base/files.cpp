@@ -77,7 +77,16 @@ void compress(std::array<std::uint32_t, 8>& h, const unsigned char* block) {
 
 std::string content_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string out;
+  std::error_code unknown;  // a pipe has no size
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!unknown && in) {
+    out.resize(size);
+    in.read(out.data(), static_cast<std::streamsize>(size));
+    out.resize(static_cast<std::size_t>(in.gcount()));
+    in.clear();
+  }
+  return out.append(std::istreambuf_iterator<char>(in), {});
 }
 
 std::filesystem::path temporary_name(const std::filesystem::path& path) {

@@ -218,4 +218,27 @@ std::string github_annotations(const Checked& checked) {
   return out;
 }
 
+std::string log_line(const std::vector<RunRecord>& runs) {
+  // Besides values with a regression rule: what a frame costs. Times of software devices or side by side mean nothing.
+  constexpr const char *kCosts[] = {"read_B_per_frame", "write_B_per_frame", "device_memory_B"},
+                       *kTime = "frame_device_median_s";
+  const json& e = runs.at(0).header.environment;
+  json out = {{"commit", e.value("git_commit", "")}, {"created", e.value("created", "")}, {"runs", json::array()}};
+  for (const RunRecord& r : runs) {
+    const BaselineRun part = gated_part(r);
+    json run = key_json(part.key), values = json::object();
+    for (const auto& [name, value] : part.scalars)
+      if (!is_verdict(name)) values[name] = value;
+    const auto add = [&](const char* name) {
+      const auto at = r.summary.find(name);
+      if (at != r.summary.end() && std::isfinite(at->second)) values[name] = at->second;
+    };
+    for (const char* name : kCosts) add(name);
+    if (!r.header.environment.value("gpu_is_software", true) && r.withheld.empty()) add(kTime);
+    run.update({{"gpu", r.header.environment.value("gpu", "")}, {"status", part.status}, {"values", values}});
+    out["runs"].push_back(std::move(run));
+  }
+  return out.dump() + "\n";
+}
+
 }  // namespace clothbench

@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include "base/files.hpp"
 #include "check/compare.hpp"
 #include "cli/command.hpp"
@@ -9,7 +11,7 @@ namespace fs = std::filesystem;
 
 struct CheckArguments {
   std::vector<std::string> runs, allowed;
-  std::string baseline, junit;
+  std::string baseline, junit, log;
   bool update = false, github = false;
 };
 
@@ -25,6 +27,8 @@ void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console&
   const Checked checked = check_runs(read_baseline(a.baseline), runs, a.allowed);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   if (a.github) fmt::print(stderr, "{}", github_annotations(checked));
+  if (!a.log.empty() && !(std::ofstream(a.log, std::ios::app) << log_line(withhold_times(runs)) << std::flush))
+    throw Error(a.log + ": could not be written");
   console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
   if (!checked.passed()) console.exit_code = ExitCode::CheckFailed;
 }
@@ -48,6 +52,8 @@ void add_check(CLI::App& app, Console& console) {
       ->check(CLI::IsMember({"scene", "device", "precision", "length"}))
       ->excludes(rewrite);
   cmd->add_option("--junit", a.junit, "Also write JUnit XML with one test case per run")->excludes(rewrite);
+  cmd->add_option("--log", a.log, "Append commit and values to this file, as one line for `report --history`")
+      ->excludes(rewrite);
   cmd->add_flag("--github", a.github, "Also print failures as annotations of GitHub Actions, on stderr")
       ->excludes(rewrite);
   cmd->footer(

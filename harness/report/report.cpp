@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "base/files.hpp"
+#include "base/json_text.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -14,6 +16,7 @@ namespace clothbench {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 constexpr std::pair<const char*, const char*> kSections[] = {
     {"overview", "Overview"},      {"rates", "Frame rates"},
@@ -46,9 +49,28 @@ std::vector<std::string> names_of(const std::vector<fs::path>& results) {
   return out;
 }
 
-Page page_of(const RunTable& table, const std::vector<fs::path>& results) {
-  return {heading_of(table, names_of(results)), warnings_of(table), tiles_of(table), notes_of(table),
-          filled_sections(table)};
+/// The lines of a log of `check --log`.
+json history_of(const fs::path& file) {
+  json out = json::array();
+  if (file.empty()) return out;
+  std::istringstream lines(read_text(file));
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = fmt::format("{}:{}", file.string(), out.size() + 1);
+    out.push_back(parse_json(line, where));
+    for (const char* key : {"commit", "created", "runs"})
+      if (!out.back().is_object() || !out.back().contains(key))
+        throw Error(fmt::format("{}: no `{}`; expected a line that `clothbench check --log` wrote", where, key));
+  }
+  return out;
+}
+
+Page page_of(const RunTable& table, const std::vector<fs::path>& results, const fs::path& history = {}) {
+  return {heading_of(table, names_of(results)),
+          warnings_of(table),
+          tiles_of(table),
+          notes_of(table),
+          filled_sections(table),
+          history_of(history)};
 }
 
 std::string facts_of(const Heading& h) {
@@ -82,7 +104,7 @@ std::string withheld_note(const std::vector<const Row*>& rows) {
                                   count, count == 1 ? "" : "s", most);
 }
 
-void write_report(const std::vector<fs::path>& results, const fs::path& out) {
+void write_report(const std::vector<fs::path>& results, const fs::path& out, const fs::path& history) {
   const RunTable table(withhold_times(collect(results)));
   const auto write = [&](const std::string& name, const std::string& text) { write_file_atomically(out / name, text); };
   fs::create_directories(out);
@@ -90,7 +112,7 @@ void write_report(const std::vector<fs::path>& results, const fs::path& out) {
   write("runs.json", runs_json(table.runs()).dump(1) + "\n");
   write("series.csv", series_csv(table));
   write("trials.csv", trials_csv(table));
-  const Page page = page_of(table, results);
+  const Page page = page_of(table, results, history);
   std::string all, latex = "% Tables of this report for LaTeX; \\usepackage{booktabs}.\n";
   for (const PageSection& s : page.sections) {
     all += "## " + s.title + "\n\n";

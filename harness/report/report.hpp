@@ -42,8 +42,10 @@ std::string series_csv(const RunTable&);
 std::string trials_csv(const RunTable&);
 /// Writes report.md, tables.tex, runs.csv, runs.json, series.csv and trials.csv into `out`. Writes the page index.html
 /// if this program was built with Node, and its figures as images (draw_pictures) if Node is installed; otherwise
-/// prints the reason. Throws Error if a file cannot be read or written.
-void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out);
+/// prints the reason. `history`: a log of `clothbench check --log`; empty: none. Throws Error if a file cannot be read
+/// or written.
+void write_report(const std::vector<std::filesystem::path>& results, const std::filesystem::path& out,
+                  const std::filesystem::path& history = {});
 /// Prints head, failures, two tables and the location of the rest on the terminal. With few runs, the first table has
 /// one row per run.
 void print_console_report(const std::vector<std::filesystem::path>& results);

@@ -90,7 +90,10 @@ TimedTrial trial_from_json(const json& j, std::size_t stages) {
 
 void add_frame(const json& j, std::size_t vertices, AccuracyPass& pass) {
   const auto k = whole<std::size_t>(j.at("index"));
-  if (k == 0) pass = {};
+  if (k == 0) {
+    pass.position.clear();
+    pass = {.time_s = {}, .position = std::move(pass.position), .metrics = {}};  // keeps the memory
+  }
   expect(k == pass.time_s.size(), "a frame is missing");
   std::vector<float> position;
   unpack(j.at("position"), position);
@@ -289,6 +292,7 @@ RunRecord read_part(const fs::path& path, std::uintmax_t* complete_B) {
   const std::string bytes = content_of(path);
   RunRecord r;
   std::size_t at = 0;
+  r.accuracy.position.reserve(bytes.size() / sizeof(float));  // growth would copy large motions
   try {
     for (std::size_t end = end_of_item(bytes, 0); end <= bytes.size() && end > at; end = end_of_item(bytes, at)) {
       const json item = json::from_cbor(bytes.begin() + static_cast<std::ptrdiff_t>(at),

@@ -185,6 +185,7 @@ AccuracyPass SolverRun::run_accuracy(const TrialRules& rules,
   std::vector<MetricSeries> counts;
   solver_->reset();
   ClothState state;
+  pass.position.reserve(static_cast<std::size_t>(frames + 1) * scene.cloth.vertex_count() * 3);
   const auto observe = [&](int frame, StepStatus status) {
     fail(status, frame);
     try {

@@ -209,7 +209,8 @@ json page_document(const RunTable& table, const Page& page) {
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
   return {{"title", page.heading.title}, {"notes", page.notes},           {"sections", shown},
-          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()}};
+          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()},
+          {"history", page.history}};
 }
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {

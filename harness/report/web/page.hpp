@@ -35,6 +35,7 @@ struct Page {
   std::vector<Tile> tiles;
   std::vector<std::string> notes;  ///< on plugins, verdicts
   std::vector<PageSection> sections;
+  nlohmann::json history;  ///< lines of a log of `check --log`; empty: none
 };
 
 /// A cloth's motion, thinned in time and quantised. Frame f, axis a, vertex v: x = low_m[a] + step_m · q with
