@@ -4,8 +4,8 @@
 #   scripts/publish.sh --report OUT... [--to FOLDER] [--archive FILE.tar.xz] [--jobs N]
 # First form, exit status: 0: all studies of the table are complete. 75: the limit (default 570 s) was reached; call it again: complete studies
 # are skipped, finished runs stay. 2: bad input. Otherwise the status of the study that failed.
-# Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200). All OUT must
-# come from one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
+# Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200), from OUT of
+# one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH: the program (default:
 # build/release/clothbench, otherwise the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS are included.
 set -euo pipefail
@@ -16,16 +16,16 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 # SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {
   cat <<'END'
-gpu       table3            study table3 --trials 5 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
-gpu       hang              study hang --trials 3 --jobs JOBS
-gpu       work-precision    study work-precision --trials 1 --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS --jobs JOBS
-gpu       penetration       study penetration --trials 1 --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
+gpu       table3            study table3 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
+gpu       hang              study hang --jobs JOBS
+gpu       work-precision    study work-precision --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS --jobs JOBS
+gpu       penetration       study penetration --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
-gpu       scale             study scale --trials 3
-gpu       many-cloths       study many-cloths --trials 3
-gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 1
+gpu       scale             study scale
+gpu       many-cloths       study many-cloths --solver xpbd --solver bullet-soft PEERS
+gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 5
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
@@ -61,6 +61,7 @@ done
 for number in "$limit" "$jobs"; do [[ $number =~ ^[1-9][0-9]*$ ]] || fail "$number: expected a positive whole number"; done
 to=$(realpath -m "$to") out=${folders[0]}
 cd "$here"
+export __GL_SHADER_DISK_CACHE=1  # for root, NVIDIA's driver otherwise compiles all shaders again in each process: up to 18 s
 sources() { sed 's/.*, sources //' "$1"; }
 
 if [ -n "$report" ]; then
@@ -79,11 +80,14 @@ if [ -n "$report" ]; then
     for file in "${complete[@]}"; do [ "$(basename "${file%.done}" | sed 's/+.*//')" != "$name" ] || parts+=("${file%.done}"); done
     "$bench" report "${parts[@]}" -o "$scratch/$name" >"$scratch/$name.log" || { tail -5 "$scratch/$name.log" >&2; exit 1; }
     mkdir "$to/$name"
-    cp "$scratch/$name/report.md" "$scratch/$name/runs.csv" "$to/$name"
+    cp "$scratch/$name/report.md" "$to/$name"
+    xz -9 <"$scratch/$name/runs.csv" >"$to/$name/runs.csv.xz"
     mapfile -t figures < <(find "$scratch/$name" -name '*-wide.svg')
     [ ${#figures[@]} -eq 0 ] || { mkdir "$to/$name/figures" && cp "${figures[@]}" "$to/$name/figures"; }
   }
-  "$bench" report "${complete[@]%.done}" -o "$scratch/all" >/dev/null &
+  history=()
+  [ ! -f results/history.jsonl ] || history=(--history results/history.jsonl)
+  "$bench" report "${complete[@]%.done}" -o "$scratch/all" "${history[@]}" >/dev/null &
   processes=($!)
   for name in "${names[@]}"; do
     while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 0.2; done

@@ -61,7 +61,7 @@ struct Motions {
 };
 
 /// Reads trajectories from the runs' files by priority, at most 150 frames each, until the base64 reaches this size.
-Motions motions_of(const RunTable&, std::size_t budget_B = 3'500'000);
+Motions motions_of(const RunTable&, std::size_t budget_B = 2'800'000);
 /// Base64 of zlib of the text.
 std::string packed(const nlohmann::json&);
 /// Rounded to six digits; null if not finite.
