@@ -126,6 +126,9 @@ struct Adapter {
   Adapter(const char* step, const ClothbenchScene& s, std::uint32_t supports = kSupports)
       : scene(s), origin(centre(s)), stage{step, s.needs & supports, 0, std::nan(""), std::nan("")} {}
 
+  /// True in a solver on a GPU, which then has the functions device_s() and device_info().
+  static constexpr bool kOnGpu = false;
+
   const ClothbenchScene& scene;
   Point origin;           ///< origin of the engine's coordinates [m]
   ClothbenchStage stage;  ///< only one, because an engine's step cannot be divided from outside
@@ -211,6 +214,10 @@ ClothbenchPlugin plugin(const About& about, const ClothbenchSetting (&settings)[
     const std::string why = obstacle(Settings(settings), *scene);
     return why.empty() ? nullptr : kept(why);
   };
+  if constexpr (Solver::kOnGpu) {
+    p.device_s = [](void* self) { return static_cast<Solver*>(self)->device_s(); };
+    p.device_info = [](void* self, ClothbenchDevice* out) { *out = static_cast<Solver*>(self)->device_info(); };
+  }
   return p;
 }
 

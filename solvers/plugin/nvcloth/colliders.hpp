@@ -1,4 +1,4 @@
-/// Coordinates and colliders in NvCloth's form. Only nvcloth.cpp includes this file.
+/// Coordinates and colliders in NvCloth's form.
 #pragma once
 
 #include <NvCloth/Cloth.h>
