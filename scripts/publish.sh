@@ -33,6 +33,7 @@ software  contact+others    study contact --seed SEED --count 200 --solver paper
 software  stability         study stability --solver xpbd --solver paper PEERS --jobs JOBS
 peers     peers-hang        study solvers/plugin/studies/peers-hang.json
 peers     peers-margins     study solvers/plugin/studies/peers-margins.json
+peers     mujoco-ball       study solvers/plugin/studies/mujoco-ball.json
 quick     table3            study table3 --quick --trials 2
 quick     hang              study hang --quick --trials 1
 quick     penetration       study penetration --quick --trials 1 --solver xpbd --solver ballistic
@@ -123,7 +124,7 @@ seed=$((16#${commit:-1}))
 names=()
 for library in build/peers/*/libclothbench_*.so; do
   [ -e "$library" ] || continue
-  names+=("$(basename "$library" .so | sed 's/libclothbench_//')")
+  names+=("$(basename "$library" .so | sed 's/libclothbench_//; s/_/-/')")
   CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:+$CLOTHBENCH_PLUGINS:}$here/$library
 done
 export CLOTHBENCH_PLUGINS=${CLOTHBENCH_PLUGINS:-}
