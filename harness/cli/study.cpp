@@ -46,8 +46,11 @@ void print_drawn(const Study& study) {
     if (names.erase(item.scene.name) == 0) continue;
     const nlohmann::json drawn = nlohmann::json::parse(item.scene.json)["drawn"];
     std::string text = fmt::format("{}: speed {:.3g} m/s;", item.scene.name, drawn["speed_m_per_s"].get<double>());
+    std::set<std::string> run;
+    for (const std::size_t k : item.solvers) run.insert(study.solvers[k].solver);
     for (const auto& [name, value] : drawn["values"].items())
-      text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
+      if (const std::string of = name.substr(0, name.find('.')); run.contains(of) || !item.drawn_settings.contains(of))
+        text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
     fmt::print("{}\n", text);
   }
 }
@@ -59,8 +62,8 @@ Assets assets_of(const StudyArguments& a) {
 
 /// Refuses options that the study's protocol does not have.
 void check_options(const Study& study, const StudyArguments& a) {
-  if (is_drawn(study) || study.protocol == "stability-map") {
-    const std::string of = ": studies of protocol " + study.protocol + " have no timed trials";
+  if (!has_trials(study)) {
+    const std::string of = ": study " + study.name + " has no timed trials";
     if (a.with_rendering) throw Error("--with-rendering" + of);
     if (a.trials > 0) throw Error("--trials" + of);
     if (!a.sustained.seconds.empty()) throw Error("--sustained" + of);

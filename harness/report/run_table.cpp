@@ -290,6 +290,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+  mark_devices(rows_);
   mark_best_points(rows_);
   choose_leading(rows_);
   compare_times(rows_);

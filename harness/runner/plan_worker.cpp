@@ -158,6 +158,12 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
   throw Error("the study's process crashed more than twice per run", ExitCode::CheckFailed);
 }
 
+/// Runs with the most work begin first, so that the other workers do not wait for one long run at the end.
+double work_of(const RunSpec& s) {
+  return static_cast<double>(s.scene->time.frames()) * static_cast<double>(s.scene->cloth.vertex_count()) *
+         s.settings.value("iterations", 1.0) * std::max(1.0, s.settings.value("substeps", 1.0));
+}
+
 using Task = std::function<void(Worker&)>;
 
 /// Runs the tasks on `jobs` threads, in order as threads become free; each thread has its own worker (scratch/<k>).
@@ -201,21 +207,24 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
     const std::lock_guard lock(mutex);
     if (given.progress && !what.empty()) given.progress(what, 0, plan.size());
   };
-  std::vector<Task> tasks;
+  std::vector<std::vector<RunSpec>> parts;
   for (const auto& group : plan.groups) {
     std::map<std::string, std::vector<RunSpec>> by_solver;
     for (const RunSpec& spec : group) by_solver[spec.entry->info.name].push_back(spec);
-    for (auto& [solver, specs] : by_solver)
-      tasks.push_back([&, specs = std::move(specs)](Worker& worker) {
-        stop_if_interrupted(kTrialsKept);
-        RunPlan part;
-        part.groups = {specs};
-        part.rules = plan.rules;
-        part.protocol = plan.protocol;
-        part.untimed = true;
-        ask(worker, part, options, "", solver_limit_s(), kTrialsKept);
-      });
+    for (auto& [solver, specs] : by_solver) parts.push_back(std::move(specs));
   }
+  std::stable_sort(parts.begin(), parts.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
+  std::vector<Task> tasks;
+  for (const auto& specs : parts)
+    tasks.push_back([&](Worker& worker) {
+      stop_if_interrupted(kTrialsKept);
+      RunPlan part;
+      part.groups = {specs};
+      part.rules = plan.rules;
+      part.protocol = plan.protocol;
+      part.untimed = true;
+      ask(worker, part, options, "", solver_limit_s(), kTrialsKept);
+    });
   run_tasks(tasks, options);
 }
 
@@ -232,11 +241,7 @@ RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
         ended(spec);
       else
         todo.push_back(&spec);
-  const auto work = [](const RunSpec* s) {
-    return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
-  };
-  // The longest first, so that the other workers do not wait for one long run at the end.
-  std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
+  std::stable_sort(todo.begin(), todo.end(), [](auto* a, auto* b) { return work_of(*a) > work_of(*b); });
   std::mutex mutex;
   std::vector<Task> tasks;
   for (const RunSpec* spec : todo)

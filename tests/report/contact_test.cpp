@@ -209,9 +209,9 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "holds").substr(0, 3), "1/3") << "of the points with both claims";
   EXPECT_EQ(cell("all", "reading"), "reproducible");
   EXPECT_EQ(cell("all", "fewest dispatches"), "90") << "of the most expensive claim";
-  EXPECT_EQ(cell("all", "paper, best"), "clothbench study contact --seed 40 --count 2");
-  EXPECT_EQ(cell("c10", "paper, best"), "clothbench study contact --seed 4 --count 1");
-  EXPECT_EQ(cell("all", "values of paper, best"), "--set cloth.size_m=[0.5,0.5] --set solver.iterations=20")
+  EXPECT_EQ(cell("all", "best point"), "clothbench study contact --seed 40 --count 2");
+  EXPECT_EQ(cell("c10", "best point"), "clothbench study contact --seed 4 --count 1");
+  EXPECT_EQ(cell("all", "values of the best point"), "--set cloth.size_m=[0.5,0.5] --set solver.iterations=20")
       << "their scenes differ in friction";
   const Table contact = table_of(runs, "Contact");
   EXPECT_EQ(contact.rows.size(), 3u) << "the two scenes of that point";
@@ -231,7 +231,7 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "100–299 iterations"), "–") << "one claim says nothing about all";
   // At the cheapest point one claim was not run, so it is unknown whether both hold there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
-  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "paper, best"),
+  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "best point"),
             "1 of 2 claims: clothbench study contact --seed 4 --count 2");
   const std::vector<RunRecord> never = {claim("c8", 2, 1, 9), claim("c10", 20, 1, 7)};
   EXPECT_EQ(entry(table_of(never, kClaimTable), "paper", "all", "reading"), "–");
