@@ -12,8 +12,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
 # Columns: table (where the study runs); name (studies with equal names before "+" share a report); command of clothbench without --out.
-# PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
-# SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
+# PEERS: --solver for each engine in build/peers. JOBS: for --jobs. SEED: from the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {
   cat <<'END'
 gpu       table3            study table3 --trials 5 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
@@ -30,6 +29,7 @@ software  friction          study friction --trials 1 --solver xpbd --solver pap
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
+software  reproduction+software study reproduction --seed 7 --count 6
 software  stability         study stability --solver xpbd --solver paper PEERS --jobs JOBS
 peers     peers-hang        study solvers/plugin/studies/peers-hang.json
 peers     peers-margins     study solvers/plugin/studies/peers-margins.json

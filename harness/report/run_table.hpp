@@ -161,8 +161,8 @@ struct Row {
   /// Has a setting that the first tables and the tiles show, and by which ranks are counted.
   bool is_main() const { return setting == "default" || setting == "best" || is_best; }
   bool elsewhere = false;  ///< the same scene, solver and settings also ran on another device
-  bool is_best = false;  ///< has the cheapest settings that meet the largest number of claims in study `reproduction`
-  int rank = 0;          ///< by wall time: 1 + number of the scene's main runs that are faster; 0: not ranked
+  bool is_best = false;    ///< has the cheapest settings that meet the largest number of claims in study `reproduction`
+  int rank = 0;            ///< by wall time: 1 + number of the scene's main runs that are faster; 0: not ranked
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }
@@ -189,8 +189,6 @@ struct Row {
   nlohmann::json drawn() const;
 };
 
-/// Sets Row::elsewhere; a software device's copy of a run is then no point of study `reproduction`.
-void mark_devices(std::vector<Row>&);
 /// Sets Row::is_best. Rows must not move after this.
 void mark_best_points(std::vector<Row>&);
 /// True if the run's scene has colliders or hands that grip the cloth.

@@ -195,9 +195,10 @@ View claims() {
          "Fraction of the box's points at which a claim holds, with Wilson's 95 % interval, also by iterations × "
          "substeps per frame. Reproduced: the claim holds at every point; reproducible: at some. Row all: every claim "
          "holds at the same point. Fewest dispatches: per frame, at the cheapest such point, in its most expensive "
-         "scene; GPU time there: median of the few frames that are timed once all points have run, one point at a "
-         "time. Best point: the command that repeats the cheapest of the points where the largest number of the "
-         "row's claims hold, and its values as options for other scenes; in row all, the values that all scenes share. "
+         "scene. Best point: the command that repeats the cheapest of the points where the largest number of the "
+         "row's claims hold; its GPU time per frame in its most expensive scene, the median of the few frames that "
+         "are timed once all points have run, one point at a time; and its values as options for other scenes, in row "
+         "all the values that all scenes share. "
          "Missed there: criteria violated at this point; if no claim of the row holds anywhere, at the cheapest point "
          "that violates the fewest. At all points with: points beyond this value of one setting all meet the row's "
          "claims. c11-folds: after the sweep, roughness is below NvCloth's in the published study penetration.",
@@ -212,49 +213,17 @@ View claims() {
                {"holds", share},
                at_best("fewest dispatches",
                        [](const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }),
-               at_best("GPU time there [ms]",
-                       [](const Point& p) { return p.held == p.claims ? number_cell(1e3 * p.device_s, 3) : Cell(); }),
                {"at all points with", always_with},
                at_best(
                    "missed there", [](const Point& p) { return Cell(joined(p.missed, "; ")); }, true),
                at_best("best point", command_of),
+               at_best("its GPU time [ms]", [](const Point& p) { return number_cell(1e3 * p.device_s, 3); }),
                at_best("values of the best point", options_of)};
   // Iterations per frame, over all substeps. Equal for all claims of a point, because they share the settings.
   const auto iterations = [](const Row& r) { return claim_point(r).iterations * claim_point(r).substeps; };
   v.across = by_bands({1, 10, 30, 100, 300}, iterations, share, 1, " iterations");
   v.by_key = true;
   v.more = box_of;
-  return v;
-}
-
-/// Sum of a value over runs.
-double sum_of(const Group& g, const char* name) {
-  double sum = 0;
-  for (const Row* r : g) sum += r->value(name);
-  return sum;
-}
-
-View devices() {
-  View v{"rates", "Work and rate by device",
-         "Runs with the same scene and settings on several devices; row all: the sums. Work does not depend on the "
-         "device: dispatches are equal, bytes nearly (retries of compare-and-swap differ). Only the rate does: GPU "
-         "time per frame, per dispatch and per byte read. So work is known for a headset, but not its rate.",
-         [](const Row& r) { return r.elsewhere && std::isfinite(r.value("frame_device_median_s")); }};
-  const auto device = [](const Row& r) { return short_name(environment_text(*r.run, "gpu")); };
-  v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {"all", true}}; }},
-            key("solver", [](const Row& r) { return label_of(*r.run); }, true), key("device", device)};
-  const auto add = [&](const char* head, int digits, double scale, const char* of, const char* per = nullptr) {
-    v.columns.push_back({head, [=](const Group& g, const Keys&) {
-                           return number_cell(scale * sum_of(g, of) / (per ? sum_of(g, per) : 1), digits);
-                         }});
-  };
-  add("dispatches", 1, 1, "dispatches");
-  add("read [MB]", 4, 1e-6, "read_B_per_frame");
-  add("written [MB]", 4, 1e-6, "write_B_per_frame");
-  add("GPU time [ms]", 3, 1e3, "frame_device_median_s");
-  add("µs per dispatch", 3, 1e6, "frame_device_median_s", "dispatches");
-  add("ns per byte read", 3, 1e9, "frame_device_median_s", "read_B_per_frame");
-  v.timed = true;
   return v;
 }
 
@@ -393,18 +362,6 @@ ClaimPoint claim_point(const Row& r) {
   return out;
 }
 
-void mark_devices(std::vector<Row>& rows) {
-  const auto key = [](const Row& r) { return r.run->header.scenario_sha256 + label_of(*r.run); };
-  std::map<std::string, std::set<std::string>> devices;
-  for (const Row& r : rows)
-    if (r.published < 0) devices[key(r)].insert(environment_text(*r.run, "gpu"));
-  for (Row& r : rows) {
-    r.elsewhere = r.published < 0 && devices[key(r)].size() > 1;
-    const json software = environment_of(*r.run, "gpu_is_software");
-    if (r.elsewhere && r.part == Part::Claims && software.is_boolean() && software.get<bool>()) r.part = Part::None;
-  }
-}
-
 void mark_best_points(std::vector<Row>& rows) {
   std::map<std::string, Group> solvers;
   for (const Row& r : rows)
@@ -422,6 +379,6 @@ void mark_best_points(std::vector<Row>& rows) {
   }
 }
 
-std::vector<View> reproduction_views() { return {work_model(), devices(), claims()}; }
+std::vector<View> reproduction_views() { return {work_model(), claims()}; }
 
 }  // namespace clothbench

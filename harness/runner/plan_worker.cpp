@@ -166,15 +166,17 @@ double work_of(const RunSpec& s) {
 
 using Task = std::function<void(Worker&)>;
 
-/// Runs the tasks on `jobs` threads, in order as threads become free; each thread has its own worker (scratch/<k>).
-/// After an exception no further task begins, and the first exception is thrown once all threads have ended.
-void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program, const fs::path& scratch) {
+/// Runs the tasks on options.jobs threads, in order as threads become free; each thread has its own worker. After an
+/// exception no further task begins, and the first exception is thrown once all threads have ended.
+void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
+  // Processes of one study (--job) share its folder, so scratch files are not in it.
+  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
   std::atomic<std::size_t> next{0};
   std::exception_ptr first;
   std::mutex mutex;
   const auto work = [&](int k) {
     try {
-      Worker worker(program, scratch / std::to_string(k));
+      Worker worker(options.program, scratch / std::to_string(k));
       for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
     } catch (...) {
       next = tasks.size();
@@ -183,17 +185,10 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program
     }
   };
   std::vector<std::thread> threads;
-  for (int k = 1; k < std::min<int>(jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
+  for (int k = 1; k < std::min<int>(options.jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
   work(0);
   for (std::thread& t : threads) t.join();
   if (first) std::rethrow_exception(first);
-}
-
-/// Runs the tasks on options.jobs workers.
-void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
-  // Processes of one study (--job) share its folder, so scratch files are not in it.
-  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
-  if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
 }
@@ -207,24 +202,23 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
     const std::lock_guard lock(mutex);
     if (given.progress && !what.empty()) given.progress(what, 0, plan.size());
   };
-  std::vector<std::vector<RunSpec>> parts;
-  for (const auto& group : plan.groups) {
+  auto groups = plan.groups;
+  std::stable_sort(groups.begin(), groups.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
+  std::vector<Task> tasks;
+  for (const auto& group : groups) {
     std::map<std::string, std::vector<RunSpec>> by_solver;
     for (const RunSpec& spec : group) by_solver[spec.entry->info.name].push_back(spec);
-    for (auto& [solver, specs] : by_solver) parts.push_back(std::move(specs));
+    for (auto& [solver, specs] : by_solver)
+      tasks.push_back([&, specs = std::move(specs)](Worker& worker) {
+        stop_if_interrupted(kTrialsKept);
+        RunPlan part;
+        part.groups = {specs};
+        part.rules = plan.rules;
+        part.protocol = plan.protocol;
+        part.untimed = true;
+        ask(worker, part, options, "", solver_limit_s(), kTrialsKept);
+      });
   }
-  std::stable_sort(parts.begin(), parts.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
-  std::vector<Task> tasks;
-  for (const auto& specs : parts)
-    tasks.push_back([&](Worker& worker) {
-      stop_if_interrupted(kTrialsKept);
-      RunPlan part;
-      part.groups = {specs};
-      part.rules = plan.rules;
-      part.protocol = plan.protocol;
-      part.untimed = true;
-      ask(worker, part, options, "", solver_limit_s(), kTrialsKept);
-    });
   run_tasks(tasks, options);
 }
 

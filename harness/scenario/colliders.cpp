@@ -141,10 +141,9 @@ class StageReader {
       reader_.refuse("/collider", fmt::format("/colliders/{}: expected a collider of type room with a table", index));
     const auto& [box, mesh] = table->second;
     const double drop = over["drop_m"].get<double>(), inset = over["inset_m"].get<double>();
-    const TablePose at =
-        over["at"] == "center"
-            ? flat_over(box, mesh, scene_.cloth, drop, inset)
-            : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians, inset);
+    const TablePose at = over["at"] == "center" ? flat_over(box, mesh, scene_.cloth, drop, inset)
+                                                : corner_first_over(box, scene_.cloth, drop,
+                                                                    over["tilt_deg"].get<double>() * kRadians, inset);
     scene_.cloth.center_m = at.center_m;
     scene_.cloth.axis_u = at.axis_u;
     scene_.cloth.axis_v = at.axis_v;

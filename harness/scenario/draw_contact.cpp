@@ -132,9 +132,9 @@ double draw_keys(json& scene, DrawnValues& draw) {
   return 0;
 }
 
-/// Point `index` of a sequence that fills the unit cube evenly in its first kBoxSides coordinates; all others are
-/// random. A random tenth of the points moves to the nearest corner. Source: M. Roberts, The unreasonable effectiveness
-/// of quasirandom sequences.
+/// Point `index` of a sequence that fills the unit cube evenly in kBoxSides coordinates; further ones are random. A
+/// tenth of the points moves to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom
+/// sequences.
 class BoxPoint {
  public:
   explicit BoxPoint(std::uint64_t index) : index_(index), dice_(index, "corner"), corner_(dice_.unit() < kCorners) {

@@ -371,8 +371,4 @@ std::string StudySolver::name() const { return label == "default" ? solver : sol
 
 bool is_drawn(const Study& study) { return study.protocol == "contact"; }
 
-bool has_trials(const Study& study) {
-  return study.protocol != "stability-map" && (!is_drawn(study) || study.rules.frames > 0);
-}
-
 }  // namespace clothbench

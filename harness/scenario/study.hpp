@@ -74,8 +74,6 @@ Study load_study(const std::string& name_or_path, const StudyOptions& = {});
 
 /// True for protocol contact, whose scenes are generated from --seed.
 bool is_drawn(const Study&);
-/// False: all runs are untimed. In protocol contact, trials need a number of frames.
-bool has_trials(const Study&);
 
 /// True if the file is a study rather than a scene (has "protocol").
 bool is_study(const std::string& name_or_path);

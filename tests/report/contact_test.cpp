@@ -198,6 +198,21 @@ RunRecord claim(const std::string& kind, int iterations, double held, double dis
 }
 
 constexpr const char* kClaimTable = "Claims of the article, over what it leaves open";
+TEST(Claims, CountAPointOnceAndCompareItsDevices) {
+  std::vector<RunRecord> runs = {claim("c8", 2, 0, 9), claim("c8", 2, 1, 9), claim("c8", 4, 1, 11)};
+  for (RunRecord& r : runs) {
+    r.header.environment["gpu_is_software"] = &r == runs.data();
+    r.header.environment["gpu"] = &r == runs.data() ? "software" : "GPU";
+    r.summary["frame_device_median_s"] = 1e-6 * r.summary["dispatches"];
+  }
+  const Table t = table_of(runs, kClaimTable);
+  EXPECT_EQ(entry(t, "paper", "c8", "holds").substr(0, 3), "2/2") << "on the GPU";
+  EXPECT_EQ(entry(t, "paper", "c8", "its GPU time [ms]"), "0.00900");
+  const Table devices = table_of(runs, "Work and rate by device");
+  ASSERT_EQ(devices.rows.size(), 5u) << "one run and the sum, on two devices";
+  EXPECT_EQ(devices.rows[1], (std::vector<std::string>{"contact-2-c8-c8", "paper", "GPU", "9", "0.00900", "1.00"}));
+}
+
 TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   const std::vector<RunRecord> runs = {claim("c8", 2, 0, 9),    claim("c10", 2, 1, 7),   claim("c8", 20, 1, 90),
                                        claim("c10", 20, 1, 70), claim("c8", 40, 1, 180), claim("c10", 40, NAN, 150),

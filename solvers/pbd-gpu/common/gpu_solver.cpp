@@ -9,8 +9,7 @@
 
 namespace clothbench::pbd_gpu {
 
-/// A frame that takes longer has timed out. Workers side by side share a GPU, so a frame can take many times as long as
-/// alone; software devices are slow.
+/// A frame that takes longer has timed out. Concurrent processes share a GPU; software devices are slow.
 constexpr double kTimeout_s = 30, kSoftwareTimeout_s = 300;
 
 /// Two, as in an application that shows one frame while the next is computed.
