@@ -96,7 +96,7 @@ View frame_times() {
              "failed, and cloths with an edge longer than twice its "
              "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
              kIntervalMethod,
-         [](const Row& r) { return r.published < 0 && r.part != Part::Claims && !r.in_sweep(); }};
+         [](const Row& r) { return r.published < 0 && !r.drawn().contains("settings") && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
     const auto clock =
@@ -130,7 +130,7 @@ View memory() {
          "frames; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or of "
          "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
-           return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
+           return (r.part == Part::Rates || r.part == Part::Contact || r.part == Part::Truth) && !r.in_sweep() &&
                   r.status() != "unsupported" && std::isfinite(r.value("device_memory_B"));
          }};
   v.keys = {scene_key(), solver_key(), sides_key()};
