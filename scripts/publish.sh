@@ -12,26 +12,25 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 
 # Columns: table (where the study runs); name (studies with equal names before "+" share a report); command of clothbench without --out.
-# PEERS: --solver for each engine in build/peers. JOBS: the number for --jobs.
-# SEED: from the first digits of the commit's hash, so that nobody can choose scenes in favour of a solver.
+# PEERS: --solver for each engine in build/peers. JOBS: for --jobs. SEED: from the commit's hash, so that nobody can choose scenes in favour of a solver.
 studies() {
   cat <<'END'
 gpu       table3            study table3 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
-gpu       hang              study hang --jobs JOBS
+gpu       hang              study hang --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
 gpu       work-precision    study work-precision --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS --jobs JOBS
 gpu       penetration       study penetration --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
-gpu       scale             study scale
-gpu       many-cloths       study many-cloths --solver xpbd --solver bullet-soft PEERS
+gpu       scale             study scale --jobs JOBS
+gpu       many-cloths       study many-cloths --solver xpbd --solver bullet-soft PEERS --jobs JOBS
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 5
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
+software  reproduction+software study reproduction --seed 7 --count 6
 software  stability         study stability --solver xpbd --solver paper PEERS --jobs JOBS
-peers     peers-hang        study solvers/plugin/studies/peers-hang.json
 peers     peers-margins     study solvers/plugin/studies/peers-margins.json
 peers     mujoco-ball       study solvers/plugin/studies/mujoco-ball.json
 quick     table3            study table3 --quick --trials 2

@@ -46,21 +46,19 @@ void print_drawn(const Study& study) {
     if (names.erase(item.scene.name) == 0) continue;
     const nlohmann::json drawn = nlohmann::json::parse(item.scene.json)["drawn"];
     std::string text = fmt::format("{}: speed {:.3g} m/s;", item.scene.name, drawn["speed_m_per_s"].get<double>());
+    std::set<std::string> run;
+    for (const std::size_t k : item.solvers) run.insert(study.solvers[k].solver);
     for (const auto& [name, value] : drawn["values"].items())
-      text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
+      if (const std::string of = name.substr(0, name.find('.')); run.contains(of) || !item.drawn_settings.contains(of))
+        text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
     fmt::print("{}\n", text);
   }
 }
 
-/// Random scenes need scanned assets unless --procedural is given.
-Assets assets_of(const StudyArguments& a) {
-  return asset_policy(a.require_assets || (!a.procedural && is_study_of(a.study, "contact")));
-}
-
 /// Refuses options that the study's protocol does not have.
-void check_options(const Study& study, const StudyArguments& a) {
-  if (is_drawn(study) || study.protocol == "stability-map") {
-    const std::string of = ": studies of protocol " + study.protocol + " have no timed trials";
+void check_options(const Study& study, bool has_trials, const StudyArguments& a) {
+  if (!has_trials) {
+    const std::string of = ": study " + study.name + " has no timed trials";
     if (a.with_rendering) throw Error("--with-rendering" + of);
     if (a.trials > 0) throw Error("--trials" + of);
     if (!a.sustained.seconds.empty()) throw Error("--sustained" + of);
@@ -85,12 +83,14 @@ void run_study(StudyArguments& a, Console& console) {
   if (a.procedural && a.require_assets)
     throw Error("--procedural and --require-assets exclude each other; leave one out");
   if (a.procedural) setenv("CLOTHBENCH_ASSETS", "procedural", 1);  // for worker processes too
+  // Random scenes need scanned assets unless --procedural is given.
+  const Assets assets = asset_policy(a.require_assets || (!a.procedural && is_study_of(a.study, "contact")));
   Study study =
-      load_study(a.study, {overrides.scene, length, assets_of(a), a.only, knobs_of_plugins(a.only), a.seed, a.count});
-  check_options(study, a);
+      load_study(a.study, {overrides.scene, length, assets, a.only, knobs_of_plugins(a.only), a.seed, a.count});
   const bool drawn = is_drawn(study);
-  if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
   RunPlan plan = plan_study(study);
+  check_options(study, !plan.apart, a);
+  if (a.with_rendering) study.definition["rendering"] = {{"eyes", 2}, {"pixels", a.eye}};
   if (a.trials > 0) plan.rules.trials = a.trials;
   if (a.with_rendering) plan.rules.rendering = rendering_of(a.eye);
   a.sustained.apply_to(plan);

@@ -109,6 +109,23 @@ void compare_times(std::vector<Row>& all) {
   }
 }
 
+/// Sets Row::elsewhere. A run of study `reproduction` counts once, on a GPU if there is one; its copies get no part.
+void compare_devices(std::vector<Row>& rows) {
+  const auto key = [](const Row& r) { return r.run->header.scenario_json + label_of(*r.run); };
+  const auto is_software = [](const Row* r) { return environment_of(*r->run, "gpu_is_software") == true; };
+  std::map<std::string, std::pair<const Row*, std::set<std::string>>> found;
+  for (const Row& r : rows) {
+    auto& [point, devices] = found[key(r)];
+    devices.insert(environment_text(*r.run, "gpu"));
+    if (point == nullptr || (is_software(point) && !is_software(&r))) point = &r;
+  }
+  for (Row& r : rows) {
+    const auto& [point, devices] = found.at(key(r));
+    r.elsewhere = r.published < 0 && devices.size() > 1;
+    if (r.part == Part::Claims && point != &r) r.part = Part::None;
+  }
+}
+
 }  // namespace
 
 json scenario_of(const RunRecord& c) {
@@ -290,6 +307,7 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
                       sides, r.resolution.size());
   };
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return key(a) < key(b); });
+  compare_devices(rows_);
   mark_best_points(rows_);
   choose_leading(rows_);
   compare_times(rows_);

@@ -160,8 +160,9 @@ struct Row {
   bool in_sweep() const { return part == Part::Truth && setting.find('=') != std::string::npos; }
   /// Has a setting that the first tables and the tiles show, and by which ranks are counted.
   bool is_main() const { return setting == "default" || setting == "best" || is_best; }
-  bool is_best = false;  ///< has the cheapest settings that meet the largest number of claims in study `reproduction`
-  int rank = 0;          ///< by wall time: 1 + number of the scene's main runs that are faster; 0: not ranked
+  bool elsewhere = false;  ///< the same scene, solver and settings also ran on another device
+  bool is_best = false;    ///< has the cheapest settings that meet the largest number of claims in study `reproduction`
+  int rank = 0;            ///< by wall time: 1 + number of the scene's main runs that are faster; 0: not ranked
 
   std::string label() const;  ///< "xpbd substeps=4 (2)"
   int frames() const { return run->trials.empty() ? 0 : run->trials.front().frames(); }

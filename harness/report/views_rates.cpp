@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "report/report.hpp"
 #include "report/view.hpp"
@@ -95,7 +96,7 @@ View frame_times() {
              "failed, and cloths with an edge longer than twice its "
              "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
              kIntervalMethod,
-         [](const Row& r) { return r.published < 0 && !r.in_sweep(); }};
+         [](const Row& r) { return r.published < 0 && !r.drawn().contains("settings") && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
     const auto clock =
@@ -129,7 +130,7 @@ View memory() {
          "frames; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or of "
          "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
          [](const Row& r) {
-           return r.part != Part::Generated && r.part != Part::Claims && r.part != Part::Stability && !r.in_sweep() &&
+           return (r.part == Part::Rates || r.part == Part::Contact || r.part == Part::Truth) && !r.in_sweep() &&
                   r.status() != "unsupported" && std::isfinite(r.value("device_memory_B"));
          }};
   v.keys = {scene_key(), solver_key(), sides_key()};
@@ -201,6 +202,36 @@ View sustained() {
   return v;
 }
 
+View devices() {
+  View v{"rates", "Work and rate by device",
+         "Runs with the same scene and settings on several devices; row all: the sums. Work does not depend on the "
+         "device (only bytes, a little: retries of compare-and-swap differ), GPU time per dispatch and per byte does.",
+         [](const Row& r) { return r.elsewhere && std::isfinite(r.value("frame_device_median_s")); }};
+  v.keys = {{"scene",
+             [](const Row& r) {
+               return Keys{r.scene, {"all", true}};
+             }},
+            key(
+                "solver", [](const Row& r) { return label_of(*r.run); }, true),
+            key("device", [](const Row& r) { return environment_text(*r.run, "gpu"); })};
+  const auto add = [&](const char* head, int digits, double scale, const char* of, const char* per = nullptr) {
+    const auto sum = [](const Group& g, const char* name) {
+      return std::accumulate(g.begin(), g.end(), 0.0, [=](double s, const Row* r) { return s + r->value(name); });
+    };
+    v.columns.push_back({head, [=](const Group& g, const Keys&) {
+                           return number_cell(scale * sum(g, of) / (per ? sum(g, per) : 1), digits);
+                         }});
+  };
+  add("dispatches", 1, 1, "dispatches");
+  add("read [MB]", 4, 1e-6, "read_B_per_frame");
+  add("written [MB]", 4, 1e-6, "write_B_per_frame");
+  add("GPU time [ms]", 3, 1e3, "frame_device_median_s");
+  add("µs per dispatch", 3, 1e6, "frame_device_median_s", "dispatches");
+  add("ns per byte read", 3, 1e9, "frame_device_median_s", "read_B_per_frame");
+  v.by_key = v.timed = true;
+  return v;
+}
+
 View in_short(std::function<bool(const Row&)> where) {
   View v{
       "overview", "In short",
@@ -265,7 +296,7 @@ void add_tail_columns(View& v, const Pick& pick) {
 std::vector<View> rate_views() {
   View leading = in_short(&Row::leads);
   leading.title = "Leading scenes with contact";
-  return {std::move(leading), frame_times(), sustained(), memory()};
+  return {std::move(leading), devices(), frame_times(), sustained(), memory()};
 }
 
 Table in_short_table(const RunTable& table) {

@@ -158,17 +158,25 @@ RunResult ask(Worker& worker, const RunPlan& plan, const RunOptions& options, co
   throw Error("the study's process crashed more than twice per run", ExitCode::CheckFailed);
 }
 
+/// Runs with the most work begin first, so that the other workers do not wait for one long run at the end.
+double work_of(const RunSpec& s) {
+  return static_cast<double>(s.scene->time.frames()) * static_cast<double>(s.scene->cloth.vertex_count()) *
+         s.settings.value("iterations", 1.0) * std::max(1.0, s.settings.value("substeps", 1.0));
+}
+
 using Task = std::function<void(Worker&)>;
 
-/// Runs the tasks on `jobs` threads, in order as threads become free; each thread has its own worker (scratch/<k>).
-/// After an exception no further task begins, and the first exception is thrown once all threads have ended.
-void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program, const fs::path& scratch) {
+/// Runs the tasks on options.jobs threads, in order as threads become free; each thread has its own worker. After an
+/// exception no further task begins, and the first exception is thrown once all threads have ended.
+void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
+  // Processes of one study (--job) share its folder, so scratch files are not in it.
+  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
   std::atomic<std::size_t> next{0};
   std::exception_ptr first;
   std::mutex mutex;
   const auto work = [&](int k) {
     try {
-      Worker worker(program, scratch / std::to_string(k));
+      Worker worker(options.program, scratch / std::to_string(k));
       for (std::size_t task = next++; task < tasks.size(); task = next++) tasks[task](worker);
     } catch (...) {
       next = tasks.size();
@@ -177,17 +185,10 @@ void run_tasks(const std::vector<Task>& tasks, int jobs, const fs::path& program
     }
   };
   std::vector<std::thread> threads;
-  for (int k = 1; k < std::min<int>(jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
+  for (int k = 1; k < std::min<int>(options.jobs, static_cast<int>(tasks.size())); ++k) threads.emplace_back(work, k);
   work(0);
   for (std::thread& t : threads) t.join();
   if (first) std::rethrow_exception(first);
-}
-
-/// Runs the tasks on options.jobs workers.
-void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
-  // Processes of one study (--job) share its folder, so scratch files are not in it.
-  const fs::path scratch = fs::temp_directory_path() / fmt::format("clothbench-workers-{}", getpid());
-  if (!tasks.empty()) run_tasks(tasks, options.jobs, options.program, scratch);
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
 }
@@ -201,8 +202,10 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
     const std::lock_guard lock(mutex);
     if (given.progress && !what.empty()) given.progress(what, 0, plan.size());
   };
+  auto groups = plan.groups;
+  std::stable_sort(groups.begin(), groups.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
   std::vector<Task> tasks;
-  for (const auto& group : plan.groups) {
+  for (const auto& group : groups) {
     std::map<std::string, std::vector<RunSpec>> by_solver;
     for (const RunSpec& spec : group) by_solver[spec.entry->info.name].push_back(spec);
     for (auto& [solver, specs] : by_solver)
@@ -232,11 +235,7 @@ RunResult execute_apart(const RunPlan& plan, const RunOptions& options) {
         ended(spec);
       else
         todo.push_back(&spec);
-  const auto work = [](const RunSpec* s) {
-    return static_cast<double>(s->scene->time.frames()) * static_cast<double>(s->scene->cloth.vertex_count());
-  };
-  // The longest first, so that the other workers do not wait for one long run at the end.
-  std::stable_sort(todo.begin(), todo.end(), [&](auto* a, auto* b) { return work(a) > work(b); });
+  std::stable_sort(todo.begin(), todo.end(), [](auto* a, auto* b) { return work_of(*a) > work_of(*b); });
   std::mutex mutex;
   std::vector<Task> tasks;
   for (const RunSpec* spec : todo)

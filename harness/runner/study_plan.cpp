@@ -104,7 +104,7 @@ RunPlan plan_study(const Study& study, const std::function<const SolverEntry*(co
                 rules.agree,    study.pipelined};
   plan.references = study.protocol == "work-precision";
   if (plan.references) plan.rules.profiled_frames = 0;
-  plan.apart = study.protocol == "contact" || study.protocol == "stability-map";
+  plan.apart = study.protocol == "stability-map" || (is_drawn(study) && rules.frames == 0);
   if (plan.apart) plan.rules.trials = 0;
   std::vector<const SolverEntry*> entries;
   for (const StudySolver& s : study.solvers) entries.push_back(s.joined ? &find_solver(s.solver) : lookup(s.solver));

@@ -68,17 +68,19 @@ struct TablePose {
   Vec3 center_m{}, axis_u{}, axis_v{};
 };
 
-/// Horizontal, centred on the table, aligned with its sides, `drop_m` above the highest point of `mesh` below the
-/// cloth. Throws Error if no part of the mesh is below the cloth.
-TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m) {
+/// Horizontal, aligned with the table's sides, `inset_m` from its middle, `drop_m` above the highest point of `mesh`
+/// below the cloth. Throws Error if no part of the mesh is below the cloth.
+TablePose flat_over(const assets::Table& table, const ColliderMesh& mesh, const Cloth& cloth, double drop_m,
+                    double inset_m) {
   const Edges e = edges_of(table);
+  const Vector center = e.center - inset_m * e.across;
   const double highest =
-      highest_below(mesh, {to_vec3(e.center), {to_vec3(e.along), to_vec3(e.across)}, {cloth.width_m, cloth.height_m}});
+      highest_below(mesh, {to_vec3(center), {to_vec3(e.along), to_vec3(e.across)}, {cloth.width_m, cloth.height_m}});
   if (!std::isfinite(highest))
     throw Error("/cloth/pose/over_table: expected a part of the table's mesh below the cloth");
   // axis_u x axis_v points down, as for the sheets of other scenes with (u, v) = (x, z).
   Vector v = e.along.cross(Vector::UnitY());
-  return {{e.center.x(), highest + drop_m, e.center.z()}, to_vec3(e.along), to_vec3(v)};
+  return {{center.x(), highest + drop_m, center.z()}, to_vec3(e.along), to_vec3(v)};
 }
 
 /// Corner first: the lowest corner is `drop_m` above the table and `inset_m` inside the middle of a long edge. One
@@ -138,11 +140,10 @@ class StageReader {
     if (table == tables_.end())
       reader_.refuse("/collider", fmt::format("/colliders/{}: expected a collider of type room with a table", index));
     const auto& [box, mesh] = table->second;
-    const double drop = over["drop_m"].get<double>();
-    const TablePose at = over["at"] == "center"
-                             ? flat_over(box, mesh, scene_.cloth, drop)
-                             : corner_first_over(box, scene_.cloth, drop, over["tilt_deg"].get<double>() * kRadians,
-                                                 over["inset_m"].get<double>());
+    const double drop = over["drop_m"].get<double>(), inset = over["inset_m"].get<double>();
+    const TablePose at = over["at"] == "center" ? flat_over(box, mesh, scene_.cloth, drop, inset)
+                                                : corner_first_over(box, scene_.cloth, drop,
+                                                                    over["tilt_deg"].get<double>() * kRadians, inset);
     scene_.cloth.center_m = at.center_m;
     scene_.cloth.axis_u = at.axis_u;
     scene_.cloth.axis_v = at.axis_v;

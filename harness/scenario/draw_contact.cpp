@@ -132,17 +132,18 @@ double draw_keys(json& scene, DrawnValues& draw) {
   return 0;
 }
 
-/// Point `index` of a sequence that fills the unit cube evenly in its first kBoxSides coordinates; a random tenth of
-/// the points moves to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences.
+/// Point `index` of a sequence that fills the unit cube evenly in kBoxSides coordinates; further ones are random. A
+/// tenth of the points moves to the nearest corner. Source: M. Roberts, The unreasonable effectiveness of quasirandom
+/// sequences.
 class BoxPoint {
  public:
-  explicit BoxPoint(std::uint64_t index) : index_(index), corner_(Dice(index, "corner").unit() < kCorners) {
+  explicit BoxPoint(std::uint64_t index) : index_(index), dice_(index, "corner"), corner_(dice_.unit() < kCorners) {
     for (int k = 0; k < 64; ++k) root_ = std::pow(1 + root_, 1.0 / (kBoxSides + 1));
   }
   /// The next coordinate, in [0, 1].
   double next() {
     power_ /= root_;
-    const double u = std::fmod(0.5 + static_cast<double>(index_) * power_, 1.0);
+    const double u = ++used_ > kBoxSides ? dice_.unit() : std::fmod(0.5 + static_cast<double>(index_) * power_, 1.0);
     return !corner_ ? u : u < 0.5 ? 0 : 1;
   }
 
@@ -150,8 +151,10 @@ class BoxPoint {
   static constexpr int kBoxSides = 16;
   static constexpr double kCorners = 0.1;
   const std::uint64_t index_;
+  Dice dice_;
   const bool corner_;
   double root_ = 1, power_ = 1;
+  int used_ = 0;
 };
 
 /// The value at the fraction `u` of a range or a list of words; an integer if `may_be_whole` and both bounds are.

@@ -198,6 +198,21 @@ RunRecord claim(const std::string& kind, int iterations, double held, double dis
 }
 
 constexpr const char* kClaimTable = "Claims of the article, over what it leaves open";
+TEST(Claims, CountAPointOnceAndCompareItsDevices) {
+  std::vector<RunRecord> runs = {claim("c8", 2, 0, 9), claim("c8", 2, 1, 9), claim("c8", 4, 1, 11)};
+  for (RunRecord& r : runs) {
+    r.header.environment["gpu_is_software"] = &r == runs.data();
+    r.header.environment["gpu"] = &r == runs.data() ? "software" : "GPU";
+    r.summary["frame_device_median_s"] = 1e-6 * r.summary["dispatches"];
+  }
+  const Table t = table_of(runs, kClaimTable);
+  EXPECT_EQ(entry(t, "paper", "c8", "holds").substr(0, 3), "2/2") << "on the GPU";
+  EXPECT_EQ(entry(t, "paper", "c8", "its GPU time [ms]"), "0.00900");
+  const Table devices = table_of(runs, "Work and rate by device");
+  ASSERT_EQ(devices.rows.size(), 5u) << "one run and the sum, on two devices";
+  EXPECT_EQ(devices.rows[1], (std::vector<std::string>{"contact-2-c8-c8", "paper", "GPU", "9", "0.00900", "1.00"}));
+}
+
 TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   const std::vector<RunRecord> runs = {claim("c8", 2, 0, 9),    claim("c10", 2, 1, 7),   claim("c8", 20, 1, 90),
                                        claim("c10", 20, 1, 70), claim("c8", 40, 1, 180), claim("c10", 40, NAN, 150),
@@ -209,9 +224,9 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "holds").substr(0, 3), "1/3") << "of the points with both claims";
   EXPECT_EQ(cell("all", "reading"), "reproducible");
   EXPECT_EQ(cell("all", "fewest dispatches"), "90") << "of the most expensive claim";
-  EXPECT_EQ(cell("all", "paper, best"), "clothbench study contact --seed 40 --count 2");
-  EXPECT_EQ(cell("c10", "paper, best"), "clothbench study contact --seed 4 --count 1");
-  EXPECT_EQ(cell("all", "values of paper, best"), "--set cloth.size_m=[0.5,0.5] --set solver.iterations=20")
+  EXPECT_EQ(cell("all", "best point"), "clothbench study contact --seed 40 --count 2");
+  EXPECT_EQ(cell("c10", "best point"), "clothbench study contact --seed 4 --count 1");
+  EXPECT_EQ(cell("all", "values of the best point"), "--set cloth.size_m=[0.5,0.5] --set solver.iterations=20")
       << "their scenes differ in friction";
   const Table contact = table_of(runs, "Contact");
   EXPECT_EQ(contact.rows.size(), 3u) << "the two scenes of that point";
@@ -231,7 +246,7 @@ TEST(Claims, CountPointsOfTheBoxAndNoRunOfTheHeadline) {
   EXPECT_EQ(cell("all", "100–299 iterations"), "–") << "one claim says nothing about all";
   // At the cheapest point one claim was not run, so it is unknown whether both hold there.
   const std::vector<RunRecord> apart = {claim("c8", 2, 0, 9), claim("c10", 2, 1, 7), claim("c8", 1, 1, 5)};
-  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "paper, best"),
+  EXPECT_EQ(entry(table_of(apart, kClaimTable), "paper", "all", "best point"),
             "1 of 2 claims: clothbench study contact --seed 4 --count 2");
   const std::vector<RunRecord> never = {claim("c8", 2, 1, 9), claim("c10", 20, 1, 7)};
   EXPECT_EQ(entry(table_of(never, kClaimTable), "paper", "all", "reading"), "–");

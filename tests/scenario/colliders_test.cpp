@@ -94,6 +94,8 @@ TEST_F(Colliders, ACornerDropMayStartInsideTheEdge) {
   EXPECT_NEAR((is - was).norm(), 0.25, 1e-9);
   EXPECT_EQ(is.y(), was.y());
   EXPECT_LT((is - middle_of_the_table()).norm(), (was - middle_of_the_table()).norm()) << "towards the table's middle";
+  const auto flat = [&](const char* by) { return load_scene("paper/desk-flat-high", {inset + by}).cloth.center_m; };
+  EXPECT_NEAR(std::hypot(flat("0.1")[0] - flat("0")[0], flat("0.1")[2] - flat("0")[2]), 0.1, 1e-9);
 }
 
 TEST_F(Colliders, HandsMoveFrameByFrame) {

@@ -280,6 +280,19 @@ TEST(DrawBox, TheBestOfThePaperIsAPointOfTheBox) {
   }
 }
 
+TEST(DrawBox, CoordinatesBeyondTheSequenceDoNotFollowTheLast) {
+  json settings = kSettings;
+  for (int k = 0; k < 12; ++k) settings["other" + std::to_string(k)] = {0, 1};
+  ContactDrawer drawer(Assets::MayBeProcedural);
+  int opposite = 0;
+  for (std::uint64_t round = 1; round <= 20; ++round) {
+    const json scene = drawer.draw(kind(settings), "mine", kClaims * round + 1);
+    const double last = scene["material"]["damping_per_s"], margin = scene["colliders"][0]["margin_m"];
+    opposite += std::abs(last / 2 + std::log(margin / 0.001) / std::log(20) - 1) < 0.01;
+  }
+  EXPECT_LT(opposite, 5);
+}
+
 TEST(DrawBox, RefusesRangesThatAreNone) {
   ContactDrawer drawer(Assets::MayBeProcedural);
   for (const auto& [range, words] : {std::pair{json{2, 1}, "iterations: expected the lower bound first"},
