@@ -235,6 +235,7 @@ View violated() {
                   const Scalar* s = find_scalar(k[2].text);
                   return Cell(s != nullptr ? s->doc : k[2].text == "motion" ? found_of(*g.front(), "motion").text : "");
                 }}};
+  v.explains = true;
   return v;
 }
 

@@ -46,7 +46,7 @@ View verdicts() {
   v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
   v.across = {solver_key(), [](const Group& g, const Keys& keys) {
-                return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front()->run);
+                return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front());
               }};
   return v;
 }
@@ -63,7 +63,7 @@ View contact() {
       [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
-      column("verdict", [](const Row& r) { return verdict_cell(*r.run); }),
+      column("verdict", verdict_cell),
       column("contact offset [mm]", [](const Row& r) { return Cell(offset_of({&r}), 1e3 * r.offset_m().first); }),
       values("crossings", {"crossings_max"}),
       values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, 1e3),

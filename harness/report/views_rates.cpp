@@ -217,7 +217,7 @@ View in_short(std::function<bool(const Row&)> where) {
                       [](const Row& r) {
                         const bool judged =
                             r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
-                        return judged ? verdict_cell(*r.run) : Cell(r.status());
+                        return judged ? verdict_cell(r) : Cell(r.status());
                       }),
                column("stretch [%]", [](const Row& r) {
                  const double percent = 100 * r.value("stretch_max_last_second");

@@ -3,7 +3,8 @@
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
 // solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers; `look` as in spec.js.
 // `columns`: fields of a row, for the table behind the figure. `stills`: image files of the report, [{file, state}]; by
-// default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`.
+// default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`. `legend`: false if
+// colours are not by solver. A row that stands for several runs has them in `behind`.
 import {kSymbols, number, unique} from './look.js';
 import {band, by_solver, interval, legend, lines, log, panels, rules, symbols} from './spec.js';
 
@@ -87,7 +88,7 @@ function rates(doc) {
   const all = doc.runs.filter(r => r.family && !r.published && r.fps_median > 0);
   if (!all.length) return null;
   const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
-  const is_grid = s => !of(s).some(r => r.resolution.endsWith('vertices')), in_paper = s => of(s).some(r => r.paper_table === 3);
+  const is_grid = s => of(s).every(r => r.is_grid), in_paper = s => of(s).some(r => r.paper_table === 3);
   const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
   const line = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
   return {
@@ -199,6 +200,7 @@ function verdicts(doc) {
     id: 'verdicts',
     section: 'contact',
     hero: true,
+    legend: false,
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
@@ -254,7 +256,7 @@ export function wilson(passed, all) {
 function shares(runs, field, is_good, more) {
   const row = (label, value, mine) => {
     const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
-    return {solver: mine[0].solver, study: mine[0].study, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high, rate: good / count};
+    return {solver: mine[0].solver, behind: mine, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high, rate: good / count};
   };
   const rows = unique(runs.map(r => r.label)).flatMap(label => {
     const mine = runs.filter(r => r.label === label), values = unique(mine.map(r => r[field])).sort();
@@ -307,6 +309,7 @@ function claims(doc) {
     id: 'claims-map',
     section: 'contact',
     hero: true,
+    legend: false,
     title: () => 'Where each claim of the article holds',
     caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
         'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',
@@ -345,11 +348,24 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The commands that repeat runs: one per study.
-export function command_of(doc, runs) {
-  const of = study => {
-    const plain = doc.studies[study]?.command ?? '', jobs = runs.filter(r => r.study === study).map(r => r.job);
-    return jobs.includes(undefined) || !/ study /.test(plain) ? plain : `${plain} --out again --job ${jobs.join(',')}`;
-  };
-  return unique(runs.map(r => r.study)).map(of).filter(Boolean).join('\n');
+/// Commands that repeat runs, with only their solvers and, unless `whole`, only their scenes and settings: per study one for the
+/// solvers of clothbench and one per plugin, so that a build without a plugin can run all others.
+export function command_of(doc, runs, whole = false) {
+  const groups = new Map();
+  for (const r of runs) if (doc.studies[r.study]?.command) (k => groups.set(k, [...groups.get(k) ?? [], r]))(`${r.study} ${r.plugin ?? ''}`);
+  return [...groups.values()].map(mine => {
+    const {study: n, plugin} = mine[0], study = doc.studies[n], solvers = unique(mine.map(r => r.solver)), given = [];
+    const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
+    const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
+    if (whole || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
+    if (words[1] === 'study') return [...words, ...with_solvers, '--out again --job', mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
+    const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
+    return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
+  }).join('\n');
+}
+
+/// The result files of runs: the first ones, and the number of all others.
+export function files_of(runs) {
+  const files = runs.map(r => r.file).filter(Boolean);
+  return files.slice(0, 3).join(', ') + (files.length > 3 ? ` and ${files.length - 3} more` : '');
 }
