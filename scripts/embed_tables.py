@@ -5,8 +5,8 @@ usage: embed_tables.py [--check] [CLOTHBENCH]     default program: build/release
 
 A document marks such a table by a line of one of these forms before it and `<!-- end of table -->` after it:
 
-    <!-- table of FILE: HEADING -->                      the Markdown table of FILE below the heading that starts with HEADING
-    <!-- table of FILE: HEADING: ROW, ROW -->            only its rows whose first cell is ROW or starts with `ROW:`
+    <!-- table of FILE#ANCHOR -->                        the Markdown table of FILE below the heading with this anchor
+    <!-- table of FILE#ANCHOR: ROW, ROW -->              only its rows with this first key, or `ROW: …`
     <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a
 """
 import json
@@ -16,7 +16,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TABLE = re.compile(r"(<!-- table of (?:`clothbench (?P<command>[^`]+)`|(?P<file>[^:`]+)): (?P<what>.+?) -->\n).*?(<!-- end of table -->)", re.S)
+TABLE = re.compile(r"(<!-- table of (?:`clothbench (?P<command>[^`]+)`|(?P<file>[^#`\n]+)#(?P<anchor>[\w-]+))(?:: (?P<what>.+?))? -->\n).*?(<!-- end of table -->)", re.S)
 SCHEMA = "scenarios/schema/scene.schema.json"
 program = ROOT / "build/release/clothbench"
 
@@ -44,23 +44,20 @@ def table_of_objects(command, keys):
     return "".join("| " + " | ".join(row) + " |\n" for row in [keys, ["---"] * len(keys), *rows])
 
 
-def table_of_report(file, heading, rows):
-    text = (ROOT / file).read_text(encoding="utf-8")
-    found = re.search(rf"^#+ {re.escape(heading)}.*\n\n((?:\|.*\n)+)", text, flags=re.M)
-    if not found:
-        sys.exit(f"{file}: no table below a heading that starts with \"{heading}\"")
-    head, rule, *lines = found[1].splitlines(keepends=True)
-    first = lambda line: line.split("|")[1].strip()
-    return head + rule + "".join(line for line in lines if not rows or any(first(line) == row or first(line).startswith(row + ":") for row in rows))
+def table_of_report(file, anchor, rows):
+    """The table of a section, which its anchor names: the heading in small letters, without punctuation, with hyphens for spaces."""
+    for section in re.split(r"^#+ ", (ROOT / file).read_text(encoding="utf-8"), flags=re.M)[1:]:
+        heading, _, text = section.partition("\n")
+        if re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") == anchor and (found := re.match(r"\n((?:\|.*\n)+)", text)):
+            head, rule, *lines = found[1].splitlines(keepends=True)
+            return head + rule + "".join(line for line in lines if not rows or line.split("|")[1].strip().split(":")[0] in rows)
+    sys.exit(f"{file}: no table with the anchor #{anchor}")
 
 
 def table(match):
-    what = match["what"].split(": ")
-    if match["command"]:
-        new = table_of_objects(match["command"], what[0].split(", "))
-    else:
-        new = table_of_report(match["file"], what[0], what[1].split(", ") if len(what) > 1 else [])
-    return match[1] + "\n" + new + "\n" + match[5]
+    what = match["what"].split(", ") if match["what"] else []
+    new = table_of_objects(match["command"], what) if match["command"] else table_of_report(match["file"], match["anchor"], what)
+    return match[1] + "\n" + new + "\n" + match[match.re.groups]
 
 
 def bounds(match):

@@ -20,11 +20,6 @@ constexpr double kUneven = 1.5;      // mean over median frame time
 constexpr double kFastest = 1e9;     // frames per second: above any real rate
 constexpr std::size_t kNamed = 3;    // studies in a title
 
-constexpr const char* kRateNote =
-    "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
-    "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). All other columns are for "
-    "the largest mesh. × bullet-soft, the baseline: ratio of the rates, with the extreme ratios of both intervals. "
-    "Rank: among rows with the same sides. ";
 /// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
@@ -93,7 +88,7 @@ std::string about_rates(const Group& runs) {
 
 /// Speed and error: in the scene of the paper's Table 3 if `paper`, otherwise in every other scene.
 View speed_and_error(bool paper) {
-  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
+  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", note("rates") + kIntervalMethod,
          [paper](const Row& r) {
            return r.part == Part::Rates && (r.paper_table == 3) == paper && (!paper || r.is_main()) &&
                   !is_floor(r.solver);

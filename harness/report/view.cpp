@@ -198,6 +198,8 @@ const std::vector<View>& views() {
   return all;
 }
 
+std::string note(const char* table) { return nlohmann::json::parse(kNotes).at(table); }
+
 Cell number_cell(double v, int digits) { return std::isfinite(v) ? Cell(significant(v, digits), v) : Cell(); }
 
 Cell paired_cell(double a, double b, int digits) {

@@ -26,6 +26,8 @@ struct Cell {
   Cell(const char* t) : text(t) {}
   bool is_missing() const { return text.empty(); }
 };
+/// Note of a table, from notes.json.
+std::string note(const char* table);
 /// A number with `digits` significant digits.
 Cell number_cell(double v, int digits);
 /// "12.3 / 4.50", sorted by the first.

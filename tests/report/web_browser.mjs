@@ -1,13 +1,16 @@
 // The page of a report in headless Chromium: there is no console error, every figure has all its points, the viewer moves.
-//   node web_browser.mjs PACKAGES INDEX.html LARGE.html [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a page
-//   for which only the budgets are checked; SHOTS: folder for screenshots
+//   node web_browser.mjs PACKAGES INDEX.html LARGE.html CLOTHBENCH [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a
+//   page for which only the budgets are checked; CLOTHBENCH: program for the commands of the page; SHOTS: folder for screenshots
 // Exit 77 if Chromium or the packages are missing.
-import {existsSync, readFileSync} from 'node:fs';
+import {execSync} from 'node:child_process';
+import {existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
+import {deflateSync, inflateSync} from 'node:zlib';
 
-const [packages, page_file, large_file, shots] = process.argv.slice(2);
+const [packages, page_file, large_file, program, shots] = process.argv.slice(2);
 const browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']).find(existsSync);
 const skip = why => (console.log(`SKIPPED: ${why}`), process.exit(77));
 if (!browser_path) skip('no Chromium (Debian: chromium)');
@@ -58,8 +61,14 @@ async function draw_all() {
   await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
 }
 
-/// Every cell of every table on the page equals the stored cell.
+/// Every cell of every table on the page equals the stored cell. Long tables are folded. Each row of runs has a command.
 async function check_tables() {
+  const folded = await page.$$eval('.table', list => list.map(t => [t.querySelector('h3').firstChild.textContent, t.querySelectorAll('tbody tr').length, t.querySelector(':scope > button:not([hidden])')?.textContent ?? '']));
+  const wanted_folds = doc.sections.flatMap(s => s.tables).map(t => t.rows.length - 1).map(n => [Math.min(n, 15), n > 15 ? `show all ${n} rows` : '']), by_title = Object.fromEntries(folded.map(([title, ...f]) => [title, f]));
+  equal(doc.sections.flatMap(s => s.tables).map(t => by_title[t.title]), wanted_folds, 'rows shown, and buttons that show the rest');
+  await page.$$eval('.table > button:not([hidden])', list => list.forEach(b => b.click()));
+  const mute = await page.$$eval('.table', list => list.flatMap(t => [...t.querySelectorAll('tbody tr:not(.published)')].filter(r => !r.lastElementChild.querySelector('button')).map(r => `${t.id}: ${r.textContent}`)));
+  equal(mute.filter(row => !row.includes('published')), [], 'rows without a command');
   const shown = await page.$$eval('.table', list => Object.fromEntries(list.map(t => [t.querySelector('h3').firstChild.textContent, [...t.querySelectorAll('tr')].map(r => [...r.cells].map(c => [c.textContent.trim(), c.dataset.value ?? '', ['good', 'bad', 'dim'].find(x => c.classList.contains(x)) ?? '']))])));
   let cells = 0;
   for (const t of doc.sections.flatMap(s => s.tables)) {
@@ -132,8 +141,8 @@ async function check_figures() {
 }
 
 async function check_filter() {
-  const count = () => page.evaluate(() => [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]);
-  const click = async () => (await page.click('#chips button'), await wait(200), count());
+  const count = () => page.evaluate(() => (dispatchEvent(new Event('whole')), [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]));
+  const click = async () => (await page.click('#chips button'), await count(), await wait(400), count());
   const before = await count(), after = await click(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
   check(after[0] < before[0] || after[1] < before[1], `without ${solver}: marks and rows ${before} become ${after}`);
   check((await page.evaluate(() => location.hash)).includes(`off=${solver}`), 'the address keeps the filter');
@@ -145,13 +154,98 @@ async function check_filter() {
     const texts = [...document.querySelectorAll('.tile')].map(t => [...t.children].map(e => e.textContent.trim()));
     return toggle(), texts;
   }, off);
-  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter';
-  check(all.length > 2 && all.some(([, , others]) => others) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
-  for (const [k, [title, , others]] of all.entries()) {
-    const [, what, best] = title.match(/^(.*), (\S+)$/), [, next, value, interval] = others.match(/^(\S+) (\S+) \((.*)\)$/) ?? [];
-    equal((await tiles([best]))[k], next ? [`${what}, ${next}`, `${value} ${interval}`, ''] : [what, hidden, ''], `without ${best}, a tile`);
+  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter', text = ({label, value, about}) => `${label} ${value} (${about})`;
+  check(all.length > 2 && doc.tiles.some(t => t.entries.length > 1) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
+  for (const [k, {title, entries: [best, ...others]}] of doc.tiles.entries()) {
+    equal(all[k], [`${title}, ${best.label}`, `${best.value} ${best.about}`, others.map(text).join(' · ')], 'a tile');
+    const [next, ...rest] = others.filter(e => e.solver !== best.solver);
+    equal((await tiles([best.solver]))[k], next ? [`${title}, ${next.label}`, `${next.value} ${next.about}`, rest.map(text).join(' · ')] : [title, hidden, ''], `without ${best.solver}, a tile`);
   }
   equal(await tiles([]), all, 'and back');
+}
+
+/// W11: a click on a legend's entry, or a key, filters as the solver filter does. Names at the ends of lines never overlap.
+async function check_legends() {
+  await page.evaluate(() => dispatchEvent(new Event('whole')));
+  await wait(800);
+  const off = () => page.evaluate(() => [[...window.clothbench.state.off], [...document.querySelectorAll('#chips [aria-pressed=false]')].map(b => b.dataset.solver)]);
+  const ids = await page.$$eval('figure:has(.legend button)', list => list.map(f => f.id));
+  equal(['error-time', 'rates', 'frame-times', 'failure-speed', 'forest', 'stability'].filter(id => !ids.includes(id)), [], 'figures without a legend');
+  for (const id of ids) {
+    const left = () => page.evaluate(i => [window.clothbench.figures.find(f => f.entry.id === i).marks.map(m => m.solver), document.querySelector(`#${i} .legend :focus`)?.dataset.solver], id);
+    const button = await page.$(`#${id} .legend button`), solver = await button.evaluate(b => (b.scrollIntoView({behavior: 'instant', block: 'center'}), b.dataset.solver));
+    await wait(100);
+    await button.click();
+    await wait(300);
+    equal([await off(), (await left())[0].includes(solver), (await left())[1]], [[[solver], [solver]], false, solver], `${id}: a click on ${solver} hides it everywhere and keeps the focus`);
+    await page.keyboard.press('Space');
+    await wait(300);
+    equal([await off(), (await left())[0].includes(solver)], [[[], []], true], `${id}: a key shows ${solver} again`);
+  }
+  await page.select('#rates .head label:last-of-type select', 'all');
+  await wait(500);
+  for (const id of ['rates', 'error-time']) {
+    const [names, lines] = await page.evaluate(i => [[...document.querySelectorAll(`#${i} .names_marks text`)].filter(t => t.textContent).map(t => [t.textContent, t.getBoundingClientRect().toJSON()]), new Set(window.clothbench.figures.find(f => f.entry.id === i).marks.filter(m => m.best !== false).map(m => m.line)).size], id);
+    const clash = names.flatMap(([a, p], k) => names.slice(k + 1).filter(([, q]) => p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 3 && q.top < p.bottom - 3).map(([b]) => `${a} and ${b}`));
+    equal([names.length, clash], [lines, []], `${id}: names at ends of lines, and those that overlap`);
+  }
+  await page.select('#rates .head label:last-of-type select', 'plain');
+}
+
+/// A row's command names only its solver and runs, and works.
+async function check_commands() {
+  for (const [scene, solver] of [['gravity-8-single', 'ballistic'], ['sphere-drop', 'ballistic']]) {
+    const folder = mkdtempSync(join(tmpdir(), 'clothbench-page-')), file = `${scene}__${solver}__default.h5`;
+    const command = await page.evaluate((scene, solver) => {
+      const {index} = window.clothbench.document.runs.find(r => r.scene === scene && r.solver === solver), has = t => t.body.some(r => r.runs.length === 1 && r.runs[0].index === index);
+      const table = window.clothbench.tables.find(t => has(t) && t.body.every(r => r.runs.length === 1)), row = table.body.find(r => r.runs[0].index === index), button = table.again(row);
+      button.dispatchEvent(new Event('pointerenter'));
+      return button.title.split('\n')[0];
+    }, scene, solver);
+    check(!/bullet-soft|contact\/box/.test(command) && command.includes(`--solver ${solver}`), `command of a row: ${command}`);
+    execSync(command.replace(/^clothbench/, `'${program}'`), {cwd: folder, env: {...process.env, CLOTHBENCH_JOBS: '1'}, stdio: 'pipe'});
+    equal(readdirSync(folder, {recursive: true}).filter(f => f.endsWith('.h5')).map(f => f.split('/').pop()), [file], 'it makes this run');
+    rmSync(folder, {recursive: true});
+  }
+}
+
+/// A page as large as the published one, in which no title has a meaning: its first screen on a phone, filter and links.
+async function check_large() {
+  const html = readFileSync(page_file, 'utf8'), file = join(tmpdir(), `clothbench-large-${process.pid}.html`), big = JSON.parse(JSON.stringify(doc)), many = 4;
+  for (const [k, t] of big.sections.flatMap(s => s.tables).entries()) {
+    const times = Math.ceil(1000 / t.rows.length), repeat = list => Array.from({length: times}, () => list).flat();
+    Object.assign(t, {title: `Table ${k}`, rows: [t.rows[0], ...repeat(t.rows.slice(1))], runs: repeat(t.runs), again: repeat(t.again)});
+  }
+  big.runs.push(...Array.from({length: many}, () => doc.runs).flat());
+  big.tiles.forEach((t, k) => t.title = `Tile ${k}`);
+  const packed = deflateSync(JSON.stringify(big)).toString('base64'), facts = html.match(/<p class="meta"[^>]*>(.*?)<\/p>/)[1];
+  writeFileSync(file, html.replace(/( id="clothbench-data">)[^<]*/, (_, id) => id + packed).replace(facts, () => `${facts} · ${facts}`).replace(/<h1>(.*?)<\/h1>/, '<h1>$1, and a longer title of many studies</h1>'));
+  const large = await opened(file, p => p.setViewport({width: 390, height: 844}));
+  await ready_ms(large);
+  await large.waitForSelector('#hero .plot svg');
+  const tops = await large.evaluate(() => ['#overview > p', '.meta b', '.tile:last-child', '#hero .plot svg'].map(s => Math.round(document.querySelector(s).getBoundingClientRect().top)));
+  check(tops.every(t => t < 700), `a large page on a phone: sentence, device, tiles and figure begin at ${tops}`);
+  await large.setViewport({width: 1440, height: 900});
+  await wait(1500);
+  const times = [];
+  for (let k = 0; k < 12; ++k) times.push(await large.evaluate(async () => {
+    const start = performance.now();
+    document.querySelector('#chips button').click();
+    await new Promise(done => requestAnimationFrame(() => setTimeout(done)));
+    return performance.now() - start;
+  }));
+  check(Math.min(...times) < 600, `a large page: the solver filter takes ${Math.min(...times).toFixed(0)} ms at best (asked for: 200; ${times.map(Math.round)})`);
+  const picked = await large.evaluate(() => {
+    dispatchEvent(new Event('whole'));
+    const list = window.clothbench.tables.find(t => t.table.explains), link = document.querySelector('.table td a[title*=criteria]');
+    link.click();
+    return [link.hash === `#${list.id}`, list.sorted().length > 0, list.sorted().every(r => `${r.run.scene}, ${r.run.label}` === list.find.value)];
+  });
+  equal(picked, [true, true, true], 'a failed verdict leads to the criteria of its run, without the titles of tables');
+  const named = await large.evaluate(() => [document.querySelector('.tile p').textContent, (document.querySelectorAll('#chips button').forEach(b => b.click()), document.querySelector('.tile .v').textContent)]);
+  equal(named, [`Tile 0, ${doc.tiles[0].entries[0].label}`, '– hidden by the solver filter'], 'tiles follow the filter without their titles');
+  await large.close();
+  rmSync(file);
 }
 
 /// At three widths: checks the first screen, no sideways scroll, a closed menu on a phone, and no violation found by axe.
@@ -233,13 +327,18 @@ async function check_values() {
   await wait(200);
   await (await page.$('#rates path[data-i]')).hover();
   const by_pointer = await page.$eval('#tip', e => e.textContent);
-  check(/--job \d+/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
+  check(/--solver \S+ --out again --job \S+__/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
   await page.focus('#rates .plot');
   await page.keyboard.press('ArrowRight');
   await page.keyboard.press('ArrowRight');
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
+  for (const id of await page.$$eval('figure', list => list.map(f => f.id))) {
+    await page.focus(`#${id} .plot`);
+    await page.keyboard.press('ArrowRight');
+    check(/clothbench (run|study) [^]*--solver/.test(await page.$eval('#tip', e => e.textContent)) && /\.h5/.test(await page.$eval('#tip', e => e.textContent)), `${id}: a value names its files and command`);
+  }
   const failed = await page.evaluate(() => window.clothbench.figures.find(f => f.entry.id === 'verdicts').marks.findIndex(m => m.violated));
   await (await page.$(`#verdicts [data-i="${failed}"]`)).click();  // in its middle, where its sign is
   await page.mouse.move(5, 5);
@@ -339,7 +438,7 @@ async function check_colours() {
 try {
   for (const file of [page_file, large_file]) await check_budgets(file);
   await draw_all();
-  for (const run of [check_tables, check_figures, check_filter, check_values, check_motion, check_widths, check_without_script, check_colours, check_without_webgl]) await run();
+  for (const run of [check_tables, check_figures, check_filter, check_legends, check_values, check_commands, check_motion, check_widths, check_large, check_without_script, check_colours, check_without_webgl]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
   const rules = await page.evaluate(() => [...document.styleSheets].flatMap(s => [...s.cssRules]).map(r => r.cssText).filter(t => t.startsWith('@page')).join());
   check(rules.includes(doc.title) && rules.includes('counter(page)'), 'printed pages have the title and a number');

@@ -39,9 +39,7 @@ function error_time(doc) {
   const of = scene => all.filter(r => r.scene === scene), scenes = unique(all.map(r => r.scene)).filter(v => of(v).some(good));
   const first = [...scenes].sort((a, b) => of(b).filter(good).length - of(a).filter(good).length)[0];
   return {
-    id: 'error-time',
-    section: 'accuracy',
-    hero: true,
+    id: 'error-time', section: 'accuracy', hero: true,
     title: s => `Error against run time: ${s.Scene}`,
     caption:
         'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
@@ -92,9 +90,7 @@ function rates(doc) {
   const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
   const line = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
   return {
-    id: 'rates',
-    section: 'rates',
-    hero: true,
+    id: 'rates', section: 'rates', hero: true,
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
@@ -144,9 +140,7 @@ function frame_times(doc) {
   const few = unique(all.map(r => r.scene)).length <= 8;
   const runs_of = s => all.filter(r => r.solver === s).length, solvers = unique(without_floor(doc, all).map(r => r.solver)).sort((a, b) => runs_of(b) - runs_of(a));
   return {
-    id: 'frame-times',
-    section: 'time',
-    hero: true,
+    id: 'frame-times', section: 'time', hero: true,
     title: s => `Distribution of frame times${s.Solver === 'all' ? '' : `: ${s.Solver}`}`,
     caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
     choices: [
@@ -197,10 +191,7 @@ const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict 
 function verdicts(doc) {
   const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));
   return all.length && {
-    id: 'verdicts',
-    section: 'contact',
-    hero: true,
-    legend: false,
+    id: 'verdicts', section: 'contact', hero: true, legend: false,
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
@@ -231,8 +222,7 @@ const contact_scenes = doc => judged(doc, 'generated').filter(r => r.status !== 
 function failure_speed(doc) {
   const rows = contact_scenes(doc).filter(r => ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default').map(r => ({...r, name: `${r.kind} · ${r.solver}`}));
   return rows.length && {
-    id: 'failure-speed',
-    section: 'contact',
+    id: 'failure-speed', section: 'contact',
     title: () => 'Speeds at which generated scenes are passed and failed',
     caption: 'Filled: the run passed at this speed of the hand or the impact; hollow: it failed. Runs that are unsupported or were not measured are not drawn.',
     rows: () => rows,
@@ -286,15 +276,13 @@ function shares(runs, field, is_good, more) {
 }
 
 const forest = doc => shares(contact_scenes(doc), 'kind', r => r.verdict === 'pass', {
-  id: 'forest',
-  section: 'contact',
+  id: 'forest', section: 'contact',
   title: () => 'Pass rate by kind of generated scene with contact',
   caption: 'Fraction of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
 const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported'))), 'case', r => r.grade === 0, {
-  id: 'stability',
-  section: 'stability',
+  id: 'stability', section: 'stability',
   title: () => 'Stable runs by case',
   caption: 'Fraction of the runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
@@ -306,10 +294,7 @@ const kClaims = [['holds', 'good', 'circle'], ['near', 'soft', 'circle'], ['fail
 function claims(doc) {
   const all = doc.runs.filter(r => r.part === 'claims' && r.status !== 'missing');
   return all.length && {
-    id: 'claims-map',
-    section: 'contact',
-    hero: true,
-    legend: false,
+    id: 'claims-map', section: 'contact', hero: true, legend: false,
     title: () => 'Where each claim of the article holds',
     caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
         'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',

@@ -4,7 +4,7 @@ import {make_figures} from './figures.js';
 import {looks, style_of, unique} from './look.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {hide_solvers, load_state, save_state, shown, state} from './state.js';
-import {reproduce, solver_buttons, start_tables, table_block} from './tables.js';
+import {all_tables, reproduce, solver_buttons, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
 const kMethod = ['features', 'environment'];
@@ -118,7 +118,7 @@ async function start() {
   const look = looks(unique(doc.runs.map(r => r.solver)), doc.solvers);
   document.head.append(element('style', {}, style_of(look), `@page{@top-left{content:${JSON.stringify(doc.title)}}}`));
   document.documentElement.classList.add('js');
-  window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
+  window.clothbench = {document: doc, state, figures: all_figures, tables: all_tables};  // used by tests and the browser's console
   start_theme();
   chips(doc, look);
   start_tiles(doc);

@@ -89,15 +89,12 @@ export class ShownTable {
     return out.map(part => [...fixed, ...part]);
   }
 
-  /// Shows how many columns are hidden to the right. The first key stays in view; the next two do if half of the box is enough.
+  /// Shows how many columns are hidden to the right. The first key stays in view; the second does if half of the box is enough.
   tell_hidden() {
-    const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
-    const widths = heads.map(h => h.offsetWidth), keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, until = n => widths.slice(0, n).reduce((a, b) => a + b, 0);
-    for (const [n, name] of [[2, 'held'], [3, 'held-three']]) {
-      this.place.classList.toggle(name, keys >= n && until(n) <= this.place.clientWidth * 0.55);
-      this.place.style.setProperty(`--until-${n}`, `${until(n - 1)}px`);
-    }
-    const count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
+    const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')], [first, second] = heads.map(h => h.offsetWidth);
+    const keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
+    this.place.classList.toggle('held', keys > 1 && first + second <= this.place.clientWidth * 0.55);
+    this.place.style.setProperty('--until-2', `${first}px`);
     this.hidden_columns.textContent = `${count} more ${count === 1 ? 'column' : 'columns'} →`;
     this.hidden_columns.hidden = !count;
   }
@@ -164,6 +161,7 @@ export class ShownTable {
 }
 
 const tables = [];
+export {tables as all_tables};  // for tests
 
 export function table_block(doc, look, table) {
   const base = `t-${file_name(table.title)}`, same = tables.filter(t => t.id.startsWith(base)).length;
