@@ -40,7 +40,7 @@ for what, text, pattern, wanted in (
     assert bool(re.search(pattern, text)) == wanted, (what, wanted, title)
 for tile in doc["tiles"]:
     for e in tile["entries"]:
-        assert re.search(r"\d–[\d.]+|too few frames for an interval", e["about"]) and re.search(r"\d trial|one run per scene", e["about"]), (tile["title"], e)
+        assert re.search(r"\d[kM]?–[\d.]+|too few frames for an interval", e["about"]) and re.search(r"\d trial|one run per scene", e["about"]), (tile["title"], e)
 for t in (t for s in doc["sections"] for t in s["tables"]):
     rows = [dict(zip(t["rows"][0], row)) for row in t["rows"][1:]]
     for row in rows if t["explains"] else []:  # a bound has its sign, and its unit is the value's

@@ -111,7 +111,7 @@ function rates(doc) {
       const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, 'datum.free_fall_error > 0.01');
       return {
         height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
-        padding: {left: 2, right: 90, top: 2, bottom: 6},
+        padding: {left: 2, right: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))), top: 2, bottom: 6},
         layer: [
           ...rules(is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : [], 'y', y), ...lines(rows, x, y, solver, look),
           ...(is_rate ? [interval('fps_low', 'fps_high', {x, y: {...y, field: 'fps_low'}, y2: {field: 'fps_high'}, stroke: solver.stroke})] : []), symbols({x, y, ...solver})
