@@ -59,8 +59,8 @@ transforms.names.Definition = {type: 'names', metadata: {modifies: true}, params
 /// A view of an entry's rows, not yet drawn. `width` in pixels of a page; `shrink`: factor on heights.
 export function view_of(entry, rows, state, look, width, shrink = 1) {
   rows = rows.filter(entry.drawn ?? Boolean);
-  const spec = entry.spec(rows, state, {...look, width, shrink}), single = spec.layer && {width, autosize: {type: 'fit-x', contains: 'padding'}};
+  const {room = 0, ...spec} = entry.spec(rows, state, {...look, width, shrink}), single = spec.layer && {width, autosize: {type: 'fit-x', contains: 'padding'}};
   const {spec: vega} = compile({data: {name: 'rows'}, ...single, ...spec}, {config: config(look, width)});
-  for (const m of vega.marks) if (m.name === 'names_marks') m.transform = [{type: 'names', size: {signal: `[width + ${spec.padding?.right ?? 0}, height]`}}];
+  for (const m of vega.marks) if (m.name === 'names_marks') m.transform = [{type: 'names', size: {signal: `[width + ${room}, height]`}}];
   return new View(parse(vega, {events: {bind: 'none'}}), {renderer: 'svg'}).data('rows', rows.map((r, i) => ({...r, i})));
 }

@@ -1,7 +1,8 @@
 // The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by draw.js. An entry:
 //   {id, section, title(state), caption, choices?, rows(state), drawn?(row), spec(rows, state, look), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers; `look` as in spec.js.
+// solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers, with pixels of `room` for names
+// to the right of lines; `look` as in spec.js.
 // `columns`: fields of a row, for the table behind the figure. `stills`: image files of the report, [{file, state}]; by
 // default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`. `legend`: false if
 // colours are not by solver. A row that stands for several runs has them in `behind`.
@@ -111,7 +112,7 @@ function rates(doc) {
       const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, 'datum.free_fall_error > 0.01');
       return {
         height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
-        padding: {left: 2, right: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))), top: 2, bottom: 6},
+        room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))),
         layer: [
           ...rules(is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : [], 'y', y), ...lines(rows, x, y, solver, look),
           ...(is_rate ? [interval('fps_low', 'fps_high', {x, y: {...y, field: 'fps_low'}, y2: {field: 'fps_high'}, stroke: solver.stroke})] : []), symbols({x, y, ...solver})

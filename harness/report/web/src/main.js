@@ -77,11 +77,12 @@ function start_motions(doc, motions) {
   window.clothbench.load_viewer = load;
 }
 
-/// Blocks have no height before they are made, so all are made before the page scrolls to one.
-function go_to(id) {
+/// Blocks have no height before they are made, so all are made, and heads arranged, before the page scrolls to one.
+async function go_to(id) {
   document.documentElement.classList.add('whole');
   dispatchEvent(new Event('whole'));
-  setTimeout(() => document.getElementById(id)?.scrollIntoView());  // figures are drawn first
+  await Promise.all(all_figures.map(f => f.view?.runAsync()));
+  requestAnimationFrame(() => requestAnimationFrame(() => document.getElementById(id)?.scrollIntoView()));
 }
 
 function start_navigation() {
