@@ -161,8 +161,8 @@ export class ShownTable {
 }
 
 const tables = [];
-export {tables as all_tables};  // for tests
 
+export {tables as all_tables};  // for tests
 export function table_block(doc, look, table) {
   const base = `t-${file_name(table.title)}`, same = tables.filter(t => t.id.startsWith(base)).length;
   const t = new ShownTable(doc, look, table, same ? `${base}-${same + 1}` : base);

@@ -139,10 +139,7 @@ class Viewer {
     this.play_button.textContent = on ? '❚❚ Pause' : '▶ Play';
   }
 
-  seek(time) {
-    this.time = Math.min(Math.max(time, 0), this.end);
-    this.stale = true;
-  }
+  seek(time) { Object.assign(this, {time: Math.min(Math.max(time, 0), this.end), stale: true}); }
 
   tick(now) {
     const passed = Math.min((now - this.last) / 1000, 0.1);
