@@ -304,6 +304,7 @@ async function check_values() {
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
+  await page.mouse.move(5, 5);
   for (const id of await page.$$eval('figure', list => list.map(f => f.id))) {
     await page.focus(`#${id} .plot`); await page.keyboard.press('ArrowRight');
     const told = await page.$eval('#tip', e => e.textContent);

@@ -343,7 +343,7 @@ export function command_of(doc, runs, whole = false) {
     const {study: n, plugin} = mine[0], study = doc.studies[n], solvers = unique(mine.map(r => r.solver)), given = [];
     const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
     const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
-    if (whole || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
+    if (whole || !['study', 'run'].includes(words[1]) || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
     if (words[1] === 'study') return [...words, ...with_solvers, '--out again --job', mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
     const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
     return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
