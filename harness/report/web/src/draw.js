@@ -13,7 +13,6 @@ function config({font, paper}, width) {
   return {
     font,
     background: paper?.back ?? null,
-    padding: {left: 2, right: 8, top: 2, bottom: 6},
     view: {stroke: null},
     line: {strokeWidth: 2, strokeJoin: 'round'},
     point: {opacity: 1, size, strokeWidth: 1.6},
@@ -60,7 +59,7 @@ transforms.names.Definition = {type: 'names', metadata: {modifies: true}, params
 export function view_of(entry, rows, state, look, width, shrink = 1) {
   rows = rows.filter(entry.drawn ?? Boolean);
   const {room = 0, ...spec} = entry.spec(rows, state, {...look, width, shrink}), single = spec.layer && {width, autosize: {type: 'fit-x', contains: 'padding'}};
-  const {spec: vega} = compile({data: {name: 'rows'}, ...single, ...spec}, {config: config(look, width)});
+  const {spec: vega} = compile({data: {name: 'rows'}, ...single, ...spec, padding: {left: 2, right: 8 + 0.06 * room, top: 2, bottom: 6}}, {config: config(look, width)});
   for (const m of vega.marks) if (m.name === 'names_marks') m.transform = [{type: 'names', size: {signal: `[width + ${room}, height]`}}];
   return new View(parse(vega, {events: {bind: 'none'}}), {renderer: 'svg'}).data('rows', rows.map((r, i) => ({...r, i})));
 }

@@ -61,7 +61,7 @@ export function lines(rows, x, y, {stroke, fill: {condition, ...fill}}, look, al
   const values = [...names.map(n => place(n, [of(n).at(-1)[x.field], of(n).at(-1)[y.field]])), ...[...all.map(r => [r[x.field], r[y.field]]), ...taken].map(p => place('', p))];
   return [
     {data: {values: rows}, mark: 'line', encoding: {x, y, stroke, detail: {field: 'line'}, ...(names.some(dash) && {strokeDash: {field: 'line', type: 'nominal', scale: {domain: names, range}, legend: null}})}},
-    {name: 'names', data: {values}, mark: {type: 'text', fontWeight: 650, fontSize: 12}, encoding: {x, y, text: {field: 'name'}, fill}}
+    {name: 'names', data: {values}, mark: {type: 'text', fontWeight: 'bold', fontSize: 12}, encoding: {x, y, text: {field: 'name'}, fill}}
   ];
 }
 
