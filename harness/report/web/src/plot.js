@@ -5,10 +5,10 @@ import {view_of} from './draw.js';
 import {command_of, files_of, settled} from './figures.js';
 import {unique} from './look.js';
 import {set_value, shown, state} from './state.js';
-import {block_head, copy_command, near_window, reproduce, ShownTable, solver_buttons} from './tables.js';
+import {block_head, copy_command, near_window, reproduce, shortened, ShownTable, solver_buttons} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
-const figures = [], kLongCommand = 400;  // characters
+const figures = [];
 let pinned = null;  // the figure whose value stays in view until it is closed
 export {figures as all_figures};  // for tests
 
@@ -140,7 +140,6 @@ class Figure {
   }
 }
 
-const shortened = text => text.length > kLongCommand ? `${text.slice(0, kLongCommand)} …` : text;
 const unpin = () => figures.find(f => f.at >= 0)?.point(-1);
 
 export const figure_block = (doc, look, entry) => new Figure(doc, look, entry).block;

@@ -9,10 +9,13 @@ const kPaper = 132, kWrap = 24;  // characters across a printed page; characters
 /// A cell of a document's table: a text, or [text, value, tone, index of a run]. Tables sort by the value and tint by the tone.
 const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2], run: c[3]} : {text: c};
 
+const kLongCommand = 400;  // characters
+export const shortened = text => text.length > kLongCommand ? `${text.slice(0, kLongCommand)} …` : text;
+
 export function copy_command(command) {
   navigator.clipboard?.writeText(command).catch(() => {});
   say(`Copied: ${command}`);
-  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, command));
+  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, shortened(command)));
   document.getElementById('copied')?.remove();
   document.body.append(note);
   setTimeout(() => note.remove(), 6000);
@@ -136,7 +139,7 @@ export class ShownTable {
   /// The button that copies a row's command, which repeats all of its runs.
   again({cells, runs}) {
     const mine = runs.filter(r => this.doc.studies[r.study]?.command), label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
-    const command = () => command_of(this.doc, mine), tell = e => e.currentTarget.title ||= `${command()}\n${files_of(mine)}`;
+    const command = () => command_of(this.doc, mine), tell = e => e.currentTarget.title ||= `${shortened(command())}\n${files_of(mine)}`;
     return mine.length ? button('copy', label, () => copy_command(command()), {class: 'quiet', onpointerenter: tell, onfocus: tell}) : null;
   }
 
