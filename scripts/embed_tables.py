@@ -5,8 +5,8 @@ usage: embed_tables.py [--check] [CLOTHBENCH]     default program: build/release
 
 A document marks such a table by a line of one of these forms before it and `<!-- end of table -->` after it:
 
-    <!-- table of FILE: HEADING -->                      the Markdown table of FILE below the heading that starts with HEADING
-    <!-- table of FILE: HEADING: ROW, ROW -->            only its rows whose first cell is ROW or starts with `ROW:`
+    <!-- table of FILE#ANCHOR -->                        the Markdown table of FILE below the heading with this anchor
+    <!-- table of FILE#ANCHOR: ROW, ROW -->              only its rows with this first key, or `ROW: …`
     <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a,
         or of all objects of list a; `KEY?` may be missing. `FILES FILES` instead of a command: JSON files (key `path`: folder/file), rows of .tsv files
 """
@@ -18,7 +18,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TABLE = re.compile(r"(<!-- table of (?:`(?P<source>[^`]+)`|(?P<file>[^:`]+)): (?P<what>.+?) -->\n).*?(<!-- end of table -->)", re.S)
+TABLE = re.compile(r"(<!-- table of (?:`(?P<source>[^`]+)`|(?P<file>[^#`\n]+)#(?P<anchor>[\w-]+))(?:: (?P<what>.+?))? -->\n).*?(<!-- end of table -->)", re.S)
 SCHEMA = "scenarios/schema/scene.schema.json"
 check = "--check" in sys.argv
 program = next((a for a in sys.argv[1:] if a != "--check"), ROOT / "build/release/clothbench")
@@ -56,20 +56,20 @@ def table_of_objects(source, keys):
     return "".join("| " + " | ".join(row) + " |\n" for row in [heads, ["---"] * len(keys), *rows])
 
 
-def table_of_report(file, heading, rows):
-    text = (ROOT / file).read_text(encoding="utf-8")
-    found = re.search(rf"^#+ {re.escape(heading)}.*\n\n((?:\|.*\n)+)", text, flags=re.M)
-    if not found:
-        sys.exit(f"{file}: no table below a heading that starts with \"{heading}\"")
-    head, rule, *lines = found[1].splitlines(keepends=True)
-    first = lambda line: line.split("|")[1].strip()
-    return head + rule + "".join(line for line in lines if not rows or any(first(line) == row or first(line).startswith(row + ":") for row in rows))
+def table_of_report(file, anchor, rows):
+    """The table of a section, which its anchor names: the heading in small letters, without punctuation, with hyphens for spaces."""
+    for section in re.split(r"^#+ ", (ROOT / file).read_text(encoding="utf-8"), flags=re.M)[1:]:
+        heading, _, text = section.partition("\n")
+        if re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") == anchor and (found := re.match(r"\n((?:\|.*\n)+)", text)):
+            head, rule, *lines = found[1].splitlines(keepends=True)
+            return head + rule + "".join(line for line in lines if not rows or line.split("|")[1].strip().split(":")[0] in rows)
+    sys.exit(f"{file}: no table with the anchor #{anchor}")
 
 
 def table(match):
-    what, _, rows = match["what"].partition(": ")
-    new = table_of_objects(match["source"], what.split(", ")) if match["source"] else table_of_report(match["file"], what, rows.split(", ") if rows else [])
-    return match[1] + "\n" + new + "\n" + match[5]
+    what = match["what"].split(", ") if match["what"] else []
+    new = table_of_objects(match["source"], what) if match["source"] else table_of_report(match["file"], match["anchor"], what)
+    return match[1] + "\n" + new + "\n" + match[match.re.groups]
 
 
 def bounds(match):

@@ -101,7 +101,7 @@ void run_study(StudyArguments& a, Console& console) {
   manifest.definition = study.definition;
   if (!a.chosen.empty()) {
     if (a.run.out.empty()) throw Error("--job needs --out DIR, the folder that collects all runs of this study");
-    const std::vector<std::size_t> chosen = parse_runs(a.chosen, names.size());
+    const std::vector<std::size_t> chosen = parse_runs(a.chosen, names);
     require_same_runs(a.run.out, plan, true);  // checks runs of other processes, too
     plan = only_runs(std::move(plan), chosen);
     manifest.runs = names;
@@ -140,7 +140,7 @@ void add_study(CLI::App& app, Console& console) {
                 "Generate contact scenes from procedural rooms and hands, which need no download; tables state this");
   cmd->add_flag("--list-jobs", a.list_jobs, "Print the numbers and names of the jobs (runs); execute none");
   cmd->add_option("--job", a.chosen,
-                  "Only these jobs, by number: 7, or 0,3-5. Their results are added to the folder of --out "
+                  "Only these jobs, by number or name: 7, or 0,3-5. Their results are added to the folder of --out "
                   "(scripts/slurm_study.sh spreads a study over a cluster in this way)");
   cmd->add_option("--jobs", a.jobs,
                   "Number of concurrent processes for untimed work (default 1); timed trials follow one at a time")

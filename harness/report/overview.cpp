@@ -18,12 +18,8 @@ constexpr double kFallLimit = 0.01;  // with a larger free-fall error, a frame r
 constexpr double kBudget_ms = 1;     // budget of wall time per frame
 constexpr double kUneven = 1.5;      // mean over median frame time
 constexpr double kFastest = 1e9;     // frames per second: above any real rate
+constexpr std::size_t kNamed = 3;    // studies in a title
 
-constexpr const char* kRateNote =
-    "Frames per second, uncapped, without rendering: the timed frames over their wall time, median of the trials; "
-    "uneven: the mean frame takes more than 1.5 times as long as the median one (frame p50). All other columns are for "
-    "the largest mesh. × bullet-soft, the baseline: ratio of the rates, with the extreme ratios of both intervals. "
-    "Rank: among rows with the same sides. ";
 /// Frames per second with at most four digits; larger values in thousands or millions.
 std::string rate_text(double v) {
   if (!std::isfinite(v)) return "";
@@ -92,7 +88,7 @@ std::string about_rates(const Group& runs) {
 
 /// Speed and error: in the scene of the paper's Table 3 if `paper`, otherwise in every other scene.
 View speed_and_error(bool paper) {
-  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", std::string(kRateNote) + kIntervalMethod,
+  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", note("rates") + kIntervalMethod,
          [paper](const Row& r) {
            return r.part == Part::Rates && (r.paper_table == 3) == paper && (!paper || r.is_main()) &&
                   !is_floor(r.solver);
@@ -138,21 +134,28 @@ View speed_and_error(bool paper) {
   return v;
 }
 
-/// A solver's value in a tile. The value with the highest merit is shown large, the others next to it.
-struct Entry {
-  std::string solver;
-  double merit;
-  std::string title, value, interval;
-};
-
 /// "not a and b" for one or two scenes.
 std::string except(const Texts& scenes) {
   return scenes.empty() || scenes.size() > 2 ? "" : "not " + joined(scenes, " and ");
 }
 
+std::string in_one_line(Texts parts) {
+  std::erase(parts, "");
+  return joined(parts);
+}
+
+/// A fraction of scenes with its interval.
+Tile::Entry share_entry(const Row& r, const std::string& label, std::size_t good, std::size_t all, Texts about) {
+  const Interval i = wilson_95(good, all);
+  about.insert(about.begin(), fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high));
+  return {r.solver, label, fmt::format("{}/{}", good, all), in_one_line(std::move(about)), 0};
+}
+
+std::string trials_text(std::size_t n) { return n == 1 ? "1 trial" : fmt::format("{} trials", n); }
+
 /// Rates on the largest mesh of the paper's Table 3; without such runs, of the first family with times.
-std::vector<Entry> rates(const std::vector<const Row*>& rows) {
-  std::vector<Entry> out;
+Tile rates(const Group& rows) {
+  Tile out;
   std::string family;
   for (const Row* r : rows)
     if (r->part == Part::Rates && r->paper_table == 3 && std::isfinite(r->value("fps_median"))) family = r->family;
@@ -162,44 +165,47 @@ std::vector<Entry> rates(const std::vector<const Row*>& rows) {
         (!family.empty() && r->family != family))
       continue;
     family = r->family;
-    const std::string trials = std::to_string(r->run->trials.size());
-    Texts more = {rate_interval(*r), trials + (trials == "1" ? " trial" : " trials"), r->frames_mark(),
-                  environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : ""};
-    std::erase(more, "");
-    out.push_back({r->label(), r->times->wall.uncertain() ? 0 : r->value("fps_median"),
-                   "Frames per second at " + r->resolution.label(), rate_text(r->value("fps_median")),
-                   joined(more, ", ")});
+    out.title = "Frames per second at " + r->resolution.label();
+    const std::string interval = rate_interval(*r);
+    out.entries.push_back({r->solver, r->label(), rate_text(r->value("fps_median")),
+                           in_one_line({interval.empty() ? "too few frames for an interval" : interval,
+                                        trials_text(r->run->trials.size()), r->frames_mark(),
+                                        environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : ""}),
+                           r->times->wall.uncertain() ? 0 : r->value("fps_median")});
   }
   return out;
 }
 
 /// For each solver, in how many scenes with an exact solution its error is smallest; errors below the floor are equal.
-std::vector<Entry> errors(const std::vector<const Row*>& rows) {
+Tile errors(const Group& rows) {
   std::map<std::string, std::map<std::string, double>> scenes;  // smallest error by solver
-  std::map<std::string, Texts> lost;
+  std::map<std::string, std::pair<const Row*, Texts>> lost;
   for (const Row* r : rows) {
     if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() || !r->not_ranked().empty() ||
         r->times->wall.uncertain() || !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms))
       continue;
     double& least = scenes[r->scene].try_emplace(r->solver, INFINITY).first->second;
     least = std::min(least, std::max(r->truth->rank_floor(), r->error()));
-    lost[r->solver];
+    lost[r->solver].first = r;
   }
   for (const auto& [scene, errors] : scenes) {
     double least = INFINITY;
     for (const auto& [unused, error] : errors) least = std::min(least, error);
-    for (auto& [solver, names] : lost)
-      if (!errors.contains(solver) || errors.at(solver) > least) names.push_back(scene);
+    for (auto& [solver, runs] : lost)
+      if (!errors.contains(solver) || errors.at(solver) > least) runs.second.push_back(scene);
   }
-  std::vector<Entry> out;
-  for (const auto& [solver, names] : lost)
-    out.push_back({solver, -static_cast<double>(names.size()), "Scenes with the smallest error within 1 ms per frame",
-                   fmt::format("{}/{}", scenes.size() - names.size(), scenes.size()), except(names)});
+  Tile out{"Scenes with the smallest error within 1 ms per frame", {}};
+  for (const auto& [solver, runs] : lost) {
+    const auto& [row, names] = runs;
+    out.entries.push_back(share_entry(*row, solver, scenes.size() - names.size(), scenes.size(),
+                                      {trials_text(row->run->trials.size()), except(names)}));
+    out.entries.back().merit = -static_cast<double>(names.size());
+  }
   return out;
 }
 
 /// For each solver, passed or stable runs as a fraction of the runs with a verdict.
-std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const std::string& title) {
+Tile shares(const Group& rows, Part part, std::string title) {
   std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of the runs that are not good
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
@@ -208,18 +214,15 @@ std::vector<Entry> shares(const std::vector<const Row*>& rows, Part part, const 
     runs.push_back(r);
     if (!(stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass")) bad.push_back(r->scene);
   }
-  std::vector<Entry> out;
+  Tile out{std::move(title), {}};
   for (const auto& [solver, share] : solvers) {
     const auto& [runs, bad] = share;
-    const std::size_t good = runs.size() - bad.size();
-    const Interval i = wilson_95(good, runs.size());
-    const auto all = static_cast<double>(runs.size());  // between equal fractions, the one with more runs wins
     const std::string offset = part == Part::Stability ? "" : offset_of(runs);
-    Texts more = {fmt::format("{:.0f}–{:.0f} %", 100 * i.low, 100 * i.high),
-                  offset.empty() ? "" : "contact offset " + offset + " mm", except(bad)};
-    std::erase(more, "");
-    out.push_back({solver, static_cast<double>(good) / all + 1e-9 * all, title, fmt::format("{}/{}", good, runs.size()),
-                   joined(more)});
+    out.entries.push_back(
+        share_entry(*runs.front(), solver, runs.size() - bad.size(), runs.size(),
+                    {"one run per scene", offset.empty() ? "" : "contact offset " + offset + " mm", except(bad)}));
+    const auto all = static_cast<double>(runs.size());  // between equal fractions, the one with more runs wins
+    out.entries.back().merit = 1 - static_cast<double>(bad.size()) / all + 1e-9 * all;
   }
   return out;
 }
@@ -242,34 +245,38 @@ std::string fact(const RunRecord& c, const std::string& key) {
 
 std::vector<View> overview_views() { return {speed_and_error(true), speed_and_error(false)}; }
 
+std::string Tile::others() const {
+  Texts out;
+  for (std::size_t k = 1; k < entries.size(); ++k)
+    out.push_back(entries[k].label + " " + entries[k].value + in_brackets(entries[k].about));
+  return joined(out, " · ");
+}
+
 std::vector<Tile> tiles_of(const RunTable& table) {
-  constexpr std::size_t kMostTiles = 4, kMostOthers = 4;
-  std::vector<const Row*> rows;
+  constexpr std::size_t kMostTiles = 4, kMostEntries = 5;
+  Group rows;
   for (const Row& r : table.rows())
     if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
-  std::map<std::string, std::vector<const Row*>> random;  // by study
+  std::map<std::string, Group> random;  // by study
   for (const Row* r : rows)
     if (r->part == Part::Generated) random[r->drawn().value("study", "?")].push_back(r);
-  std::vector<std::vector<Entry>> tiles = {shares(rows, Part::Contact, "Scenes with colliders or attachments passed"),
-                                           errors(rows), rates(rows),
-                                           shares(rows, Part::Stability, "Hard cases stable")};
+  std::vector<Tile> tiles = {shares(rows, Part::Contact, "Scenes with colliders or attachments passed"), errors(rows),
+                             rates(rows), shares(rows, Part::Stability, "Hard cases stable")};
   for (const auto& [study, of] : random)
     tiles.insert(study == random.begin()->first ? tiles.begin() : tiles.end(),
                  shares(of, Part::Generated, "Random scenes of " + study + " passed"));
-  std::vector<Tile> out;
-  for (std::vector<Entry>& entries : tiles) {
-    if (entries.empty() || out.size() == kMostTiles) continue;
-    std::stable_sort(entries.begin(), entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
-    const Entry& best = entries.front();
-    Texts others, solvers = {best.solver};
-    for (const Entry& e : entries) {
-      if (contains(solvers, e.solver) || others.size() == kMostOthers) continue;
-      solvers.push_back(e.solver);
-      others.push_back(e.solver + " " + e.value + in_brackets(e.interval));
-    }
-    out.push_back({best.title + ", " + best.solver, best.value, best.interval, joined(others, " · ")});
+  std::erase_if(tiles, [](const Tile& t) { return t.entries.empty(); });
+  tiles.resize(std::min(tiles.size(), kMostTiles));
+  for (Tile& t : tiles) {
+    std::stable_sort(t.entries.begin(), t.entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
+    std::vector<Tile::Entry> first;
+    for (Tile::Entry& e : t.entries)
+      find_or_add(
+          first, [&](auto& f) { return f.label == e.label; }, e);
+    first.resize(std::min(first.size(), kMostEntries));
+    t.entries = std::move(first);
   }
-  return out;
+  return tiles;
 }
 
 Heading heading_of(const RunTable& table, const std::vector<std::string>& studies) {
@@ -298,8 +305,10 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
   const auto text = [&](const auto& t) { return t.first + (trials.size() > 1 ? in_brackets(joined(t.second)) : ""); };
   h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials, ", ", text));
   if (studies.size() > 1) h.facts.emplace_back("studies", joined(studies));
-  h.title = fmt::format("Cloth solvers on {}{}", device.empty() ? "an unknown machine" : device,
-                        studies.size() == 1 ? ": " + studies.front() : "");
+  const Texts first(studies.begin(), studies.begin() + static_cast<std::ptrdiff_t>(std::min(studies.size(), kNamed)));
+  h.title = fmt::format("Cloth solvers on {}{}{}{}", device.empty() ? "an unknown machine" : device,
+                        studies.size() > 1 ? fmt::format(": {} studies", studies.size()) : "",
+                        studies.empty() ? "" : ": " + joined(first), studies.size() > kNamed ? " …" : "");
   return h;
 }
 

@@ -12,9 +12,17 @@ namespace clothbench {
 /// A sentence for the note of a table of times: why some runs show "–". Empty if no time is withheld.
 std::string withheld_note(const std::vector<const Row*>&);
 
-/// A number on the first screen: the best solver's value with its interval. `others`: the next solvers.
+/// A number on the first screen. `entries`: at least one, at most one per solver and setting, the best first.
 struct Tile {
-  std::string title, value, interval, others;
+  struct Entry {
+    std::string solver, label, value;
+    std::string about;  ///< interval, or why there is none; trials
+    double merit = 0;   ///< larger is better
+  };
+  std::string title;
+  std::vector<Entry> entries;
+  /// "paper 7166 (7100–7200, 5 trials) · …": all entries except the first.
+  std::string others() const;
 };
 
 /// The first four tiles that have runs, in this order: generated contact, contact, error, rate, stability.

@@ -25,6 +25,7 @@ std::string environment_text(const RunRecord&, const char* key);
 std::string engine_of(const RunRecord&);
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
 extern const char* const kSolverRoles;      ///< solvers.json
+extern const char* const kNotes;            ///< notes.json
 
 /// Roles of solvers in comparisons, and their colours in figures, by label; from solvers.json.
 const nlohmann::json& solver_roles();

@@ -11,7 +11,6 @@
 namespace clothbench {
 namespace {
 
-constexpr std::size_t kMostAgain = 32;  // maximum number of runs that a row's command repeats
 const Cell kNotRun("not run", kMissing, "dim");
 
 /// A row of a table before its cells are computed.
@@ -93,15 +92,17 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   const std::vector<TableRow> rows = rows_of(v, runs);
   t.rows.resize(rows.size() + 1);
   t.cells.resize(rows.size());
+  t.explains = v.explains;
   for (const TableRow& r : rows) {
-    const bool is_sum =
-        r.runs.size() > kMostAgain || std::any_of(r.keys.begin(), r.keys.end(), std::mem_fn(&KeyValue::all));
     t.runs.push_back(r.runs.front());
-    t.again.push_back(is_sum ? Group() : r.runs);
+    t.again.push_back(r.runs);
   }
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     std::vector<Cell> cells;
-    for (const TableRow& r : rows) cells.emplace_back(r.keys[k].text);
+    for (const TableRow& r : rows) {
+      cells.emplace_back(r.keys[k].text);
+      if (v.keys[k].is_solver && !r.keys[k].all) cells.back().run = r.runs.front();
+    }
     const auto same = [&](const Cell& cell) { return cell.text == cells.front().text; };
     if (k > 0 && v.keys[k].if_differs && std::all_of(cells.begin(), cells.end(), same)) continue;
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
@@ -197,6 +198,8 @@ const std::vector<View>& views() {
   return all;
 }
 
+std::string note(const char* table) { return nlohmann::json::parse(kNotes).at(table); }
+
 Cell number_cell(double v, int digits) { return std::isfinite(v) ? Cell(significant(v, digits), v) : Cell(); }
 
 Cell paired_cell(double a, double b, int digits) {
@@ -216,10 +219,12 @@ Cell ending_cell(const RunRecord& c) {
   return {ending(c.outcome), kMissing, status == "ok" ? "" : not_run ? "dim" : "bad"};
 }
 
-Cell verdict_cell(const RunRecord& c) {
-  if (c.outcome.status != "ok") return ending_cell(c);
-  const std::string v = verdict(c);
-  return {v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim"};
+Cell verdict_cell(const Row& r) {
+  if (r.status() != "ok") return ending_cell(*r.run);
+  const std::string v = verdict(*r.run);
+  Cell out(v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim");
+  if (v == "fail") out.run = &r;
+  return out;
 }
 
 }  // namespace clothbench

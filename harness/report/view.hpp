@@ -17,14 +17,17 @@ using Texts = std::vector<std::string>;
 /// text and is shown as "–".
 struct Cell {
   std::string text;
-  double value = kMissing;  ///< NaN: the text is not a number
-  const char* tone = "";    ///< "good", "bad", "dim" or none
+  double value = kMissing;   ///< NaN: the text is not a number
+  const char* tone = "";     ///< "good", "bad", "dim" or none
+  const Row* run = nullptr;  ///< run with this solver's name, or with this failed verdict, which the page explains
 
   Cell() = default;
   Cell(std::string t, double v = kMissing, const char* tinted = "") : text(std::move(t)), value(v), tone(tinted) {}
   Cell(const char* t) : text(t) {}
   bool is_missing() const { return text.empty(); }
 };
+/// Note of a table, from notes.json.
+std::string note(const char* table);
 /// A number with `digits` significant digits.
 Cell number_cell(double v, int digits);
 /// "12.3 / 4.50", sorted by the first.
@@ -32,7 +35,7 @@ Cell paired_cell(double a, double b, int digits);
 /// Passed runs with Wilson's 95 % interval: "53/58 (81–96 %)". Empty if there are no runs.
 Cell share_cell(std::size_t passed, std::size_t all);
 /// The verdict on a run, and how a run ended.
-Cell verdict_cell(const RunRecord&);
+Cell verdict_cell(const Row&);
 Cell ending_cell(const RunRecord&);
 
 /// A value by which runs are grouped. `all`: it covers all values of its key, and its row is the last one.
@@ -101,19 +104,21 @@ struct View {
   std::function<std::string(const Row&)> each = nullptr;    ///< one table per value, which becomes its title
   std::function<std::string(const Group&)> more = nullptr;  ///< an additional sentence for the note
   std::function<double(const Group&)> order = nullptr;      ///< rows are sorted by it, ascending
-  bool by_key = false;   ///< rows in the order of their keys; otherwise in the order of the runs
-  bool timed = false;    ///< shows times; the note then states whose times are withheld
-  bool in_full = false;  ///< only in files and on the page, not on the terminal
+  bool by_key = false;    ///< rows in the order of their keys; otherwise in the order of the runs
+  bool timed = false;     ///< shows times; the note then states whose times are withheld
+  bool in_full = false;   ///< only in files and on the page, not on the terminal
+  bool explains = false;  ///< states why runs failed; the page links failed verdicts to its rows
 };
 
 /// A table with its runs, for the page's filters and commands.
 struct ViewTable : Table {
   std::vector<const Row*> runs = {};          ///< the first run of each row
-  std::vector<Group> again = {};              ///< by row: the runs that its command repeats; none for a row of totals
+  std::vector<Group> again = {};              ///< by row: the runs that its command repeats
   std::size_t keys = 0;                       ///< number of columns that identify a row
   std::vector<std::size_t> lead = {};         ///< columns that come first on the page, after the keys
   std::vector<std::size_t> late = {};         ///< columns that come last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
+  bool explains = false;                      ///< as in View
   std::vector<std::vector<Cell>> cells = {};  ///< of the rows below the head; empty: text only
   std::vector<std::string> solvers = {};      ///< by column: its solver, or ""
 };

@@ -89,17 +89,7 @@ std::string ranked_text(const Group& g) {
 }
 
 View work() {
-  View v{"accuracy", "Error against run time",
-         "Times: ms of wall time per simulated second, with pipelined frames (two in flight) if supported; in brackets "
-         "the setting. GPU: by the device's own clock. Errors: against the exact solution of the same grid; for "
-         "triangle meshes, against the continuum's; within: the smallest error of a setting whose frame takes at most "
-         "that wall time. Frame, percentiles, missed deadlines and real-time factor: of the fastest setting with an "
-         "error of at most 1 %, otherwise of the most accurate. ≤: at the floor below which solvers are not "
-         "distinguished, which is three times the reference's uncertainty or the error of the mesh. Failed: runs "
-         "without a finite error. Not run: settings with more work than one that ran into the time limit. In a refused "
-         "scene no solver is ranked; see the table of reference cases. Ranked: the solver controls every stiffness on "
-         "which the scene depends, as its plan states; effective stiffness is not measured here.",
-         in_truth};
+  View v{"accuracy", "Error against run time", note("error and time"), in_truth};
   v.keys = {key("scene", [](const Row& r) { return r.scene + (r.truth->refused().empty() ? "" : " (refused)"); }),
             key("solver", &Row::solver, true)};
   v.columns = {time_to("to 1 %", 1e-2, &Row::wall_ms_per_s), time_to("to 0.1 %", 1e-3, &Row::wall_ms_per_s),
@@ -126,13 +116,7 @@ ViewColumn fact(const char* head, const char* name, const char* form = "{:.1e}")
 }
 
 View reference_cases() {
-  View v{"accuracy", "Reference cases and their reference solutions",
-         "Space: distance between the continuum's solution and, on a grid, the exact solution of this grid; on a "
-         "triangle mesh, the reference solution of this mesh. U_ref: uncertainty of the reference solution (two "
-         "integrators, three time steps) in the case's quantity, divided by its scale. On a grid, the distance of the "
-         "reference solution from the exact solution must be below U_ref; on a triangle mesh it is the error of the "
-         "mesh. Order: observed; 2 is declared. –: the result does not depend on the time step.",
-         in_truth};
+  View v{"accuracy", "Reference cases and their reference solutions", note("reference cases"), in_truth};
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
@@ -172,12 +156,7 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
 }
 
 View robustness() {
-  View v{"stability", "Robustness",
-         std::string(
-             "Number of runs of each case by grade. Stable: no failure class. Degraded: only strain is beyond the load "
-             "(F2). Failed: any other class. Unsupported counts as not stable. Classes: ") +
-             kClasses,
-         in_stability};
+  View v{"stability", "Robustness", note("robustness") + kClasses, in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
@@ -235,6 +214,7 @@ View violated() {
                   const Scalar* s = find_scalar(k[2].text);
                   return Cell(s != nullptr ? s->doc : k[2].text == "motion" ? found_of(*g.front(), "motion").text : "");
                 }}};
+  v.explains = true;
   return v;
 }
 

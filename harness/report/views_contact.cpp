@@ -36,34 +36,22 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
 }
 
 View verdicts() {
-  View v{"contact", "Verdict on the acceptance criteria of each scene",
-         "Pass: the run meets every acceptance criterion of the scene. Ignored: the criteria are met, but the solver "
-         "handles no contact. –: the scene has no criteria. All: number of passed scenes of those run, with the 95 % "
-         "interval of the probability (Wilson); unsupported counts as not passed. A scene of several studies counts "
-         "once, by its first run. Contact offsets differ between solvers: see the next table; scenes without an offset "
-         "have attachments, but no collider.",
+  View v{"contact", "Verdict on the acceptance criteria of each scene", note("verdicts"),
          [](const Row& r) { return in_contact(r) && r.repeat == 1; }};
   v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
   v.across = {solver_key(), [](const Group& g, const Keys& keys) {
-                return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front()->run);
+                return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front());
               }};
   return v;
 }
 
 View contact() {
-  View v{
-      "contact", "Contact",
-      "Contact offset: distance at which the solver keeps the cloth from colliders; it differs between solvers. "
-      "Crossings: how often cloth and colliders pass through each other between two frames, the maximum of "
-      "all frames. Contour: length of the curves in which cloth and colliders intersect; settled: the maximum in "
-      "the last 0.5 s. Depth: maximum depth of the cloth in a collider, not counting the contact offset. Popping: "
-      "maximum displacement of a vertex within 1/36 s that its neighbours, colliders and attachments do not explain. "
-      "Strain: of structural edges. Times are in the section Frame times.",
-      [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
+  View v{"contact", "Contact", note("contact"),
+         [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
-      column("verdict", [](const Row& r) { return verdict_cell(*r.run); }),
+      column("verdict", verdict_cell),
       column("contact offset [mm]", [](const Row& r) { return Cell(offset_of({&r}), 1e3 * r.offset_m().first); }),
       values("crossings", {"crossings_max"}),
       values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, 1e3),
@@ -88,11 +76,7 @@ std::string with_assets(const std::string& kind, const Row& r) {
 }
 
 View pass_rates() {
-  View v{"contact", "Random scenes: pass rate by speed [m/s]",
-         "Each seed generates a scene of one kind from the ranges in the study's file (scenarios/studies). Fast, "
-         "default, accurate: substeps of `xpbd`. Passed / generated scenes, by the speed of the hand, or of the cloth "
-         "at first contact; in brackets the 95 % interval of the probability (Wilson). Unsupported and timed out count "
-         "as not passed. Contact offset: distance at which the solver keeps the cloth from colliders.",
+  View v{"contact", "Random scenes: pass rate by speed [m/s]", note("pass rates"),
          [](const Row& r) { return r.part == Part::Generated; }};
   v.each = [](const Row& r) {
     return fmt::format("Random scenes of {}: pass rate by speed [m/s]", r.drawn().value("study", "?"));

@@ -82,20 +82,7 @@ void add_conditions(View& v, const Pick& pick) {
 }
 
 View frame_times() {
-  View v{"time", "Time per frame [ms]",
-         std::string(
-             "Over all trials, without rendering. Wall: one call of the solver. GPU: first to last timestamp of the "
-             "frame's one submission. CPU: sum over the threads. With rendering: a frame and the images for "
-             "both eyes, one after the other; the paper's rates include rendering. Percentiles by nearest rank; –: "
-             "too few frames. (2): another result of the same run. Missed: frames longer than one refresh period of "
-             "the display. Real-time factor: simulated time over "
-             "the median. Pipelined: two frames in flight, median of the trials' means; –: the solver waits for "
-             "each frame. Load: once, before the first frame. × bullet-soft: ratio of the medians over the frames "
-             "that both runs timed, with contact if both have any, with the extreme ratios of both intervals. Rank 1: "
-             "no ranked run of the scene is certainly faster (has its whole interval below the run's); runs that "
-             "failed, and cloths with an edge longer than twice its "
-             "rest length, are not ranked. CPU threads: CPU time over wall time. Without settings sweeps. ") +
-             kIntervalMethod,
+  View v{"time", "Time per frame [ms]", note("frame times") + kIntervalMethod,
          [](const Row& r) { return r.published < 0 && !r.drawn().contains("settings") && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
@@ -125,11 +112,7 @@ View frame_times() {
 }
 
 View memory() {
-  View v{"time", "Bytes and device memory per frame",
-         "Bytes: loads and stores of the shaders, counted by instrumented kernels in an untimed run of the same "
-         "frames; mean over the frames. Peak bandwidth: counted bytes divided by wall time, over windows of 5 s, or of "
-         "the whole trial if it is shorter. Memory: device-local buffers. Without CPU solvers and sweeps.",
-         [](const Row& r) {
+  View v{"time", "Bytes and device memory per frame", note("memory"), [](const Row& r) {
            return (r.part == Part::Rates || r.part == Part::Contact || r.part == Part::Truth) && !r.in_sweep() &&
                   r.status() != "unsupported" && std::isfinite(r.value("device_memory_B"));
          }};
@@ -157,11 +140,7 @@ Keys windows_of(const Row& r) {
 }
 
 View sustained() {
-  View v{"time", "Frame times over time",
-         "Runs with `--sustained`: frames begin at the scene's frame rate, and a row shows one window. Late: frames "
-         "longer than their period. Clocks and temperature: after the window, of the fastest core, the GPU and the "
-         "hottest zone. Power: mean of the GPU; of the CPU packages, or drawn from the battery. A column is missing if "
-         "the platform does not let the program read it.",
+  View v{"time", "Frame times over time", note("sustained"),
          [](const Row& r) { return environment_of(*r.run, "window_s").is_number() && !r.run->trials.empty(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"window", windows_of}};
   const auto add = [&](const char* head, std::function<Cell(const Row&, const TimedTrial&)> cell) {
@@ -233,22 +212,13 @@ View devices() {
 }
 
 View in_short(std::function<bool(const Row&)> where) {
-  View v{
-      "overview", "In short",
-      "Outcome: how the run ended, or the verdict on the scene's criteria; ignored: they are met, but the solver "
-      "ignores all contact. Stretch: maximum strain of a structural edge in the last second. Frame: wall time, with "
-      "the 95 % interval of the median; with contact: of the frames in which something touches the cloth; –: too few "
-      "frames for a percentile. × bullet-soft: over the frames that both runs timed, with contact if both have any. "
-      "Not ranked: runs that failed, cloths with an edge longer than twice its rest length, and medians whose interval "
-      "is "
-      "wider than 20 % (~).",
-      std::move(where)};
+  View v{"overview", "In short", note("in short"), std::move(where)};
   v.keys = {scene_key(), solver_key()};
   v.columns = {column("outcome",
                       [](const Row& r) {
                         const bool judged =
                             r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
-                        return judged ? verdict_cell(*r.run) : Cell(r.status());
+                        return judged ? verdict_cell(r) : Cell(r.status());
                       }),
                column("stretch [%]", [](const Row& r) {
                  const double percent = 100 * r.value("stretch_max_last_second");

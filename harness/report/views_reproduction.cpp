@@ -191,17 +191,7 @@ Cell options_of(const Point& p) {
 }
 
 View claims() {
-  View v{"contact", "Claims of the article, over what it leaves open",
-         "Fraction of the box's points at which a claim holds, with Wilson's 95 % interval, also by iterations × "
-         "substeps per frame. Reproduced: the claim holds at every point; reproducible: at some. Row all: every claim "
-         "holds at the same point. Fewest dispatches: per frame, at the cheapest such point, in its most expensive "
-         "scene. Best point: the command that repeats the cheapest of the points where the largest number of the "
-         "row's claims hold; its GPU time per frame in its most expensive scene, the median of the few frames that "
-         "are timed once all points have run, one point at a time; and its values as options for other scenes, in row "
-         "all the values that all scenes share. "
-         "Missed there: criteria violated at this point; if no claim of the row holds anywhere, at the cheapest point "
-         "that violates the fewest. At all points with: points beyond this value of one setting all meet the row's "
-         "claims. c11-folds: after the sweep, roughness is below NvCloth's in the published study penetration.",
+  View v{"contact", "Claims of the article, over what it leaves open", note("claims"),
          [](const Row& r) { return r.part == Part::Claims; }};
   v.keys = {key("solver", &Row::solver, true), {"claim", [](const Row& r) {
                                                   Keys out;
@@ -294,19 +284,10 @@ Cell allowed_iterations(const Group& g, const Keys& keys) {
 }
 
 View work_model() {
-  View v{
-      "rates", "Table 3: work per frame",
-      "Least squares of frame time = fixed + slope × particles, over the published rates of PBD below the display's "
-      "cap and over measured times of the same cloths; a doubled cloth has twice the particles. Error: standard "
-      "error; residual: !, the fit means nothing; incomplete: a cloth was not run, or is unsupported. C2, C3: "
-      "claims of the article on ratios of times. Doubled / single slope: ratio of the times by which 128² takes "
-      "longer than 64², which no fixed time changes. Iterations: constraint iterations per frame. Iterations at the "
-      "published slope: number that would need the published time per particle on this device, with the range of two "
-      "standard errors. A headset's GPU is slower, so it allows fewer. The published times include rendering.",
-      [](const Row& r) {
-        return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
-               published_samples().contains({r.sides, r.resolution.grid[0]});
-      }};
+  View v{"rates", "Table 3: work per frame", note("work per frame"), [](const Row& r) {
+           return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
+                  published_samples().contains({r.sides, r.resolution.grid[0]});
+         }};
   v.keys = {{"solver", [](const Row& r) { return Keys{r.label(), {kPublished, true}}; }, true}};
   v.by_key = true;
   const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {

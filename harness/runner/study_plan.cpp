@@ -147,21 +147,22 @@ std::vector<std::string> run_names(const RunPlan& plan) {
   return names;
 }
 
-std::vector<std::size_t> parse_runs(const std::string& text, std::size_t count) {
+std::vector<std::size_t> parse_runs(const std::string& text, const std::vector<std::string>& names) {
   const auto fail = [&] {
-    throw Error(fmt::format("--job {}: expected numbers from 0 to {}, such as 7 or 0,3-5", text, count - 1));
+    throw Error(fmt::format("--job {}: expected names, or numbers from 0 to {} (0,3-5)", text, names.size() - 1));
   };
   const auto number = [&](const std::string& word) {
     std::size_t n = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), n);
-    if (error != std::errc() || end != word.data() + word.size() || n >= count) fail();
+    if (error != std::errc() || end != word.data() + word.size() || n >= names.size()) fail();
     return n;
   };
   std::set<std::size_t> chosen;
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
-    const std::size_t dash = part.find('-');
-    const std::size_t first = number(part.substr(0, dash)),
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), part) - names.begin());
+    const std::size_t dash = at < names.size() ? std::string::npos : part.find('-');
+    const std::size_t first = at < names.size() ? at : number(part.substr(0, dash)),
                       last = dash == std::string::npos ? first : number(part.substr(dash + 1));
     if (last < first) fail();
     for (std::size_t k = first; k <= last; ++k) chosen.insert(k);

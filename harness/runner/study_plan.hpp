@@ -30,9 +30,9 @@ void sustain(RunPlan&, double duration_s);
 /// Names of all runs of the plan; a run's number is its index here, from 0.
 std::vector<std::string> run_names(const RunPlan&);
 
-/// Parses "7", "3-5" (inclusive) or a list of these, "0,3-5,9", to ascending numbers. Throws Error for any other text
-/// and for numbers that are not below `count`.
-std::vector<std::size_t> parse_runs(const std::string& text, std::size_t count);
+/// Parses names of runs, "7", "3-5" (inclusive) or a list of these, "0,3-5,9", to ascending numbers. Throws Error for
+/// any other text and for numbers without a name.
+std::vector<std::size_t> parse_runs(const std::string& text, const std::vector<std::string>& names);
 
 /// The plan reduced to these runs, with their groups unchanged.
 RunPlan only_runs(RunPlan, const std::vector<std::size_t>& runs);

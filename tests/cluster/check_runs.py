@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as home:
     with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
         assert json.load(text)["runs"] == names, "study.json lists all runs"
     # Two concurrent processes compute the other runs; one process begins with a run that exists already.
-    parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--job", c]) for c in ("0-1", f"2-{len(names) - 1}")]
+    parts = [subprocess.Popen([CLOTHBENCH, *STUDY, "--out", out, "--job", c]) for c in (f"{names[0]},1", f"2-{len(names) - 1}")]
     assert [p.wait() for p in parts] == [0, 0]
     assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(names)
     assert not [f for f in os.listdir(out) if f.endswith(".part")]

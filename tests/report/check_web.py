@@ -30,13 +30,27 @@ assert len(html) < 20e6, len(html)
 markup = re.sub(r"<(script|style)\b([^>]*)>.*?</\1>", r"<\1\2>", html, flags=re.S)
 assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?!data:)', markup), "the page asks for another file"
 
-# Static text contains no results, which could belong to other runs; the head states trials and device of these runs.
+# Wrong statements that pages once made. Results in static text could belong to other runs.
 static_text = re.sub(r'<(script|style|svg)\b.*?</\1>|<section id="overview">.*?</section>|<details>.*?</details>', "", html, flags=re.S)
-assert not re.search(r"\d+ of \d+|\d\s?(ms|µs|%)(?! interval)|results/reference", static_text), "a result in static text"
-title = re.search(r"<title>(.*?)</title>", html)[1]
-assert "studies <b>contact, contact-gpu, more, table3, truth-1, truth-1-gpu, truth-4, truth-4-gpu</b>" in html and re.search(rf"<h1>{re.escape(title.split(' · ')[0])}</h1>", html), title
-assert "trials per run <b>1</b>" in html and "commit <b>" in html and "date <b>" in html
-assert not re.search(r"\b(nan|inf)\b", html.split('id="clothbench-motions"')[0].split('id="clothbench-data"')[0].split("<body>")[1]), "not a number in prose"
+prose, title = html.split('id="clothbench-motions"')[0].split('id="clothbench-data"')[0].split("<body>")[1], re.search(r"<title>(.*?) · clothbench</title>", html)[1]
+for what, text, pattern, wanted in (
+    ("a result in static text", static_text, r"\d+ of \d+|\d\s?(ms|µs|%)(?! interval)|results/reference", False), ("not a number in prose", prose, r"\b(nan|inf)\b", False), ("the trials of these runs", html, "trials per run <b>1</b>", True),
+    ("commit and date", html, "commit <b>.*date <b>", True), ("a title with device and studies", title, r"^Cloth solvers on .*: 8 studies: contact, contact-gpu, more …$", True), ("the title as a heading", html, f"<h1>{re.escape(title)}</h1>", True),
+    ("all studies", html, "studies <b>contact, contact-gpu, more, table3, truth-1, truth-1-gpu, truth-4, truth-4-gpu</b>", True)):
+    assert bool(re.search(pattern, text)) == wanted, (what, wanted, title)
+for tile in doc["tiles"]:
+    for e in tile["entries"]:
+        assert re.search(r"\d[kM]?–[\d.]+|too few frames for an interval", e["about"]) and re.search(r"\d trial|one run per scene", e["about"]), (tile["title"], e)
+for t in (t for s in doc["sections"] for t in s["tables"]):
+    rows = [dict(zip(t["rows"][0], row)) for row in t["rows"][1:]]
+    for row in rows if t["explains"] else []:  # a bound has its sign, and its unit is the value's
+        found, expected = (table_values.text_of(row[k]) for k in ("found", "expected"))
+        bound = re.fullmatch(r"at (?:least|most) -?[\d.e+-]+( \S+)?", expected)
+        assert expected in ("–", "ok") or bound and (found == "–" or found.endswith(bound[1] or found[-1])), row
+    for row, k in zip(rows, t["runs"]):  # a wide interval is marked, and its run not ranked
+        p50, low, high = (doc["runs"][k].get("wall") or [1, 1, 1])[:3]
+        if row.get("clock") == "wall" and low is not None and high - low > 0.2001 * p50:
+            assert "~" in table_values.text_of(row["frame p50 [ms]"]) and table_values.text_of(row["rank"]) == "–", row
 
 # Tables equal those of report.md, run by run.
 markdown = (report / "report.md").read_text(encoding="utf-8")

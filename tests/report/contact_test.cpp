@@ -51,7 +51,7 @@ TEST(Penetration, ABoundThatIsNotMeasuredIsNoFailureAnywhere) {
   c.summary["expect.stretch_max"] = kMissing;
   EXPECT_TRUE(tables_titled({c}, "Acceptance criteria that are violated").empty());
   const RunTable table({c});
-  EXPECT_EQ(tiles_of(table).at(0).value, "0/1") << "a run that was not measured has not passed";
+  EXPECT_EQ(tiles_of(table).at(0).entries[0].value, "0/1") << "a run that was not measured has not passed";
   std::string all;
   for (const View& v : views())
     for (const Table& t : tables_of(v, table)) all += t.markdown();

@@ -199,12 +199,12 @@ def compare_tables(doc, runs):
 def compare_rows(runs):
     """Number of compared values behind the figures. Fails for an unknown one."""
     # Not compared: names of the run, indices, what this test adds; intervals, which are random resamples; sentences; criteria, which are compared in their table.
-    left_out, count = {*"part study job file family label scene solver setting published largest fps_low fps_high trust frames ranking refused not_ranked violated".split()}, 0
+    left_out, count = {*"part study job name plugin file family label scene solver setting published largest fps_low fps_high trust frames ranking refused not_ranked violated".split()}, 0
     fact = lambda r, name: next((q.value(name) for q in runs if q.row["scene"] == r.row["scene"] and finite(q.value(name))), NAN)  # noqa: E731
     for r in runs:
         s, grid = r.scenario, r.scenario["cloth"].get("grid", [0, 0])
         told = {"status": r.status, "verdict": r.verdict(), "sides": s["cloth"].get("sides"), "cpu": r.environment.get("gpu") == "CPU", "message": r.outcome["message"], "trials": r.value("trials"), "width": math.sqrt(grid[0] * grid[1]),
-                "resolution": f"{grid[0]}²" if grid[0] == grid[1] else f"{grid[0]}×{grid[1]}", "paper_table": s.get("paper", {}).get("table", 0), "grade": r.grade if "stability" in s else None, "wall_ms_per_s": r.wall_ms, "device_ms_per_s": r.device_ms,
+                "is_grid": grid[0] > 0, "resolution": f"{grid[0]}²" if grid[0] == grid[1] else f"{grid[0]}×{grid[1]}", "paper_table": s.get("paper", {}).get("table", 0), "grade": r.grade if "stability" in s else None, "wall_ms_per_s": r.wall_ms, "device_ms_per_s": r.device_ms,
                 "error": r.error, "space_error": fact(r, "truth_space_error"), "reference_uncertainty": fact(r, "reference_uncertainty"), "case": "stability" in s and KEYS["case"](r, None), "speed": s.get("drawn", {}).get("speed_m_per_s"),
                 "kind": s.get("drawn", {}).get("kind")}
         for name, v in ((n, v) for n, v in r.row.items() if n not in left_out):

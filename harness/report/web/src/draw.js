@@ -1,5 +1,5 @@
 // Draws every figure, on the page and on paper: Vega-Lite compiles an entry's spec, Vega draws it.
-import {expressionFunction, parse, textMetrics, View} from 'vega';
+import {expressionFunction, parse, textMetrics, Transform, transforms, View} from 'vega';
 import {compile} from 'vega-lite';
 
 import {number} from './look.js';
@@ -13,7 +13,6 @@ function config({font, paper}, width) {
   return {
     font,
     background: paper?.back ?? null,
-    padding: {left: 2, right: 8, top: 2, bottom: 6},
     view: {stroke: null},
     line: {strokeWidth: 2, strokeJoin: 'round'},
     point: {opacity: 1, size, strokeWidth: 1.6},
@@ -30,21 +29,37 @@ function config({font, paper}, width) {
   };
 }
 
-const kAnchors = ['right', 'top-right', 'bottom-right', 'left', 'top', 'bottom', 'top-left', 'bottom-left'];
-/// Vega's transform that places labels without overlap, for the layer "names"; Vega-Lite specs cannot contain it.
-const placed = right => ({
-  type: 'label',
-  size: {signal: `[width + ${right}, height]`},
-  sort: {field: 'datum.order'},
-  anchor: [10, 18, 28, 44].flatMap(() => kAnchors),
-  offset: [10, 18, 28, 44].flatMap(d => kAnchors.map(() => d))
-});
+const kLine = 14, kGap = 9;  // pixels: between the middles of two names; between a name and its mark
+/// Transform of the layer "names": moves each name to where it covers no other name, few marks, and is near the end of its line.
+transforms.names = class extends Transform {
+  transform(_, pulse) {
+    if (!_.modified() && !pulse.changed(pulse.ADD_REM)) return pulse.StopPropagation;
+    const {size: [right, bottom]} = _, items = pulse.materialize(pulse.SOURCE).source, points = items.filter(i => !i.datum.name).map(i => [i.x, i.y]), taken = [];
+    for (const item of items.filter(i => i.datum.name).sort((a, b) => a.y - b.y)) {
+      const {x, y} = item, width = textMetrics.width(item, item.text), covers = (list, left, top, h) => {
+        let n = 0;
+        for (const [a, b, wide = 0] of list) n += a < left + width + 4 && a + wide + 4 > left && Math.abs(b - top) < h;
+        return n;
+      };
+      let least = Infinity, best = null;
+      for (const [k, left] of [x + kGap, x - width / 2, x - width - kGap].map(l => Math.max(0, Math.min(l, right - width))).entries())
+        for (let top = 4; top <= bottom - 4; top += 4) {
+          const far = Math.abs(top - y) + 6 * k, cost = far < least ? far + 1e4 * covers(taken, left, top, kLine) + 12 * covers(points, left, top, 9) : far;
+          if (cost < least) [least, best] = [cost, [left, top, width]];
+        }
+      taken.push(best);
+      Object.assign(item, {x: best[0], y: best[1], align: 'left', baseline: 'middle'});
+    }
+    return pulse.reflow(true).modifies(['x', 'y', 'align', 'baseline']);
+  }
+};
+transforms.names.Definition = {type: 'names', metadata: {modifies: true}, params: [{name: 'size', type: 'number', array: true, length: 2}]};
 
 /// A view of an entry's rows, not yet drawn. `width` in pixels of a page; `shrink`: factor on heights.
 export function view_of(entry, rows, state, look, width, shrink = 1) {
   rows = rows.filter(entry.drawn ?? Boolean);
-  const spec = entry.spec(rows, state, {...look, width, shrink}), single = spec.layer && {width, autosize: {type: 'fit-x', contains: 'padding'}};
-  const {spec: vega} = compile({data: {name: 'rows'}, ...single, ...spec}, {config: config(look, width)});
-  for (const m of vega.marks) if (m.name === 'names_marks') m.transform = [placed(spec.padding?.right ?? 0)];
+  const {room = 0, ...spec} = entry.spec(rows, state, {...look, width, shrink}), single = spec.layer && {width, autosize: {type: 'fit-x', contains: 'padding'}};
+  const {spec: vega} = compile({data: {name: 'rows'}, ...single, ...spec, padding: {left: 2, right: 8 + 0.06 * room, top: 2, bottom: 6}}, {config: config(look, width)});
+  for (const m of vega.marks) if (m.name === 'names_marks') m.transform = [{type: 'names', size: {signal: `[width + ${room}, height]`}}];
   return new View(parse(vega, {events: {bind: 'none'}}), {renderer: 'svg'}).data('rows', rows.map((r, i) => ({...r, i})));
 }

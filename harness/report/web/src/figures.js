@@ -1,9 +1,11 @@
 // The figures of a report: entries over the rows of all runs (`doc.runs`), drawn by draw.js. An entry:
 //   {id, section, title(state), caption, choices?, rows(state), drawn?(row), spec(rows, state, look), tip(row), columns, stills}
 // `choices`: [{label, options(state), first?(state)}]; `rows(state)`: the runs or values behind the figure, each with its
-// solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers; `look` as in spec.js.
+// solver; `spec`: the Vega-Lite spec for the rows that are `drawn` and pass the filter of solvers, with pixels of `room` for names
+// to the right of lines; `look` as in spec.js.
 // `columns`: fields of a row, for the table behind the figure. `stills`: image files of the report, [{file, state}]; by
-// default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`.
+// default one, named by the id. `hero`: suits the first screen, which shows the first entry with `hero`. `legend`: false if
+// colours are not by solver. A row that stands for several runs has them in `behind`.
 import {kSymbols, number, unique} from './look.js';
 import {band, by_solver, interval, legend, lines, log, panels, rules, symbols} from './spec.js';
 
@@ -38,9 +40,7 @@ function error_time(doc) {
   const of = scene => all.filter(r => r.scene === scene), scenes = unique(all.map(r => r.scene)).filter(v => of(v).some(good));
   const first = [...scenes].sort((a, b) => of(b).filter(good).length - of(a).filter(good).length)[0];
   return {
-    id: 'error-time',
-    section: 'accuracy',
-    hero: true,
+    id: 'error-time', section: 'accuracy', hero: true,
     title: s => `Error against run time: ${s.Scene}`,
     caption:
         'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
@@ -87,13 +87,11 @@ function rates(doc) {
   const all = doc.runs.filter(r => r.family && !r.published && r.fps_median > 0);
   if (!all.length) return null;
   const families = unique(all.map(r => r.family)), main = all.find(r => r.paper_table === 3)?.family ?? families[0];
-  const is_grid = s => !of(s).some(r => r.resolution.endsWith('vertices')), in_paper = s => of(s).some(r => r.paper_table === 3);
+  const is_grid = s => of(s).every(r => r.is_grid), in_paper = s => of(s).some(r => r.paper_table === 3);
   const of = s => all.filter(r => r.family === s.Scene), has = ({of}) => r => of(r) > 0;
   const line = r => `${r.label}${r.sides && r.sides !== 'single' ? `, ${r.sides}` : ''}${r.cpu ? ' (CPU)' : ''}`;
   return {
-    id: 'rates',
-    section: 'rates',
-    hero: true,
+    id: 'rates', section: 'rates', hero: true,
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
@@ -114,7 +112,7 @@ function rates(doc) {
       const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, 'datum.free_fall_error > 0.01');
       return {
         height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
-        padding: {left: 2, right: 90, top: 2, bottom: 6},
+        room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))),
         layer: [
           ...rules(is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : [], 'y', y), ...lines(rows, x, y, solver, look),
           ...(is_rate ? [interval('fps_low', 'fps_high', {x, y: {...y, field: 'fps_low'}, y2: {field: 'fps_high'}, stroke: solver.stroke})] : []), symbols({x, y, ...solver})
@@ -143,9 +141,7 @@ function frame_times(doc) {
   const few = unique(all.map(r => r.scene)).length <= 8;
   const runs_of = s => all.filter(r => r.solver === s).length, solvers = unique(without_floor(doc, all).map(r => r.solver)).sort((a, b) => runs_of(b) - runs_of(a));
   return {
-    id: 'frame-times',
-    section: 'time',
-    hero: true,
+    id: 'frame-times', section: 'time', hero: true,
     title: s => `Distribution of frame times${s.Solver === 'all' ? '' : `: ${s.Solver}`}`,
     caption: 'Mark: median; bar: up to the 95th percentile; line: up to the 99th. Dashed: one refresh of a display.',
     choices: [
@@ -196,9 +192,7 @@ const judged = (doc, part) => doc.runs.filter(r => r.part === part && r.verdict 
 function verdicts(doc) {
   const all = judged(doc, 'contact').filter(r => !doc.solvers.baseline.includes(r.solver));
   return all.length && {
-    id: 'verdicts',
-    section: 'contact',
-    hero: true,
+    id: 'verdicts', section: 'contact', hero: true, legend: false,
     title: () => 'Verdicts by scene and solver',
     caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
@@ -229,8 +223,7 @@ const contact_scenes = doc => judged(doc, 'generated').filter(r => r.status !== 
 function failure_speed(doc) {
   const rows = contact_scenes(doc).filter(r => ['pass', 'fail'].includes(tone_of(r)[0]) && r.setting === 'default').map(r => ({...r, name: `${r.kind} · ${r.solver}`}));
   return rows.length && {
-    id: 'failure-speed',
-    section: 'contact',
+    id: 'failure-speed', section: 'contact',
     title: () => 'Speeds at which generated scenes are passed and failed',
     caption: 'Filled: the run passed at this speed of the hand or the impact; hollow: it failed. Runs that are unsupported or were not measured are not drawn.',
     rows: () => rows,
@@ -254,7 +247,7 @@ export function wilson(passed, all) {
 function shares(runs, field, is_good, more) {
   const row = (label, value, mine) => {
     const count = mine.length, good = mine.filter(is_good).length, [low, high] = wilson(good, count);
-    return {solver: mine[0].solver, study: mine[0].study, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high, rate: good / count};
+    return {solver: mine[0].solver, behind: mine, label, [field]: value, good, runs: count, unsupported: mine.filter(r => r.status === 'unsupported').length, low, high, rate: good / count};
   };
   const rows = unique(runs.map(r => r.label)).flatMap(label => {
     const mine = runs.filter(r => r.label === label), values = unique(mine.map(r => r[field])).sort();
@@ -284,15 +277,13 @@ function shares(runs, field, is_good, more) {
 }
 
 const forest = doc => shares(contact_scenes(doc), 'kind', r => r.verdict === 'pass', {
-  id: 'forest',
-  section: 'contact',
+  id: 'forest', section: 'contact',
   title: () => 'Pass rate by kind of generated scene with contact',
   caption: 'Fraction of scenes that meet every acceptance criterion, with the 95 % interval (Wilson). Unsupported scenes count as not passed.'
 });
 
 const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 0 || (r.part === 'stability' && r.status === 'unsupported'))), 'case', r => r.grade === 0, {
-  id: 'stability',
-  section: 'stability',
+  id: 'stability', section: 'stability',
   title: () => 'Stable runs by case',
   caption: 'Fraction of the runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
@@ -304,9 +295,7 @@ const kClaims = [['holds', 'good', 'circle'], ['near', 'soft', 'circle'], ['fail
 function claims(doc) {
   const all = doc.runs.filter(r => r.part === 'claims' && r.status !== 'missing');
   return all.length && {
-    id: 'claims-map',
-    section: 'contact',
-    hero: true,
+    id: 'claims-map', section: 'contact', hero: true, legend: false,
     title: () => 'Where each claim of the article holds',
     caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
         'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',
@@ -345,11 +334,24 @@ export function settled(figure, given) {
   return state;
 }
 
-/// The commands that repeat runs: one per study.
-export function command_of(doc, runs) {
-  const of = study => {
-    const plain = doc.studies[study]?.command ?? '', jobs = runs.filter(r => r.study === study).map(r => r.job);
-    return jobs.includes(undefined) || !/ study /.test(plain) ? plain : `${plain} --out again --job ${jobs.join(',')}`;
-  };
-  return unique(runs.map(r => r.study)).map(of).filter(Boolean).join('\n');
+/// Commands that repeat runs, with only their solvers and, unless `whole`, only their scenes and settings: per study one for the
+/// solvers of clothbench and one per plugin, so that a build without a plugin can run all others.
+export function command_of(doc, runs, whole = false) {
+  const groups = new Map();
+  for (const r of runs) if (doc.studies[r.study]?.command) (k => groups.set(k, [...groups.get(k) ?? [], r]))(`${r.study} ${r.plugin ?? ''}`);
+  return [...groups.values()].map(mine => {
+    const {study: n, plugin} = mine[0], study = doc.studies[n], solvers = unique(mine.map(r => r.solver)), given = [];
+    const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
+    const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
+    if (whole || !['study', 'run'].includes(words[1]) || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
+    if (words[1] === 'study') return [...words, ...with_solvers, '--out again --job', mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
+    const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
+    return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
+  }).join('\n');
+}
+
+/// The result files of runs: the first ones, and the number of all others.
+export function files_of(runs) {
+  const files = runs.map(r => r.file).filter(Boolean);
+  return files.slice(0, 3).join(', ') + (files.length > 3 ? ` and ${files.length - 3} more` : '');
 }

@@ -1,10 +1,10 @@
 // Builds the page from its document: figures and tables by section, solver filter, contents, theme and motions.
-import {button, element, say, unpacked} from './dom.js';
+import {button, element, unpacked} from './dom.js';
 import {make_figures} from './figures.js';
-import {icon, looks, style_of, unique} from './look.js';
+import {looks, style_of, unique} from './look.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {hide_solvers, load_state, save_state, shown, state} from './state.js';
-import {reproduce, start_tables, table_block} from './tables.js';
+import {all_tables, reproduce, solver_buttons, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
 const kMethod = ['features', 'environment'];
@@ -21,34 +21,21 @@ function start_theme() {
 function chips(doc, look) {
   const known = Object.keys(doc.solvers.look), place = s => known.includes(s) ? known.indexOf(s) : known.length;
   const solvers = unique(doc.runs.filter(r => !r.published).map(r => r.solver)).sort((a, b) => place(a) - place(b));
-  const list = solvers.map(s => {
-    const toggle = () => (hide_solvers(shown(s) ? [...state.off, s] : [...state.off].filter(o => o !== s)), say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`));
-    return button([icon(look, s), s], null, toggle, {title: 'Click: hide or show. Double click: only this solver.', ondblclick: () => hide_solvers(solvers.filter(o => o !== s))});
-  });
-  const all = button('all', 'Show all solvers', () => hide_solvers([])), tell = () => {
-    list.forEach((b, k) => b.setAttribute('aria-pressed', String(shown(solvers[k]))));
-    all.hidden = !state.off.size;
-  };
-  $('chips').append(...list, all);
-  addEventListener('solvers', tell);
-  tell();
+  const all = button('all', 'Show all solvers', () => hide_solvers([]), {hidden: !state.off.size});
+  $('chips').append(...solver_buttons(look, solvers), all);
+  addEventListener('solvers', () => all.hidden = !state.off.size);
 }
 
-/// A tile shows the best of the solvers that are shown: the report lists it first, and up to four others in the last line.
+/// A tile shows the best of the solvers that are shown, and below it the others.
 function start_tiles(doc) {
-  const solver = Object.fromEntries(doc.runs.flatMap(r => [[r.label, r.solver], [r.solver, r.solver]])), names = Object.keys(solver).sort((a, b) => b.length - a.length);
-  for (const [title, value, others] of [...document.querySelectorAll('.tile')].map(t => t.children)) {
-    const best = names.find(n => title.textContent.endsWith(`, ${n}`)), what = title.textContent.slice(0, -best.length), [big, small] = value.childNodes;
-    const rest = others.textContent.split(' · ').map(text => [names.find(n => text.startsWith(`${n} `)), text]).filter(([name]) => name);
-    const all = [[best, big.data, small.textContent], ...rest.map(([name, text]) => [name, ...text.slice(name.length + 1).match(/(\S+ ?)\(?(.*?)\)?$/).slice(1)])];
-    const tell = () => {
-      const [[name, number, interval], ...left] = [...all.filter(([n]) => shown(solver[n])), ['', '– ', 'hidden by the solver filter']];
-      [title.textContent, big.data, small.textContent] = [name ? what + name : what.slice(0, -2), number, interval];
-      others.textContent = left.slice(0, -1).map(([n, v, i]) => `${n} ${v.trim()}${i && ` (${i})`}`).join(' · ');
-    };
-    addEventListener('solvers', tell);
-    tell();
-  }
+  const places = document.querySelectorAll('.tile'), tell = () => doc.tiles.forEach(({title, entries}, k) => {
+    const [best, ...rest] = [...entries.filter(e => shown(e.solver)), {value: '–', about: 'hidden by the solver filter'}], [name, value, others] = places[k].children;
+    name.textContent = title + (best.label ? `, ${best.label}` : '');
+    value.replaceChildren(`${best.value} `, element('small', {}, best.about));
+    others.textContent = rest.slice(0, -1).map(e => `${e.label} ${e.value} (${e.about})`).join(' · ');
+  });
+  addEventListener('solvers', tell);
+  tell();
 }
 
 /// The first screen has the first figure, below it the leading scenes, and next to them Table 3. All else follows in sections.
@@ -90,11 +77,12 @@ function start_motions(doc, motions) {
   window.clothbench.load_viewer = load;
 }
 
-/// Blocks have no height before they are made, so all are made before the page scrolls to one.
-function go_to(id) {
+/// Blocks have no height before they are made, so all are made, and heads arranged, before the page scrolls to one.
+async function go_to(id) {
   document.documentElement.classList.add('whole');
   dispatchEvent(new Event('whole'));
-  setTimeout(() => document.getElementById(id)?.scrollIntoView());  // figures are drawn first
+  await Promise.all(all_figures.map(f => f.view?.runAsync()));
+  requestAnimationFrame(() => requestAnimationFrame(() => document.getElementById(id)?.scrollIntoView()));
 }
 
 function start_navigation() {
@@ -127,10 +115,11 @@ function start_navigation() {
 async function start() {
   const data = async id => JSON.parse(new TextDecoder().decode(await unpacked(id)));
   const doc = await data('clothbench-data'), motions = await data('clothbench-motions'), anchor = load_state();
+  doc.runs.forEach((r, k) => r.index = k);
   const look = looks(unique(doc.runs.map(r => r.solver)), doc.solvers);
   document.head.append(element('style', {}, style_of(look), `@page{@top-left{content:${JSON.stringify(doc.title)}}}`));
   document.documentElement.classList.add('js');
-  window.clothbench = {document: doc, state, figures: all_figures};  // used by tests and the browser's console
+  window.clothbench = {document: doc, state, figures: all_figures, tables: all_tables};  // used by tests and the browser's console
   start_theme();
   chips(doc, look);
   start_tiles(doc);

@@ -2,9 +2,10 @@
 // window.
 import {button, element, say, select} from './dom.js';
 import {view_of} from './draw.js';
-import {command_of, settled} from './figures.js';
+import {command_of, files_of, settled} from './figures.js';
+import {unique} from './look.js';
 import {set_value, shown, state} from './state.js';
-import {block_head, copy_command, near_window, reproduce, ShownTable} from './tables.js';
+import {block_head, copy_command, near_window, reproduce, shortened, ShownTable, solver_buttons} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
 const figures = [];
@@ -26,6 +27,7 @@ class Figure {
     this.plot = element('div', {class: 'plot', tabindex: '0', role: 'group', 'aria-label': 'Figure. Left and right arrow: next value. Enter: copy the command of its run.'});
     this.heading = element('span', {});
     this.remark = element('p', {class: 'note'});
+    this.legend = element('div', {class: 'solvers legend', role: 'group', 'aria-label': 'Legend: solvers of this figure'});
     this.values = element('div', {});
     this.choices = entry.choices ?? [];
     this.controls = this.choices.map(({label}) => select(label, [], '', v => {
@@ -34,7 +36,7 @@ class Figure {
     }));
     this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
     this.again = element('span', {});
-    this.block = element('figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot,
+    this.block = element('figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot, this.legend,
                          element('figcaption', {}, entry.caption), this.remark, element('div', {class: 'bar small'}, this.details));
     this.listen();
     figures.push(this);
@@ -73,11 +75,12 @@ class Figure {
     }
     this.at = at;
     const row = this.marks[at];
-    this.command = row && command_of(this.doc, [row]);
+    const runs = row?.behind ?? [row];
+    this.command = row && command_of(this.doc, runs);
     pinned = pin && row ? this : null;
     const copy = this.command && button('Copy the command', null, () => copy_command(this.command));
     const controls = pinned ? [element('div', {class: 'bar'}, copy, button('Close', null, unpin))] : [];
-    show_tip(row ? [...this.entry.tip(row), row.file, this.command] : [], x, y, controls);
+    show_tip(row ? [...this.entry.tip(row), files_of(runs), shortened(this.command)] : [], x, y, controls);
   }
 
   settle() {
@@ -94,9 +97,10 @@ class Figure {
   async redraw() {
     const {entry} = this;
     this.state = this.settle();
-    const rows = this.rows = entry.rows(this.state).filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
+    const all = entry.rows(this.state), rows = this.rows = all.filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
     this.heading.textContent = entry.title(this.state);
-    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows) ?? '');
+    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows.flatMap(r => r.behind ?? [r])) ?? '');
+    this.show_legend(unique(all.filter(entry.drawn ?? Boolean).map(r => r.solver)));
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;
     this.marks = rows.filter(entry.drawn ?? Boolean);
@@ -115,18 +119,22 @@ class Figure {
     this.plot.replaceChildren(place);
   }
 
+  /// A legend of all solvers that the figure can show. Its buttons stay when a solver is hidden, and so does the focus.
+  show_legend(solvers) {
+    if (this.legend.dataset.of === solvers.join()) return;
+    this.legend.dataset.of = solvers.join();
+    this.legend.replaceChildren(...(this.entry.legend === false || solvers.length < 2 ? [] : solver_buttons(this.look, solvers)));
+  }
+
   show_values() {
     if (!this.details.open) return;
     const {entry, doc, rows} = this;
     const table = {
       title: `Values: ${entry.title(this.state)}`,
       rows: [entry.columns, ...rows.map(r => entry.columns.map(name => typeof r[name] === 'number' ? [String(r[name]), r[name]] : String(r[name] ?? '')))],
-      runs: [...rows.keys()],
-      again: rows.map((_, k) => [k]),
-      solver_column: -1,
-      solvers: []
+      again: rows.map(r => (r.behind ?? [r]).map(d => d.index)), runs: [], solver_column: -1, solvers: []
     };
-    const values = new ShownTable({...doc, runs: rows}, this.look, table, `${entry.id}-values`);
+    const values = new ShownTable(doc, this.look, table, `${entry.id}-values`);
     this.values.replaceChildren(values.block);
     values.fill();
   }
@@ -141,7 +149,7 @@ export function start_figures() {
   document.body.append(tip);
   addEventListener('click', e => e.target.closest?.('#tip button') || unpin());
   addEventListener('keydown', e => e.key === 'Escape' && unpin());
-  near_window(figures, f => f.drawn, f => f.redraw());
+  near_window(figures, f => f.redraw());
   let timer = 0;
   addEventListener('resize', () => {
     clearTimeout(timer);

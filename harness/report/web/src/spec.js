@@ -2,8 +2,6 @@
 import {kSymbols, unique} from './look.js';
 
 const kDashes = [[1, 0], [6, 3], [2, 3], [8, 3, 2, 3], [1, 2], [12, 4], [12, 3, 2, 3, 2, 3], [5, 6]];
-/// True if there are so many lines that the legend shows their names, instead of texts at their ends.
-const has_many = rows => unique(rows.map(r => r.line)).length > 4;
 
 /// Ticks of a logarithmic axis: powers of ten, and on short axes also multiples of them.
 function decades([low, high]) {
@@ -30,9 +28,9 @@ export function legend(names, look, more) {
   return {columns, ...more};
 }
 
-/// Stroke, fill and shape by solver. `hollow`: condition for an outline. Has a legend on paper, and for more than four lines.
+/// Stroke, fill and shape by solver. `hollow`: condition for an outline. Has a legend on paper; on the page plot.js adds one.
 export function by_solver(rows, look, hollow = 'false') {
-  const solvers = unique(rows.map(r => r.solver)), key = look.paper || has_many(rows) ? legend(solvers, look) : null;
+  const solvers = unique(rows.map(r => r.solver)), key = look.paper ? legend(solvers, look) : null;
   const channel = of => ({field: 'solver', type: 'nominal', scale: {domain: solvers, range: solvers.map(s => of(look.solvers[s]))}, legend: key});
   const colour = channel(l => l.colour);
   return {stroke: colour, fill: {...colour, condition: {test: hollow, value: 'var(--back)'}}, shape: channel(l => kSymbols[l.symbol])};
@@ -52,29 +50,18 @@ export const rules = (list, channel, axis, more) => list.flatMap(({at, text, zon
   ];
 });
 
-/// Lines through the rows with the same `line`, and their names, placed so that they cover no mark or line.
+/// Lines through the rows with the same `line`, and their names, which draw.js places so that they cover few marks.
 export function lines(rows, x, y, {stroke, fill: {condition, ...fill}}, look, all = rows) {
   const names = unique(rows.map(r => r.line)), of = name => rows.filter(r => r.line === name).sort((a, b) => a[x.field] - b[x.field]);
-  const solver = name => rows.find(r => r.line === name).solver, few = !has_many(rows), dash = name => names.filter(n => solver(n) === solver(name)).indexOf(name);
-  const colours = JSON.stringify(Object.fromEntries(names.map(n => [n, look.solvers[solver(n)].colour]))), dashed = names.some(dash);
-  const key = few ? null : legend(names.map(n => `${n}       `), look, {symbolType: 'stroke', symbolSize: 784, rowPadding: -12, symbolStrokeWidth: 2, symbolStrokeColor: {expr: `${colours}[datum.value]`}});
+  const solver = name => rows.find(r => r.line === name).solver, dash = name => names.filter(n => solver(n) === solver(name)).indexOf(name);
   const range = names.map(n => kDashes[dash(n) % kDashes.length]);
   const between = (a, b, n) => (a ** (1 - n)) * (b ** n), steps = Array.from({length: 6}, (_, n) => n / 6);
   const taken = names.flatMap(n => of(n).slice(1).flatMap((b, k) => steps.map(s => [between(of(n)[k][x.field], b[x.field], s), between(of(n)[k][y.field], b[y.field], s)])));
-  const place = (name, order, [a, b]) => ({name, order, solver: name && solver(name), [x.field]: a, [y.field]: b});
-  const values = [...names.map(n => place(n, 0, [of(n).at(-1)[x.field], of(n).at(-1)[y.field]])), ...[...all.map(r => [r[x.field], r[y.field]]), ...taken].map(p => place('', 1, p))];
+  const place = (name, [a, b]) => ({name, solver: name && solver(name), [x.field]: a, [y.field]: b});
+  const values = [...names.map(n => place(n, [of(n).at(-1)[x.field], of(n).at(-1)[y.field]])), ...[...all.map(r => [r[x.field], r[y.field]]), ...taken].map(p => place('', p))];
   return [
-    {
-      data: {values: rows},
-      mark: 'line',
-      encoding: {x, y, stroke, detail: {field: 'line'}, ...(dashed && {strokeDash: {field: 'line', type: 'nominal', scale: {domain: names, range}, legend: key}})}
-    },
-    ...(few ? [{
-      name: 'names',
-      data: {values},
-      mark: {type: 'text', fontWeight: 650},
-      encoding: {x, y, text: {field: 'name'}, fill, size: {condition: {test: 'datum.name', value: 12}, value: 1}}
-    }] : [])
+    {data: {values: rows}, mark: 'line', encoding: {x, y, stroke, detail: {field: 'line'}, ...(names.some(dash) && {strokeDash: {field: 'line', type: 'nominal', scale: {domain: names, range}, legend: null}})}},
+    {name: 'names', data: {values}, mark: {type: 'text', fontWeight: 'bold', fontSize: 12}, encoding: {x, y, text: {field: 'name'}, fill}}
   ];
 }
 

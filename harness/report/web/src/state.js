@@ -27,4 +27,3 @@ export function hide_solvers(solvers) {
 }
 
 export const shown = solver => !solver || !state.off.has(solver);
-

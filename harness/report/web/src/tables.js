@@ -1,18 +1,21 @@
 // Tables: sortable by a click on a head, filtered by solver and words, with an anchor and a command per row.
 import {button, element, file_name, say} from './dom.js';
-import {command_of} from './figures.js';
-import {icon} from './look.js';
-import {set_value, shown, state} from './state.js';
+import {command_of, files_of} from './figures.js';
+import {icon, unique} from './look.js';
+import {hide_solvers, set_value, shown, state} from './state.js';
 
 const kFew = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)'), kMedium = matchMedia('(max-width: 1180px)');
 const kPaper = 132, kWrap = 24;  // characters across a printed page; characters at which a cell wraps
-/// A cell of a document's table: a text, or [text, value, tone]. Tables sort by the value and tint by the tone.
-const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2]} : {text: c};
+/// A cell of a document's table: a text, or [text, value, tone, index of a run]. Tables sort by the value and tint by the tone.
+const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2], run: c[3]} : {text: c};
+
+const kLongCommand = 400;  // characters
+export const shortened = text => text.length > kLongCommand ? `${text.slice(0, kLongCommand)} …` : text;
 
 export function copy_command(command) {
   navigator.clipboard?.writeText(command).catch(() => {});
   say(`Copied: ${command}`);
-  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, command));
+  const note = element('div', {id: 'copied'}, 'Copied: ', element('code', {}, shortened(command)));
   document.getElementById('copied')?.remove();
   document.body.append(note);
   setTimeout(() => note.remove(), 6000);
@@ -20,10 +23,16 @@ export function copy_command(command) {
 
 /// A button that copies the commands of the runs' studies and names their files; null if none is known.
 export function reproduce(doc, title, runs) {
-  const studies = [...new Set(runs.map(r => r?.study).filter(s => s !== undefined))].map(s => doc.studies[s]).filter(s => s.command);
-  const all = studies.map(s => s.command).join('\n'), files = `\nResult files: ${studies.map(s => `${s.folder}/*.h5`).join(', ')}`;
-  return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: all + files}) : null;
+  const all = command_of(doc, runs, true), files = unique(runs.map(r => r.study)).filter(k => doc.studies[k]).map(k => `${doc.studies[k].folder}/*.h5`);
+  return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: `${all}\nResult files: ${files.join(', ')}`}) : null;
 }
+
+/// One button per solver, which hides or shows it in all figures, tables and motions.
+export const solver_buttons = (look, solvers) => solvers.map(s => {
+  const toggle = () => (hide_solvers(shown(s) ? [...state.off, s] : [...state.off].filter(o => o !== s)), say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`));
+  const more = {title: 'Click: hide or show. Double click: only this solver.', 'data-solver': s, 'aria-pressed': String(shown(s)), ondblclick: () => hide_solvers(Object.keys(look).filter(o => o !== s))};
+  return button([icon(look, s), s], null, toggle, more);
+});
 
 /// A head with an anchor; `more`: controls next to it.
 export const block_head = (id, name, what, more) =>
@@ -36,20 +45,21 @@ export class ShownTable {
     this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]], runs: table.again[k].map(n => doc.runs[n])}));
     this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
+    this.rest = button('', null, () => (this.whole = !this.whole, this.fill()), {class: 'quiet', hidden: true});
+    this.sizes = new ResizeObserver(() => this.tell_hidden());  // after the layout, so that no table needs one of its own
     this.hidden_columns = button('', null, () => this.place.scrollBy(0.6 * this.place.clientWidth, 0), {class: 'quiet', hidden: true});
-    new ResizeObserver(() => this.tell_hidden()).observe(this.place);
-    this.find = element('input', {type: 'search', placeholder: `filter ${this.body.length} rows`, 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFew, oninput: () => this.fill()});
+    this.sizes.observe(this.place);
+    this.find = element('input', {type: 'search', placeholder: `filter ${this.body.length} rows`, 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFew, oninput: () => (this.picked = null, this.fill())});
     this.block = element(
-        'div', {class: 'table', id, style: `contain-intrinsic-size: auto ${Math.min(this.body.length, 24) * 27 + 110}px`},
-        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place,
+        'div', {class: 'table', id, style: `contain-intrinsic-size: auto ${Math.min(this.body.length, kFew) * 27 + 110}px`},
+        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, this.rest,
         table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
   }
 
   sorted() {
     const {table} = this, [column, way] = (state.values[`${this.id}.sort`] ?? '').split('.'), k = this.head[Number(column)] === undefined || column === '' ? -1 : Number(column);
     this.sort = {k, down: way === 'down'};
-    const words = this.find.value.toLowerCase().match(/"[^"]+"|[^\s"]+/g) ?? [];
-    const has = r => words.every(w => r.cells.some(c => w[0] === '"' ? `"${c.text.toLowerCase()}"` === w : c.text.toLowerCase().includes(w)));
+    const words = this.find.value.toLowerCase().split(' '), has = r => this.picked ? r.run === this.picked : words.every(w => r.cells.some(c => c.text.toLowerCase().includes(w)));
     const left = this.body.filter(r => (!r.run || table.solver_column < 0 || shown(r.run.solver)) && has(r));
     if (k < 0) return left;
     const sign = way === 'down' ? -1 : 1;
@@ -82,15 +92,12 @@ export class ShownTable {
     return out.map(part => [...fixed, ...part]);
   }
 
-  /// Shows how many columns are hidden to the right. The first key stays in view; the next two do if half of the box is enough.
+  /// Shows how many columns are hidden to the right. The first key stays in view; the second does if half of the box is enough.
   tell_hidden() {
-    const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')];
-    const widths = heads.map(h => h.offsetWidth), keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, until = n => widths.slice(0, n).reduce((a, b) => a + b, 0);
-    for (const [n, name] of [[2, 'held'], [3, 'held-three']]) {
-      this.place.classList.toggle(name, keys >= n && until(n) <= this.place.clientWidth * 0.55);
-      this.place.style.setProperty(`--until-${n}`, `${until(n - 1)}px`);
-    }
-    const count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
+    const edge = this.place.getBoundingClientRect().right + 1, heads = [...this.place.querySelectorAll('thead th')], [first, second] = heads.map(h => h.offsetWidth);
+    const keys = kNarrow.matches ? 0 : this.table.keys - this.joined?.length, count = heads.filter(h => h.getBoundingClientRect().right > edge).length;
+    this.place.classList.toggle('held', keys > 1 && first + second <= this.place.clientWidth * 0.55);
+    this.place.style.setProperty('--until-2', `${first}px`);
     this.hidden_columns.textContent = `${count} more ${count === 1 ? 'column' : 'columns'} →`;
     this.hidden_columns.hidden = !count;
   }
@@ -111,49 +118,54 @@ export class ShownTable {
   }
 
   cell(cells, k, run) {
-    const {text, value, tone} = cells[k], long = k > 0 && text.length > kLong, shape = long ? 'long' : this.numeric[k] ? 'n' : '', more = k === 0 ? this.joined : [];
+    const {text, value, tone} = cells[k], named = this.doc.runs[cells[k].run], long = k > 0 && text.length > kLong, shape = long ? 'long' : this.numeric[k] ? 'n' : '', more = k === 0 ? this.joined : [];
     const parts = j => [
-      j === this.table.solver_column && run && cells[j].text.startsWith(run.solver) && !run.published ? icon(this.look, run.solver) : null,
+      j === this.table.solver_column && cells[j].run !== undefined ? icon(this.look, run.solver) : null,
       ...cells[j].text.split(more.length ? /(?<=_)/ : /(?<= )(?=\((?:first|CPU))/).flatMap((part, n) => more.length ? [n ? element('wbr') : null, part] : [n ? element('small', {}, part) : part])
     ];
-    const content = (text === 'fail' && this.criteria(cells, k, run)) || (long && !this.prints ? element('div', {tabindex: '0'}, text) : parts(k));
+    const content = (named && k !== this.table.solver_column && this.criteria(named, text)) || (long && !this.prints ? element('div', {tabindex: '0'}, text) : parts(k));
     return element(
         k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value}, content,
         ...more.map(j => element('small', {}, ...parts(j).filter(p => p !== null))));
   }
 
-  /// A link from a failed run to the criteria that it violates; null if this table lists them, or no table does.
-  criteria(cells, k, run) {
-    const failed = this.table.solvers[k] ? this.doc.runs.find(r => r.scene === cells[0].text && r.label === this.head[k]) : run;
-    const list = tables.find(t => t.table.title.startsWith('Acceptance criteria')), has = r => r.run.scene === failed?.scene && r.run.label === failed.label;
-    if (!list || list === this || !list.body.some(has)) return null;
-    return element('a', {href: `#${list.id}`, title: 'Show the criteria that it violates', onclick: () => (Object.assign(list.find, {hidden: false, value: `"${failed.scene}" "${failed.label}"`}), list.fill())}, cells[k].text);
+  /// A link from a failed run to the criteria that it violates; null if no other table lists them.
+  criteria(run, text) {
+    const list = tables.find(t => t.table.explains && t !== this && t.body.some(r => r.run === run));
+    const pick = () => (list.picked = run, Object.assign(list.find, {hidden: false, value: `${run.scene}, ${run.label}`}), list.fill());
+    return list ? element('a', {href: `#${list.id}`, title: 'Show the criteria that it violates', onclick: pick}, text) : null;
   }
 
   /// The button that copies a row's command, which repeats all of its runs.
   again({cells, runs}) {
-    const command = command_of(this.doc, runs.filter(r => !r.published)), label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
-    return command ? button('copy', label, () => copy_command(command), {class: 'quiet', title: [command, ...runs.map(r => r.file)].filter(Boolean).join('\n')}) : null;
+    const mine = runs.filter(r => this.doc.studies[r.study]?.command), label = `Copy the command of ${cells.slice(0, 3).map(c => c.text).join(', ')}`;
+    const command = () => command_of(this.doc, mine), tell = e => e.currentTarget.title ||= `${shortened(command())}\n${files_of(mine)}`;
+    return mine.length ? button('copy', label, () => copy_command(command()), {class: 'quiet', onpointerenter: tell, onfocus: tell}) : null;
   }
 
   fill() {
-    const rows = this.sorted(), {head} = this, buttons = rows.map(r => this.prints ? null : this.again(r)), any = buttons.some(Boolean);
+    const all = this.sorted(), rows = this.prints || this.whole ? all : all.slice(0, kFew), {head} = this, buttons = rows.map(r => this.prints ? null : this.again(r)), any = buttons.some(Boolean);
     this.arrange();
-    this.place.replaceChildren(...this.parts().map(columns => {
+    const parts = this.parts().map(columns => {
       const titles = [columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
       const body = rows.map(({cells, run}, n) => {
         const last = any ? element('td', {}, buttons[n] ?? '') : null;
         return element('tr', {class: run?.published && 'published'}, columns.map(k => this.cell(cells, k, run)), last);
       });
       return element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body));
-    }));
+    });
+    this.place.replaceChildren(...parts);
+    this.place.classList.toggle('whole', rows.length > kFew);
+    this.rest.hidden = all.length <= kFew;
+    this.rest.textContent = this.whole ? `show the first ${kFew} rows` : `show all ${all.length} rows`;
+    for (const part of parts) this.sizes.observe(part);
     this.filled = true;
-    this.tell_hidden();
   }
 }
 
 const tables = [];
 
+export {tables as all_tables};  // for tests
 export function table_block(doc, look, table) {
   const base = `t-${file_name(table.title)}`, same = tables.filter(t => t.id.startsWith(base)).length;
   const t = new ShownTable(doc, look, table, same ? `${base}-${same + 1}` : base);
@@ -161,26 +173,27 @@ export function table_block(doc, look, table) {
   return t.block;
 }
 
-/// Makes blocks as they come near the window, and all of them for printing; remakes them after a change of the filter.
-export function near_window(list, made, make) {
-  const near = new IntersectionObserver(
-      entries => list.filter(t => !made(t) && entries.some(e => e.isIntersecting && e.target === t.block)).forEach(make),
-      {rootMargin: '500px'});
-  list.forEach(t => near.observe(t.block));
-  addEventListener('solvers', () => list.filter(made).forEach(make));
-  for (const event of ['whole', 'beforeprint']) addEventListener(event, () => list.filter(t => !made(t)).forEach(make));
+/// Makes blocks as they come near the window, and all of them for printing. After a change of the filter, remakes those near
+/// the window at once and all others later.
+export function near_window(list, make) {
+  const near = new Set(), by_block = new Map(list.map(t => [t.block, t]));
+  let due = new Set(list);
+  const make_due = some => [...some].filter(t => due.delete(t)).forEach(make);
+  const watch = new IntersectionObserver(entries => {
+    for (const e of entries) near[e.isIntersecting ? 'add' : 'delete'](by_block.get(e.target));
+    make_due(near);
+  }, {rootMargin: '500px'});
+  list.forEach(t => watch.observe(t.block));
+  addEventListener('solvers', () => (due = new Set(list), make_due(near)));
+  for (const event of ['whole', 'beforeprint']) addEventListener(event, () => make_due(list));
 }
 
 export function start_tables() {
   const fill = () => tables.filter(t => t.filled).forEach(t => t.fill());
-  near_window(tables, t => t.filled, t => t.fill());
+  near_window(tables, t => t.fill());
   for (const width of [kNarrow, kMedium]) width.addEventListener('change', fill);
   const print = on => (tables.forEach(t => t.prints = on), fill());
   addEventListener('beforeprint', () => print(true));
   addEventListener('afterprint', () => print(false));
-  const idle = window.requestIdleCallback ?? (next => setTimeout(next, 30)), rest = () => {
-    const t = tables.find(t => !t.filled);
-    if (t) t.fill(), idle(rest);
-  };
-  idle(rest);  // fills all tables, so that the browser's search finds every row
+  addEventListener('solvers', () => document.querySelectorAll('[data-solver]').forEach(b => b.setAttribute('aria-pressed', String(shown(b.dataset.solver)))));
 }

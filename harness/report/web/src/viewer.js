@@ -139,10 +139,7 @@ class Viewer {
     this.play_button.textContent = on ? '❚❚ Pause' : '▶ Play';
   }
 
-  seek(time) {
-    this.time = Math.min(Math.max(time, 0), this.end);
-    this.stale = true;
-  }
+  seek(time) { Object.assign(this, {time: Math.min(Math.max(time, 0), this.end), stale: true}); }
 
   tick(now) {
     const passed = Math.min((now - this.last) / 1000, 0.1);
@@ -196,10 +193,8 @@ class Viewer {
 }
 
 window.clothbench_viewer = (root, motions, rows) => {
-  const viewer = new Viewer(root, motions, rows), touching = motions.runs.filter(m => motions.colliders[m.colliders].length);
-  const fixed = touching.filter(m => m.row.part === 'contact');
-  const first = window.clothbench.document.solvers.leading_scenes.map(word => fixed.find(m => m.row.scene.includes(word))).find(Boolean);
+  const viewer = new Viewer(root, motions, rows);
   // The first picture shows the middle of the motion, where the cloth touches something.
-  viewer.ready = viewer.show_scene((first ?? fixed[0] ?? touching[0] ?? motions.runs[0]).row.scene).then(() => viewer.seek(viewer.end / 2));
+  viewer.ready = viewer.show_scene(rows[motions.first].scene).then(() => viewer.seek(viewer.end / 2));
   return viewer;
 };
