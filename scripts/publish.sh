@@ -113,6 +113,7 @@ fi
 [ ${#folders[@]} -eq 1 ] || fail "expected one folder"
 studies | grep -q "^$table " || fail "--table $table: expected gpu, software, peers or quick"
 for name in $only; do studies | sed 's/  */ /g' | grep -qF "$table $name " || fail "--only $name: the table $table has no such study"; done
+if [ "$table" != quick ] && "$bench" list assets | grep -q '^procedural'; then fail "rooms and hands are missing: scripts/fetch-assets.sh fetches them"; fi
 mkdir -p "$out"
 "$bench" --version >"$out/version.now"
 [ ! -f "$out/version" ] || [ "$(sources "$out/version")" = "$(sources "$out/version.now")" ] ||

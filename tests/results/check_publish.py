@@ -16,6 +16,7 @@ root, bench = pathlib.Path(sys.argv[1]), sys.argv[2]
 # Replaces clothbench in steps that take long or fail: the limit interrupts the first call of a study.
 STUB = """#!/bin/bash
 [ "$1" != --version ] || { echo "clothbench 0 (c), sources $SOURCES"; exit; }
+[ "$1" != list ] || { echo "$ASSETS"; exit; }
 echo "$*" >>"$CALLS"
 [ "$1 $2" != 'study hang' ] || exit 5
 while [ $# -gt 1 ]; do [ "$1" != --out ] || out=$2; shift; done
@@ -41,7 +42,7 @@ with tempfile.TemporaryDirectory() as scratch:
     stub.write_text(STUB)
     stub.chmod(0o755)
     table3 = (out, "--table", "quick", "--only", "table3")
-    with_stub = {"program": stub, "CALLS": str(calls), "SOURCES": "1"}
+    with_stub = {"program": stub, "CALLS": str(calls), "SOURCES": "1", "ASSETS": "npm"}
     code, said = call(*table3, "--limit", 3, **with_stub)
     assert code == 75 and "call again to continue" in said, (code, said)
     code, said = call(*table3, **with_stub)  # rows that crashed (status 1) are results
@@ -52,6 +53,8 @@ with tempfile.TemporaryDirectory() as scratch:
     assert code == 2 and "one state of the sources" in said, (code, said)
     code, said = call(out, "--table", "gpu", "--only", "physics", "--limit", 3, **with_stub)  # the stub's commit is "c"
     assert code == 75 and "--seed 12 --count 300 " in calls.read_text().splitlines()[-1], (code, said)
+    code, said = call(out, "--table", "gpu", **{**with_stub, "ASSETS": "procedural   x is missing"})
+    assert code == 2 and "rooms and hands are missing" in said, (code, said)
     code, said = call(out, "--table", "quick", "--only", "hang", **with_stub)
     assert code == 5 and "hang: exit status 5" in said, (code, said)
     for words, why in ((["--limit", "x"], "positive whole number"), (["--table", "none"], "expected gpu, software, peers or quick"), (["--only", "none"], "has no such study"), (["--only"], "expected a value"), (["--x"], "expected --table")):

@@ -240,8 +240,10 @@ json page_document(const RunTable& table, const Page& page) {
     for (const ViewTable& t : s.tables) tables.push_back(table_json(t, table.rows().data()));
     shown.push_back({{"id", s.id}, {"title", s.title}, {"tables", std::move(tables)}});
   }
-  return {{"title", page.heading.title}, {"notes", page.notes},           {"sections", shown},        {"tiles", tiles},
-          {"runs", std::move(rows)},     {"studies", std::move(studies)}, {"solvers", solver_roles()}, {"history", page.history}};
+  return {{"title", page.heading.title}, {"notes", page.notes},
+          {"sections", shown},           {"tiles", tiles},
+          {"runs", std::move(rows)},     {"studies", std::move(studies)},
+          {"solvers", solver_roles()},   {"history", page.history}};
 }
 
 std::string page_html(const std::string& html, const Page& page, const json& document, const Motions& motions) {
