@@ -218,12 +218,15 @@ std::string github_annotations(const Checked& checked) {
   return out;
 }
 
-std::string log_line(const std::vector<RunRecord>& runs) {
+std::string log_line(const std::vector<RunRecord>& runs, const std::string& command) {
   // Besides values with a regression rule: what a frame costs. Times of software devices or side by side mean nothing.
   constexpr const char *kCosts[] = {"read_B_per_frame", "write_B_per_frame", "device_memory_B"},
                        *kTime = "frame_device_median_s";
   const json& e = runs.at(0).header.environment;
-  json out = {{"commit", e.value("git_commit", "")}, {"created", e.value("created", "")}, {"runs", json::array()}};
+  json out = {{"commit", e.value("git_commit", "")},
+              {"created", e.value("created", "")},
+              {"command", command},
+              {"runs", json::array()}};
   for (const RunRecord& r : runs) {
     const BaselineRun part = gated_part(r);
     json run = key_json(part.key), values = json::object();

@@ -27,10 +27,13 @@ void check(const CheckArguments& a, const std::vector<RunRecord>& runs, Console&
   const Checked checked = check_runs(read_baseline(a.baseline), runs, a.allowed);
   if (!a.junit.empty()) write_file_atomically(a.junit, junit_xml(checked));
   if (a.github) fmt::print(stderr, "{}", github_annotations(checked));
-  if (!a.log.empty() && !(std::ofstream(a.log, std::ios::app) << log_line(withhold_times(runs)) << std::flush))
-    throw Error(a.log + ": could not be written");
   console.print([&] { return check_json(checked, a.baseline); }, [&] { return check_text(checked, a.baseline); });
   if (!checked.passed()) console.exit_code = ExitCode::CheckFailed;
+  if (a.log.empty()) return;
+  const fs::path study = a.runs.front();
+  const std::string command = fs::is_directory(study) ? read_manifest(study).command_line : "";
+  if (!(std::ofstream(a.log, std::ios::app) << log_line(withhold_times(runs), command) << std::flush))
+    throw Error(a.log + ": could not be written");
 }
 
 }  // namespace

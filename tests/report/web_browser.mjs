@@ -104,7 +104,7 @@ async function check_places(id, fields) {
 /// Every figure shows as many marks as it has values, for every choice; its table has the stored values.
 async function check_figures() {
   const ids = await page.$$eval('figure', list => list.map(f => f.id));
-  equal(ids, ['error-time', 'rates', 'verdicts', 'forest', 'failure-speed', 'stability', 'frame-times'], 'figures');
+  equal(ids, ['error-time', 'rates', 'verdicts', 'forest', 'failure-speed', 'stability', 'frame-times', 'changes'], 'figures');
   equal(await page.$$eval('.pair > div > .table h3', list => list.map(e => e.firstChild.textContent)), ['Leading scenes with contact', 'Table 3: speed and error'], 'tables of the first screen');
   const figure = id => page.evaluateHandle(i => window.clothbench.figures.find(x => x.entry.id === i), id);
   for (const id of ids) {

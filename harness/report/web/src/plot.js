@@ -21,6 +21,9 @@ function show_tip(lines, x, y, controls = []) {
   tip.style.top = `${y + 18 + box.height > innerHeight ? y - box.height - 12 : y + 18}px`;
 }
 
+/// The runs behind a row; a row of a log has its own command, and no run in this report.
+const runs_of = r => r.again ? [r] : r.behind ?? [r];
+
 class Figure {
   constructor(doc, look, entry) {
     Object.assign(this, {doc, look, entry, marks: [], at: -1, drawn: 0});
@@ -75,7 +78,7 @@ class Figure {
     }
     this.at = at;
     const row = this.marks[at];
-    const runs = row?.behind ?? [row];
+    const runs = row && runs_of(row);
     this.command = row && command_of(this.doc, runs);
     pinned = pin && row ? this : null;
     const copy = this.command && button('Copy the command', null, () => copy_command(this.command));
@@ -99,7 +102,7 @@ class Figure {
     this.state = this.settle();
     const all = entry.rows(this.state), rows = this.rows = all.filter(r => shown(r.solver)), width = Math.max(280, Math.floor(this.plot.clientWidth));
     this.heading.textContent = entry.title(this.state);
-    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows.flatMap(r => r.behind ?? [r])) ?? '');
+    this.again.replaceChildren(reproduce(this.doc, `figure ${entry.id}`, rows.flatMap(runs_of)) ?? '');
     this.show_legend(unique(all.filter(entry.drawn ?? Boolean).map(r => r.solver)));
     this.remark.textContent = entry.remark?.(this.state) ?? '';
     this.drawn = width;

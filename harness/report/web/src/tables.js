@@ -23,7 +23,7 @@ export function copy_command(command) {
 
 /// A button that copies the commands of the runs' studies and names their files; null if none is known.
 export function reproduce(doc, title, runs) {
-  const all = command_of(doc, runs, true), files = unique(runs.map(r => r.study)).filter(k => doc.studies[k]).map(k => `${doc.studies[k].folder}/*.h5`);
+  const all = command_of(doc, runs, true), files = runs[0]?.again ? [files_of(runs)] : unique(runs.map(r => r.study)).filter(k => doc.studies[k]).map(k => `${doc.studies[k].folder}/*.h5`);
   return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: `${all}\nResult files: ${files.join(', ')}`}) : null;
 }
 
