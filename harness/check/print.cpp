@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <regex>
 
 #include "base/json_text.hpp"
 #include "base/table.hpp"
@@ -225,7 +226,7 @@ std::string log_line(const std::vector<RunRecord>& runs, const std::string& comm
   const json& e = runs.at(0).header.environment;
   json out = {{"commit", e.value("git_commit", "")},
               {"created", e.value("created", "")},
-              {"command", command},
+              {"command", std::regex_replace(command, std::regex(" (--out|--device)[ =]\\S+| --resume"), "")},
               {"runs", json::array()}};
   for (const RunRecord& r : runs) {
     const BaselineRun part = gated_part(r);

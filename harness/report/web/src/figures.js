@@ -324,7 +324,7 @@ function claims(doc) {
 
 /// A log of `clothbench check --log`: one line per landing.
 function changes(doc) {
-  const all = (doc.history ?? []).flatMap(({commit, created, command, runs}, n) => runs.map(r => ({...r, behind: [], again: `git checkout ${commit.slice(0, 8)}; ${command.replace(/ --out[ =]\S+/, '')} --solver ${r.solver}`, file: `${r.scene}__${r.solver}__${r.setting}.h5`, at: n + 1, commit: commit.slice(0, 8), created, line: `${r.scene} ${r.setting === 'default' ? '' : r.setting}`.trim()})));
+  const all = (doc.history ?? []).flatMap(({commit, created, command, runs}, n) => runs.map(r => ({...r, behind: [], again: `git checkout ${commit.slice(0, 8)}; ${command} --solver ${r.solver}`, file: `${r.scene}__${r.solver}__${r.setting}.h5`, at: n + 1, commit: commit.slice(0, 8), created, line: `${r.scene} ${r.setting === 'default' ? '' : r.setting}`.trim()})));
   const commits = (doc.history ?? []).map(({commit}) => commit.slice(0, 8)), devices = unique(all.map(r => r.gpu)), of = s => all.filter(r => r.gpu === s.Device);
   if (unique(commits).length < 2) return null;
   const first = (r, name) => all.find(q => q.gpu === r.gpu && q.solver === r.solver && q.line === r.line && name in q.values).values[name];
