@@ -93,10 +93,14 @@ inline std::shared_ptr<const Cooked> cook(nv::cloth::Factory& factory, const Clo
   const nv::cloth::Range<const std::uint32_t> no_anchors;
   const nv::cloth::Range<const float> no_values;
   tethers = tethers && s.pin_count > 0;
+  std::vector<float> lengths(data.mTetherLengths.begin(), data.mTetherLengths.end());
+  // On CUDA the engine rounds lengths to 16 bits of the greatest, so that a tether would move a pinned vertex.
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    if (inverse_mass[k % data.mNumParticles] == 0) lengths[k] = *std::max_element(lengths.begin(), lengths.end());
   out->fabric =
       require(factory.createFabric(data.mNumParticles, data.mPhaseIndices, data.mSets, data.mRestvalues,
                                    even ? no_values : range(each), data.mIndices, tethers ? data.mAnchors : no_anchors,
-                                   tethers ? data.mTetherLengths : no_values, data.mTriangles),
+                                   tethers ? range(lengths) : no_values, data.mTriangles),
               "Factory::createFabric");
   return out;
 }
