@@ -81,14 +81,15 @@ with tempfile.TemporaryDirectory() as scratch:
     (to / "hang/report.md").write_text("changed")
     assert subprocess.run(["sha256sum", "--status", "-c", "SHA256SUMS"], cwd=to, capture_output=True, check=False).returncode == 1
 
-published = root / "results/reference/h200"
-verified(published, "SHA256SUMS")
-listed = {line.split(maxsplit=1)[1] for line in (published / "SHA256SUMS").read_text().splitlines()}
-here = {p.relative_to(published).as_posix() for p in published.rglob("*") if p.is_file()} - {"SHA256SUMS"}
-assert listed == here, listed ^ here
-rows = [row for p in published.glob("*/runs.csv.xz") for row in csv.DictReader(lzma.open(p, "rt"))]
-states = {(row["git_commit"], row["source_sha256"], row["git_dirty"]) for row in rows}
-assert rows and len(states) == 1 and states.pop()[2] == "false", "expected runs of one commit, without local changes"
+for name in ("h200", "engines"):
+    published = root / "results/reference" / name
+    verified(published, "SHA256SUMS")
+    listed = {line.split(maxsplit=1)[1] for line in (published / "SHA256SUMS").read_text().splitlines()}
+    here = {p.relative_to(published).as_posix() for p in published.rglob("*") if p.is_file()} - {"SHA256SUMS"}
+    assert listed == here, listed ^ here
+    rows = [row for p in published.glob("*/runs.csv.xz") for row in csv.DictReader(lzma.open(p, "rt"))]
+    states = {(row["git_commit"], row["source_sha256"], row["git_dirty"]) for row in rows}
+    assert rows and len(states) == 1 and states.pop()[2] == "false", "expected runs of one commit, without local changes"
 
 # The criteria of claims accept right motions (in the slow pull, xpbd's strain is 1 % too large) and reject cloth that falls away.
 runs = list(csv.DictReader(lzma.open(root / "results/reference/h200/penetration/runs.csv.xz", "rt")))
