@@ -131,7 +131,7 @@ def fixed_settings(adb, a):
 
 
 def start_hzdb(adb, into):
-    """Meta's hzdb, if it is installed: functions that end its capture and fetch it, else None. Its documentation does not say where `stop` puts the file."""
+    """Starts a capture by Meta's hzdb. Returns two functions, which end the capture and fetch its file; None if hzdb is not installed or does not start. Its documentation does not say where `stop` puts the file, so several folders are searched."""
     program, name = shutil.which("hzdb"), f"clothbench-{STAMP}"
     if not program:
         return None
@@ -154,7 +154,7 @@ def start_hzdb(adb, into):
 
 
 def start_perfetto(adb, into):
-    """The device's perfetto, as start_hzdb; None if it offers no GPU counters."""
+    """Starts a capture by the device's perfetto. Returns two functions like start_hzdb; None if perfetto offers no GPU counters or does not start."""
     try:
         source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
     except ValueError:  # an old or different perfetto

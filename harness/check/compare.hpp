@@ -21,7 +21,7 @@ struct Condition {
 const std::vector<std::string>& condition_kinds();
 
 /// All conditions of a run, in the order of the kinds. A run that is not "ok" has neither "length" nor
-/// "trials": its early end is a result to compare. A run without timed trials has no "trials".
+/// "trials": that it ended early is a result, not a condition. A run without timed trials has no "trials".
 std::vector<Condition> conditions_of(const RunRecord&);
 
 struct ConditionDifference {

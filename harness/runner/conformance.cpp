@@ -113,9 +113,9 @@ class Conformer {
   void check_cost() {
     const FrameCost cost = solver_.last_cost();
     const std::size_t stages = plan_.stages.size();
-    if (cost.stage_device_s.size() != stages || cost.stage_read_B.size() != stages ||
-        cost.stage_write_B.size() != stages)
-      fault(fmt::format("costs of a frame: expected one per stage, {}", stages));
+    for (const std::size_t found : {cost.stage_device_s.size(), cost.stage_read_B.size(), cost.stage_write_B.size()})
+      if (found != stages)
+        fault(fmt::format("costs of a frame: found {} values; expected {}, one per stage", found, stages));
     if (std::isfinite(cost.device_s) != info_.on_gpu)
       fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
                          : "device time: given, though the solver runs on the CPU");
