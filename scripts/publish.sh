@@ -7,7 +7,7 @@
 # Second form: writes one report per study, one page for all studies, and SHA256SUMS into FOLDER (default results/reference/h200), from OUT of
 # one state of the sources. --archive also packs raw results, commands and RESULTS.SHA256; the file's suffix selects the compression.
 # Needs clothbench with its scenarios and assets, bash and coreutils; no compiler, git or Python. CLOTHBENCH: the program (default:
-# build/release/clothbench, otherwise the one on PATH). Libraries in build/peers or CLOTHBENCH_PLUGINS are included.
+# build/release/clothbench, otherwise the one on PATH). Engines in build/peers are included.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 

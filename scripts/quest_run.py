@@ -29,7 +29,7 @@ LOG = ("logcat", "-v", "epoch", "-T", "1", "-s", "clothbench", "VrApi", "XrPerfo
 STAMP = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
 TRACE = "/data/misc/perfetto-traces/clothbench.pftrace"
 TRACE_TIMEOUT_S = 300  # to write the rest of a trace, or to fetch it
-# Output of adb if the headset is missing, as opposed to a failing command.
+# Output of adb if the headset is missing; a command that fails prints other text.
 NO_ANSWER = re.compile("no devices|device offline|device ('.*' )?not found|error: closed|protocol fault|connection reset|cannot connect")
 
 
@@ -50,7 +50,7 @@ class Stream:
         self._rest = b""
 
     def take(self):
-        """Whole lines since the last call, with plain ends: `adb shell -tt` ends them in \\r\\r\\n."""
+        """Returns the whole lines since the last call, with plain ends: `adb shell -tt` ends them in \\r\\r\\n."""
         *lines, self._rest = (self._rest + (self.process.stdout.read() or b"")).split(b"\n")
         return [line.decode("utf-8", "replace").replace("\r", "") for line in lines]
 
@@ -60,7 +60,7 @@ class Stream:
 
 
 class Adb:
-    """Every command to the one headset."""
+    """Runs adb commands on one headset."""
 
     def __init__(self, serial):
         self.program, self.serial = shutil.which("adb"), None
@@ -113,7 +113,7 @@ def restore(adb, before):
 
 @contextlib.contextmanager
 def fixed_settings(adb, a):
-    """Fixes clock levels and refresh rate, and restores all of them, also after Ctrl-C."""
+    """Fixes clock levels and refresh rate while the block runs, and restores them, also after Ctrl-C."""
     before = {name: adb.shell("getprop " + name).strip() for name in PROPERTIES}
     try:
         set_properties(adb, dict(zip(PROPERTIES, (str(a.cpu_level), str(a.gpu_level), f"{a.refresh_hz:g}", "1"))))
@@ -131,7 +131,7 @@ def fixed_settings(adb, a):
 
 
 def start_hzdb(adb, into):
-    """Meta's hzdb, if it is installed: functions that end its capture and fetch it, else None. Its documentation does not say where `stop` puts the file."""
+    """Starts a capture by Meta's hzdb. Returns two functions, which end the capture and fetch its file; None if hzdb is not installed or does not start. Its documentation does not say where `stop` puts the file, so several folders are searched."""
     program, name = shutil.which("hzdb"), f"clothbench-{STAMP}"
     if not program:
         return None
@@ -154,7 +154,7 @@ def start_hzdb(adb, into):
 
 
 def start_perfetto(adb, into):
-    """The device's perfetto, as start_hzdb; None if it offers no GPU counters."""
+    """Starts a capture by the device's perfetto. Returns two functions like start_hzdb; None if perfetto offers no GPU counters or does not start."""
     try:
         source, ids = perfetto.offered(base64.b64decode(adb.shell("perfetto --query-raw | base64", check=False)))
     except ValueError:  # an old or different perfetto
@@ -173,7 +173,7 @@ def start_perfetto(adb, into):
 
 @contextlib.contextmanager
 def traced(adb, into):
-    """GPU counters while the block runs, as a Perfetto trace in the file `into`. Yields whether there are any."""
+    """Captures GPU counters while the block runs, as a Perfetto trace in the file `into`. Yields whether any are captured."""
     capture = start_hzdb(adb, into) or start_perfetto(adb, into)
     try:
         yield bool(capture)
@@ -188,7 +188,7 @@ def traced(adb, into):
 
 
 class Run:
-    """One run of the app: log and counters, by the device's clock."""
+    """One run of the app. Collects its log and counters, with times of the device's clock."""
 
     def __init__(self, adb, command, timeout_s):
         self.adb, self.command, self.timeout_s = adb, command, timeout_s
@@ -250,7 +250,7 @@ class Run:
 
 
 def pull(adb, a, source, several=False):
-    """Fetches a result folder, or a folder of `several`, and imports them as HDF5 files. Whether all trials are valid."""
+    """Fetches a result folder, or a folder of `several`, and imports them as HDF5 files. Returns whether all trials are valid."""
     os.makedirs(a.out, exist_ok=True)
     adb.call("pull", source, a.out, timeout=1800)
     fetched = os.path.join(a.out, os.path.basename(source.rstrip("/")))

@@ -1,4 +1,4 @@
-# Toolchain file: arm64 Linux by Clang on Debian's cross libraries, run under qemu-user: the same sources and arm64 code as on a headset.
+# Toolchain file: arm64 Linux by Clang on Debian's cross libraries, run under qemu-user. The sources and the instruction set are a headset's.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER clang)

@@ -52,7 +52,7 @@ def run(*command, **options):
 
 
 def check_library(path):
-    """An arm64 ELF whose segments lie on 16 KiB pages (ELF-64: e_machine at 18, program headers by e_phoff)."""
+    """Refuses a library that is no arm64 ELF with segments on 16 KiB pages (ELF-64: e_machine at 18, program headers by e_phoff)."""
     data = path.read_bytes()
     if data[:5] != b"\x7fELF\x02" or struct.unpack_from("<H", data, 18)[0] != 183:
         sys.exit(f"make_apk.py: {path}: not an arm64 ELF library")
@@ -66,7 +66,7 @@ def check_library(path):
 
 
 def add_files(apk, libraries, assets):
-    """Libraries stored, assets compressed, in a fixed order with a fixed date."""
+    """Adds libraries (stored) and assets (compressed), in a fixed order with a fixed date."""
     with zipfile.ZipFile(apk, "a") as z:
         entries = [(f"lib/arm64-v8a/{l.name}", l, zipfile.ZIP_STORED) for l in libraries]
         packed = [line.split(" ", 1)[1] for line in (assets / "index.txt").read_text(encoding="utf-8").splitlines()]
@@ -78,7 +78,7 @@ def add_files(apk, libraries, assets):
 
 
 def keystore(folder):
-    """(file, password)"""
+    """Returns the key's file and password."""
     given = os.environ.get("CLOTHBENCH_KEYSTORE")
     if given:
         return given, os.environ.get("CLOTHBENCH_KEYSTORE_PASSWORD", "android")

@@ -5,8 +5,8 @@ usage: pack_assets.py OUT [--assets FOLDER]
 
 FOLDER is where scripts/fetch-assets.sh puts them (build/assets/node_modules); without it the device uses the procedural
 stand-ins. OUT then holds scenarios/, assets/ and index.txt, one line per file: SHA-256 and path. SPIR-V and the published
-values are inside the program already. The same input gives the same bytes; files that index.txt does not name are not
-packed."""
+values are inside the program already. The same input gives the same bytes. Old files in OUT are not removed; make_apk.py
+packs only those that index.txt lists."""
 import argparse
 import hashlib
 import pathlib

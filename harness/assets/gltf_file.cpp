@@ -162,7 +162,7 @@ tinygltf::Model parse_binary(const std::string& content, const std::string& sour
   if (size >= 12 && item_at<std::uint32_t>(bytes + 4) != kVersion)
     fail(source, fmt::format("not a binary glTF file of version {}: its version is {}", kVersion,
                              item_at<std::uint32_t>(bytes + 4)));
-  constexpr std::size_t kText = 20;  // after the file's header and the chunk's length and type
+  constexpr std::size_t kText = 20;  // the text begins after the file's header and the chunk's length and type
   if (size >= kText && std::memcmp(bytes + 16, "JSON", 4) == 0 && item_at<std::uint32_t>(bytes + 12) <= size - kText)
     checked_json(content.substr(kText, item_at<std::uint32_t>(bytes + 12)), source);
   return loaded(source, "binary glTF file (cut off?)", [&](auto& loader, auto& model, auto& error, auto& warning) {

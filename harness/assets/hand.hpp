@@ -83,7 +83,7 @@ struct Capsule {
   Vector a, b;  ///< ends of the axis [m]
   double radius_m;
 };
-inline constexpr std::size_t kCapsuleCount = 19;  ///< as XR_HAND_TRACKING_CAPSULE_COUNT_FB
+inline constexpr std::size_t kCapsuleCount = 19;  ///< the same number as XR_HAND_TRACKING_CAPSULE_COUNT_FB
 /// The hand as capsules between WebXR joints, with the radius of the joint nearer to the wrist: 4 along the metacarpals
 /// of index, middle, ring and little finger (the palm), then 3 per finger, thumb first. The last capsule of a finger
 /// ends 15 mm beyond its joint, or at the tip joint if that is nearer. Tip joints are on the skin, so a round end there

@@ -163,7 +163,7 @@ bool usable(const RecordedHand& hand) {
 }
 
 const RecordedHand& HandRecording::at(double time_s) const {
-  constexpr double kSame = 1e-6;  // of a frame's duration: tolerance for rounding
+  constexpr double kSame = 1e-6;  // a time may differ from a whole frame by this fraction of one
   const double frame = std::clamp(time_s * frame_rate_hz, 0.0, static_cast<double>(frames.size() - 1));
   if (!(std::abs(frame - std::round(frame)) <= kSame))
     throw Error(fmt::format("hand recording: no frame at {:g} s; expected the scene to run at the recording's {:g} Hz",

@@ -168,7 +168,7 @@ struct Block {
 
 struct Plan {
   const char *uuid, *stands_for;
-  Vector centre;  ///< of the top's upper face
+  Vector centre;  ///< centre of the top's upper face
   double length_x, length_z;
 };
 

@@ -11,10 +11,10 @@ namespace clothbench::assets {
 /// A table as marked by the headset's user. Captures also contain each table's top as a rectangle, up to 3 mm off the
 /// box; this rectangle is not read.
 struct Table {
-  std::string uuid;        ///< of the box
+  std::string uuid;        ///< identifies the box
   std::string stands_for;  ///< in procedural rooms: uuid prefix of the scanned table that it replaces; otherwise empty
-  Frame frame;             ///< of the box; +z is up in the world
-  Box box;                 ///< in the coordinates of `frame`
+  Frame frame;             ///< pose of the box in the world; its +z points up
+  Box box;                 ///< the box in coordinates of `frame`
 
   /// Corners [m] of the box's upper face in world coordinates, counter-clockwise seen from above.
   std::array<Vector, 4> top_corners() const;

@@ -55,7 +55,7 @@ class ChildProcess {
   std::optional<ChildEnd> end_;
 };
 
-/// Environment variable with the libraries of the solvers that a process knows by name: paths, separated by colons.
+/// Environment variable that lists plugins (paths separated by colons); a process finds their solvers by name.
 inline constexpr char kPluginsVariable[] = "CLOTHBENCH_PLUGINS";
 inline constexpr char kInProcess[] = "CLOTHBENCH_IN_PROCESS";
 

@@ -88,7 +88,7 @@ std::size_t display_width(const std::string& s) {
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head) {
   std::istringstream words(text);
   std::string out, line = head;
-  std::size_t width = display_width(head);  // of the line so far
+  std::size_t width = display_width(head);  // width of the line so far
   const auto pad = [&](std::size_t to) {
     line.append(to > width ? to - width : 0, ' ');
     width = std::max(width, to);

@@ -21,7 +21,7 @@ struct Condition {
 const std::vector<std::string>& condition_kinds();
 
 /// All conditions of a run, in the order of the kinds. A run that is not "ok" has neither "length" nor
-/// "trials": its early end is a result to compare. A run without timed trials has no "trials".
+/// "trials": that it ended early is a result, not a condition. A run without timed trials has no "trials".
 std::vector<Condition> conditions_of(const RunRecord&);
 
 struct ConditionDifference {
@@ -74,7 +74,7 @@ struct RunKey {
 /// The part of a run that does not depend on the machine.
 struct BaselineRun {
   RunKey key;
-  std::vector<Condition> conditions;  ///< of its results: all except machine, driver, device profile and trials
+  std::vector<Condition> conditions;  ///< all that affect results: not machine, driver, device profile, trials
   std::string status, klass;
   int failed_frame = -1;
   std::vector<std::string> stages;        ///< "<name> (<feature>, <feature>)" in order
@@ -162,9 +162,9 @@ struct Finding {
 struct CheckedRun {
   RunKey key;
   std::vector<Finding> findings = {};
-  TimeRatio time = {};                              ///< only for two builds
+  TimeRatio time = {};                              ///< set only if two builds are compared
   double time_a_s = kMissing, time_b_s = kMissing;  ///< median over the processes of each side
-  bool in_turns = true;                             ///< see in_turns
+  bool in_turns = true;                             ///< result of the function in_turns
   std::string marks = {};  ///< kinds of conditions that differ and were allowed: "scene, machine"
 
   Verdict verdict() const;

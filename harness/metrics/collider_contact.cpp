@@ -13,8 +13,8 @@
 namespace clothbench {
 namespace {
 
-constexpr double kTouchShare = 1e-3;  // of the cloth's shorter side; added to the contact offset
-constexpr double kTouchMargin = 0.1;  // of the contact offset; added instead if larger
+constexpr double kTouchShare = 1e-3;  // fraction of the cloth's shorter side, added to the contact offset
+constexpr double kTouchMargin = 0.1;  // fraction of the contact offset, added instead if larger
 
 using contact::Nearest;
 using contact::Point;
@@ -186,7 +186,7 @@ class Probes final : public ColliderContact {
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<contact::Link> links;
-  std::vector<std::unique_ptr<TriangleTree>> meshes;  ///< of each collider in frame `placed`; null if no triangles
+  std::vector<std::unique_ptr<TriangleTree>> meshes;  ///< one per collider, in frame `placed`; null without triangles
   int placed = 0;
   bool any_inside = false;
   std::vector<double> area;                ///< of the triangles, at rest

@@ -20,24 +20,24 @@ struct MetricContext {
   const SolverEntry& entry;
   const nlohmann::json&
       settings;  ///< complete; only for the solver's free_fall_m, because no metric may use a setting by name
-  std::vector<double> contact_margins_m = {};  ///< as in the solver's Plan
+  std::vector<double> contact_margins_m = {};  ///< copied from the solver's Plan
 };
 
 /// Contact of the cloth with all colliders in one frame (collider_contact.hpp). NaN if the cloth is not finite.
 struct SceneContact {
-  double length_m;  ///< of the curves in which cloth and colliders cross
+  double length_m;  ///< length of the curves in which cloth and colliders cross
   double depth_m;   ///< NaN if no collider has an inside
 };
 
 /// Touch and slip of the cloth on colliders in one frame (collider_contact.hpp). NaN if the cloth is not finite.
 struct SceneTouch {
-  double touching_fraction;  ///< of the triangles' rest area
+  double touching_fraction;  ///< fraction of the cloth's rest area
   double slip_m;  ///< mean distance slid on the surface by vertices that touch in this and the previous frame
 };
 
 /// Self-intersection of the cloth in one frame; NaN if it is not finite.
 struct SelfContact {
-  double length_m;  ///< of the curves of self-intersection
+  double length_m;  ///< length of the curves in which the cloth crosses itself
   double pairs;     ///< number of intersecting pairs of triangles that share no vertex
 };
 

@@ -62,7 +62,7 @@ enum class SlackUnit { One, Length };
 
 /// Regression rule of `check` for a scalar: smaller is better; a value above baseline plus tolerance fails.
 struct Gate {
-  double absolute = 0;  ///< in `unit`
+  double absolute = 0;  ///< tolerance in the scalar's unit
   SlackUnit unit = SlackUnit::One;
   double relative = 0;           ///< fraction of the baseline's value, added
   bool zero_stays_zero = false;  ///< no tolerance if the baseline is exactly 0

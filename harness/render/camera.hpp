@@ -8,7 +8,7 @@
 
 namespace clothbench::render {
 
-/// 4 x 4, column-major, as in shaders.
+/// 4 x 4, column-major like a matrix in a shader.
 using Mat4 = std::array<double, 16>;
 Mat4 operator*(const Mat4& a, const Mat4& b);
 

@@ -11,7 +11,7 @@ namespace clothbench::render {
 /// Input for images: the trajectory of a cloth, and the scene with its colliders.
 struct Motion {
   Scene scene;
-  std::string name;  ///< of the run, for file names
+  std::string name;  ///< name of the run; names of files begin with it
   std::vector<double> time_s;
   std::vector<float> position;  ///< (frame, vertex, xyz) [m]
 

@@ -43,7 +43,7 @@ class Owned {
 /// colliders, which use the same buffers.
 class Pipelines {
  public:
-  static constexpr std::uint32_t kBindings = 4;  ///< as in the shaders
+  static constexpr std::uint32_t kBindings = 4;  ///< number of bindings in the shaders
   static constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
   Pipelines(std::shared_ptr<vulkan::Device> device, VkFormat colour, VkSampleCountFlagBits samples);

@@ -94,7 +94,7 @@ View speed_and_error(bool paper) {
                   !is_floor(r.solver);
          }};
   if (!paper) v.each = [](const Row& r) { return "Frame rates: " + r.family; };
-  v.order = [](const Group& g) {  // by sides, the fastest first; published values last
+  v.order = [](const Group& g) {  // rows are sorted by sides, then the fastest first; published values come last
     double fps = 0;
     for (const Row* r : g) fps = r->largest && std::isfinite(r->value("fps_median")) ? r->value("fps_median") : fps;
     const double group = g.front()->sides == "double" ? 1 : g.front()->sides == "double-duplicated" ? 2 : 0;
@@ -235,7 +235,7 @@ std::string fact(const RunRecord& c, const std::string& key) {
   if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
   if (key == "cpu" && environment_of(c, "cpu_threads").is_number())
     return fmt::format("{} ({} threads)", value, environment_of(c, "cpu_threads").dump());
-  if (key == "protocol" && (value == "full" || value == "run")) return "";  // as usual
+  if (key == "protocol" && (value == "full" || value == "run")) return "";  // the usual protocol needs no word
   if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
   if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
   return key == "created" ? value.substr(0, 10) : value;

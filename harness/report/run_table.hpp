@@ -87,7 +87,7 @@ Item& find_or_add(std::vector<Item>& items, Is is, Item fresh) {
 /// Cloth resolution. `grid` is {0, 0} for a mesh.
 struct Resolution {
   int grid[2] = {0, 0};
-  std::uint32_t vertices = 0;  ///< of a mesh; 0 for a grid
+  std::uint32_t vertices = 0;  ///< number of vertices of a mesh; 0 for a grid
   std::string label() const;   ///< "32²", "9×7", "1234 vertices", "–"
   double size() const { return static_cast<double>(grid[0]) * grid[1] + vertices; }
 };
@@ -96,7 +96,7 @@ struct Resolution {
 struct FrameTimes {
   std::vector<double> sorted;  ///< ascending
   Interval median;
-  Interval rate;  ///< of the median over trials of the frame rate
+  Interval rate;  ///< interval of the trials' median frame rate
   /// Nearest-rank quantile; NaN without frames.
   double at(double q) const;
   /// Fraction of the frames that are longer than one refresh period of a display.

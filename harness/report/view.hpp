@@ -118,8 +118,8 @@ struct ViewTable : Table {
   std::vector<std::size_t> lead = {};         ///< columns that come first on the page, after the keys
   std::vector<std::size_t> late = {};         ///< columns that come last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
-  bool explains = false;                      ///< as in View
-  std::vector<std::vector<Cell>> cells = {};  ///< of the rows below the head; empty: text only
+  bool explains = false;                      ///< copied from View::explains
+  std::vector<std::vector<Cell>> cells = {};  ///< rows below the head; empty if there is only text
   std::vector<std::string> solvers = {};      ///< by column: its solver, or ""
 };
 

@@ -26,7 +26,7 @@ constexpr double kEngineRoughness = 0.0415;
 struct Claim {
   std::string name;
   bool holds = false;
-  Texts criteria = {};  ///< with the values found; of the run's own claim, only violated ones
+  Texts criteria = {};  ///< criteria with the values found; only violated ones of the run's claim
 };
 /// The claim for which the run was made and, of the sweep, C11.
 std::vector<Claim> claims_of(const Row& r) {

@@ -347,8 +347,8 @@ ResultFolder::~ResultFolder() {
 void require_short_name(const fs::path& folder, const std::string& run) {
   if (run.size() > kMostRunName)
     throw Error(
-        fmt::format("{}: the names of its result files would have {} bytes and an ending; expected at most {}: "
-                    "shorten the name of the scene or the settings",
+        fmt::format("{}: its result files would have names of {} bytes, without the ending (such as .h5); expected at "
+                    "most {}: shorten the name of the scene or the settings",
                     in_quotes(run), run.size(), kMostRunName));
   if (fs::absolute(folder).string().size() + kMostRunName + 56 > PATH_MAX)
     refuse_folder(folder, "the paths of result files in it would be too long");

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFrames = 6;
-constexpr double kStill = 1e-6;   // of the width
+constexpr double kStill = 1e-6;   // fraction of the cloth's width
 constexpr double kHeld_m = 1e-3;  // float32 and compliant attachments; a wrong attachment is off by centimetres
 constexpr std::size_t kFaultsKept = 8;
 
@@ -113,9 +113,9 @@ class Conformer {
   void check_cost() {
     const FrameCost cost = solver_.last_cost();
     const std::size_t stages = plan_.stages.size();
-    if (cost.stage_device_s.size() != stages || cost.stage_read_B.size() != stages ||
-        cost.stage_write_B.size() != stages)
-      fault(fmt::format("costs of a frame: expected one per stage, {}", stages));
+    for (const std::size_t found : {cost.stage_device_s.size(), cost.stage_read_B.size(), cost.stage_write_B.size()})
+      if (found != stages)
+        fault(fmt::format("costs of a frame: found {} values; expected {}, one per stage", found, stages));
     if (std::isfinite(cost.device_s) != info_.on_gpu)
       fault(info_.on_gpu ? "device time: missing, though the solver runs on a GPU"
                          : "device time: given, though the solver runs on the CPU");
@@ -187,7 +187,7 @@ void add_case(const SolverEntry& entry, const json& settings, const DeviceOption
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles) {
   std::vector<ConformanceCase> out;
   for (const char* sides : {"single", "double-duplicated", "double"})
-    for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"}) {  // not multiples of a workgroup's size
+    for (const char* grid : {"[2,2]", "[9,7]", "[17,33]"}) {  // sizes that are no multiples of a workgroup's
       out.push_back({scene, sides, grid, "", false});
       if (profiles && std::string(grid) == "[17,33]") out.push_back({scene, sides, grid, "adreno-like", false});
     }

@@ -24,8 +24,8 @@ struct ConformanceCase {
   ///   "restart"   a second solver object continues from the positions and velocities of the middle frame: 1e-4, or
   ///               the change due to frames half as long, whichever is larger
   ///   "mirror"    x -> -x: 1e-4
-  ///   "renumber"  vertices numbered column by column: as for restart, because the order of solving may change the
-  ///               result within the solver's own error
+  ///   "renumber"  vertices numbered column by column: the bound of "restart", because the order of solving may
+  ///               change the result within the solver's own error
   ///   "no-op"     a sphere and a box with friction 100 m away: 1e-6
   std::string relation = {};
 };

@@ -62,9 +62,9 @@ class FrameLoop {
   /// Times all frames up to the next restart (see drop_frames) as one interval, by ClothSolver::run_frames.
   bool next_drop();
 
-  int index() const { return index_; }  ///< of the last frame begun, or a drop's first frame; initially `first` - 1
+  int index() const { return index_; }             ///< last frame begun, or first of a drop; initially `first` - 1
   int in_drop() const { return in_drop(index_); }  ///< index within the drop
-  StepStatus status() const { return status_; }    ///< of the last frame
+  StepStatus status() const { return status_; }    ///< how the last frame ended
   bool failed() const { return status_ != StepStatus::Ok; }
   double wall_s() const { return wall_s_; }        ///< timed wall time of the last frame
   double cpu_s() const { return cpu_s_; }          ///< CPU time of the last frame, of all threads; 0 without the clock

@@ -44,7 +44,7 @@ Scene two_rows(const Scene& s) {
 }
 
 struct Run {
-  double value = kMissing;   ///< at the end
+  double value = kMissing;   ///< value at the end of the run
   double unrest = kMissing;  ///< change over the last tenth of the run
   double error = kMissing;   ///< only for a mesh: ranking error against the continuum
 };

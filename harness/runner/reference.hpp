@@ -30,7 +30,7 @@ struct ReferenceRules {
   int moving_steps = 512;  ///< minimum for a whole scene on the coarsest level
   int settling_substeps =
       8;  ///< per frame, for a scene that comes to rest: enough to let the midpoint rule damp the initial motion
-  double tolerance = 1e-8;  ///< of Newton's method
+  double tolerance = 1e-8;  ///< residual at which Newton's method stops
 };
 
 /// Runs three levels of time steps, each half as long as the one before, with two integrators; the coarsest also with a

@@ -58,7 +58,7 @@ struct TrialRules {
 /// Outcome of a run whose step returned this status in frame `frame`.
 Outcome outcome_of(StepStatus, int frame);
 
-std::string run_name(const RunSpec&);  ///< as in the names of its files
+std::string run_name(const RunSpec&);  ///< the name that the run's files have
 
 /// Scalar: wall time of load and untimed pass [s].
 inline constexpr char kUntimed[] = "untimed_s";

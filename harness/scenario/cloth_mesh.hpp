@@ -56,7 +56,7 @@ struct DrawnSheet {
   int cells = 8;           ///< along the width; along the height, cells have nearly the same size
   double angle_rad = 0;    ///< rotation of the lattice of inner vertices
   double share = 0;        ///< maximum random offset of an inner vertex, as a fraction of a cell, 0 to 0.4
-  std::uint32_t seed = 1;  ///< of these offsets
+  std::uint32_t seed = 1;  ///< gives the random offsets
   bool clamp = false;      ///< adds a line of vertices one cell from the edge x = 0; attaching both makes a clamp
   std::array<int, 2> copies = {1, 1};      ///< equal sheets along x and z, centred on the position of a single one
   std::array<double, 2> apart_m = {0, 0};  ///< distances of neighbouring copies

@@ -26,7 +26,7 @@ std::filesystem::path needed_file(const std::string& name, const std::string& so
 
 /// A mesh for solvers; `closed` if it is the closed surface of a solid, with outward normals.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::TriangleMesh&);
-/// Mesh of a hand for solvers. It follows the hand's joints; `closed` as above.
+/// Mesh of a hand for solvers. It follows the hand's joints; `closed` has the same condition.
 std::shared_ptr<ColliderMesh> collider_mesh(const assets::SkinnedMesh&);
 
 /// The 19 capsules of a hand, and the matrices by which a hand's mesh follows its joints. A replay and the live session

@@ -58,7 +58,7 @@ class IrregularReader {
 
   void start(const json& j) {
     Start& s = s_.cloth.start;
-    constexpr std::array kShapes = {"rest", "sphere", "plane", "line", "point", "folded"};  // as Start::Shape
+    constexpr std::array kShapes = {"rest", "sphere", "plane", "line", "point", "folded"};  // see Start::Shape
     s.shape = static_cast<Start::Shape>(std::find(kShapes.begin(), kShapes.end(), j["shape"]) - kShapes.begin());
     s.radius_m = j["radius_m"].get<double>();
     s.folds = j["folds"].get<int>();

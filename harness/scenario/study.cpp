@@ -187,7 +187,7 @@ class Builder {
     return rungs;
   }
 
-  /// Tags of the scenes that each solver runs in the quick form, by solver name; null: the form does not select by tag.
+  /// Tags per solver name; null if `quick.tags` is one list for all solvers, or outside the quick form.
   json quick_by_solver() const {
     const json tags = quick_.is_null() ? json() : quick_["tags"];
     return tags.is_object() ? tags : json();

@@ -14,7 +14,7 @@ namespace clothbench {
 /// One solver with one set of settings, as a study names it.
 struct StudySolver {
   std::string solver, label;
-  nlohmann::json settings;                        ///< as given; `complete_settings` adds the defaults
+  nlohmann::json settings;                        ///< only those given; `complete_settings` adds the defaults
   std::vector<std::string> set;                   ///< changes to the scenes for this solver only, `dotted.key=JSON`
   nlohmann::json tags = nlohmann::json::array();  ///< tags of the scenes that it runs; empty: all
   bool joined = false;                            ///< added by StudyOptions::solvers, not by the study
@@ -64,7 +64,7 @@ struct Study {
   double accuracy_duration_s = 0;  ///< infinite: the whole scene
   double run_limit_s = 0;          ///< 0 = none
   bool pipelined = false;
-  StudyRules rules;           ///< of `length`
+  StudyRules rules;           ///< rules that belong to `length`
   nlohmann::json definition;  ///< the file with its defaults filled in
 };
 

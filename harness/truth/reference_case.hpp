@@ -77,7 +77,7 @@ struct ReferenceCase {
 
   std::function<std::vector<Vec3>(int frame)> columns;     ///< [m]
   std::function<std::vector<double>(int frame)> vertices;  ///< [m], 3 each; null: `columns` suffice
-  std::function<Vec3(double share, int frame)> continuum;  ///< at a fraction 0..1 of the width; null: as `columns`
+  std::function<Vec3(double share, int frame)> continuum;  ///< at a fraction 0..1 of the width; null: use `columns`
   std::function<double(const std::vector<Vec3>& columns)> quantity;  ///< of a run's columns (means over the rows)
 };
 

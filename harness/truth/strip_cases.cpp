@@ -16,7 +16,7 @@ namespace {
 constexpr double kMeshStrain = 1e-3;
 constexpr const char* kMeshStrainText = "1e-3";
 
-constexpr double kPoissonRatio = 1.0 / 3;  // of every sheet with shear
+constexpr double kPoissonRatio = 1.0 / 3;  // every sheet with shear has this ratio
 // Number of links of the chain that stands for a cantilever's continuum: off by 2.4e-7 of its length at Gamma = 10.
 constexpr int kSmooth = 2048;
 

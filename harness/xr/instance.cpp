@@ -16,7 +16,7 @@ AndroidContext& context() {
 }
 
 constexpr const char* kAndroidCreate = "XR_KHR_android_create_instance";
-/// Optional extensions; XR_KHR_vulkan_enable2 is required.
+/// Extensions used if present. The required one, XR_KHR_vulkan_enable2, is not in this list.
 constexpr std::array kWelcome = {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
                                  XR_EXT_HAND_TRACKING_EXTENSION_NAME,
                                  XR_FB_HAND_TRACKING_CAPSULES_EXTENSION_NAME,

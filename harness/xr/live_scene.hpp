@@ -33,7 +33,7 @@ class LiveScene {
   /// The scene's origin in the user's space [m]: the initial cloth's middle is 60 cm in front of the eyes and 10 cm
   /// below.
   Vec3 place_m() const;
-  static constexpr Vec3 kMiddle_m = {0, -0.1, -0.6};  ///< of the initial cloth in the user's space
+  static constexpr Vec3 kMiddle_m = {0, -0.1, -0.6};  ///< centre of the initial cloth in the user's space
 
   /// Puts the user's table (a box as a scene's file has it) under the middle of the cloth instead of all static
   /// colliders, as far below the cloth as the scene's own table, otherwise 0.3 m. Returns the displacement of the box.
@@ -41,7 +41,7 @@ class LiveScene {
 
   struct Begin {
     double frame_rate_hz = 0;
-    int frames = 0;  ///< of the session; 1 to kMostFrames
+    int frames = 0;  ///< length of the session; 1 to kMostFrames
     HandsNow hands;
     bool has_capsules = false;
   };

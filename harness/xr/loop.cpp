@@ -60,7 +60,7 @@ class Loop {
   }
 
  private:
-  static constexpr double kLeave_s = 2;  // for a runtime that does not end the session
+  static constexpr double kLeave_s = 2;  // then the loop ends even if the runtime does not end the session
 
   void show_frames() {
     const auto start = Clock::now();
@@ -325,7 +325,7 @@ class Loop {
   const pbd_gpu::GpuSolver* gpu_ = nullptr;
   bool warm_ = false, done_ = false, asked_to_exit_ = false, stale_ = true;
   Clock::time_point leaving_, first_frame_;
-  double rate_hz_ = 0;  ///< of the display, once `settled_`
+  double rate_hz_ = 0;  ///< refresh rate, known once `settled_`
   bool settled_ = false;
   int frames_ = 0;
   XrTime first_time_ = 0;

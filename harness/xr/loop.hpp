@@ -22,7 +22,7 @@ struct LoopOptions {
   DeviceOptions device;    ///< its index is ignored, because the runtime chooses the device
   double rate_hz = 72;     ///< requested refresh rate of the display
   int frames = 0;          ///< 0: the scene's length
-  double timeout_s = 120;  ///< for hands to become tracked
+  double timeout_s = 120;  ///< how long to wait for tracked hands
   bool table = false;      ///< the cloth is put over the user's table, which replaces the scene's static colliders
   std::filesystem::path out;
   std::function<void(const std::string&)> tell;  ///< receives messages for the user; may be empty

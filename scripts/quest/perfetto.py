@@ -10,7 +10,7 @@ REALTIME, BOOTTIME = 1, 6  # builtin_clock.proto
 
 
 def varint(data, at):
-    """(value, place after it)"""
+    """Returns the value and the position after it."""
     for size in range(1, 11):
         if data[at + size - 1] < 128:
             return sum((byte & 127) << 7 * k for k, byte in enumerate(data[at:at + size])), at + size

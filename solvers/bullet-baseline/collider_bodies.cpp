@@ -29,8 +29,8 @@ Capsule between(const Capsule& from, const Capsule& to, double share) {
   return out;
 }
 
-/// Bullet's capsules lie along y. The new rotation is the last one, rotated by the smallest angle. Otherwise a capsule
-/// could spin about its axis from frame to frame, and Bullet would drag the cloth along.
+/// Bullet's capsules lie along y. The new rotation is the last one, followed by the smallest rotation that brings the
+/// axis into its new direction. With another choice, a capsule could spin about its axis and drag the cloth along.
 btTransform place(const Capsule& c, btQuaternion& turn) {
   const btVector3 was = quatRotate(turn, btVector3(0, 1, 0));
   turn = shortestArcQuat(was, direction(c, was)) * turn;

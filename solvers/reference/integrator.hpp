@@ -69,7 +69,7 @@ class Model {
   std::vector<Spring> springs_;
   std::vector<Eigen::Matrix3d> triangles_;  // of an elastic mesh: compliance of three springs each; otherwise empty
   std::vector<BendLine> lines_;
-  Eigen::SparseMatrix<double> bending_;  // of a mesh; otherwise empty
+  Eigen::SparseMatrix<double> bending_;  // bending matrix of a mesh; otherwise empty
   std::vector<int> dof_;
   int free_dofs_ = 0;
   bool inextensible_ = false;
@@ -84,8 +84,8 @@ struct State {
 
 /// Newton's method in an implicit step stops if both limits are met; in RATTLE, if all |C| are below `length_m`.
 struct Tolerance {
-  double acceleration = 0;  ///< of residuals [m/s^2]: M^-1 r, and mass_scale times constraint residuals
-  double length_m = 0;      ///< of the last correction
+  double acceleration = 0;  ///< limit of residuals [m/s^2]: M^-1 r, and mass_scale times constraint residuals
+  double length_m = 0;      ///< limit of the last correction
 };
 
 /// Factorises the saddle-point systems [A G^T; G -D] of successive steps; the sparsity pattern is analysed once.

@@ -27,7 +27,7 @@ def free_port():
 
 
 class Cluster:
-    """munged, slurmctld and slurmd in a folder."""
+    """Runs munged, slurmctld and slurmd in a folder."""
 
     def __init__(self, home):
         self.home, self.started = home, []

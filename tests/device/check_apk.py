@@ -1,4 +1,4 @@
-"""Packs the APK and checks it with the tools a user would: badging, alignment, signature, contents, 16 KiB segments.
+"""Packs the APK and checks it with the tools that a user would use: badging, alignment, signature, contents, 16 KiB segments.
 
 The library inside is the arm64-linux test build: a test of the packaging alone. With an NDK the real one is packed."""
 import re

@@ -1,4 +1,4 @@
-"""Judges lies and right motions in parallel: `matrix.py run LIARS RESULT`, then `matrix.py table RESULT`.
+"""Judges falsified motions (lies) and correct ones in parallel: `matrix.py run LIARS RESULT`, then `matrix.py table RESULT`.
 
 RESULT has one line of JSON per judged motion and one per finished seed, so that a call continues where the last one was
 stopped. `liars` finds scenes through CLOTHBENCH_SCENARIOS and CLOTHBENCH_ASSETS."""

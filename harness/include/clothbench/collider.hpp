@@ -62,7 +62,7 @@ struct Collider {
 /// Pose of one collider at one instant; empty for a static collider.
 struct ColliderPose {
   std::vector<Capsule> capsules;
-  std::vector<Affine> joints;  ///< of a skinned mesh: one matrix per joint
+  std::vector<Affine> joints;  ///< a skinned mesh has one matrix per joint
 };
 
 /// Poses of all moving colliders and grips at one instant. Between instants, their points move in straight lines.

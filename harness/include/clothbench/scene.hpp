@@ -22,7 +22,7 @@ struct Start {
   /// u. Point: all at the sheet's centre. Folded: folded along u in a zigzag like a map.
   enum class Shape : std::uint8_t { Rest, Sphere, Plane, Line, Point, Folded };
   Shape shape = Shape::Rest;
-  double radius_m = 0;  ///< of the sphere or the disc
+  double radius_m = 0;  ///< radius of the sphere or the disc
   int folds = 0;        ///< layers of a folded sheet
   double noise_m = 0;   ///< standard deviation of the noise on every coordinate
   std::uint64_t seed = 0;
@@ -46,7 +46,7 @@ struct Edge {
 /// A cloth of any shape and topology. Its local frame has origin center_m and axes axis_u, axis_v, axis_u x axis_v.
 struct ClothMesh {
   std::vector<Vec3> vertices;                           ///< [m]; initial positions and, without pattern, rest shape
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positive area, consistently wound
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< each has a positive area; all are wound alike
   std::vector<Edge> edges;                              ///< each edge once, all structural, a < b, ascending order
   std::vector<double> areas_m2;                         ///< per edge: the sum of the areas of its triangles
   double edge_m = 0;                                    ///< mean length of an edge
@@ -101,7 +101,7 @@ struct Cloth {
 struct StiffnessRegion {
   int first = 0, last = 0;
   std::optional<double> membrane_stiffness_N_per_m;
-  std::vector<std::uint32_t> triangles = {};  ///< of a mesh, ascending: triangles with all vertices in the group
+  std::vector<std::uint32_t> triangles = {};  ///< only of meshes, ascending: triangles with all vertices in the group
 };
 
 /// Continuum parameters. Each solver maps them onto its own model, as its README explains.
@@ -172,7 +172,7 @@ struct Scene {
   std::string expected_outcome;  ///< an Outcome::status; "" = any
   std::vector<Expectation> expect;
   std::string json;    ///< resolved scenario, canonical dump
-  std::string sha256;  ///< of `json`
+  std::string sha256;  ///< hash of `json`
   std::string source;  ///< path of the file it came from, for messages
   std::string assets;  ///< origin of rooms and hands: "npm", "procedural", or "" if the scene has none
 

@@ -9,8 +9,8 @@ namespace clothbench::contact {
 
 /// Contact of a cloth with one object at one instant. Both values are NaN if the cloth is not finite.
 struct ContactSample {
-  double contour_length_m;  ///< of the intersection contour of cloth and object
-  double depth_max_m;       ///< of the cloth in the object, between vertices too; NaN for an object without inside
+  double contour_length_m;  ///< length of the intersection contour of cloth and object
+  double depth_max_m;       ///< largest depth of the cloth, not only of vertices; NaN if the object has no inside
 };
 
 /// Contact with a mesh. The contour is exact (`contour`). The depth is the largest distance to the mesh's surface, over

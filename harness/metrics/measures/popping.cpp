@@ -71,7 +71,7 @@ class Paths {
 
   const RunView& run_;
   std::size_t vertices_;
-  std::vector<double> path_m_;  ///< of each frame's vertices
+  std::vector<double> path_m_;  ///< path of every vertex in every frame
 };
 
 /// Path length [m] up to each frame's end: the sum of the displacements of the fastest collider or grip in each frame.
@@ -142,7 +142,7 @@ double pop(const RunView& r) {
   const Paths paths(r);
   const std::vector<Surroundings> round = surroundings(r.scene.cloth);
   double most = 0;
-  for (std::size_t half = 0; half < 2 * time.size() - 1; ++half) {  // from every frame and from midway to the next
+  for (std::size_t half = 0; half < 2 * time.size() - 1; ++half) {  // windows start at frames and midway
     const double start = (time[half / 2] + time[(half + 1) / 2]) / 2;
     if (start + 2 * window > time.back() + kRounding_s) break;
     std::array<Instant, 4> x;

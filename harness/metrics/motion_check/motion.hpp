@@ -36,8 +36,8 @@ class Motion {
   const Scene& scene;
   std::size_t vertices, frames;
   std::vector<double> masses_kg;
-  double mass_kg = 0;       ///< of the cloth
-  double length_m = 0;      ///< its longer side
+  double mass_kg = 0;       ///< mass of the cloth
+  double length_m = 0;      ///< longer side of the cloth
   double cell_m = 0;        ///< mean edge length along u or v, whichever is longer
   double resolution_m = 0;  ///< kResolution of the longer side
   V3 gravity{};             ///< [m/s2]

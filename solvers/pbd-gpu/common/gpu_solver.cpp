@@ -12,7 +12,7 @@ namespace clothbench::pbd_gpu {
 /// A frame that takes longer has timed out. Concurrent processes share a GPU; software devices are slow.
 constexpr double kTimeout_s = 30, kSoftwareTimeout_s = 300;
 
-/// Two, as in an application that shows one frame while the next is computed.
+/// An application shows one frame while the next is computed, so it has two.
 constexpr int kFramesInFlight = 2;
 
 void require_between(const char* solver, const nlohmann::json& settings, const char* key, double low, double high) {

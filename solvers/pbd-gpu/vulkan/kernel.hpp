@@ -49,7 +49,7 @@ std::map<std::uint32_t, Access> accesses_of(SpirV code);
 
 /// Returns `code` with instructions that count the bytes that it loads from and stores to storage buffers. Each
 /// invocation has two sums of its own and adds them at its end to four words of buffer `counter`, from `first_word` on:
-/// bytes read (low and high word), bytes written (likewise). An atomic operation reads and writes its word. Accesses to
+/// bytes read, bytes written (each as low and high word). An atomic operation reads and writes its word. Accesses to
 /// the bindings `uncounted` are not counted: the counters of barriers, whose number of polls depends on timing.
 std::vector<std::uint32_t> with_byte_counters(SpirV code, std::uint32_t counter, std::uint32_t first_word,
                                               const std::set<std::uint32_t>& uncounted);

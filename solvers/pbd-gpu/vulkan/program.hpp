@@ -65,7 +65,7 @@ class Program {
     std::vector<std::uint8_t> constants;
     const Buffer *from, *to;
   };
-  using Buffers = std::bitset<128>;  ///< by number
+  using Buffers = std::bitset<128>;  ///< bit n: buffer n
   struct Touched {
     Buffers read, written;
   };

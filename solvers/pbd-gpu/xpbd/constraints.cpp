@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFlat = 1e-6;               // height of a flat mesh, relative to its longest side
 constexpr double kShort = 0.5, kLong = 1.5;  // limits of a start that is not crumpled, relative to a link's rest length
-constexpr double kAside = 1e-3;              // of a cell; far above float32's rounding, far below what is visible
+constexpr double kAside = 1e-3;              // share of a cell; far above float32's rounding, far below what is visible
 
 /// Why a scene has no tethers, wherever its vertices start; empty: it may have some.
 std::string why_no_tethers(const Scene& scene, bool wanted) {

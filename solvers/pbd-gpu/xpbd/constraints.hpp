@@ -59,7 +59,7 @@ struct PinnedRectangle {
 /// rectangle is at most `stretch` times their distance through the cloth at rest.
 struct Tethers {
   static constexpr std::size_t kMax = 4;
-  std::vector<PinnedRectangle> to;  ///< at most kMax
+  std::vector<PinnedRectangle> to;  ///< has at most kMax entries
   double stretch = 1;
   std::string reason;  ///< reason if `to` is empty
 };

@@ -19,7 +19,7 @@ constexpr double kMeshRadius_m = 1e-5;  // triangles need a positive one
 constexpr double kInextensible_N_per_m = 1e4;
 
 struct Settings {
-  double contact, substeps, iterations, timestep_s, margin_m, frictionless, nominal;  // as in kSettings
+  double contact, substeps, iterations, timestep_s, margin_m, frictionless, nominal;  // in the order of kSettings
   explicit Settings(const double* values) { std::memcpy(static_cast<void*>(this), values, sizeof *this); }
   bool passive() const { return contact > 0; }
   int steps(double dt_s) const {
@@ -159,8 +159,8 @@ inline void add_collider(mjSpec& spec, const ClothbenchScene& s, std::uint32_t k
 
 /// Bodies are in the order of vertices, after the world; the first flex is the cloth.
 inline Model model(const Settings& settings, const ClothbenchScene& s, const std::vector<double>& inverse_mass) {
-  mju_user_error = raise;                 // not the end of the process
-  mju_user_warning = [](const char*) {};  // not a file
+  mju_user_error = raise;                 // the default ends the process
+  mju_user_warning = [](const char*) {};  // the default writes a file
   const Spec spec(mj_makeSpec(), mj_deleteSpec);
   const bool self = peer::needs(s, CLOTHBENCH_SELF_COLLISION), contact = self || s.collider_count > 0;
   mjsFlex* cloth = mjs_addFlex(spec.get());

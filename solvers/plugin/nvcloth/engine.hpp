@@ -80,7 +80,7 @@ struct Device {
     if (!engine().message.empty()) obstacle = "NvCloth cannot use " + name + ": " + engine().message;
     primary = context;
   }
-  /// Times what `work` gives to the GPU. The engine's stream waits for the legacy stream and the other way round.
+  /// Times what `work` gives to the GPU. The engine's stream and the legacy stream wait for each other.
   template <typename Work>
   void time(Work work) {
     cuCtxSetCurrent(primary);

@@ -7,7 +7,7 @@
 
 namespace clothbench::nvcloth {
 
-/// A part as a scene of its own, with the colliders of the whole scene.
+/// The scene of one part, with the colliders of the whole scene.
 struct Part {
   ClothbenchScene scene;
   std::vector<std::uint32_t> vertices, grips;  ///< of each vertex and grip of the part: its index in the whole scene

@@ -22,9 +22,9 @@ Clusters cluster(const std::vector<double>& positions, const std::vector<std::ar
 struct ConvexShapes {
   std::vector<ConvexShape> shapes;
   std::vector<ShapePoint> points;    ///< shape by shape, at the scene's start [m]
-  std::vector<PointSource> sources;  ///< of the points of kinematic convex shapes
+  std::vector<PointSource> sources;  ///< one per point of a kinematic convex shape
   std::vector<ShapeAabb> boxes;      ///< of the convex shapes, then of groups of SHAPES_PER_GROUP of them
-  std::uint32_t max_points = 1;      ///< of a convex shape
+  std::uint32_t max_points = 1;      ///< maximum number of points of a convex shape
   double max_margin_m = 0;
   std::vector<double> margins_m;  ///< one per collider, raised to the minimum
 };

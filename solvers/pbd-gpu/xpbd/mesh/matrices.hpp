@@ -11,8 +11,8 @@ namespace clothbench::pbd_gpu {
 /// edge. The diagonal is not stored, because rows sum to 0.
 struct BendingMatrix {
   std::vector<std::uint32_t> first;    ///< first entry of each vertex's row, then the number of entries
-  std::vector<std::uint32_t> columns;  ///< of entries, ascending in a row
-  std::vector<double> stiffness;       ///< of entries [N/m]
+  std::vector<std::uint32_t> columns;  ///< column of each entry, ascending in a row
+  std::vector<double> stiffness;       ///< value of each entry [N/m]
   double max_per_s2 = 0;  ///< upper bound of the eigenvalues of (diagonal of masses)^-1 K [1/s^2], without pins
 };
 

@@ -55,8 +55,8 @@ int xpbd_substeps(const Scene&, const nlohmann::json& settings);
 /// The substeps that fast motion in contact needs, if they are more than xpbd_substeps(); otherwise 0.
 int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 
-/// Substeps of a contact-free frame: as in the scene without colliders, or more if a kinematic collider may have
-/// strained the cloth in directions that tethers do not limit.
+/// Substeps of a contact-free frame: as many as in the scene without colliders, or more if a kinematic collider may
+/// have strained the cloth in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
 /// Chooses the next frame's numbers of substeps and pair lists from the last frame's largest displacement, for cloth in

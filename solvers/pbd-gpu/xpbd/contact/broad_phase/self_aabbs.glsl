@@ -46,7 +46,7 @@ void make_self_aabbs() {
   }
   of_group.low_0.w = 1e30;
   of_group.high_0.w = -1e30;
-  of_group.low_1 = of_group.low_0;  // equal, so low_at() is exact and the group's box contains its triangles' boxes
+  of_group.low_1 = of_group.low_0;  // low_at() then adds 0: rounding cannot shrink a group's box below its triangles'
   of_group.high_1 = of_group.high_0;
   self_aabbs[TRIANGLES + q / SHAPES_PER_GROUP] = of_group;
 }
