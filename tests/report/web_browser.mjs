@@ -294,6 +294,15 @@ async function check_without_script() {
   await plain.close();
 }
 
+/// The browser's Back returns to the place before a link.
+async function check_back() {
+  const at = () => page.evaluate(() => location.hash.split('?')[0]);
+  await page.click('#contents a[href="#rates"]'); await wait(100);
+  await page.click('#contents a[href="#contact"]'); await wait(100);
+  await page.goBack(); await wait(100);
+  equal(await at(), '#rates', 'back to');
+}
+
 /// The value of a mark, by pointer and keyboard, with the command that repeats its run.
 async function check_values() {
   await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'})); await wait(200);
@@ -404,7 +413,7 @@ async function check_colours() {
 try {
   for (const file of [page_file, large_file]) await check_budgets(file);
   await draw_all();
-  for (const run of [check_tables, check_figures, check_filter, check_legends, check_values, check_commands, check_motion, check_widths, check_large, check_without_script, check_colours, check_without_webgl]) await run();
+  for (const run of [check_tables, check_figures, check_filter, check_legends, check_back, check_values, check_commands, check_motion, check_widths, check_large, check_without_script, check_colours, check_without_webgl]) await run();
   check((await page.pdf({format: 'A4'})).length > 20000, 'it prints');
   const rules = await page.evaluate(() => [...document.styleSheets].flatMap(s => [...s.cssRules]).map(r => r.cssText).filter(t => t.startsWith('@page')).join());
   check(rules.includes(doc.title) && rules.includes('counter(page)'), 'printed pages have the title and a number');

@@ -84,16 +84,17 @@ double bytes_per_frame(const RunRecord& run, std::vector<double> TimedTrial::*by
   return std::accumulate((t.*bytes).begin(), (t.*bytes).end(), 0.0) / t.frames();
 }
 
+// Memory and dispatches are unknown, not 0, for a GPU solver that states none, such as a plugin.
 double device_memory(const RunView& r) {
   double memory = 0;
   for (const BufferPlan& b : r.plan->buffers) memory += b.device_local ? static_cast<double>(b.bytes) : 0.0;
-  return r.on_gpu ? memory : kMissing;
+  return r.on_gpu && memory > 0 ? memory : kMissing;
 }
 
 double dispatches(const RunView& r) {
   double sum = 0;
   for (const StagePlan& p : r.plan->stages) sum += p.dispatches;
-  return r.on_gpu ? sum : kMissing;
+  return r.on_gpu && sum > 0 ? sum : kMissing;
 }
 
 bool timed(const RunView& r) { return r.run != nullptr; }

@@ -104,9 +104,15 @@ function start_navigation() {
     const link = e.target.closest?.('a[href^="#"]');
     if (!link || link.classList.contains('skip')) return;
     e.preventDefault();  // the address also holds the reader's choices
+    history.pushState(null, '', location.href);
     save_state(link.hash.slice(1));
     open(false);
     go_to(link.hash.slice(1));
+  });
+  addEventListener('popstate', () => {
+    const anchor = load_state();
+    dispatchEvent(new Event('solvers'));
+    go_to(anchor || 'overview');
   });
   bar();
   spy();

@@ -25,7 +25,7 @@ export function legend(names, look, more) {
   const sum = list => list.reduce((a, b) => a + b, 0), room = (_, k) => 36 + 7.2 * Math.max(...names.filter((_, n) => n % columns === k).map(n => n.length));
   let columns = names.length;
   while (columns > 1 && sum(names.slice(0, columns).map(room)) > look.width) --columns;
-  return {columns, ...more};
+  return {columns, labelLimit: 0, ...more};
 }
 
 /// Stroke, fill and shape by solver. `hollow`: condition for an outline. Has a legend on paper; on the page plot.js adds one.
