@@ -235,8 +235,7 @@ nlohmann::json comparison_json(const Checked&);
 /// failed. Improvements and new runs are in <system-out>. Characters that XML 1.0 or UTF-8 forbids are replaced.
 std::string junit_xml(const Checked&);
 
-/// One line of JSON: commit and date of the first run, the study's command, and what each run found and its frames
-/// cost.
+/// One line of JSON: commit and date of the first run that was made, the study's command, and values of each run.
 std::string log_line(const std::vector<RunRecord>&, const std::string& command);
 
 /// One GitHub Actions command per failure, which shows the failure at the top of the job.

@@ -223,13 +223,19 @@ std::string log_line(const std::vector<RunRecord>& runs, const std::string& comm
   // Besides values with a regression rule: what a frame costs. Times of software devices or side by side mean nothing.
   constexpr const char *kCosts[] = {"read_B_per_frame", "write_B_per_frame", "device_memory_B"},
                        *kTime = "frame_device_median_s";
-  const json& e = runs.at(0).header.environment;
-  json out = {{"commit", e.value("git_commit", "")},
-              {"created", e.value("created", "")},
+  json out = {{"commit", ""},
+              {"created", ""},
+              {"dirty", false},
               {"command", std::regex_replace(command, std::regex(" (--out|--device)[ =]\\S+| --resume"), "")},
               {"runs", json::array()}};
   for (const RunRecord& r : runs) {
     const BaselineRun part = gated_part(r);
+    // A missing run has no environment.
+    const json e = r.header.environment.is_object() ? r.header.environment : json::object();
+    if (out["commit"] == "")
+      out.update({{"commit", e.value("git_commit", "")},
+                  {"created", e.value("created", "")},
+                  {"dirty", e.value("git_dirty", false)}});
     json run = key_json(part.key), values = json::object();
     for (const auto& [name, value] : part.scalars)
       if (!is_verdict(name)) values[name] = value;
@@ -238,8 +244,8 @@ std::string log_line(const std::vector<RunRecord>& runs, const std::string& comm
       if (at != r.summary.end() && std::isfinite(at->second)) values[name] = at->second;
     };
     for (const char* name : kCosts) add(name);
-    if (!r.header.environment.value("gpu_is_software", true) && r.withheld.empty()) add(kTime);
-    run.update({{"gpu", r.header.environment.value("gpu", "")}, {"status", part.status}, {"values", values}});
+    if (!e.value("gpu_is_software", true) && r.withheld.empty()) add(kTime);
+    run.update({{"gpu", e.value("gpu", "")}, {"status", part.status}, {"values", values}});
     out["runs"].push_back(std::move(run));
   }
   return out.dump() + "\n";

@@ -159,17 +159,19 @@ TEST_F(CheckCommand, LogHasALinePerCheckThatAReportReads) {
   EXPECT_EQ(check("--log " + log.string()), 0) << text_;
   write_study({contact_run("desk"), with(contact_run("sweep"), "crossings_max", 0.25)});
   EXPECT_EQ(check("--log " + log.string()), 1) << "a landing that fails is logged too";
+  write_study({planned(contact_run("desk")), contact_run("sweep")});
+  EXPECT_EQ(check("--log " + log.string()), 1) << "a run that was not made has no environment";
   std::istringstream lines(content_of(log));
   std::vector<double> found;
   for (std::string line; std::getline(lines, line);)
     found.push_back(json::parse(line).at("runs").at(1).at("values").at("crossings_max"));
-  EXPECT_EQ(found, (std::vector<double>{0, 0.25}));
+  EXPECT_EQ(found, (std::vector<double>{0, 0.25, 0}));
   const std::string report =
       "report " + run().string() + " -o " + (dir_ / "report").string() + " --history " + log.string();
   EXPECT_EQ(command(report), 0) << text_;
   std::ofstream(log, std::ios::app) << "{}\n";
   EXPECT_EQ(command(report), 2);
-  EXPECT_NE(text_.find("log.jsonl:3: no `commit`"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("log.jsonl:4: no `commit`"), std::string::npos) << text_;
 }
 
 TEST_F(CheckCommand, HoldsARealStudyOfASolverThatTheStudyDoesNotName) {

@@ -324,22 +324,25 @@ function claims(doc) {
 
 /// A log of `clothbench check --log`: one line per landing.
 function changes(doc) {
-  const all = (doc.history ?? []).flatMap(({commit, created, command, runs}, n) => runs.map(r => ({...r, behind: [], again: `git checkout ${commit.slice(0, 8)}; ${command} --solver ${r.solver}`, file: `${r.scene}__${r.solver}__${r.setting}.h5`, at: n + 1, commit: commit.slice(0, 8), created, line: `${r.scene} ${r.setting === 'default' ? '' : r.setting}`.trim()})));
-  const commits = (doc.history ?? []).map(({commit}) => commit.slice(0, 8)), devices = unique(all.map(r => r.gpu)), of = s => all.filter(r => r.gpu === s.Device);
+  const landings = (doc.history ?? []).map((l, n) => ({...l, at: n + 1, commit: l.commit.slice(0, 8) + (l.dirty ? '*' : '')})), commits = landings.map(l => l.commit);
+  const all = landings.flatMap(({runs, command, commit, created, at}) => runs.map(r => ({
+    ...r, at, commit, created, behind: [], line: r.setting === 'default' ? r.scene : `${r.scene} ${r.setting}`, file: `${r.scene}__${r.solver}__${r.setting}.h5`,
+    again: command && `git checkout ${commit.slice(0, 8)}; ${command}`
+  })));
+  const devices = unique(all.map(r => r.gpu)).filter(Boolean), of = s => all.filter(r => r.gpu === s.Device);
   if (unique(commits).length < 2) return null;
   const first = (r, name) => all.find(q => q.gpu === r.gpu && q.solver === r.solver && q.line === r.line && name in q.values).values[name];
   return {
-    id: 'changes',
-    section: 'environment',
+    id: 'changes', section: 'environment',
     title: s => `From commit to commit: ${s.Value}`,
-    caption: 'Values of the runs that every landing checks against its baseline, divided by the value at the first commit; lines that fall improve. Values that were 0 at the first commit are left out. Times only of GPUs.',
+    caption: 'Values of the runs that every landing checks against its baseline, divided by the value at the first commit; lines that fall improve. Values that were 0 there are left out. *: with local changes. Times only of GPUs.',
     choices: [choice('Device', devices), choice('Value', s => unique(of(s).flatMap(r => Object.keys(r.values))).sort(), 'dispatches')],
     rows: s => of(s).filter(r => s.Value in r.values && first(r, s.Value) > 0).map(r => ({...r, value: r.values[s.Value], change: r.values[s.Value] / first(r, s.Value)})),
     drawn: r => r.change > 0,
     spec: (rows, s, look) => {
       const x = {field: 'at', type: 'quantitative', title: null, scale: {domain: [0.8, commits.length + 0.2]}, axis: {grid: false, values: commits.map((_, n) => n + 1), labelExpr: `${JSON.stringify(commits)}[datum.value - 1]`}};
       const y = log('change', 'relative to the first commit', rows.map(r => r.change)), solver = by_solver(rows, look);
-      return {height: look.shrink * 260, padding: {left: 2, right: 90, top: 2, bottom: 6}, layer: [...lines(rows, x, y, solver, look), symbols({x, y, ...solver})]};
+      return {height: look.shrink * 260, room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))), layer: [...lines(rows, x, y, solver, look), symbols({x, y, ...solver})]};
     },
     tip: r => [`${r.solver}, ${r.line}`, `${number(r.value)} at ${r.commit} (${r.created})`],
     columns: ['commit', 'created', 'solver', 'line', 'value', 'change']
