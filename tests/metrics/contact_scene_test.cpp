@@ -171,22 +171,32 @@ TEST(ContactScene, ACurtainHalfWayThroughAPatchCrossesIt) {
   EXPECT_PRED2(mentions, r.outcome.expect, "crossings_max 128 > 0");
 }
 
-// Two faces meet in an edge of 57 degrees. A strip slides around it, and another passes through 0.1 m behind it.
-TEST(ContactScene, AStripThatSlidesAroundASharpEdgeDoesNotCrossIt) {
-  for (const bool passes : {false, true}) {
-    const double z = passes ? -0.1 : -0.009, down = passes ? 0.2 : 0.012, forward = passes ? 0 : 0.02;
-    const Scene scene = scene_from(R"({"name":"edge","why":"A strip at a sharp edge.",
-      "cloth":{"grid":[8,2],"size_m":[0.1,0.004],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.004,0]}},
-      "material":{"membrane_stiffness_N_per_m":1000},
-      "colliders":[{"type":"mesh","positions_m":[[-1,0,0],[1,0,0],[1,0,-1],[-1,0,-1],[1,-1.54,-1],[-1,-1.54,-1]],
-                    "triangles":[[0,1,2],[0,2,3],[1,0,5],[1,5,4]]}],
-      "time":{"frame_rate_hz":20,"duration_s":0.5},"expect":{"crossings_max":{"at_most":0}}})");
-    const RunRecord r = stored_run(scene, prescribed([&](int frame, std::vector<double>& x) {
-                                     for (std::size_t k = 0; k < x.size(); k += 3)
-                                       x[k + 1] -= frame < 5 ? 0 : down, x[k + 2] += z + (frame < 5 ? 0 : forward);
-                                   }));
-    EXPECT_EQ(r.summary.at("crossings_max") > 0, passes);
-  }
+// A strip slides around a rim: an edge of 57 degrees, or a slab with a border of 4 mm. Another passes through 0.1 m
+// behind it.
+TEST(ContactScene, AStripThatSlidesAroundARimDoesNotCrossIt) {
+  struct Rim {
+    const char *positions, *triangles;
+    double down_m, forward_m;
+  };
+  for (const Rim& rim :
+       {Rim{"[[-1,0,0],[1,0,0],[1,0,-1],[-1,0,-1],[1,-1.54,-1],[-1,-1.54,-1]]", "[[0,1,2],[0,2,3],[1,0,5],[1,5,4]]",
+            0.012, 0.02},
+        Rim{"[[-1,0,0],[1,0,0],[1,0,-1],[-1,0,-1],[-1,-0.004,0],[1,-0.004,0],[1,-0.004,-1],[-1,-0.004,-1]]",
+            "[[0,1,2],[0,2,3],[0,4,5],[0,5,1],[4,6,5],[4,7,6]]", 0.02, 0.014}})
+    for (const bool passes : {false, true}) {
+      const double z = passes ? -0.1 : -0.009, down = passes ? 0.2 : rim.down_m, forward = passes ? 0 : rim.forward_m;
+      const Scene scene = scene_from(std::string(R"({"name":"rim","why":"A strip at a rim.",
+        "cloth":{"grid":[8,2],"size_m":[0.1,0.004],"areal_density_kg_per_m2":0.2,"sides":"double","pose":{"center_m":[0,0.004,0]}},
+        "material":{"membrane_stiffness_N_per_m":1000},
+        "time":{"frame_rate_hz":20,"duration_s":0.5},"expect":{"crossings_max":{"at_most":0}},
+        "colliders":[{"type":"mesh","positions_m":)") +
+                                     rim.positions + R"(,"triangles":)" + rim.triangles + "}]}");
+      const RunRecord r = stored_run(scene, prescribed([&](int frame, std::vector<double>& x) {
+                                       for (std::size_t k = 0; k < x.size(); k += 3)
+                                         x[k + 1] -= frame < 5 ? 0 : down, x[k + 2] += z + (frame < 5 ? 0 : forward);
+                                     }));
+      EXPECT_EQ(r.summary.at("crossings_max") > 0, passes) << rim.triangles;
+    }
 }
 
 TEST(ContactScene, AHandPushedThroughAStillClothCrossesIt) {

@@ -1,7 +1,7 @@
 // Passages between two stored frames: inner points of solids through the cloth, vertices through static surfaces.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <numbers>
 
 #include "base/words.hpp"
 #include "metrics/motion_check/body_state.hpp"
@@ -12,7 +12,7 @@ namespace {
 /// First and last joints of the fingers, in the order of the WebXR Hand Input module.
 constexpr std::array<std::array<std::size_t, 2>, 5> kFingers = {{{1, 4}, {5, 9}, {10, 14}, {15, 19}, {20, 24}}};
 
-constexpr double kDetour = 1.25;  // length of a path around an edge over the straight one
+constexpr double kDetour = 1.25;  // length of a path around a rim over the straight one
 
 constexpr std::size_t kHandJoints = 25;  // of the WebXR Hand Input module
 
@@ -174,28 +174,38 @@ int AllBodies::through_surface(std::size_t frame, const contact::TriangleTree& t
   const auto normal = [&](int t) {
     return V3((faces[t][1] - faces[t][0]).cross(faces[t][2] - faces[t][0]).normalized());
   };
-  // The straight path cuts a sharp edge that the vertex slid around.
-  const auto cuts_edge = [&](int a, int b, const V3& p, const V3& q) {
-    std::vector<V3> edge;
-    std::copy_if(faces[a].begin(), faces[a].end(), std::back_inserter(edge),
-                 [&](const V3& x) { return contains(faces[b], x); });
-    const auto distance = [&](const V3& x) { return std::sqrt(contact::squared_distance(x, x, edge[0], edge[1])); };
-    return edge.size() == 2 && distance(p) + distance(q) <= kDetour * (q - p).norm();
+  const auto faces_met = [&](const V3& p, const V3& q) {
+    std::vector<int> met;
+    tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
+      if (contact::crossing<3>(p, q, faces[t]) != 0) met.push_back(t);
+    });
+    return met;
+  };
+  // The straight path cuts a rim that the vertex slid around: a path with one bend, kDetour times as long, is free.
+  const auto cuts_rim = [&](const V3& p, const V3& q) {
+    const V3 along = q - p, side = along.unitOrthogonal(), other = along.normalized().cross(side);
+    constexpr int kPlaces = 8, kDirections = 16;
+    for (int i = 1; i < kPlaces; ++i)
+      for (int k = 0; k < kDirections; ++k) {
+        const double place = static_cast<double>(i) / kPlaces, angle = 2 * std::numbers::pi * k / kDirections;
+        const double off_centre = (2 * place - 1) / kDetour;  // on an ellipsoid with the foci p and q
+        const double width = along.norm() / 2 * std::sqrt((kDetour * kDetour - 1) * (1 - off_centre * off_centre));
+        const V3 bend = p + place * along + width * (std::cos(angle) * side + std::sin(angle) * other);
+        if (faces_met(p, bend).empty() && faces_met(bend, q).empty()) return true;
+      }
+    return false;
   };
   int through = 0;
   bool any = false;
   for (std::size_t v = 0; v < m.vertices; ++v) {
     const V3 p = contact::point_at(was, v), q = contact::point_at(now, v);
-    std::vector<int> met;
-    if (p != q)
-      tree.tree().for_each_overlapping(Box(p).extend(q), [&](int t) {
-        if (contact::crossing<3>(p, q, faces[t]) != 0) met.push_back(t);
-      });
+    if (p == q) continue;
+    const std::vector<int> met = faces_met(p, q);
     any = any || !met.empty();
     bool opposed = false;
     for (const int a : met)
-      for (const int b : met) opposed = opposed || (normal(a).dot(normal(b)) < -0.5 && !cuts_edge(a, b, p, q));
-    through += opposed;
+      for (const int b : met) opposed = opposed || normal(a).dot(normal(b)) < -0.5;
+    through += opposed && !cuts_rim(p, q);
   }
   if (!any) return 0;
   for (const int n : contact::proven_crossings(was, now, {positions, triangles}, tree, links)) through += n != 0;
