@@ -76,11 +76,9 @@ std::string with_assets(const std::string& kind, const Row& r) {
 }
 
 View pass_rates() {
-  View v{"contact", "Random scenes: pass rate by speed [m/s]", note("pass rates"),
+  View v{"contact", "Random scenes: pass rate", note("pass rates"),
          [](const Row& r) { return r.part == Part::Generated; }};
-  v.each = [](const Row& r) {
-    return fmt::format("Random scenes of {}: pass rate by speed [m/s]", r.drawn().value("study", "?"));
-  };
+  v.each = [](const Row& r) { return fmt::format("Random scenes of {}: pass rate", r.drawn().value("study", "?")); };
   v.keys = {{"solver",
              [](const Row& r) {
                const bool judged = r.status() != "missing" && verdict(*r.run) != kNoVerdict;
@@ -90,8 +88,9 @@ View pass_rates() {
             {"kind", [](const Row& r) {
                return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};
-  v.across = by_bands(
-      {0, 2, 5, 10}, [](const Row& r) { return r.drawn().value("speed_m_per_s", kMissing); }, pass_rate);
+  const auto speed = [](const Row& r) { return r.drawn().value("speed_m_per_s", 0.0); };
+  v.across = by_bands({0, 2, 5, 10}, speed, pass_rate, 0, " m/s");
+  v.across->key.of = [=, band = v.across->key.of](const Row& r) { return speed(r) > 0 ? band(r) : Keys(); };
   v.columns = {{kAllRuns, pass_rate},
                {"contact offset [mm]", [](const Group& g, const Keys&) { return Cell(offset_of(g)); }}};
   v.by_key = true;
