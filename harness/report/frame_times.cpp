@@ -89,11 +89,6 @@ FrameTimes times_by(Series TimedTrial::*clock, const RunRecord& c, const std::ve
 
 }  // namespace
 
-const char* const kIntervalMethod =
-    "In brackets: 95 % interval of the median, by a bootstrap over trials and blocks of at most 16 consecutive frames "
-    "(400 resamples); with one trial it covers only the variation between frames. ~: the interval is wider than 20 % "
-    "of the median, so the run is not ranked.";
-
 double FrameTimes::at(double q) const { return nearest_rank(sorted, q); }
 
 double FrameTimes::missed(double rate_hz) const {

@@ -12,6 +12,7 @@
 namespace clothbench {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kFallLimit = 0.01;  // with a larger free-fall error, a frame rate means nothing
@@ -88,7 +89,7 @@ std::string about_rates(const Group& runs) {
 
 /// Speed and error: in the scene of the paper's Table 3 if `paper`, otherwise in every other scene.
 View speed_and_error(bool paper) {
-  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", note("rates") + kIntervalMethod,
+  View v{"rates", paper ? "Table 3: speed and error" : "Frame rates", note("rates") + note("intervals"),
          [paper](const Row& r) {
            return r.part == Part::Rates && (r.paper_table == 3) == paper && (!paper || r.is_main()) &&
                   !is_floor(r.solver);
@@ -153,26 +154,47 @@ Tile::Entry share_entry(const Row& r, const std::string& label, std::size_t good
 
 std::string trials_text(std::size_t n) { return n == 1 ? "1 trial" : fmt::format("{} trials", n); }
 
+/// The run's error, otherwise the error of a run with the same settings in another scene.
+std::string error_at(const Row& of, Group rows) {
+  rows.insert(rows.begin(), &of);
+  for (const Row* r : rows)
+    for (const auto& [name, what] : {std::pair{"free_fall_error", "free-fall error"}, {"truth_error", "error"}})
+      if (r->solver == of.solver && r->run->header.settings == of.run->header.settings && std::isfinite(r->value(name)))
+        return fmt::format("{} {:.1e}{}", what, r->value(name), r == &of ? "" : " in " + r->scene);
+  return "no error measured at this setting";
+}
+
 /// Rates on the largest mesh of the paper's Table 3; without such runs, of the first family with times.
 Tile rates(const Group& rows) {
   Tile out;
+  Texts left_out;
   std::string family;
   for (const Row* r : rows)
-    if (r->part == Part::Rates && r->paper_table == 3 && std::isfinite(r->value("fps_median"))) family = r->family;
+    if (r->part == Part::Rates && std::isfinite(r->value("fps_median")) && (family.empty() || r->paper_table == 3))
+      family = r->family;
   for (const Row* r : rows) {
     if (r->part != Part::Rates || !r->largest || r->sides.starts_with("double") || !r->is_main() || r->repeat > 1 ||
-        r->status() != "ok" || !std::isfinite(r->value("fps_median")) || r->value("free_fall_error") > kFallLimit ||
-        (!family.empty() && r->family != family))
+        r->family != family || r->status() == "missing")
       continue;
-    family = r->family;
+    const std::string why = r->status() != "ok"                        ? ending(r->run->outcome)
+                            : r->value("free_fall_error") > kFallLimit ? "free-fall error above 1 %"
+                            : r->on_software                           ? "software device"
+                            : !std::isfinite(r->value("fps_median"))   ? "time withheld"
+                                                                       : "";
+    if (!why.empty()) {
+      left_out.push_back(r->label() + in_brackets(why));
+      continue;
+    }
     out.title = "Frames per second at " + r->resolution.label();
     const std::string interval = rate_interval(*r);
-    out.entries.push_back({r->solver, r->label(), rate_text(r->value("fps_median")),
-                           in_one_line({interval.empty() ? "too few frames for an interval" : interval,
-                                        trials_text(r->run->trials.size()), r->frames_mark(),
-                                        environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : ""}),
-                           r->times->wall.uncertain() ? 0 : r->value("fps_median")});
+    out.entries.push_back(
+        {r->solver, r->label(), rate_text(r->value("fps_median")),
+         in_one_line({interval.empty() ? "too few frames for an interval" : interval,
+                      trials_text(r->run->trials.size()), r->frames_mark(),
+                      environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : "", error_at(*r, rows)}),
+         r->times->wall.uncertain() ? 0 : r->value("fps_median")});
   }
+  if (!left_out.empty()) out.left_out = fmt::format("{} not ranked: {}", left_out.size(), joined(left_out));
   return out;
 }
 
@@ -182,7 +204,7 @@ Tile errors(const Group& rows) {
   std::map<std::string, std::pair<const Row*, Texts>> lost;
   for (const Row* r : rows) {
     if (r->part != Part::Truth || !r->counts() || !r->truth->refused().empty() || !r->not_ranked().empty() ||
-        r->times->wall.uncertain() || !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms))
+        r->on_software || r->times->wall.uncertain() || !(r->wall_ms_per_s() / r->frame_rate_hz() <= kBudget_ms))
       continue;
     double& least = scenes[r->scene].try_emplace(r->solver, INFINITY).first->second;
     least = std::min(least, std::max(r->truth->rank_floor(), r->error()));
@@ -253,7 +275,7 @@ std::string Tile::others() const {
 }
 
 std::vector<Tile> tiles_of(const RunTable& table) {
-  constexpr std::size_t kMostTiles = 4, kMostEntries = 5;
+  constexpr std::size_t kMostTiles = 4;
   Group rows;
   for (const Row& r : table.rows())
     if (r.published < 0 && !is_floor(r.solver) && !is_baseline(r.solver)) rows.push_back(&r);
@@ -267,15 +289,8 @@ std::vector<Tile> tiles_of(const RunTable& table) {
                  shares(of, Part::Generated, "Random scenes of " + study + " passed"));
   std::erase_if(tiles, [](const Tile& t) { return t.entries.empty(); });
   tiles.resize(std::min(tiles.size(), kMostTiles));
-  for (Tile& t : tiles) {
+  for (Tile& t : tiles)
     std::stable_sort(t.entries.begin(), t.entries.end(), [](auto& a, auto& b) { return a.merit > b.merit; });
-    std::vector<Tile::Entry> first;
-    for (Tile::Entry& e : t.entries)
-      find_or_add(
-          first, [&](auto& f) { return f.label == e.label; }, e);
-    first.resize(std::min(first.size(), kMostEntries));
-    t.entries = std::move(first);
-  }
   return tiles;
 }
 
@@ -285,6 +300,7 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
       {"git_commit", "commit"}, {"build_type", "build"}, {"created", "date"}};
   Heading h;
   std::string device;
+  bool several = false;  // devices of a kind
   for (const auto& [key, name] : kFacts) {
     std::set<std::string> values, short_names;
     for (const RunRecord& c : table.runs())
@@ -294,16 +310,22 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
       }
     if (values.empty()) continue;
     if (device.empty()) device = joined(short_names);
+    several = several || (short_names.size() > 1 && (key == kFacts[0].first || key == kFacts[2].first));
     const bool span = std::string(key) == "created" && values.size() > 1;
     h.facts.emplace_back(name, span ? *values.begin() + " to " + *values.rbegin() : joined(values));
   }
-  std::map<std::string, std::set<std::string>> trials;  // folders by number of trials
-  for (const RunRecord& c : table.runs())
+  std::map<std::string, std::set<std::string>> trials, devices;  // folders by number of trials; by device
+  for (const RunRecord& c : table.runs()) {
+    const std::string gpu = environment_text(c, "gpu"), folder = fs::path(c.file).parent_path().filename().string();
+    if (!gpu.empty()) devices[short_name(gpu == "CPU" ? environment_text(c, "cpu") : gpu)].insert(folder);
     if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
-      trials[withheld ? "withheld" : std::to_string(c.trials.size())].insert(
-          std::filesystem::path(c.file).parent_path().filename().string());
-  const auto text = [&](const auto& t) { return t.first + (trials.size() > 1 ? in_brackets(joined(t.second)) : ""); };
-  h.facts.emplace_back("trials per run", trials.empty() ? "none timed" : joined(trials, ", ", text));
+      trials[withheld ? "withheld" : std::to_string(c.trials.size())].insert(folder);
+  }
+  const auto text = [](const auto& t) { return t.first + in_brackets(joined(t.second)); };
+  h.facts.emplace_back("trials per run", trials.empty()       ? "none timed"
+                                         : trials.size() == 1 ? trials.begin()->first
+                                                              : joined(trials, ", ", text));
+  if (several) h.facts.emplace(h.facts.begin(), "measured on", joined(devices, ", ", text));
   if (studies.size() > 1) h.facts.emplace_back("studies", joined(studies));
   const Texts first(studies.begin(), studies.begin() + static_cast<std::ptrdiff_t>(std::min(studies.size(), kNamed)));
   h.title = fmt::format("Cloth solvers on {}{}{}{}", device.empty() ? "an unknown machine" : device,
@@ -318,7 +340,7 @@ std::vector<std::string> warnings_of(const RunTable& table) {
   for (const Row& r : table.rows()) {
     const RunRecord& c = *r.run;
     all.push_back(&r);
-    if (environment_text(c, "gpu") != "CPU" && flag(c, "gpu_is_software")) software.insert(environment_text(c, "gpu"));
+    if (r.on_software) software.insert(environment_text(c, "gpu"));
     for (const json& reasons : environment_of(c, "distrusted_trials")) invalid.insert(reasons);
   }
   std::vector<std::string> out;
@@ -338,7 +360,7 @@ std::vector<std::string> notes_of(const RunTable& table) {
     const auto part = [&](const char* key) { return or_dash(p.value(key, "")); };
     plugins.insert(fmt::format("{} is a plugin, version {}: {}. Library {}, SHA-256 {}.", c.header.solver,
                                or_dash(environment_text(c, "solver_version")), part("summary"),
-                               std::filesystem::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
+                               fs::path(part("path")).filename().string(), part("sha256").substr(0, 16)));
   }
   std::vector<std::string> out(plugins.begin(), plugins.end());
   if (const VerdictCounts n = count_verdicts(table.runs()); n.runs > 0)

@@ -84,8 +84,9 @@ std::string head_markdown(const Page& page) {
   out += facts_of(page.heading) + "\n\n";
   for (const std::string& n : page.notes) out += n + "\n\n";
   for (const Tile& t : page.tiles)
-    out += fmt::format("- {}, {}: **{}**{}{}{}\n", t.title, t.entries[0].label, t.entries[0].value,
-                       in_brackets(t.entries[0].about), t.entries.size() > 1 ? "; " : "", t.others());
+    out += fmt::format("- {}, {}: **{}**{}{}{}{}{}\n", t.title, t.entries[0].label, t.entries[0].value,
+                       in_brackets(t.entries[0].about), t.entries.size() > 1 ? "; " : "", t.others(),
+                       t.left_out.empty() ? "" : "; ", t.left_out);
   return out + (page.tiles.empty() ? "" : "\n");
 }
 

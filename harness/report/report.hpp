@@ -21,6 +21,7 @@ struct Tile {
   };
   std::string title;
   std::vector<Entry> entries;
+  std::string left_out = {};  ///< number and names of solvers that are not ranked, with the reasons
   /// "paper 7166 (7100–7200, 5 trials) · …": all entries except the first.
   std::string others() const;
 };

@@ -44,6 +44,7 @@ std::string read_scenario(Row& row) {
   row.scenario = scenario_of(c);
   row.part = part_of(c, row.scenario);
   row.contact = touches(row.scenario);
+  row.on_software = environment_text(c, "gpu") != "CPU" && environment_of(c, "gpu_is_software") == true;
   if (row.scenario.empty()) return row.scene;
   if (const std::string name = text_at(row.scenario, "/name"); !name.empty()) row.name = name;
   row.paper_table = row.scenario.value(json::json_pointer("/paper/table"), 0);
@@ -93,7 +94,7 @@ void compare_times(std::vector<Row>& all) {
     const Row* baseline = nullptr;
     std::vector<Row*> ranked;
     for (Row* r : rows) {
-      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty();
+      const bool good = r->status() == "ok" && !r->times->wall.sorted.empty() && !r->on_software;
       if (good && r->solver == time_baseline() && r->setting == "default" && !baseline) baseline = r;
       const std::string v = verdict(*r->run);
       if (good && !is_floor(r->solver) && v != "fail" && v != "ignored" && !r->times->wall.uncertain() &&
@@ -101,7 +102,7 @@ void compare_times(std::vector<Row>& all) {
           !(r->value("stretch_max_last_second") > kTornApart))
         ranked.push_back(r);
     }
-    for (Row* r : rows) r->baseline = baseline;
+    for (Row* r : rows) r->baseline = r->on_software ? nullptr : baseline;
     for (Row* r : ranked)
       r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
                   return other->is_main() && other->times->wall.median.high < r->times->wall.median.low;
@@ -112,12 +113,11 @@ void compare_times(std::vector<Row>& all) {
 /// Sets Row::elsewhere. A run of study `reproduction` counts once, on a GPU if there is one; its copies get no part.
 void compare_devices(std::vector<Row>& rows) {
   const auto key = [](const Row& r) { return r.run->header.scenario_json + label_of(*r.run); };
-  const auto is_software = [](const Row* r) { return environment_of(*r->run, "gpu_is_software") == true; };
   std::map<std::string, std::pair<const Row*, std::set<std::string>>> found;
   for (const Row& r : rows) {
     auto& [point, devices] = found[key(r)];
     devices.insert(environment_text(*r.run, "gpu"));
-    if (point == nullptr || (is_software(point) && !is_software(&r))) point = &r;
+    if (point == nullptr || (point->on_software && !r.on_software)) point = &r;
   }
   for (Row& r : rows) {
     const auto& [point, devices] = found.at(key(r));

@@ -111,13 +111,11 @@ struct RunTimes {
   double threads = kMissing;  ///< CPU time over wall time of a CPU solver's median frame, rounded
 };
 
-/// Intervals by kIntervalMethod with a fixed seed; none with fewer than 6 frames. Successive frames are correlated, so
-/// blocks of frames are resampled as a whole.
+/// Intervals by a bootstrap (notes.json) with a fixed seed; none with fewer than 6 frames. Successive frames are
+/// correlated, so blocks of frames are resampled as a whole.
 RunTimes times_of(const RunRecord&);
 /// Wall times of two runs in the frames that both timed; of these, only frames with contact in both, if there are any.
 std::pair<FrameTimes, FrameTimes> common_times(const RunRecord&, const RunRecord&);
-/// The method of the intervals, as a sentence for the notes of tables.
-extern const char* const kIntervalMethod;
 
 /// The section of the report to which a run belongs. None: a planned run whose scene is unknown.
 enum class Part { Rates, Contact, Generated, Claims, Truth, Stability, None };
@@ -148,12 +146,13 @@ struct Row {
   bool contact = false;  ///< the scene has colliders or hands that grip the cloth
   bool leads = false;    ///< this scene with contact is on the first screen
   Resolution resolution = {};
-  int repeat = 1;        ///< 2, 3, … if several files hold this run
-  int paper_table = 0;   ///< number of the paper's table that the scene names; 0: none
-  int published = -1;    ///< column of the paper's table; -1 for a measured run
-  bool largest = false;  ///< finest resolution of its family
-  bool scaled = false;   ///< figures may plot it over the resolutions of its family
-  int most_frames = 0;   ///< maximum number of timed frames over the runs of the scene
+  int repeat = 1;            ///< 2, 3, … if several files hold this run
+  int paper_table = 0;       ///< number of the paper's table that the scene names; 0: none
+  int published = -1;        ///< column of the paper's table; -1 for a measured run
+  bool largest = false;      ///< finest resolution of its family
+  bool scaled = false;       ///< figures may plot it over the resolutions of its family
+  bool on_software = false;  ///< on a software Vulkan device, whose times tell nothing about a GPU: never ranked
+  int most_frames = 0;       ///< maximum number of timed frames over the runs of the scene
   std::shared_ptr<TruthFacts> truth = nullptr;
   std::shared_ptr<const RunTimes> times = nullptr;  ///< never null in a RunTable
   const Row* baseline = nullptr;                    ///< run of time_baseline() in the same scene

@@ -83,7 +83,7 @@ bool add_column(ViewTable& t, const std::string& head, const std::vector<Cell>& 
 std::string note_of(const View& v, const Group& runs) {
   Texts parts = {v.note, v.more ? v.more(runs) : "", v.timed ? withheld_note(runs) : ""};
   std::erase(parts, "");
-  return joined(parts, " ");
+  return joined(parts, "\n");
 }
 
 /// Has no rows if no cell has a value and no time is withheld.
@@ -98,17 +98,16 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
     t.again.push_back(r.runs);
   }
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
+    if (v.keys[k].head.empty()) continue;
     std::vector<Cell> cells;
     for (const TableRow& r : rows) {
       cells.emplace_back(r.keys[k].text);
       if (v.keys[k].is_solver && !r.keys[k].all) cells.back().run = r.runs.front();
     }
-    const auto same = [&](const Cell& cell) { return cell.text == cells.front().text; };
-    if (k > 0 && v.keys[k].if_differs && std::all_of(cells.begin(), cells.end(), same)) continue;
     if (add_column(t, v.keys[k].head, cells, k == 0) && v.keys[k].is_solver)
       t.solver_column = static_cast<int>(t.rows[0].size()) - 1;
   }
-  t.keys = t.rows[0].size();
+  t.keys = std::max<std::size_t>(1, t.rows[0].size());
   bool any = v.columns.empty() && !v.across;
   const Texts across = v.across ? values_across(*v.across, runs) : Texts();
   for (std::size_t n = 0; n < across.size(); ++n) {
@@ -184,7 +183,8 @@ std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   }
   std::vector<ViewTable> out;
   for (const auto& [title, runs] : groups)
-    if (ViewTable t = table_of(v, title, runs); t.rows.size() > 1) out.push_back(std::move(t));
+    if (ViewTable t = table_of(v, title, runs); t.rows.size() > 1 && t.runs[0]->published < 0)
+      out.push_back(std::move(t));
   return out;
 }
 

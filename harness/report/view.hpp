@@ -35,8 +35,7 @@ Cell paired_cell(double a, double b, int digits);
 /// Passed runs with Wilson's 95 % interval: "53/58 (81–96 %)". Empty if there are no runs.
 Cell share_cell(std::size_t passed, std::size_t all);
 /// The verdict on a run, and how a run ended.
-Cell verdict_cell(const Row&);
-Cell ending_cell(const RunRecord&);
+Cell verdict_cell(const Row&), ending_cell(const RunRecord&);
 
 /// A value by which runs are grouped. `all`: it covers all values of its key, and its row is the last one.
 struct KeyValue {
@@ -49,17 +48,14 @@ using Keys = std::vector<KeyValue>;
 
 /// Groups runs into rows or columns. A run with several values (such as its own and "all") is in several groups.
 struct Key {
-  std::string head;
+  std::string head;  ///< empty: groups runs, but is no column
   std::function<Keys(const Row&)> of;
-  bool is_solver = false;   ///< the page's solver filter applies to its values
-  bool if_differs = false;  ///< omitted if all rows have the same value; the first key is never omitted
+  bool is_solver = false;  ///< the page's solver filter applies to its values
 };
 /// A key with one value per run.
 Key key(std::string head, std::function<std::string(const Row&)> of, bool is_solver = false);
 /// Keys: the scene; the solver with its setting and the number of a repeated run; the sides.
-Key scene_key();
-Key solver_key();
-Key sides_key();
+Key scene_key(), solver_key(), sides_key();
 
 struct ViewColumn {
   std::string head;
@@ -76,9 +72,7 @@ ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool i
 /// fewer frames than other runs. For the run of time_baseline(): 1.00 and the device on which it ran.
 Cell ratio_cell(const Row&, double value, const Interval&, double by, const Interval& of_by);
 /// The number of timed trials; the rank by wall time; the baseline's median frame time over the run's.
-Cell trials_cell(const Row&);
-Cell rank_cell(const Row&);
-Cell times_as_fast_cell(const Row&);
+Cell trials_cell(const Row&), rank_cell(const Row&), times_as_fast_cell(const Row&);
 
 /// Columns that depend on the runs: one per value of `key`, ascending by `order`. On the page the last `leading` of
 /// them come first, and in a narrow window the others last.
@@ -96,7 +90,7 @@ Across by_bands(const std::vector<double>& lows, std::function<double(const Row&
 
 /// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is made from one.
 struct View {
-  std::string section, title, note;
+  std::string section, title, note;  ///< the page folds all lines of the note except the first
   std::function<bool(const Row&)> where;
   std::vector<Key> keys = {};            ///< one row per combination of their values; the first columns
   std::vector<ViewColumn> columns = {};  ///< omitted if no row has a value
@@ -124,8 +118,9 @@ struct ViewTable : Table {
 };
 
 /// Adds columns about the run that `pick` returns: median wall time per frame with its interval, tails, missed
-/// deadlines, real-time factor, GPU times; also precision, device and threads if rows differ in them.
-void add_tail_columns(View&, const Pick& pick);
+/// deadlines, real-time factor, GPU times; if rows differ in them, precision, device and threads (of `about`, if
+/// given).
+void add_tail_columns(View&, const Pick& pick, const Pick& about = {});
 /// The tables of a view that have rows and values; none if no run belongs to it.
 std::vector<ViewTable> tables_of(const View&, const RunTable&);
 /// All views, in the order of report.md.
@@ -157,10 +152,6 @@ ClaimPoint claim_point(const Row&);
 View feature_view();
 
 // Parts of views(), one per source file.
-std::vector<View> overview_views();
-std::vector<View> rate_views();
-std::vector<View> contact_views();
-std::vector<View> reproduction_views();
-std::vector<View> accuracy_views();
+std::vector<View> overview_views(), rate_views(), contact_views(), reproduction_views(), accuracy_views();
 
 }  // namespace clothbench

@@ -83,6 +83,7 @@ std::string ranked_text(const Group& g) {
   }
   if (able > 0 && ranked == 0) return "NO: " + why;
   if (able == 0 || !g.front()->truth->refused().empty()) return "no";
+  if (g.front()->on_software) return "no: software device";
   if (const Row* r = representative(g); r != nullptr && r->times->wall.uncertain()) return "no: ~";
   if (ranked < able) return fmt::format("at {} of {} settings", ranked, able);
   return is_baseline(g.front()->solver) ? "baseline" : "yes";
@@ -130,8 +131,6 @@ View reference_cases() {
   return v;
 }
 
-const std::string kClasses =
-    "F0 not finite or out of all bounds, F1 energy gained, F2 strain, F3 budget, crash or device.";
 constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
 bool in_stability(const Row& r) { return r.part == Part::Stability; }
@@ -156,7 +155,7 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
 }
 
 View robustness() {
-  View v{"stability", "Robustness", note("robustness") + kClasses, in_stability};
+  View v{"stability", "Robustness", note("robustness"), in_stability};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
@@ -170,7 +169,7 @@ std::string status_of(const Row& r) {
 }
 
 View failed() {
-  View v{"failed", "Runs that failed", "In brackets: the first frame of a failure, and its class: " + kClasses,
+  View v{"failed", "Runs that failed", note("failed"),
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
   v.keys = {solver_key(), key("status", status_of),
             key("message", [](const Row& r) { return r.run->outcome.message; })};
@@ -200,8 +199,7 @@ View violated() {
     if (out.empty() && r.run->outcome.expect.starts_with("fail")) out.emplace_back(r.run->outcome.expect, true);
     return out;
   };
-  View v{"failed", "Acceptance criteria that are violated",
-         "Motion: whether forces, collisions and attachments explain the positions. Without settings sweeps.",
+  View v{"failed", "Acceptance criteria that are violated", note("violated"),
          [](const Row& r) { return r.published < 0 && r.part != Part::Stability && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), {"criterion", broken}};
   const auto is_text = [](const KeyValue& criterion) { return criterion.all || criterion.text == "motion"; };
@@ -238,21 +236,15 @@ std::string stated(const Row& r, const char* name) {
 View environment() {
   View v{"environment", "Machines of the runs", "As stated in each result file.",
          [](const Row& r) { return r.run->header.environment.is_object() && !r.run->header.environment.empty(); }};
-  for (const char* name : kStated)
-    v.keys.push_back({words(name), [=](const Row& r) { return Keys{stated(r, name)}; }, false, true});
+  v.keys = {key(
+      "", [](const Row& r) { return joined(kStated, "\n", [&](auto* name) { return or_dash(stated(r, name)); }); })};
   v.columns = {{"runs", [](const Group& g, const Keys&) {
                   std::map<std::string, int> runs;
                   for (const Row* r : g) ++runs[r->solver];
                   return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });
                 }}};
-  v.more = [](const Group& g) {
-    Texts equal;
-    for (const char* name : kStated)
-      if (const auto is = [=](const Row* r) { return stated(*r, name); };
-          std::all_of(g.begin(), g.end(), [&](auto* r) { return is(r) == is(g[0]); }))
-        if (name != kStated[0] && !is(g[0]).empty()) equal.push_back(words(name) + " " + is(g[0]));
-    return equal.empty() ? "" : "Equal in all runs: " + joined(equal, "; ") + ".";
-  };
+  for (const char* name : kStated)
+    v.columns.push_back(column(words(name), [=](const Row& r) { return stated(r, name); }));
   v.in_full = true;
   return v;
 }
@@ -317,8 +309,7 @@ int grade_of(const Row& r) {
 }
 
 View feature_view() {
-  View v{"features", "Table 4: features",
-         "As declared by the solvers. Ignored: the solver runs the scene without the feature.",
+  View v{"features", "Table 4: features", note("features"),
          [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {{"feature", [](const Row&) {
                Keys out;

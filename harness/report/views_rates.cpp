@@ -82,7 +82,7 @@ void add_conditions(View& v, const Pick& pick) {
 }
 
 View frame_times() {
-  View v{"time", "Time per frame [ms]", note("frame times") + kIntervalMethod,
+  View v{"time", "Time per frame [ms]", note("frame times") + note("intervals"),
          [](const Row& r) { return r.published < 0 && !r.drawn().contains("settings") && !r.in_sweep(); }};
   v.keys = {scene_key(), solver_key(), sides_key(), {"clock", clocks_of}};
   const auto timed = [](const Group& g, const Keys& keys) {
@@ -182,9 +182,7 @@ View sustained() {
 }
 
 View devices() {
-  View v{"rates", "Work and rate by device",
-         "Runs with the same scene and settings on several devices; row all: the sums. Work does not depend on the "
-         "device (only bytes, a little: retries of compare-and-swap differ), GPU time per dispatch and per byte does.",
+  View v{"rates", "Work and rate by device", note("devices"),
          [](const Row& r) { return r.elsewhere && std::isfinite(r.value("frame_device_median_s")); }};
   v.keys = {{"scene",
              [](const Row& r) {
@@ -211,7 +209,7 @@ View devices() {
   return v;
 }
 
-View in_short(std::function<bool(const Row&)> where) {
+View in_short(std::function<bool(const Row&)> where, const Pick& pick = first_of) {
   View v{"overview", "In short", note("in short"), std::move(where)};
   v.keys = {scene_key(), solver_key()};
   v.columns = {column("outcome",
@@ -226,10 +224,10 @@ View in_short(std::function<bool(const Row&)> where) {
                })};
   v.columns.push_back(column("p50: × " + time_baseline(), times_as_fast_cell));
   v.columns.push_back(column("rank", rank_cell));
-  v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst [ms]", &RunTimes::contact_wall, first_of));
-  v.columns.push_back(quantiles("GPU, with contact [ms]", &RunTimes::contact_device, first_of));
+  v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst [ms]", &RunTimes::contact_wall, pick));
+  v.columns.push_back(quantiles("GPU, with contact [ms]", &RunTimes::contact_device, pick));
   v.columns.push_back(column("trials", trials_cell));
-  add_tail_columns(v, first_of);
+  add_tail_columns(v, pick, first_of);
   v.timed = true;
   return v;
 }
@@ -254,18 +252,19 @@ Cell times_as_fast_cell(const Row& r) {
   return ratio_cell(r, other.at(0.5), other.median, mine.at(0.5), mine.median);
 }
 
-void add_tail_columns(View& v, const Pick& pick) {
+void add_tail_columns(View& v, const Pick& pick, const Pick& about) {
   add_time_columns(v, [pick](const Group& g, const Keys&) {
     const Row* r = pick(g);
     return Timed{r, r == nullptr ? nullptr : &r->times->wall};
   });
   v.columns.push_back(quantiles("GPU: p50 / p95 / p99 / worst [ms]", &RunTimes::device, pick));
-  add_conditions(v, pick);
+  add_conditions(v, about ? about : pick);
 }
 
 std::vector<View> rate_views() {
-  View leading = in_short(&Row::leads);
+  View leading = in_short(&Row::leads, [](const Group& g) { return g.front()->on_software ? nullptr : g.front(); });
   leading.title = "Leading scenes with contact";
+  leading.note = note("leading") + leading.note;
   return {std::move(leading), devices(), frame_times(), sustained(), memory()};
 }
 

@@ -274,9 +274,10 @@ double iterations_of(const Row& r) {
 
 /// Iterations per frame that would take the published time per particle on the run's device.
 Cell allowed_iterations(const Group& g, const Keys& keys) {
+  if (keys.front().text == kPublished) return {};
   const WorkFit fit = fit_of(samples_of(g, keys)), published = fit_of(published_samples());
   const double scale = iterations_of(*g.front()) / fit.slope_s;
-  if (keys.front().text == kPublished || !(scale > 0)) return {};
+  if (!(scale > 0)) return {};
   const auto at = [&](double errors) {
     return significant(scale * std::max(0.0, published.slope_s + errors * published.slope_error_s), 2);
   };
@@ -285,10 +286,11 @@ Cell allowed_iterations(const Group& g, const Keys& keys) {
 
 View work_model() {
   View v{"rates", "Table 3: work per frame", note("work per frame"), [](const Row& r) {
-           return r.paper_table == 3 && r.part == Part::Rates && r.published < 0 && r.status() == "ok" &&
+           return r.paper_table == 3 && r.part == Part::Rates && r.status() == "ok" &&
                   published_samples().contains({r.sides, r.resolution.grid[0]});
          }};
-  v.keys = {{"solver", [](const Row& r) { return Keys{r.label(), {kPublished, true}}; }, true}};
+  v.keys = {
+      {"solver", [](const Row& r) { return Keys{r.published < 0 ? r.label() : KeyValue(kPublished, true)}; }, true}};
   v.by_key = true;
   const auto add = [&](std::string head, std::function<Cell(const Samples&)> cell) {
     v.columns.push_back({std::move(head), [cell](const Group& g, const Keys& keys) {

@@ -43,6 +43,7 @@ for tile in doc["tiles"]:
         assert re.search(r"\d[kM]?–[\d.]+|too few frames for an interval", e["about"]) and re.search(r"\d trial|one run per scene", e["about"]), (tile["title"], e)
 for t in (t for s in doc["sections"] for t in s["tables"]):
     rows = [dict(zip(t["rows"][0], row)) for row in t["rows"][1:]]
+    assert len(re.findall(r"\.(?=\s|$)", t["note"].split("\n")[0])) <= 2, f"{t['title']}: a caption of more than two sentences"
     for row in rows if t["explains"] else []:  # a bound has its sign, and its unit is the value's
         found, expected = (table_values.text_of(row[k]) for k in ("found", "expected"))
         bound = re.fullmatch(r"at (?:least|most) -?[\d.e+-]+( \S+)?", expected)
@@ -61,7 +62,7 @@ for block in re.split(r"^### ", markdown, flags=re.M)[1:]:
 assert {*static} == {t["title"] for t in tables}, {*static} ^ {t["title"] for t in tables}
 for t in tables:
     assert [[table_values.text_of(c).strip().replace("\n", " ") for c in row] for row in t["rows"]] == static[t["title"]], t["title"]
-assert static["Table 3: speed and error"][-1][0].startswith("published")
+assert static["Table 3: speed and error"][-1][0].startswith("published") and static["Machines of the runs"][0][0] == "runs"
 
 # Tables and rows of figures equal what the run's file says.
 files = {tuple(h5py.File(path).attrs[k] for k in ("scene", "solver", "setting")): path for path in (sample / "runs").rglob("*.h5")}

@@ -7,8 +7,7 @@ import {join, resolve} from 'node:path';
 
 const report = join(process.argv[2], 'harness/report'), roles = JSON.parse(readFileSync(join(report, 'solvers.json'), 'utf8'));
 const {draw_on_paper} = (await import(resolve(process.argv[3]))).default;
-const {make_figures, settled} = await import(join(report, 'web/src/figures.js'));
-const {looks, number} = await import(join(report, 'web/src/look.js'));
+const [{make_figures, settled}, {looks, number}] = await Promise.all(['figures', 'look'].map(name => import(join(report, `web/src/${name}.js`))));
 
 // Text shows "–" for everything that is not a finite number.
 assert.deepEqual([NaN, Infinity, null, undefined, 0, 12.345, 4.5e-7].map(v => number(v)), ['–', '–', '–', '–', '0', '12.3', '4.5·10⁻⁷']);
@@ -41,6 +40,7 @@ assert.deepEqual([stable.good, stable.runs], [9, 26]);
 const kPoint = 25.4 / 72;
 for (const figure of Object.values(figures))
   for (const width of [238, 493]) {
+    assert.ok(figure.caption.split('\n')[0].match(/[.](\s|$)/g).length <= 2, `${figure.id}: a caption of more than two sentences`);
     const svg = await draw_on_paper(figure, settled(figure, {}), looks(solvers, roles), width);
     const [, wide, tall] = svg.match(/width="([\d.]+)pt" height="([\d.]+)pt"/).map(Number), scale = wide / svg.match(/viewBox="0 0 ([\d.]+)/)[1], sizes = [...svg.matchAll(/font-size="([\d.]+)px"/g)].map(m => scale * m[1]);
     assert.ok([84, 174].includes(Math.round(wide * kPoint)) && tall * kPoint < 110.5, `${figure.id}: ${wide * kPoint} x ${tall * kPoint} mm`);

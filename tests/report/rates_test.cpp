@@ -222,8 +222,13 @@ TEST(Overview, ScenesWithContactLeadAReportThatHasThem) {
     runs.back().header.scenario_json = R"({"colliders":[{"type":"sphere"}],"time":{"frame_rate_hz":100}})";
     runs.back().accuracy.metrics = {{"depth_m", "m", "", std::vector<double>(73, 1e-3)}};
   }
+  runs.push_back(runs.back());
+  runs.back().header.solver = "soft";
+  runs.back().header.environment.update({{"gpu", "llvmpipe"}, {"gpu_is_software", true}});
   const Table t = table_of(runs, "Leading scenes with contact");
-  ASSERT_EQ(t.rows.size(), 3u);
+  ASSERT_EQ(t.rows.size(), 4u);
+  for (const char* head : {"rank", "frame p50 [ms]", "with contact: p50 / p95 / p99 / worst [ms]"})
+    EXPECT_EQ(entry(t, "hand-push", "soft", head), "–") << "a software device: " << head;
   EXPECT_EQ(t.rows[1][0] + ", " + t.rows[2][0], "desk-1, hand-push") << "one of a kind";
   EXPECT_EQ(entry(t, "hand-push", "xpbd", "real-time factor"), "10.0");
   EXPECT_EQ(entry(t, "hand-push", "xpbd", "with contact: p50 / p95 / p99 / worst [ms]").substr(0, 4), "1.00");
@@ -258,9 +263,7 @@ TEST(Tables, TimesNotTakenAloneAreWithheldEverywhereAndTheTableSaysWhy) {
 
 TEST(Tables, EveryLineFitsTheTerminal) {
   std::vector<RunRecord> runs;
-  for (const int n : {8, 128}) {
-    runs.push_back(fake_run("paper", n, "double-duplicated", 1 / 12345.0));
-  }
+  for (const int n : {8, 128}) runs.push_back(fake_run("paper", n, "double-duplicated", 1 / 12345.0));
   EXPECT_EQ(console_columns(), 80u) << "not a terminal";
   for (const char* columns : {"60", "80", "200"}) {
     setenv("COLUMNS", columns, 1);

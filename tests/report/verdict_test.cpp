@@ -33,24 +33,15 @@ RunRecord without_contact() {
   return c;
 }
 
-std::vector<RunRecord> mixed() {
+TEST(Verdict, CountsWhatTheTableSays) {
   RunRecord unsupported = with_outcome(judged("c", true), "unsupported", -1, "no sphere"),
             crashed = with_outcome(judged("d", true), "crashed", 4, "its process");
   RunRecord unknown = judged("e", true);
   unknown.summary["expect.depth_max_m"] = kMissing;
   unknown.outcome.expect = "not measured";
-  return {judged("a", true), judged("b", false), unsupported, crashed, unknown, without_contact()};
-}
-
-TEST(Verdict, CountsWhatTheTableSays) {
-  const VerdictCounts n = count_verdicts(mixed());
-  EXPECT_EQ(n.runs, 6u);
-  EXPECT_EQ(n.passed, 1u);
-  EXPECT_EQ(n.failed(), 2u);
-  EXPECT_EQ(n.ignored, 1u);
-  EXPECT_EQ(n.unsupported, 1u);
-  EXPECT_EQ(n.not_measured, 1u);
-  EXPECT_EQ(n.text(), "1 of 6 runs passed, 2 failed, 1 ignored contact, 1 unsupported, 1 not measured");
+  const VerdictCounts all =
+      count_verdicts({judged("a", true), judged("b", false), unsupported, crashed, unknown, without_contact()});
+  EXPECT_EQ(all.text(), "1 of 6 runs passed, 2 failed, 1 ignored contact, 1 unsupported, 1 not measured");
 }
 
 TEST(Verdict, ASolverWithoutContactPassesNothingAnywhere) {
@@ -148,7 +139,8 @@ TEST(Overview, TilesAreOfTheRunsPresent) {
   ASSERT_EQ(tiles.size(), 1u) << "rates only";
   EXPECT_EQ(tiles[0].title + ", " + tiles[0].entries[0].label, "Frames per second at 128², bullet-soft");
   EXPECT_EQ(tiles[0].entries[0].value, "1000");
-  EXPECT_EQ(tiles[0].others(), "xpbd 50.0 (too few frames for an interval, 0 trials)") << "without the harness's cost";
+  EXPECT_EQ(tiles[0].others(), "xpbd 50.0 (too few frames for an interval, 0 trials, free-fall error 1.2e-06)")
+      << "without the harness's cost";
   EXPECT_EQ(heading_of(RunTable(study()), {"table3"}).title, "Cloth solvers on Fake GPU: table3");
   EXPECT_EQ(heading_of(RunTable(study()), {"a", "b", "c", "d"}).title,
             "Cloth solvers on Fake GPU: 4 studies: a, b, c …");
@@ -156,6 +148,18 @@ TEST(Overview, TilesAreOfTheRunsPresent) {
   runs.push_back(fake_run("xpbd", 128, "single", 1e-5));
   runs.back().header.setting = "quality=fast";
   EXPECT_EQ(tiles_of(RunTable(runs))[0].entries[0].value, "1000") << "default settings only";
+  for (const auto& [solver, error] : {std::pair{"software", 1e-6}, {"wrong", 0.74}, {"other", kMissing}})
+    for (const char* setting : {"default", "substeps=1"}) {
+      runs.push_back(fake_run(solver, 128, "single", 1e-5));
+      runs.back().header.environment["gpu_is_software"] = std::string(solver) == "software";
+      runs.back().header.settings["substeps"] = runs.back().header.setting = setting;
+      runs.back().summary["free_fall_error"] = setting[0] == 's' ? 1e-5 : error;
+    }
+  const auto tile = [&] { return tiles_of(RunTable(runs))[0]; };
+  EXPECT_EQ(tile().left_out, "2 not ranked: software (software device), wrong (free-fall error above 1 %)");
+  EXPECT_TRUE(tile().entries[0].about.ends_with(", no error measured at this setting"));
+  runs.back().header.settings["substeps"] = "default";
+  EXPECT_TRUE(tile().entries[0].about.ends_with(", free-fall error 1.0e-05 in gravity-128-single"));
   EXPECT_TRUE(tiles_of(RunTable({})).empty());
 }
 
@@ -173,10 +177,12 @@ TEST(Heading, FactsOfAllRunsAndASoftwareDeviceFirst) {
   EXPECT_EQ(warnings_of(RunTable(runs)).at(0),
             "Software Vulkan device (Fake GPU): its results are valid, but its times tell nothing about a GPU.");
   runs[1].header.environment["gpu"] = "Other GPU";
+  runs[1].file = "a/run.h5";
   runs[1].header.environment["git_dirty"] = true;
   runs[1].header.environment["created"] = "2026-01-02T00:05:00Z";
   EXPECT_NE(facts().find("GPU Fake GPU (software), Other GPU (software)"), std::string::npos) << facts();
   EXPECT_NE(facts().find("(with local changes)"), std::string::npos);
+  EXPECT_TRUE(facts().starts_with("measured on Fake CPU, Fake GPU, Other GPU (a) · ")) << facts();
   EXPECT_NE(facts().find("2026-01-01 to 2026-01-02"), std::string::npos);
   for (RunRecord& c : runs) c.header.environment = {{"gpu", nullptr}, {"git_dirty", "?"}};
   EXPECT_EQ(facts(), "trials per run none timed");

@@ -213,9 +213,10 @@ std::string head_html(const Page& page) {
   out += "<div class=\"tiles\">";
   for (const Tile& t : page.tiles)
     out += fmt::format(
-        "<div class=\"tile\"><p>{}</p><p class=\"v\">{} <small>{}</small></p><p class=\"more\">{}</p></div>",
+        "<div class=\"tile\"><p>{}</p><p class=\"v\">{} <small>{}</small></p><p class=\"more\">{}</p>{}</div>",
         escaped(t.title + ", " + t.entries[0].label), escaped(t.entries[0].value), escaped(t.entries[0].about),
-        escaped(t.others()));
+        escaped(t.others()),
+        t.left_out.empty() ? "" : "<p><a href=\"#first-table\">" + escaped(t.left_out) + "</a></p>");
   out +=
       "</div><h2 class=\"skip\">Error and speed</h2><div class=\"pair\"><div "
       "id=\"hero\"><!--clothbench:figure--></div><div id=\"first-table\">";

@@ -18,6 +18,9 @@ export function select(label, options, value, changed) {
   return element('label', {}, label, list);
 }
 
+/// A caption, and folded below it its details: all lines of the text except the first.
+export const captioned = (tag, attributes, [caption, ...more]) => element(tag, attributes, caption, more.length ? element('details', {}, element('summary', {}, 'Note'), more.join(' ')) : null);
+
 /// Decodes the text of an element (base64 of zlib) into a buffer.
 export function unpacked(id) {
   const packed = Uint8Array.from(atob(document.getElementById(id).textContent), c => c.charCodeAt(0));

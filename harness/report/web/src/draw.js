@@ -29,28 +29,33 @@ function config({font, paper}, width) {
   };
 }
 
-const kLine = 14, kGap = 9;  // pixels: between the middles of two names; between a name and its mark
-/// Transform of the layer "names": moves each name to where it covers no other name, few marks, and is near the end of its line.
+const kLine = 14, kGap = 9, kCover = 11, kFar = 60;  // pixels: between the middles of two names; between a name and its mark, beside, above, and at most
+/// Transform of the layer "names": moves each name to where it covers no other name, no mark, little of a line, and is near its
+/// place. A name that would cover a mark, or stand far off beside another line, is left out: the legend names all solvers.
 transforms.names = class extends Transform {
   transform(_, pulse) {
     if (!_.modified() && !pulse.changed(pulse.ADD_REM)) return pulse.StopPropagation;
-    const {size: [right, bottom]} = _, items = pulse.materialize(pulse.SOURCE).source, points = items.filter(i => !i.datum.name).map(i => [i.x, i.y]), taken = [];
+    const {size: [right, bottom]} = _, items = pulse.materialize(pulse.SOURCE).source, taken = [];
+    const [marks, line] = [true, undefined].map(is => items.filter(i => !i.datum.name && i.datum.mark === is).map(i => [i.x, i.y]));
     for (const item of items.filter(i => i.datum.name).sort((a, b) => a.y - b.y)) {
-      const {x, y} = item, width = textMetrics.width(item, item.text), covers = (list, left, top, h) => {
+      const {x} = item, y = item.y + (item.datum.dy ?? 0), width = textMetrics.width(item, item.text), covers = (list, left, top, h) => {
         let n = 0;
-        for (const [a, b, wide = 0] of list) n += a < left + width + 4 && a + wide + 4 > left && Math.abs(b - top) < h;
+        for (const [a, b, wide = 0] of list) n += a < left + width + 6 && a + wide + 6 > left && Math.abs(b - top) < h;
         return n;
       };
       let least = Infinity, best = null;
-      for (const [k, left] of [x + kGap, x - width / 2, x - width - kGap].map(l => Math.max(0, Math.min(l, right - width))).entries())
+      for (const [k, wanted] of [x + kGap, x - width - kGap, x - width / 2].entries()) {
+        const left = Math.max(0, Math.min(wanted, right - width));
         for (let top = 4; top <= bottom - 4; top += 4) {
-          const far = Math.abs(top - y) + 6 * k, cost = far < least ? far + 1e4 * covers(taken, left, top, kLine) + 12 * covers(points, left, top, 9) : far;
-          if (cost < least) [least, best] = [cost, [left, top, width]];
+          const far = Math.abs(top - y) + 6 * k + Math.abs(left - wanted) / 3, cost = far < least ? far + 1e4 * covers(taken, left, top, kLine) + 80 * covers(marks, left, top, kCover) + 12 * covers(line, left, top, 9) : far;
+          if (cost < least) [least, best] = [cost, [left, top, width, far]];
         }
-      taken.push(best);
-      Object.assign(item, {x: best[0], y: best[1], align: 'left', baseline: 'middle'});
+      }
+      const lost = covers(marks, best[0], best[1], kCover) || (best[3] > kFar && best[0] < x);
+      if (!lost) taken.push(best);
+      Object.assign(item, {text: lost ? '' : item.text, x: best[0], y: best[1], align: 'left', baseline: 'middle'});
     }
-    return pulse.reflow(true).modifies(['x', 'y', 'align', 'baseline']);
+    return pulse.reflow(true).modifies(['x', 'y', 'text', 'align', 'baseline']);
   }
 };
 transforms.names.Definition = {type: 'names', metadata: {modifies: true}, params: [{name: 'size', type: 'number', array: true, length: 2}]};

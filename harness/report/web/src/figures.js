@@ -23,8 +23,6 @@ const without_floor = (doc, rows) =>
 /// True if the row is on its solver's Pareto front of fields a and b, where smaller is better.
 const on_front = (p, rows, a, b) => !rows.some(q => q.solver === p.solver && q[a] <= p[a] && q[b] <= p[b] && (q[a] < p[a] || q[b] < p[b]));
 
-// Error against run time -----------------------------------------------------
-
 const good = r => r.status === 'ok' && r.error > 0 && r.wall_ms_per_s > 0;
 
 function error_rules(runs) {
@@ -43,8 +41,8 @@ function error_time(doc) {
     id: 'error-time', section: 'accuracy', hero: true,
     title: s => `Error against run time: ${s.Scene}`,
     caption:
-        'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver. Errors in the shaded ' +
-        'area are not distinguished. Crosses on the upper edge: runs that failed.',
+        'Lower left is better. One mark per setting; the filled marks on a line are the best settings of a solver.\nErrors in the shaded area ' +
+        'are not distinguished. Crosses on the upper edge: runs that failed.',
     choices: [choice('Scene', scenes, first, v => of(v)[0].refused ? `${v} (refused)` : v)],
     rows: s => {
       const fine = of(s.Scene).filter(good);
@@ -59,10 +57,11 @@ function error_time(doc) {
       const fine = rows.filter(good), best = fine.filter(r => r.best), floors = error_rules(of(s.Scene)), solver = by_solver(rows, look, '!datum.best');
       const x = log('wall_ms_per_s', 'wall time [ms per simulated second]', [1000, ...rows.map(r => r.wall_ms_per_s)]);
       const y = log('error', `error: ${rows[0].ranking}`, [...floors.map(f => f.at), ...fine.map(r => r.error)], {titleLimit: look.width - 10});
+      const [[, last], [, top]] = [x, y].map(axis => axis.scale.domain), crosses = rows.filter(r => !good(r)).map(r => ({wall_ms_per_s: r.wall_ms_per_s || last, error: top}));
       return {
         height: look.shrink * Math.max(260, Math.min(400, 0.62 * look.width)),
         layer: [
-          ...rules(floors, 'y', y), ...rules([{at: 1000, text: 'real time'}], 'x', x), ...lines(best, x, y, solver, look, fine),
+          ...lines(best, x, y, solver, look, {x: [{at: 1000, text: 'real time'}], y: floors}, [...fine, ...crosses]),
           {...symbols({x, y, ...solver}), transform: [{filter: "datum.status === 'ok'"}]},
           {...symbols({x: {value: {expr: "datum.wall_ms_per_s > 0 ? scale('x', datum.wall_ms_per_s) : width"}}, y: {value: 0}, stroke: solver.stroke, shape: {value: kSymbols.x}}), transform: [{filter: "datum.status !== 'ok'"}]}
         ]
@@ -73,8 +72,6 @@ function error_time(doc) {
     stills: scenes.map(v => ({file: `work-precision-${v}`, state: {Scene: v}}))
   };
 }
-
-// Frame rates ----------------------------------------------------------------
 
 const kRates = {
   fps: {text: 'Frame rate', paper: 'Fig. 4: ', unit: 'frames per second', of: r => r.fps_median, still: 'fig4', is_rate: true},
@@ -95,7 +92,7 @@ function rates(doc) {
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
-        'above 1 %, so the rate has no meaning. Slow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
+        'above 1 %, so the rate has no meaning.\nSlow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
         'per second of wall time; unknown for CPU solvers. Figure numbers are the article\'s.',
     remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
     choices: [
@@ -114,7 +111,7 @@ function rates(doc) {
         height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
         room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))),
         layer: [
-          ...rules(is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : [], 'y', y), ...lines(rows, x, y, solver, look),
+          ...lines(rows, x, y, solver, look, {y: is_rate && Math.min(...values) < 72 && Math.max(...values) > 72 ? [{at: 72, text: '72 Hz'}] : []}),
           ...(is_rate ? [interval('fps_low', 'fps_high', {x, y: {...y, field: 'fps_low'}, y2: {field: 'fps_high'}, stroke: solver.stroke})] : []), symbols({x, y, ...solver})
         ]
       };
@@ -130,8 +127,6 @@ function rates(doc) {
     ]
   };
 }
-
-// Frame times ----------------------------------------------------------------
 
 const kClocks = {contact_gpu_time: 'GPU time, frames with contact', contact_wall: 'wall time, frames with contact', gpu_time: 'GPU time, all frames', wall: 'wall time, all frames'};
 
@@ -161,7 +156,7 @@ function frame_times(doc) {
       return {
         height: look.shrink * scenes.length * Math.max(22, 13 * present.length + 6),
         layer: [
-          ...rules(lines.filter(l => l.at > x.scale.domain[0] && l.at < x.scale.domain[1]), 'x', x, {y: -6}),
+          ...rules(lines.filter(l => l.at > x.scale.domain[0] && l.at < x.scale.domain[1]), 'x', x, k => ({y: -6, align: k ? 'right' : 'left', dx: k ? -4 : 4})),
           to('p95', {strokeWidth: 7, opacity: 0.35}), to('p99'), symbols({...shared, ...solver})
         ]
       };
@@ -172,8 +167,6 @@ function frame_times(doc) {
     columns: ['scene', 'label', 'p50_s', 'low_s', 'high_s', 'p95_s', 'p99_s', 'worst_s', 'trials']
   };
 }
-
-// Contact and stability ------------------------------------------------------
 
 /// By verdict: tone, path of the sign, and text of the legend.
 const kVerdicts = {
@@ -194,7 +187,7 @@ function verdicts(doc) {
   return all.length && {
     id: 'verdicts', section: 'contact', hero: true, legend: false,
     title: () => 'Verdicts by scene and solver',
-    caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run. Select a cell for the criteria that a run violates.',
+    caption: 'Passed: the run meets every acceptance criterion of its scene. Empty: not run.\nSelect a cell for the criteria that a run violates.',
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
     spec: (rows, s, look) => {
       const [solvers, scenes] = ['label', 'scene'].map(field => band(field, unique(rows.map(r => r[field])), look)), {width} = look;
@@ -288,8 +281,6 @@ const stability = doc => shares(doc.runs.filter(r => !r.repeated && (r.grade >= 
   caption: 'Fraction of the runs of a case without any failure class, with the 95 % interval (Wilson). Unsupported scenes count as not stable.'
 });
 
-// What the article leaves open ------------------------------------------------
-
 const kClaims = [['holds', 'good', 'circle'], ['near', 'soft', 'circle'], ['fails', 'bad', 'x']];
 
 function claims(doc) {
@@ -298,7 +289,7 @@ function claims(doc) {
     id: 'claims-map', section: 'contact', hero: true, legend: false,
     title: () => 'Where each claim of the article holds',
     caption: 'One mark per point of the box, by iterations (across) and substeps (up) of a frame. The other settings that the article leaves ' +
-        'open vary too, so marks of both kinds lie near each other. Near: all criteria of the claim except one are met.',
+        'open vary too, so marks of both kinds lie near each other.\nNear: all criteria of the claim except one are met.',
     rows: () => all,
     spec: (rows, s, look) => {
       const channel = of => ({field: 'claim', type: 'nominal', scale: {domain: kClaims.map(c => c[0]), range: kClaims.map(of)}, legend: legend(['holds', 'near', 'fails'], look)});
@@ -320,8 +311,6 @@ function claims(doc) {
   };
 }
 
-// Changes from commit to commit ----------------------------------------------
-
 /// A log of `clothbench check --log`: one line per landing.
 function changes(doc) {
   const landings = (doc.history ?? []).map((l, n) => ({...l, at: n + 1, commit: l.commit.slice(0, 8) + (l.dirty ? '*' : '')})), commits = landings.map(l => l.commit);
@@ -335,14 +324,14 @@ function changes(doc) {
   return {
     id: 'changes', section: 'environment',
     title: s => `From commit to commit: ${s.Value}`,
-    caption: 'Values of the runs that every landing checks against its baseline, divided by the value at the first commit; lines that fall improve. Values that were 0 there are left out. *: with local changes. Times only of GPUs.',
+    caption: 'Values of the runs that every landing checks against its baseline, divided by the value at the first commit. Lines that fall improve.\nValues that were 0 there are left out. *: with local changes. Times only of GPUs.',
     choices: [choice('Device', devices), choice('Value', s => unique(of(s).flatMap(r => Object.keys(r.values))).sort(), 'dispatches')],
     rows: s => of(s).filter(r => s.Value in r.values && first(r, s.Value) > 0).map(r => ({...r, value: r.values[s.Value], change: r.values[s.Value] / first(r, s.Value)})),
     drawn: r => r.change > 0,
     spec: (rows, s, look) => {
       const x = {field: 'at', type: 'quantitative', title: null, scale: {domain: [0.8, commits.length + 0.2]}, axis: {grid: false, values: commits.map((_, n) => n + 1), labelExpr: `${JSON.stringify(commits)}[datum.value - 1]`}};
       const y = log('change', 'relative to the first commit', rows.map(r => r.change)), solver = by_solver(rows, look);
-      return {height: look.shrink * 260, room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))), layer: [...lines(rows, x, y, solver, look), symbols({x, y, ...solver})]};
+      return {height: look.shrink * 260, room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))), layer: [...lines(rows, x, y, solver, look, {}), symbols({x, y, ...solver})]};
     },
     tip: r => [`${r.solver}, ${r.line}`, `${number(r.value)} at ${r.commit} (${r.created})`],
     columns: ['commit', 'created', 'solver', 'line', 'value', 'change']

@@ -61,8 +61,7 @@ function sections(doc, look, motions) {
     links.push(['motions', 'Motions']);
     start_motions(doc, motions);
   }
-  links.push(['method', 'Method']);
-  $('contents').append(element('ol', {}, links.map(([id, title]) => element('li', {}, element('a', {href: `#${id}`}, title)))));
+  $('contents').append(element('ol', {}, [...links, ['method', 'Method']].map(([id, title]) => element('li', {}, element('a', {href: `#${id}`}, title)))));
 }
 
 /// The viewer is a separate script, which starts when its section comes near the window.

@@ -76,8 +76,7 @@ export function strain(edges, position, out) {
   out.fill(0);
   for (const [a, b, rest] of edges) {
     const e = Math.abs(distance(position, a, b) / rest - 1);
-    out[a] = Math.max(out[a], e);
-    out[b] = Math.max(out[b], e);
+    for (const v of [a, b]) out[v] = Math.max(out[v], e);
   }
   return out;
 }

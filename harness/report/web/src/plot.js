@@ -1,6 +1,6 @@
 // A figure on the page: values on hover and by keyboard, controls, a table of its values. It is drawn when it comes near the
 // window.
-import {button, element, say, select} from './dom.js';
+import {button, captioned, element, say, select} from './dom.js';
 import {view_of} from './draw.js';
 import {command_of, files_of, settled} from './figures.js';
 import {unique} from './look.js';
@@ -40,7 +40,7 @@ class Figure {
     this.details = element('details', {ontoggle: () => this.show_values()}, element('summary', {}, 'Values'), this.values);
     this.again = element('span', {});
     this.block = element('figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot, this.legend,
-                         element('figcaption', {}, entry.caption), this.remark, element('div', {class: 'bar small'}, this.details));
+                         captioned('figcaption', {}, entry.caption.split('\n')), this.remark, element('div', {class: 'bar small'}, this.details));
     this.listen();
     figures.push(this);
   }
@@ -48,8 +48,7 @@ class Figure {
   listen() {
     const mark_of = e => Number(e.target.dataset.i ?? -1), leave = () => pinned || this.point(-1);
     this.plot.addEventListener('pointermove', e => pinned || this.point(mark_of(e), e.clientX, e.clientY));
-    this.plot.addEventListener('pointerleave', leave);
-    this.plot.addEventListener('blur', leave);
+    for (const event of ['pointerleave', 'blur']) this.plot.addEventListener(event, leave);
     this.plot.addEventListener('click', e => {
       unpin();
       this.point(mark_of(e), e.clientX, e.clientY, true);
@@ -77,8 +76,7 @@ class Figure {
       for (const e of this.elements(at)) e.classList.add('on');
     }
     this.at = at;
-    const row = this.marks[at];
-    const runs = row && runs_of(row);
+    const row = this.marks[at], runs = row && runs_of(row);
     this.command = row && command_of(this.doc, runs);
     pinned = pin && row ? this : null;
     const copy = this.command && button('Copy the command', null, () => copy_command(this.command));

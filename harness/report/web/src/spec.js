@@ -39,29 +39,33 @@ export function by_solver(rows, look, hollow = 'false') {
 export const symbols = encoding => ({mark: 'point', encoding});
 export const interval = (low, high, {mark, ...encoding}) => ({transform: [{filter: `datum.${high} > datum.${low}`}], mark: {type: 'rule', ...mark}, encoding});
 
-/// Dashed lines at values of an axis, with their names; a zone also shades the figure below its line.
-export const rules = (list, channel, axis, more) => list.flatMap(({at, text, zone}, k) => {
-  const data = {values: [{}]}, encoding = {[channel]: {...axis, field: undefined, datum: at}}, before = `${k} || scale('x', ${at}) > width - ${7 * text.length}`;
-  const place = channel === 'y' ? {x: 6, align: 'left', dy: zone ? 10 : -8} : {y: 6, align: {expr: `${before} ? 'right' : 'left'`}, dx: {expr: `${before} ? -4 : 4`}, ...more};
+/// Dashed lines at values of an axis; a zone also shades the figure below its line. `name(k)`: the place of a line's name.
+export const rules = (list, channel, axis, name) => list.flatMap(({at, text, zone}, k) => {
+  const data = {values: [{}]}, encoding = {[channel]: {...axis, field: undefined, datum: at}};
   return [
     ...(zone ? [{data, mark: {type: 'rect', fill: 'var(--soft)', fillOpacity: 0.1}, encoding: {...encoding, y2: {value: 'height'}}}] : []),
     {data, mark: {type: 'rule', stroke: 'var(--soft)', strokeWidth: 1, strokeDash: [4, 3]}, encoding},
-    {data, mark: {type: 'text', text, ...place}, encoding}
+    ...(name ? [{data, mark: {type: 'text', text, ...name(k)}, encoding}] : [])
   ];
 });
 
-/// Lines through the rows with the same `line`, and their names, which draw.js places so that they cover few marks.
-export function lines(rows, x, y, {stroke, fill: {condition, ...fill}}, look, all = rows) {
+/// Lines through the rows with the same `line`, rules of both axes, and the names of all, which draw.js places so that they cover
+/// none of the marks of `all` rows.
+export function lines(rows, x, y, {stroke, fill: {condition, ...fill}}, look, {x: across = [], y: along = []}, all = rows) {
   const names = unique(rows.map(r => r.line)), of = name => rows.filter(r => r.line === name).sort((a, b) => a[x.field] - b[x.field]);
   const solver = name => rows.find(r => r.line === name).solver, dash = name => names.filter(n => solver(n) === solver(name)).indexOf(name);
   const range = names.map(n => kDashes[dash(n) % kDashes.length]);
   const between = (a, b, n) => (a ** (1 - n)) * (b ** n), steps = Array.from({length: 6}, (_, n) => n / 6);
   const taken = names.flatMap(n => of(n).slice(1).flatMap((b, k) => steps.map(s => [between(of(n)[k][x.field], b[x.field], s), between(of(n)[k][y.field], b[y.field], s)])));
-  const place = (name, [a, b]) => ({name, solver: name && solver(name), [x.field]: a, [y.field]: b});
-  const values = [...names.map(n => place(n, [of(n).at(-1)[x.field], of(n).at(-1)[y.field]])), ...[...all.map(r => [r[x.field], r[y.field]]), ...taken].map(p => place('', p))];
+  const place = (a, b, more) => ({name: '', solver: '', [x.field]: a, [y.field]: b, ...more}), ruled = (a, b, {text, zone}, dy) => place(a, b, {name: text, dy: zone ? -dy : dy});
+  const values = [
+    ...names.map(n => place(of(n).at(-1)[x.field], of(n).at(-1)[y.field], {name: n, solver: solver(n)})), ...all.map(r => place(r[x.field], r[y.field], {mark: true})), ...taken.map(p => place(...p)),
+    ...along.map(r => ruled(x.scale.domain[0], r.at, r, -9)), ...across.map(r => ruled(r.at, y.scale.domain[1], r, 6))
+  ];
   return [
+    ...rules(along, 'y', y), ...rules(across, 'x', x),
     {data: {values: rows}, mark: 'line', encoding: {x, y, stroke, detail: {field: 'line'}, ...(names.some(dash) && {strokeDash: {field: 'line', type: 'nominal', scale: {domain: names, range}, legend: null}})}},
-    {name: 'names', data: {values}, mark: {type: 'text', fontWeight: 'bold', fontSize: 12}, encoding: {x, y, text: {field: 'name'}, fill}}
+    {name: 'names', data: {values}, mark: {type: 'text', fontWeight: {expr: "datum.solver ? 'bold' : 'normal'"}, fontSize: 12}, encoding: {x, y, text: {field: 'name'}, fill: {...fill, condition: {test: '!datum.solver', value: 'var(--soft)'}}}}
   ];
 }
 

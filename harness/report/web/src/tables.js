@@ -1,5 +1,5 @@
 // Tables: sortable by a click on a head, filtered by solver and words, with an anchor and a command per row.
-import {button, element, file_name, say} from './dom.js';
+import {button, captioned, element, file_name, say} from './dom.js';
 import {command_of, files_of} from './figures.js';
 import {icon, unique} from './look.js';
 import {hide_solvers, set_value, shown, state} from './state.js';
@@ -53,7 +53,7 @@ export class ShownTable {
     this.block = element(
         'div', {class: 'table', id, style: `contain-intrinsic-size: auto ${Math.min(this.body.length, kFew) * 27 + 110}px`},
         block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, this.rest,
-        table.note ? element('p', {class: 'note'}, table.note.replaceAll('`', '')) : null);
+        table.note ? captioned('div', {class: 'note'}, table.note.replaceAll('`', '').split('\n')) : null);
   }
 
   sorted() {

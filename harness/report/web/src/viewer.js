@@ -118,8 +118,7 @@ class Viewer {
   }
 
   colour(kind) {
-    this.colouring = kind;
-    this.stale = true;
+    Object.assign(this, {colouring: kind, stale: true});
     this.legend.replaceChildren();
     if (kind === 'checks') return;
     // The smallest ramp end that is at least half of the 90th percentile of the frames' maximum strains.
@@ -165,8 +164,7 @@ class Viewer {
       p.readout.textContent = this.readout(p, shown);
       if (!this.renderer) return this.draw_svg(p, width, height);
       const x = (k % this.columns) * width, y = this.stage.clientHeight - (Math.floor(k / this.columns) + 1) * height;
-      this.renderer.setViewport(x, y, width, height);
-      this.renderer.setScissor(x, y, width, height);
+      for (const set of ['setViewport', 'setScissor']) this.renderer[set](x, y, width, height);
       this.renderer.render(p.scene, this.camera);
     });
   }
