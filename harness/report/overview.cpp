@@ -231,7 +231,9 @@ Tile shares(const Group& rows, Part part, std::string title) {
   std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of the runs that are not good
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
-    if (r->part != part || !r->is_main() || r->repeat > 1 || r->status() == "missing" || !judged) continue;
+    // The resolutions of a sweep are one scene, whose short runs can fail but not pass.
+    const bool swept = part == Part::Contact && r->scaled;
+    if (r->part != part || !r->is_main() || r->repeat > 1 || swept || r->status() == "missing" || !judged) continue;
     auto& [runs, bad] = solvers[r->label()];
     runs.push_back(r);
     if (!(stability ? grade_of(*r) == 0 : verdict(*r->run) == "pass")) bad.push_back(r->scene);

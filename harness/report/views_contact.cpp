@@ -37,7 +37,7 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
 
 View verdicts() {
   View v{"contact", "Verdict on the acceptance criteria of each scene", note("verdicts"),
-         [](const Row& r) { return in_contact(r) && r.repeat == 1; }};
+         [](const Row& r) { return in_contact(r) && r.repeat == 1 && !r.scaled; }};
   v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
   v.across = {solver_key(), [](const Group& g, const Keys& keys) {
