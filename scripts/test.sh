@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the tests.
-#   scripts/test.sh [--ci | --full | --short]     --ci: only CI's further tests and studies; --full: all tests; --short: a few named programs
+#   scripts/test.sh [--ci [options of ctest] | --full | --short]     --ci: only CI's further tests and studies; --full: all; --short: a few
 # JOBS and CLOTHBENCH_CMAKE: see scripts/common.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -60,7 +60,7 @@ END
 tier=quick built=() selection=(-L '^quick$') targets=(all) packages=(--tests)
 case ${1:-} in
   '') ;;
-  --ci) tier=ci built=(-DCLOTHBENCH_TESTS=ci) selection=(-L '^ci$') packages=(--tests --ci) ;;
+  --ci) tier=ci built=(-DCLOTHBENCH_TESTS=ci) selection=(-L '^ci$' "${@:2}") packages=(--tests --ci) ;;
   --full) tier=full built=(-DCLOTHBENCH_TESTS=slow) selection=() packages=(--tests --ci) ;;
   --short)
     tier=short packages=(--short)
