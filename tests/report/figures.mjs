@@ -27,8 +27,11 @@ for (const [n, solver] of solvers.entries()) {
     runs.push({...common, part: 'rates', family: 'fall', paper_table: 3, width: 2 ** k, resolution: `${2 ** k}²`, is_grid: true, fps_median: 1e5 / 2 ** k, fps_low: 9e4 / 2 ** k, fps_high: 1.1e5 / 2 ** k, free_fall_error: 1e-6});
   }
 }
-const doc = {runs, solvers: roles, studies: []}, figures = Object.fromEntries(make_figures(doc).map(f => [f.id, f])), rows = id => figures[id].rows(settled(figures[id], {}));
-assert.deepEqual([Object.keys(figures), figures['error-time'].stills.map(s => s.state.Scene)], [['error-time', 'verdicts', 'forest', 'failure-speed', 'claims-map', 'rates', 'stability', 'frame-times'], ['swing']]);
+// Landings have runs of a solver that the report has not, and values that are 0.
+const history = ['a', 'b'].map((letter, k) => ({commit: letter.repeat(40), created: '', runs: [solvers[0], 'absent'].map(solver => ({gpu: 'CPU', solver, scene: 'fall', setting: 'default', values: {crossings_max: 0, stretch_max: 1 + k}}))}));
+const doc = {runs, solvers: roles, studies: [], history}, figures = Object.fromEntries(make_figures(doc).map(f => [f.id, f])), rows = id => figures[id].rows(settled(figures[id], {}));
+assert.deepEqual([Object.keys(figures), figures['error-time'].stills.map(s => s.state.Scene)], [['error-time', 'verdicts', 'forest', 'failure-speed', 'claims-map', 'rates', 'stability', 'frame-times', 'changes'], ['swing']]);
+assert.deepEqual(rows('changes').map(r => [r.solver, r.change]), [[solvers[0], 1], [solvers[0], 2]]);
 // A run that is unsupported or was not measured is not a failure, and has not passed. A pendulum has no contact.
 assert.deepEqual([[...new Set(rows('failure-speed').filter(r => r.verdict !== 'pass').map(r => r.speed))]], [[1, 2, 3, 4, 5, 6, 7]]);
 const all = rows('forest').find(r => r.kind === 'all' && r.solver === solvers[3]);

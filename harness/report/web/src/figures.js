@@ -313,19 +313,19 @@ function claims(doc) {
 
 /// A log of `clothbench check --log`: one line per landing.
 function changes(doc) {
-  const landings = (doc.history ?? []).map((l, n) => ({...l, at: n + 1, commit: l.commit.slice(0, 8) + (l.dirty ? '*' : '')})), commits = landings.map(l => l.commit);
-  const all = landings.flatMap(({runs, command, commit, created, at}) => runs.map(r => ({
+  const landings = (doc.history ?? []).map((l, n) => ({...l, at: n + 1, commit: l.commit.slice(0, 8) + (l.dirty ? '*' : '')})), commits = landings.map(l => l.commit), shown = unique(doc.runs.map(r => r.solver));
+  const all = landings.flatMap(({runs, command, commit, created, at}) => runs.filter(r => shown.includes(r.solver)).map(r => ({
     ...r, at, commit, created, behind: [], line: r.setting === 'default' ? r.scene : `${r.scene} ${r.setting}`, file: `${r.scene}__${r.solver}__${r.setting}.h5`,
     again: command && `git checkout ${commit.slice(0, 8)}; ${command}`
   })));
   const devices = unique(all.map(r => r.gpu)).filter(Boolean), of = s => all.filter(r => r.gpu === s.Device);
-  if (unique(commits).length < 2) return null;
+  if (unique(all.map(r => r.commit)).length < 2) return null;
   const first = (r, name) => all.find(q => q.gpu === r.gpu && q.solver === r.solver && q.line === r.line && name in q.values).values[name];
   return {
     id: 'changes', section: 'environment',
     title: s => `From commit to commit: ${s.Value}`,
     caption: 'Values of the runs that every landing checks against its baseline, divided by the value at the first commit. Lines that fall improve.\nValues that were 0 there are left out. *: with local changes. Times only of GPUs.',
-    choices: [choice('Device', devices), choice('Value', s => unique(of(s).flatMap(r => Object.keys(r.values))).sort(), 'dispatches')],
+    choices: [choice('Device', devices), choice('Value', s => unique(of(s).flatMap(r => Object.keys(r.values).filter(name => first(r, name) > 0))).sort(), 'dispatches')],
     rows: s => of(s).filter(r => s.Value in r.values && first(r, s.Value) > 0).map(r => ({...r, value: r.values[s.Value], change: r.values[s.Value] / first(r, s.Value)})),
     drawn: r => r.change > 0,
     spec: (rows, s, look) => {
