@@ -97,7 +97,9 @@ double FrameTimes::missed(double rate_hz) const {
   return static_cast<double>(late) / static_cast<double>(sorted.size());
 }
 
-bool FrameTimes::uncertain() const { return median.high - median.low > kWide * at(0.5); }
+bool FrameTimes::uncertain() const {
+  return median.high - median.low > kWide * at(0.5) || rate.high - rate.low > kWide * (rate.high + rate.low) / 2;
+}
 
 RunTimes times_of(const RunRecord& c) {
   RunTimes out;

@@ -228,11 +228,16 @@ Tile errors(const Group& rows) {
 
 /// For each solver, passed or stable runs as a fraction of the runs with a verdict.
 Tile shares(const Group& rows, Part part, std::string title) {
-  std::map<std::string, std::pair<Group, Texts>> solvers;  // runs; scenes of the runs that are not good
+  std::map<std::string, std::pair<Group, Texts>> solvers;   // runs; scenes of the runs that are not good
+  std::map<std::string, std::set<std::string>> solvers_of;  // by scene; "": all
+  for (const Row* r : rows)
+    for (const std::string& scene : {r->scene, std::string()}) solvers_of[scene].insert(r->solver);
   for (const Row* r : rows) {
     const bool stability = part == Part::Stability, judged = stability || bounds_of(*r->run) > 0;
-    // The resolutions of a sweep are one scene, whose short runs can fail but not pass.
-    const bool swept = part == Part::Contact && r->scaled;
+    // Resolutions of a sweep are not counted, whose short runs can fail but not pass, nor scenes that only one of
+    // several solvers ran.
+    const bool swept =
+        part == Part::Contact && (r->scaled || (solvers_of[r->scene].size() == 1 && solvers_of[""].size() > 1));
     if (r->part != part || !r->is_main() || r->repeat > 1 || swept || r->status() == "missing" || !judged) continue;
     auto& [runs, bad] = solvers[r->label()];
     runs.push_back(r);

@@ -92,6 +92,8 @@ View pass_rates() {
   v.across = by_bands({0, 2, 5, 10}, speed, pass_rate, 0, " m/s");
   v.across->key.of = [=, band = v.across->key.of](const Row& r) { return speed(r) > 0 ? band(r) : Keys(); };
   v.columns = {{kAllRuns, pass_rate},
+               column(
+                   "device", [](const Row& r) { return short_name(environment_text(*r.run, "gpu")); }, true),
                {"contact offset [mm]", [](const Group& g, const Keys&) { return Cell(offset_of(g)); }}};
   v.by_key = true;
   v.more = [](const Group& g) {

@@ -65,7 +65,7 @@ json figure_row(const Row& r) {
   add_times(r, out);
   if (r.part == Part::Generated)
     out.update(
-        {{"kind", r.drawn().value("kind", "")}, {"speed", finite_or_null(r.drawn().value("speed_m_per_s", kMissing))}});
+        {{"kind", r.drawn().value("kind", "")}, {"speed", rounded(r.drawn().value("speed_m_per_s", kMissing))}});
   if (r.part == Part::Claims) {
     const ClaimPoint p = claim_point(r);
     out.update({{"kind", p.claim},
@@ -74,7 +74,7 @@ json figure_row(const Row& r) {
                 {"claim", p.holds()     ? "holds"
                           : p.is_near() ? "near"
                                         : "fails"},
-                {"dispatches", finite_or_null(r.value("dispatches"))}});
+                {"dispatches", rounded(r.value("dispatches"))}});
   }
   if (r.scaled) {
     out["family"] = r.family;
@@ -83,20 +83,20 @@ json figure_row(const Row& r) {
     out["width"] = std::sqrt(r.resolution.size());  // vertices per side; for a mesh, of a square grid with as many
     out["resolution"] = r.resolution.label();
     out["is_grid"] = r.resolution.grid[0] > 0;
-    for (const char* name : kFigureValues) out[name] = finite_or_null(r.value(name));
-    out["fps_low"] = finite_or_null(r.times->wall.rate.low);
-    out["fps_high"] = finite_or_null(r.times->wall.rate.high);
+    for (const char* name : kFigureValues) out[name] = rounded(r.value(name));
+    out["fps_low"] = rounded(r.times->wall.rate.low);
+    out["fps_high"] = rounded(r.times->wall.rate.high);
     if (r.published >= 0) out["fps_median"] = r.value("fps_at_72");
   }
   if (r.part == Part::Stability) out.update({{"case", case_of(r)}, {"grade", grade_of(r)}});
   if (r.part != Part::Truth) return out;
-  out["wall_ms_per_s"] = finite_or_null(r.wall_ms_per_s());
-  out["device_ms_per_s"] = finite_or_null(r.device_ms_per_s());
-  out["error"] = finite_or_null(r.error());
+  out["wall_ms_per_s"] = rounded(r.wall_ms_per_s());
+  out["device_ms_per_s"] = rounded(r.device_ms_per_s());
+  out["error"] = rounded(r.error());
   out["not_ranked"] = r.not_ranked();
   out["ranking"] = r.truth->ranking;
-  out["space_error"] = finite_or_null(r.truth->space_error);
-  out["reference_uncertainty"] = finite_or_null(r.truth->uncertainty);
+  out["space_error"] = rounded(r.truth->space_error);
+  out["reference_uncertainty"] = rounded(r.truth->uncertainty);
   out["refused"] = r.truth->refused();
   return out;
 }

@@ -92,7 +92,7 @@ function rates(doc) {
     title: s => `${in_paper(s) && kRates[s.Value].paper || ''}${kRates[s.Value].text} by resolution, ${s.Scene}`,
     caption:
         'Frame rates are uncapped, without rendering: median of the trials with its 95 % interval. Hollow: the free-fall error is ' +
-        'above 1 %, so the rate has no meaning.\nSlow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
+        'above 1 %, or the run fails its criteria.\nSlow frames: of the frames with contact, if any. Bandwidth: bytes that shaders load and store, counted in an untimed run of the same frames, ' +
         'per second of wall time; unknown for CPU solvers. Figure numbers are the article\'s.',
     remark: s => unique(of(s).filter(r => r.frames && (s.Show === 'all' || r.setting === 'default')).map(r => `${r.label} at ${r.resolution}: ${r.frames} only, as a trial reached its time limit.`)).join(' '),
     choices: [
@@ -106,7 +106,7 @@ function rates(doc) {
     spec: (rows, s, look) => {
       const sizes = unique(rows.map(r => r.size)).sort((a, b) => a - b), values = rows.map(r => r.value), {is_rate, unit} = kRates[s.Value];
       const x = log('size', is_grid(s) ? 'vertices along one side' : 'vertices', sizes, {values: sizes, labelExpr: "format(datum.value, '.4~r')"});
-      const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, 'datum.free_fall_error > 0.01');
+      const y = log('value', unit, is_rate ? rows.flatMap(r => [r.value, r.fps_low, r.fps_high]) : values), solver = by_solver(rows, look, "datum.free_fall_error > 0.01 || datum.verdict === 'fail'");
       return {
         height: look.shrink * Math.max(240, Math.min(340, 0.5 * look.width)),
         room: Math.min(0.27 * look.width, 16 + 6.8 * Math.max(...rows.map(r => r.line.length))),
@@ -363,7 +363,7 @@ export function command_of(doc, runs, whole = false) {
     const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
     const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
     if (whole || !['study', 'run'].includes(words[1]) || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
-    if (words[1] === 'study') return [...words, ...with_solvers, '--out again --job', mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
+    if (words[1] === 'study') return [...words, ...with_solvers, `--out again-${study.study} --job`, mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
     const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
     return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
   }).join('\n');

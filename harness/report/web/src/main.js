@@ -4,7 +4,7 @@ import {make_figures} from './figures.js';
 import {looks, style_of, unique} from './look.js';
 import {all_figures, figure_block, start_figures} from './plot.js';
 import {hide_solvers, load_state, save_state, shown, state} from './state.js';
-import {all_tables, reproduce, solver_buttons, start_tables, table_block} from './tables.js';
+import {all_tables, reproduce, runs_of, solver_buttons, start_tables, table_block} from './tables.js';
 
 const $ = id => document.getElementById(id);
 const kMethod = ['features', 'environment'];
@@ -50,7 +50,7 @@ function sections(doc, look, motions) {
     if (kMethod.includes(s.id)) {
       $('method-tables').append(...blocks);
     } else if (blocks.length) {
-      const again = reproduce(doc, `section ${s.title}`, s.tables.flatMap(t => t.runs.map(k => doc.runs[k])));
+      const again = reproduce(doc, `section ${s.title}`, runs_of(doc, s.tables));
       const id = `${s.id}-title`, head = element('div', {class: 'head'}, element('h2', {id}, s.title), again);
       $('sections').append(element('section', {id: s.id, 'aria-labelledby': id}, head, blocks));
       links.push([s.id, s.title]);

@@ -27,6 +27,9 @@ export function reproduce(doc, title, runs) {
   return all ? button('reproduce', `Reproduce ${title}: copy the command`, () => copy_command(all), {class: 'quiet', title: `${all}\nResult files: ${files.join(', ')}`}) : null;
 }
 
+/// All runs of tables, each once.
+export const runs_of = (doc, tables) => unique(tables.flatMap(t => t.again.flat())).map(k => doc.runs[k]);
+
 /// One button per solver, which hides or shows it in all figures, tables and motions.
 export const solver_buttons = (look, solvers) => solvers.map(s => {
   const toggle = () => (hide_solvers(shown(s) ? [...state.off, s] : [...state.off].filter(o => o !== s)), say(`${s} ${shown(s) ? 'is shown' : 'is hidden'}`));
@@ -52,7 +55,7 @@ export class ShownTable {
     this.find = element('input', {type: 'search', placeholder: `filter ${this.body.length} rows`, 'aria-label': `Filter ${table.title}`, hidden: this.body.length <= kFew, oninput: () => (this.picked = null, this.fill())});
     this.block = element(
         'div', {class: 'table', id, style: `contain-intrinsic-size: auto ${Math.min(this.body.length, kFew) * 27 + 110}px`},
-        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, table.runs.map(k => doc.runs[k]))]), this.place, this.rest,
+        block_head(id, table.title, table.title, [this.find, this.hidden_columns, reproduce(doc, table.title, runs_of(doc, [table]))]), this.place, this.rest,
         table.note ? captioned('div', {class: 'note'}, table.note.replaceAll('`', '').split('\n')) : null);
   }
 
