@@ -35,9 +35,6 @@ peers     peers-margins     study solvers/plugin/studies/peers-margins.json
 peers     mujoco-ball       study solvers/plugin/studies/mujoco-ball.json
 quick     table3            study table3 --quick --trials 2
 quick     hang              study hang --quick --trials 1
-quick     penetration       study penetration --quick --trials 1 --solver xpbd --solver ballistic
-quick     contact           study contact --quick --procedural --seed 1 --count 2 --jobs JOBS
-quick     friction          study friction --quick --trials 1 --solver xpbd
 END
 }
 

@@ -14,7 +14,6 @@ SolverInfo describe() {
       "particles that only fall: measures the overhead of the harness, and must fail every penetration check";
   info.version = "1";
   info.precision = "float64";
-  info.supports = {};
   for (std::size_t i = 0; i < kFeatureCount; ++i) info.ignores.add(static_cast<Feature>(i));
   return info;
 }
@@ -31,7 +30,6 @@ class Ballistic final : public ClothSolver {
 
   void reset() override {
     x_ = initial_positions(*scene_);
-    v_.assign(x_.size(), 0);
     v_ = initial_velocities(*scene_);
   }
 

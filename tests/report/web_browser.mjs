@@ -366,7 +366,7 @@ async function check_without_webgl() {
   const plain = await opened(page_file, p => p.evaluateOnNewDocument(() => HTMLCanvasElement.prototype.getContext = () => null));
   await ready_ms(plain);
   const paths = await plain.evaluate(async () => {
-    window.clothbench.load_viewer();
+    await window.clothbench.load_viewer();
     const v = window.clothbench.viewer, drawn = () => v.panels.map(p => p.place.querySelector('svg').innerHTML);
     await v.ready;
     const [first, last] = [0, v.end].map(time => (v.seek(time), v.draw(), drawn()));

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/words.hpp"
 #include "metrics/motion_check/body_state.hpp"
 
 namespace clothbench::motion_check {

@@ -5,6 +5,7 @@ import {execFileSync} from 'node:child_process';
 import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
+import {deflateSync} from 'node:zlib';
 
 const [web, out, npm] = process.argv.slice(2), source = join(web, 'src'), packages = join(out, 'node_modules');
 const read = file => readFileSync(file, 'utf8');
@@ -67,7 +68,7 @@ const program = await bundled('main.js', {format: 'iife'}), viewer = await bundl
 const parts = {
   style: `<style>${(await bundled('style.css', {})).text.trim()}</style>`,
   script: `<script>${script_safe(program.text)}</script>`,
-  viewer: `<script type="text/plain" id="viewer-program">${script_safe(viewer.text)}</script>`,
+  viewer: `<script type="text/plain" id="viewer-program">${deflateSync(viewer.text).toString('base64')}</script>`,
   licences: licences([...program.inputs, ...viewer.inputs])
 };
 const html = read(join(source, 'index.html')).replace(/<!--part:(\w+)-->/g, (_, name) => parts[name]);

@@ -66,11 +66,14 @@ function sections(doc, look, motions) {
 
 /// The viewer is a separate script, which starts when its section comes near the window.
 function start_motions(doc, motions) {
+  let loading;
   const load = () => {
     if (document.readyState === 'loading') return addEventListener('DOMContentLoaded', load);  // the motions come last in the file
-    if (window.clothbench.viewer) return;
-    (0, eval)($('viewer-program').textContent);
-    window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);
+    loading ??= unpacked('viewer-program').then(program => {
+      (0, eval)(new TextDecoder().decode(program));
+      window.clothbench.viewer = window.clothbench_viewer($('viewer'), motions, doc.runs);
+    });
+    return loading;
   };
   new IntersectionObserver(list => list.some(e => e.isIntersecting) && load(), {rootMargin: '300px'}).observe($('motions'));
   window.clothbench.load_viewer = load;
