@@ -64,8 +64,7 @@ json figure_row(const Row& r) {
       out["violated"].push_back({name, found_of(r, name).text, expected_of(r, name)});
   add_times(r, out);
   if (r.part == Part::Generated)
-    out.update(
-        {{"kind", r.drawn().value("kind", "")}, {"speed", rounded(r.drawn().value("speed_m_per_s", kMissing))}});
+    out.update({{"kind", r.drawn().value("kind", "")}, {"speed", rounded(r.drawn().value("speed_m_per_s", kMissing))}});
   if (r.part == Part::Claims) {
     const ClaimPoint p = claim_point(r);
     out.update({{"kind", p.claim},
