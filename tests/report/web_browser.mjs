@@ -306,7 +306,7 @@ async function check_back() {
 async function check_values() {
   await page.evaluate(() => document.querySelector('#rates').scrollIntoView({behavior: 'instant', block: 'center'})); await wait(200); await (await page.$('#rates path[data-i]')).hover();
   const by_pointer = await page.$eval('#tip', e => e.textContent);
-  check(/--solver \S+ --out again --job \S+__/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
+  check(/--solver \S+ --out again-\S+ --job \S+__/.test(by_pointer) && /\.h5/.test(by_pointer), `by pointer: ${by_pointer.replace(/\n/g, ' · ')}`);
   await page.focus('#rates .plot'); await page.keyboard.press('ArrowRight'); await page.keyboard.press('ArrowRight');
   check((await page.$eval('#tip', e => e.textContent)).length > 20 && await page.$('#rates .on') !== null, 'by keyboard');
   await page.keyboard.press('Escape');
