@@ -6,9 +6,9 @@ usage: embed_tables.py [--check] [CLOTHBENCH]     default program: build/release
 A document marks such a table by a line of one of these forms before it and `<!-- end of table -->` after it:
 
     <!-- table of FILE#ANCHOR -->                        the Markdown table of FILE below the heading with this anchor
-    <!-- table of FILE#ANCHOR: ROW, ROW -->              only its rows with this first key, or `ROW: …`
+    <!-- table of FILE#ANCHOR: ROW, ROW, -COLUMN -->     only its rows with this first key, or `ROW: …`; without this column
     <!-- table of `clothbench list metrics`: KEY, KEY -->   one row per object that has all these keys; `a.b` is key b of object a,
-        or of all objects of list a; `KEY?` may be missing. `FILES FILES` instead of a command: JSON files (key `path`: folder/file), rows of .tsv files
+        or of all objects of list a; `KEY?` may be missing; `KEY!`: then the schema's default. `FILES FILES` instead of a command: JSON (`path`: folder/file), rows of .tsv
 """
 import csv
 import json
@@ -20,6 +20,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = re.compile(r"(<!-- table of (?:`(?P<source>[^`]+)`|(?P<file>[^#`\n]+)#(?P<anchor>[\w-]+))(?:: (?P<what>.+?))? -->\n).*?(<!-- end of table -->)", re.S)
 SCHEMA = "scenarios/schema/scene.schema.json"
+DEFAULTS = dict(re.findall(r'"(\w+)": \{[^{}]*"default": ([\d.]+)', (ROOT / SCHEMA).read_text(encoding="utf-8")))
 check = "--check" in sys.argv
 program = next((a for a in sys.argv[1:] if a != "--check"), ROOT / "build/release/clothbench")
 
@@ -40,29 +41,31 @@ def cell(value):
 
 
 def find(value, key):
-    for part in key.rstrip("?").split("."):
+    for part in key.rstrip("?!").split("."):
+        default = DEFAULTS.get(part) if key[-1] == "!" else None
         if isinstance(value, list):
-            value = "; ".join(dict.fromkeys(cell(one[part]) for one in value if part in one)) or None
+            value = "; ".join(dict.fromkeys(cell(one.get(part, default)) for one in value if part in one or default)) or None
         else:
-            value = value.get(part) if isinstance(value, dict) else None
-    return "–" if value is None and key.endswith("?") else value
+            value = value.get(part, default) if isinstance(value, dict) else None
+    return "–" if value is None and key[-1] in "?!" else value
 
 
 def table_of_objects(source, keys):
     rows = [[find(one, key) for key in keys] for one in objects(source)]
     rows = [[f"`{values[0]}`", *map(cell, values[1:])] for values in rows if None not in values] or sys.exit(f"{source}: no object has all of {keys}")
-    last = [key.rstrip("?").split(".")[-1] for key in keys]
-    heads = [name if last.count(name) == 1 else key.rstrip("?") for name, key in zip(last, keys)]
+    last = [key.rstrip("?!").split(".")[-1] for key in keys]
+    heads = [name if last.count(name) == 1 else key.rstrip("?!") for name, key in zip(last, keys)]
     return "".join("| " + " | ".join(row) + " |\n" for row in [heads, ["---"] * len(keys), *rows])
 
 
-def table_of_report(file, anchor, rows):
+def table_of_report(file, anchor, what):
     """The table of a section, which its anchor names: the heading in small letters, without punctuation, with hyphens for spaces."""
     for section in re.split(r"^#+ ", (ROOT / file).read_text(encoding="utf-8"), flags=re.M)[1:]:
         heading, _, text = section.partition("\n")
         if re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") == anchor and (found := re.match(r"\n((?:\|.*\n)+)", text)):
-            head, rule, *lines = found[1].splitlines(keepends=True)
-            return head + rule + "".join(line for line in lines if not rows or line.split("|")[1].strip().split(":")[0] in rows)
+            rows, wanted = [re.split(r"(?<!\\)\|", line) for line in found[1].splitlines()], [name for name in what if name[0] != "-"]
+            kept = [k for k, name in enumerate(rows[0]) if f"-{name.strip()}" not in what]
+            return "".join("|".join(row[k] for k in kept) + "\n" for n, row in enumerate(rows) if n < 2 or not wanted or row[1].strip().split(":")[0] in wanted)
     sys.exit(f"{file}: no table with the anchor #{anchor}")
 
 
@@ -87,14 +90,11 @@ def main():
     stale = []
     for path in (ROOT / name for name in names if name and (ROOT / name).exists()):
         before = path.read_text(encoding="utf-8")
-        after = embedded(str(path.relative_to(ROOT)), before)
-        if after != before:
+        if (after := embedded(str(path.relative_to(ROOT)), before)) != before:
             stale.append(str(path.relative_to(ROOT)))
-            if not check:
-                path.write_text(after, encoding="utf-8")
-    if check and stale:
-        sys.exit(f"{', '.join(stale)}: differs from the output of scripts/embed_tables.py; run it with this build's clothbench")
+            check or path.write_text(after, encoding="utf-8")
     print("; ".join(stale) or "all tables match their sources")
+    sys.exit("these files differ from the output of scripts/embed_tables.py; run it with this build's clothbench" if check and stale else 0)
 
 
 if __name__ == "__main__":

@@ -92,8 +92,8 @@ int run_command_line(const std::vector<std::string>& words) {
       "Examples: clothbench run paper/desk-flat-low --solver xpbd --solver bullet-soft\n          "
       "clothbench study table3 --quick --out results/runs/mine\n          clothbench report "
       "results/runs/mine -o report\nOptions of a command: clothbench COMMAND --help, or clothbench help "
-      "COMMAND\nTerms: clothbench list terms\nExit codes: 0 ok, 1 a check failed or a solver finished none of its "
-      "runs, 2 bad input, 3 no device, 130 interrupted.");
+      "COMMAND\nTerms: clothbench list terms\nExit codes: 0 ok, 1 a check failed or a solver finished none of the "
+      "runs that it supports, 2 bad input, 3 no device, 130 interrupted.");
   Console console;
   console.command_line = "clothbench " + joined(words, " ");
   app.add_flag("--json", console.json, "Print a machine-readable summary; may also follow the command");
