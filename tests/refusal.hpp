@@ -16,8 +16,8 @@ inline std::string test_name(const std::string& words) {
   return out;
 }
 
-/// The message of the Error that `call` throws, which must have this exit code if one is given; empty if it throws
-/// none.
+/// The message of the Error that `call` throws; empty if it throws none. The Error must have the exit code `code`, if
+/// that is given.
 template <class Call>
 std::string refusal(Call call, std::optional<ExitCode> code = {}) {
   try {

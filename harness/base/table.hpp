@@ -32,7 +32,7 @@ std::string paired(double a, double b, const std::string& between, int digits);
 std::size_t display_width(const std::string&);
 
 /// Breaks text at spaces so that indented lines fit `columns`; a longer word gets its own line. Ends with a newline.
-/// `head` stands in the first line's indent or, if it is longer than the indent, before the text.
+/// `head` replaces the first line's indent; a longer head shifts the first line's text.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns, const std::string& head = "");
 
 }  // namespace clothbench

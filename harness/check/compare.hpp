@@ -198,8 +198,8 @@ std::vector<Finding> compare_records(const RunRecord& a, const RunRecord& b);
 using Processes = std::vector<std::vector<RunRecord>>;
 
 /// Compares two builds run by run: results of each side's first process, times of all processes. A's runs come first,
-/// then the runs that only B has. Throws Error if a process has a run twice, or if the runs of a pair, or the processes
-/// of a side, differ in a condition whose kind is not in `allowed`.
+/// then the runs that only B has. Throws Error if a process has a run twice. Throws Error if a condition whose kind is
+/// not in `allowed` differs within a pair of runs, or between the processes of a side.
 Checked compare_processes(const Processes& a, const Processes& b, const std::vector<std::string>& allowed = {});
 
 /// Compares results with a baseline. A run of the baseline or a planned run fails if it has no result. A run that is

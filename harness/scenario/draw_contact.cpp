@@ -157,7 +157,7 @@ class BoxPoint {
   int used_ = 0;
 };
 
-/// The value at the fraction `u` of a range or a list of words; an integer if `may_be_whole` and both bounds are.
+/// The value at the fraction `u` of a range or a list of words; whole if `may_be_whole` and both bounds are integers.
 json at_point(const json& range, double u, bool may_be_whole, const std::string& at) {
   const auto words = static_cast<std::size_t>(
       std::count_if(range.begin(), range.end(), [](const json& value) { return value.is_string(); }));

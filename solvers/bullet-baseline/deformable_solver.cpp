@@ -23,7 +23,7 @@ btVector3 reach(const btSoftBody::Link& l) { return l.m_n[1]->m_q - l.m_n[0]->m_
 /// grid needs one along each direction, half of each on the borders, one on the diagonals and one for bending.
 ///
 /// The energy is Bullet's, k/2 (|d| - r)^2. Its second derivative is exact, hence indefinite if a link is compressed.
-/// This class has no damping, because Bullet's damps motion relative to neighbours, and a scene's damps all motion.
+/// This class has no damping: Bullet's acts on motion relative to neighbours, a scene's on all motion.
 class GridSprings final : public btDeformableMassSpringForce {
  public:
   /// Stiffness [N/m] of each link of the only body to which this force is added.

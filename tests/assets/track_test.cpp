@@ -99,7 +99,7 @@ TEST(HandTrack, InterpolatesPositionOrientationAndPose) {
   EXPECT_LT((palm.translation() - Vector(1, 2, -3)).norm(), 1e-9);
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(EIGEN_PI / 4, Vector::UnitY()));
   EXPECT_LT(Eigen::Quaterniond(palm.linear()).angularDistance(expected), 1e-6);
-  // At half of the time to a half pinch the hand has made a quarter of a full pinch, within the error of nested slerps.
+  // Half-way to a half pinch, the hand pinches by a quarter, within the error of nested slerps.
   const HandPose quarter = blended(hand.pose("relaxed"), hand.pose("pinch"), 0.25);
   const HandPose local = in_palm_frame(half.pose);
   for (std::size_t j = 0; j < kJointCount; ++j) {

@@ -1,5 +1,5 @@
-// One frame of `paper` against the method in double on the CPU, written from the paper, not from the shaders; `xpbd` in
-// every layout of its lines against the layout that it selects itself.
+// Compares one frame of `paper` with the method in double on the CPU, written from the paper, not from the shaders.
+// Compares `xpbd` in every layout of its lines with the layout that it selects itself.
 #include <algorithm>
 
 #include "clothbench/vector.hpp"

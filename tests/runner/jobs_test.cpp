@@ -176,7 +176,7 @@ TEST_F(Sensors, PowerComesFromCountersElseFromTheBattery) {
 }
 
 TEST_F(Sensors, OfAnNvidiaGpuComeFromItsLibrary) {
-  // Loaded first, the stand-in is found by its name instead of a driver's library.
+  // A library that is loaded already is found by its name, so this stand-in replaces the driver's.
   ASSERT_NE(dlopen(CLOTHBENCH_FAKE_NVML, RTLD_NOW), nullptr) << dlerror();
   const std::string uuid = "00112233445566778899aabbccddeeff";
   const nlohmann::json s = read_sensors(dir_, uuid);

@@ -90,7 +90,7 @@ inline V6 wrench_of(const V3& force, const V3& arm) {
   return w;
 }
 
-/// Projection that removes wrenches about `middle` that vertices held in this frame or its neighbours can exert.
+/// Projection that removes the wrenches about `middle` of vertices that are held in this, the previous or next frame.
 M6 free_of_attachments(const Motion&, std::size_t frame, const V3& middle);
 
 /// Keeps the largest ratio of each statistic.

@@ -118,7 +118,7 @@ class Xpbd final : public GpuSolver {
     add_buffer(BIND_LAST_VELOCITIES, "last velocities", position_buffer().bytes());
   }
 
-  /// Inverse masses of particles: masses of welded vertices are added; a particle is held if one of its vertices is.
+  /// Inverse masses of particles. The masses of welded vertices are added; if one of them is held, the particle is.
   static std::vector<float> welded(std::vector<float> w, const ChainCloth& cloth) {
     for (const std::uint32_t v : cloth.welded) {
       float& of = w[cloth.particle[v]];

@@ -1,6 +1,6 @@
 // Nearest points of an active pair at the substep's start, and a contact there.
 
-/// Whether the plane of a static triangle separates it from a cloth triangle; then only the cloth's vertices touch it.
+/// Whether a cloth triangle lies on one side of a static triangle's plane; then only the cloth's vertices touch it.
 bool separated_by_face(uvec4 e, inout PairState s) {
   if (shape.count != 3u || shape.is_kinematic != 0u || shape.radius != 0.0 || e.w != 3u) return false;
   load_shape(t_begin);

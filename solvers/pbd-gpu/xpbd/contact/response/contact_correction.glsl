@@ -8,8 +8,8 @@ float kept_margin(uvec4 e, vec3 weights) {
   return shape.margin * (inner && shape.is_kinematic == 0u ? kStaticMarginFactor : 1.0);
 }
 
-/// Correction of a contact, divided by the inverse mass of its point; w: depenetration. Stored by the narrow phase: in
-/// `weights.w` n·(shape's nearest point at the end), in `displacement_or_plane` that point's displacement, target gap.
+/// Correction of a contact, divided by the inverse mass of its point; w: depenetration. Input from the narrow phase:
+/// weights.w = n·(shape's nearest point at the end), displacement_or_plane = (that point's displacement, target gap).
 vec4 contact_correction(uvec4 e, PairState s) {
   if (response_round == 0u && shape.is_kinematic == 0u) return vec4(0.0);
   float gap = -s.weights.w, mass = 0.0;
