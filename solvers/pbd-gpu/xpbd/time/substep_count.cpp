@@ -75,7 +75,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
                          : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
                          : !shears       ? rules::kStrip
                          : grips.empty() ? rules::kPinnedSheet
-                                         : rules::kAttachedSheet;
+                         : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
+                                                                      : rules::kAttachedSheet;
   double per_frame = std::max(rule.smallest[k], links / rule.links_a_substep[k]);
   if (needs_chain_solver(scene)) per_frame *= substeps_for_short_links(scene);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m),
