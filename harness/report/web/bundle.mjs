@@ -1,5 +1,5 @@
-// Builds the page without data (template.html), the script that draws its figures in Node (figures.cjs), and template.cpp with
-// both. First installs the packages of package-lock.json; if that fails, template.cpp states why, and the build goes on.
+// Builds the page without data (template.html), the script that draws its figures in Node (figures.cjs), and page.json with
+// both. First installs the packages of package-lock.json; if that fails, page.json states why, and the build goes on.
 //   node bundle.mjs WEB OUT NPM
 import {execFileSync} from 'node:child_process';
 import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -22,23 +22,12 @@ function install() {
   copyFileSync(lock, fetched);
 }
 
-function write(html, missing, figures) {
-  const literal = (name, text) => `static const char ${name}[] = R"page_end_7d1f(${text})page_end_7d1f";`;
-  writeFileSync(join(out, 'template.cpp'), `#include "report/web/page.hpp"
-namespace clothbench {
-PageTemplate page_template() {
-  ${literal('html', html)}
-  ${literal('figures', figures)}
-  return {{html, sizeof html - 1}, "${missing}", {figures, sizeof figures - 1}};
-}
-}  // namespace clothbench
-`);
-}
+const write = (html, missing, figures) => writeFileSync(join(out, 'page.json'), JSON.stringify({html, missing, figures}));
 
 try {
   install();
 } catch (error) {
-  console.error(`The report's page is left out: ${error.message}. After fixing that, delete ${out}/template.cpp and build again.`);
+  console.error(`The report's page is left out: ${error.message}. After fixing that, delete ${out}/page.o and build again.`);
   write('', 'npm ci failed when this was built (it needs Node 18 or later)', '');
   process.exit();
 }

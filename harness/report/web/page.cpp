@@ -12,6 +12,8 @@
 #include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 
+extern "C" const char _binary_page_json_start[], _binary_page_json_end[];  // bundle.mjs, embedded by the linker
+
 namespace clothbench {
 namespace {
 
@@ -261,7 +263,12 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
   return out;
 }
 
-#ifndef CLOTHBENCH_WITH_PAGE
+#ifdef CLOTHBENCH_WITH_PAGE
+PageTemplate page_template() {
+  const json page = json::parse(_binary_page_json_start, _binary_page_json_end);
+  return {page["html"], page["missing"], page["figures"]};
+}
+#else
 PageTemplate page_template() { return {"", "this build was made without it, or without Node and npm"}; }
 Motions motions_of(const RunTable&, std::size_t) { return {}; }
 std::string packed(const json&) { return ""; }
