@@ -6,7 +6,7 @@
 # --arm64: for the cross build and the packaging of the APK
 set -euo pipefail
 
-packages=(clang cmake ninja-build ccache git python3
+packages=(clang lld cmake ninja-build ccache git python3
           glslc spirv-tools spirv-headers libvulkan-dev
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev libgtest-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libpng-dev)
