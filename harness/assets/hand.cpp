@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include "assets/gltf_file.hpp"
 #include "base/json_text.hpp"
@@ -63,9 +62,8 @@ std::string as_json(const std::string& text, const std::string& source) {
     throw Error(source + ": no \"= {\": expected a module that exports an object literal");
   if (end == std::string::npos || end < start)
     throw Error(source + ": the object literal is not closed (file cut off?)");
-  static const std::regex names(R"((['"]?)([\w-]+)\1\s*:)"), commas(R"(,(\s*[\]\x7d]))");
   const std::string literal = text.substr(start + 2, end - start - 1);
-  return std::regex_replace(std::regex_replace(literal, names, "\"$2\":"), commas, "$1");
+  return regex_replaced(regex_replaced(literal, R"((['"]?)([\w-]+)\1\s*:)", "\"$2\":"), R"(,(\s*[\]\x7d]))", "$1");
 }
 
 constexpr char kPoseSchema[] =

@@ -1,6 +1,7 @@
 #include "base/words.hpp"
 
 #include <numeric>
+#include <regex>
 
 #include "clothbench/solver.hpp"
 
@@ -36,6 +37,10 @@ std::string shortened(const std::string& text, std::size_t most) {
 }
 
 std::string in_quotes(const std::string& word) { return "\"" + shortened(word, 40) + "\""; }
+
+std::string regex_replaced(const std::string& text, const std::string& pattern, const std::string& with) {
+  return std::regex_replace(text, std::regex(pattern), with);
+}
 
 std::string lower_case(std::string text) {
   for (char& c : text)

@@ -28,6 +28,9 @@ std::string shortened(const std::string& text, std::size_t most);
 /// A word of the input for a message: shortened to 40 bytes, between quotes.
 std::string in_quotes(const std::string& word);
 
+/// Replaces every match of a regular expression. <regex> takes seconds to compile, so only this module includes it.
+std::string regex_replaced(const std::string& text, const std::string& pattern, const std::string& with);
+
 /// Converts ASCII letters to lower case, for file extensions.
 std::string lower_case(std::string);
 

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <map>
-#include <regex>
 
 #include "base/json_text.hpp"
 #include "base/table.hpp"
+#include "base/words.hpp"
 #include "check/compare.hpp"
 
 namespace clothbench {
@@ -226,7 +226,7 @@ std::string log_line(const std::vector<RunRecord>& runs, const std::string& comm
   json out = {{"commit", ""},
               {"created", ""},
               {"dirty", false},
-              {"command", std::regex_replace(command, std::regex(" (--out|--device)[ =]\\S+| --resume"), "")},
+              {"command", regex_replaced(command, " (--out|--device)[ =]\\S+| --resume", "")},
               {"runs", json::array()}};
   for (const RunRecord& r : runs) {
     const BaselineRun part = gated_part(r);

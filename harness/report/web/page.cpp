@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "base/child_process.hpp"
@@ -104,8 +103,8 @@ json figure_row(const Row& r) {
 
 /// A command without the folders and the device of the machine that ran it.
 std::string plain_command(const std::string& line) {
-  const std::string plain = std::regex_replace(line, std::regex("^\\S*clothbench"), "clothbench");
-  return std::regex_replace(plain, std::regex(" (--out|-o|--device|--job)[ =]\\S+| --resume"), "");
+  return regex_replaced(regex_replaced(line, "^\\S*clothbench", "clothbench"),
+                        " (--out|-o|--device|--job)[ =]\\S+| --resume", "");
 }
 
 /// The study folders of the runs. Also stores in each row the index of its folder, the name of a missing run, and the
