@@ -101,8 +101,8 @@ void compare_pair(const Pair& p, CheckedRun& run) {
   }
   const std::vector<double> a = process_times(p.a), b = process_times(p.b);
   run.time = compare_times(a, b);
-  run.time_a_s = median(a);
-  run.time_b_s = median(b);
+  run.time_a_s = quantile(a, 0.5);
+  run.time_b_s = quantile(b, 0.5);
   run.findings = compare_records(*p.a.front(), *p.b.front());
 }
 
@@ -293,7 +293,7 @@ std::vector<double> process_times(const std::vector<const RunRecord*>& processes
     std::vector<double> trials;
     for (const TimedTrial& t : r->trials)
       if (t.frames() > 0) trials.push_back(mean(t.frame_wall_s));
-    if (!trials.empty()) out.push_back(median(std::move(trials)));
+    if (!trials.empty()) out.push_back(quantile(std::move(trials), 0.5));
   }
   return out;
 }

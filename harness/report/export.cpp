@@ -8,6 +8,7 @@
 #include "base/json_text.hpp"
 #include "metrics/registry.hpp"
 #include "report/report.hpp"
+#include "report/web/page.hpp"
 
 namespace clothbench {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 using nlohmann::json;
 
 json at_least(int least, int n) { return n >= least ? json(n) : json(); }
-
-std::string six_digits(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
 /// Names and values of one line; null or NaN: missing.
 using Fields = std::vector<std::pair<std::string, json>>;
@@ -95,11 +94,11 @@ std::string series_csv(const RunTable& table) {
       frames.emplace_back(&r, k);
   return csv(frames, [names = series_columns()](const Row& r, std::size_t k) {
     Fields out = run_fields(r);
-    out.emplace_back("time_s", six_digits(r.run->accuracy.time_s[k]));
+    out.emplace_back("time_s", rounded(r.run->accuracy.time_s[k]));
     for (const std::string& name : names) {
       out.emplace_back(name, "");
       for (const MetricSeries& m : r.run->accuracy.metrics)
-        if (m.name == name && k < m.values.size()) out.back().second = six_digits(m.values[k]);
+        if (m.name == name && k < m.values.size()) out.back().second = rounded(m.values[k]);
     }
     return out;
   });

@@ -50,7 +50,7 @@ std::pair<Interval, Interval> intervals(const std::vector<Series>& trials) {
       }
       rates_drawn.push_back(static_cast<double>(drawn.size() - before) / sum);
     }
-    rates.push_back(median(std::move(rates_drawn)));
+    rates.push_back(quantile(std::move(rates_drawn), 0.5));
     const auto half = drawn.begin() + static_cast<std::ptrdiff_t>((drawn.size() - 1) / 2);
     std::nth_element(drawn.begin(), half, drawn.end());
     medians.push_back(*half);

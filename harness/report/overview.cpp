@@ -158,16 +158,6 @@ std::string trials_text(const std::set<std::size_t>& n) {
   return fmt::format("{}{} {}", least, *n.rbegin(), *n.rbegin() == 1 ? "trial" : "trials");
 }
 
-/// The run's error, otherwise the error of a run with the same settings in another scene.
-std::string error_at(const Row& of, Group rows) {
-  rows.insert(rows.begin(), &of);
-  for (const Row* r : rows)
-    for (const auto& [name, what] : {std::pair{"free_fall_error", "free-fall error"}, {"truth_error", "error"}})
-      if (r->solver == of.solver && r->run->header.settings == of.run->header.settings && std::isfinite(r->value(name)))
-        return fmt::format("{} {:.1e}{}", what, r->value(name), r == &of ? "" : " in " + r->scene);
-  return "no error measured at this setting";
-}
-
 /// Rates on the largest mesh of the paper's Table 3; without such runs, of the first family with times.
 Tile rates(const Group& rows) {
   Tile out;
@@ -191,12 +181,13 @@ Tile rates(const Group& rows) {
     }
     out.title = "Frames per second at " + r->resolution.label();
     const std::string interval = rate_interval(*r);
-    out.entries.push_back(
-        {r->solver, r->label(), rate_text(r->value("fps_median")),
-         in_one_line({interval.empty() ? "too few frames for an interval" : interval,
-                      trials_text({r->run->trials.size()}), r->frames_mark(),
-                      environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : "", error_at(*r, rows)}),
-         r->times->wall.uncertain() ? 0 : r->value("fps_median")});
+    const double off = r->value("free_fall_error");
+    const std::string error = std::isfinite(off) ? fmt::format("free-fall error {:.1e}", off) : "no error measured";
+    out.entries.push_back({r->solver, r->label(), rate_text(r->value("fps_median")),
+                           in_one_line({interval.empty() ? "too few frames for an interval" : interval,
+                                        trials_text({r->run->trials.size()}), r->frames_mark(),
+                                        environment_text(*r->run, "gpu") == "CPU" ? "on the CPU" : "", error}),
+                           r->times->wall.uncertain() ? 0 : r->value("fps_median")});
   }
   if (!left_out.empty()) out.left_out = fmt::format("{} not ranked: {}", left_out.size(), joined(left_out));
   return out;
@@ -253,7 +244,7 @@ Tile shares(const Group& rows, Part part, std::string title) {
   Tile out{std::move(title), {}};
   for (const auto& [solver, share] : solvers) {
     const auto& [runs, bad] = share;
-    const std::string offset = part == Part::Stability ? "" : offset_of(runs);
+    const std::string offset = part == Part::Stability ? "" : offset_of(runs).text;
     out.entries.push_back(
         share_entry(*runs.front(), solver, runs.size() - bad.size(), runs.size(),
                     {"one run per scene", offset.empty() ? "" : "contact offset " + offset + " mm", except(bad)}));
@@ -273,7 +264,7 @@ std::string fact(const RunRecord& c, const std::string& key) {
     return fmt::format("{} ({} threads)", value, environment_of(c, "cpu_threads").dump());
   if (key == "protocol" && (value == "full" || value == "run")) return "";  // the usual protocol needs no word
   if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
-  if (key == "git_commit") return value.substr(0, 12) + (flag(c, "git_dirty") ? " (with local changes)" : "");
+  if (key == "git_commit") return commit_of(c);
   return key == "created" ? value.substr(0, 10) : value;
 }
 
@@ -330,8 +321,8 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
   }
   std::map<std::string, std::set<std::string>> trials, devices;  // folders by number of trials; by device
   for (const RunRecord& c : table.runs()) {
-    const std::string gpu = environment_text(c, "gpu"), folder = fs::path(c.file).parent_path().filename().string();
-    if (!gpu.empty()) devices[short_name(gpu == "CPU" ? environment_text(c, "cpu") : gpu)].insert(folder);
+    const std::string device = device_of(c), folder = folder_of(c);
+    if (!device.empty()) devices[device].insert(folder);
     if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
       trials[withheld ? "withheld" : std::to_string(c.trials.size())].insert(folder);
   }

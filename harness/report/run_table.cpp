@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 #include <set>
 #include <tuple>
@@ -63,6 +64,15 @@ std::string read_scenario(Row& row) {
   return family.dump();
 }
 
+/// The words at the start of both names: "drop-scale" of "drop-scale-32" and "drop-scale-64".
+std::string common_words(std::string a, std::string b) {
+  a = "-" + a + "-";
+  b = "-" + b + "-";
+  a.erase(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first, a.end());
+  a.erase(a.rfind('-'));
+  return a.substr(std::min<std::size_t>(1, a.size()));
+}
+
 /// Adds what a run states about its scene's exact solution.
 void add_facts(TruthFacts& t, const Row& r) {
   t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
@@ -85,7 +95,7 @@ void choose_leading(std::vector<Row>& rows) {
 }
 
 /// A run's rank is one more than the number of main runs whose whole interval lies below its own interval. Only
-/// main runs count, so tables that omit other runs have no gap in their ranks.
+/// main runs count, so tables that omit other runs have no gap in their ranks. A solver is not ranked against itself.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)
@@ -103,6 +113,8 @@ void compare_times(std::vector<Row>& all) {
         ranked.push_back(r);
     }
     for (Row* r : rows) r->baseline = r->on_software ? nullptr : baseline;
+    const auto is_rival = [&](const Row* r) { return r->solver != ranked.front()->solver; };
+    if (std::none_of(ranked.begin(), ranked.end(), is_rival)) continue;
     for (Row* r : ranked)
       r->rank = 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const Row* other) {
                   return other->is_main() && other->times->wall.median.high < r->times->wall.median.low;
@@ -142,6 +154,18 @@ std::string environment_text(const RunRecord& c, const char* key) {
   return e.is_string() ? e.get<std::string>() : "";
 }
 
+std::string device_of(const RunRecord& c) {
+  const std::string gpu = environment_text(c, "gpu");
+  return short_name(gpu == "CPU" ? environment_text(c, "cpu") : gpu);
+}
+
+std::string commit_of(const RunRecord& c) {
+  const bool changed = environment_of(c, "git_dirty") == json(true);
+  return environment_text(c, "git_commit").substr(0, 12) + (changed ? " (with local changes)" : "");
+}
+
+std::string folder_of(const RunRecord& c) { return std::filesystem::path(c.file).parent_path().filename().string(); }
+
 std::string engine_of(const RunRecord& c) { return text_at(c.header.environment, "/plugin/engine"); }
 
 const json& solver_roles() {
@@ -154,12 +178,6 @@ std::size_t place_of_scene(const std::string& scene) {
   while (place < leading_scenes().size() && scene.find(leading_scenes()[place].get<std::string>()) == std::string::npos)
     ++place;
   return place;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n == 0 ? kMissing : (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 double nearest_rank(const std::vector<double>& sorted, double q) {
@@ -211,7 +229,7 @@ double Row::frame_rate_hz() const {
 
 double Row::wall_ms_per_s() const {
   const double pipelined = 1e3 * frame_rate_hz() * value("frame_pipelined_median_s");
-  return std::isfinite(pipelined) ? pipelined : fenced_ms_per_s();
+  return std::isfinite(pipelined) ? pipelined : 1e3 * frame_rate_hz() * value("frame_wall_median_s");
 }
 
 std::string Row::not_ranked() const {
@@ -259,13 +277,26 @@ std::string Row::trust() const {
   return out + in_brackets(frames_mark());
 }
 
+std::string Row::not_judged() const {
+  if (!run->outcome.message.empty() || verdict(*run) != "not measured") return run->outcome.message;
+  const double measured_s = run->accuracy.time_s.empty() ? 0 : run->accuracy.time_s.back();
+  const json all_s = at(scenario, "/time/duration_s");
+  return all_s.is_number() && measured_s < 0.999 * all_s.get<double>()
+             ? fmt::format("the untimed run covers {:.3g} s of {:.3g} s", measured_s, all_s.get<double>())
+             : "the program was built without contact metrics";
+}
+
+std::string Row::not_timed() const {
+  if (!run->outcome.message.empty()) return run->outcome.message;
+  return !run->withheld.empty() ? run->withheld.begin()->second : run->trials.empty() ? "not timed" : "";
+}
+
 json Row::drawn() const { return at(scenario, "/drawn"); }
 
 bool has_contact(const RunRecord& c) { return touches(scenario_of(c)); }
 
 RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
-  std::map<std::string, std::string> families;
-  std::map<std::string, int> names;
+  std::map<std::string, std::string> owners, commons, families;  // first family of a name; words and name of a family
   std::map<std::vector<std::string>, int> repeats;
   std::map<std::string, std::shared_ptr<TruthFacts>> facts;
   std::set<std::string> timed;
@@ -275,23 +306,26 @@ RunTable::RunTable(std::vector<RunRecord> runs) : runs_(std::move(runs)) {
   for (const RunRecord& c : runs_) {
     Row row{&c};
     row.times = std::make_shared<RunTimes>(times_of(c));
-    const std::string family = read_scenario(row);
-    if (const auto [found, is_new] = families.try_emplace(family); is_new) {
-      const int same_name = ++names[row.name];
-      found->second = same_name > 1 ? fmt::format("{} ({})", row.name, same_name) : row.name;
-    }
-    row.family = families.at(family);
+    row.family = read_scenario(row);
+    if (row.part != Part::None) owners.try_emplace(row.name, row.family);
+    std::string& common = commons.try_emplace(row.family, row.scene).first->second;
+    common = common_words(common, row.scene);
     row.repeat = ++repeats[{row.family, row.scene, row.sides, row.solver, row.setting, row.resolution.label()}];
-    if (row.fenced_ms_per_s() > 0) timed.insert(row.scene);
+    if (row.value("frame_wall_median_s") > 0) timed.insert(row.scene);
     most_frames[row.scene] = std::max(most_frames[row.scene], row.frames());
     sizes[row.family].insert(row.resolution.size());
-    scenes.try_emplace(row.part == Part::Rates ? row.family : row.scene, scenes.size());
     rows_.push_back(std::move(row));
   }
   for (Row& r : rows_) {
     r.most_frames = most_frames[r.scene];
     r.largest = r.resolution.size() >= *sizes[r.family].rbegin();
     r.scaled = r.part == Part::Rates || (r.part == Part::Contact && sizes[r.family].size() > 1);
+    const std::string& common = commons.at(r.family);
+    const bool is_first = r.part == Part::None || owners.at(r.name) == r.family,
+               differs = !common.empty() && common != r.name;
+    const std::string other = differs ? common : r.name + in_brackets(folder_of(*r.run));
+    r.family = std::string(families.try_emplace(r.family, is_first ? r.name : other).first->second);
+    scenes.try_emplace(r.part == Part::Rates ? r.family : r.scene, scenes.size());
     // A pulled strip on which no solver was timed is listed with the scenes with contact.
     if (r.part == Part::Truth && text_at(r.scenario, "/truth/case") == "two-hand-pull" && !timed.contains(r.scene))
       r.part = Part::Contact;
@@ -327,18 +361,17 @@ void RunTable::add_published() {
       c.header.setting = "default";
       c.summary["fps_at_72"] = column.at("fps").at(n);
       const int width = published["resolution"][n];
-      Row row{&c};
-      row.times = std::make_shared<RunTimes>();
-      row.name = name;
-      row.family = family;
-      row.scaled = true;
-      row.solver = c.header.solver;
-      row.setting = "default";
-      row.sides = column.value("sides", "");
-      row.resolution = {{width, width}};
-      row.paper_table = 3;
-      row.published = static_cast<int>(k);
-      rows_.push_back(std::move(row));
+      rows_.push_back({.run = &c,
+                       .name = name,
+                       .family = family,
+                       .solver = c.header.solver,
+                       .setting = "default",
+                       .sides = column.value("sides", ""),
+                       .resolution = {{width, width}},
+                       .paper_table = 3,
+                       .published = static_cast<int>(k),
+                       .scaled = true,
+                       .times = std::make_shared<RunTimes>()});
     }
 }
 

@@ -17,10 +17,11 @@ namespace clothbench {
 
 /// The scenario of a run; an empty object for a planned run whose scene is unknown.
 nlohmann::json scenario_of(const RunRecord&);
-/// The environment's value for `key`; null if missing.
+/// The environment's value for `key`, null if missing; its text, empty if missing.
 nlohmann::json environment_of(const RunRecord&, const char* key);
-/// The environment's text for `key`; empty if missing.
 std::string environment_text(const RunRecord&, const char* key);
+/// The run's GPU, or the CPU of a solver without one; its commit, with a remark on local changes; its result folder.
+std::string device_of(const RunRecord&), commit_of(const RunRecord&), folder_of(const RunRecord&);
 /// Engine that the run's plugin wraps, as the plugin declares: "NvCloth"; empty if there is no plugin or it names none.
 std::string engine_of(const RunRecord&);
 extern const char* const kPublishedTable3;  ///< results/paper-table3.json
@@ -39,19 +40,14 @@ inline std::string time_baseline() { return solver_roles().at("times_relative_to
 inline const nlohmann::json& leading_scenes() { return solver_roles().at("leading_scenes"); }
 /// Index of the first of these words that the scene's name contains; their number if it contains none.
 std::size_t place_of_scene(const std::string& scene);
-/// NaN if there are no values.
-double median(std::vector<double>);
 /// Quantile of a sorted list by the nearest rank; NaN if it is empty.
 double nearest_rank(const std::vector<double>& sorted, double q);
-/// "diverged at 12" (the failed frame), or only the status if no frame failed.
-std::string ending(const Outcome&);
-/// "diverged (F1)"; only the status if there is no class.
-std::string status_with_class(const Outcome&);
+/// "diverged at 12" (the failed frame), "diverged (F1)"; only the status if no frame failed, or if there is no class.
+std::string ending(const Outcome&), status_with_class(const Outcome&);
 /// "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)".
 inline std::string short_name(const std::string& device) { return device.substr(0, device.find(" (")); }
-/// " (text)"; nothing for an empty text.
+/// " (text)", nothing for an empty text; "–" for an empty text.
 inline std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
-/// "–" for an empty text.
 inline std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
 /// "xpbd substeps=4": the solver, and the setting if it is not the default.
 std::string label_of(const RunRecord&);
@@ -139,9 +135,11 @@ struct Row {
   const RunRecord* run = nullptr;
   nlohmann::json scenario = {};
   Part part = Part::Rates;
-  std::string scene = {};   ///< with the labels of axes
-  std::string name = {};    ///< from the scene's file, without the labels of axes
-  std::string family = {};  ///< common to scenes that differ only in resolution and sides; "x (2)" if x is taken
+  std::string scene = {};  ///< with the labels of axes
+  std::string name = {};   ///< from the scene's file, without the labels of axes
+  /// Common to scenes that differ only in resolution and sides: the name of their file; if it is taken, the words that
+  /// their names have in common, or the file's name and the result folder.
+  std::string family = {};
   std::string solver = {}, setting = {}, sides = {};
   bool contact = false;  ///< the scene has colliders or hands that grip the cloth
   bool leads = false;    ///< this scene with contact is on the first screen
@@ -173,8 +171,7 @@ struct Row {
   double frame_rate_hz() const;
   /// Wall time [ms] per simulated second; pipelined if the solver supports it.
   double wall_ms_per_s() const;
-  /// Time [ms] per simulated second if each call waits for its frame: by wall clock, and by the device's clock.
-  double fenced_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_wall_median_s"); }
+  /// Time [ms] per simulated second by the device's clock.
   double device_ms_per_s() const { return 1e3 * frame_rate_hz() * value("frame_device_median_s"); }
   double error() const { return value("truth_error"); }
   /// The run is ok and has an error.
@@ -185,6 +182,8 @@ struct Row {
   std::pair<double, double> offset_m() const;
   /// Conditions of the timed trials, as the file states them: "alone", "alone, throttled (1980 to 1400 MHz)", …
   std::string trust() const;
+  /// Why this run has no verdict, or no times; empty if it has.
+  std::string not_judged() const, not_timed() const;
   /// Sampled parameters of a randomly generated scene; null for any other scene.
   nlohmann::json drawn() const;
 };

@@ -11,7 +11,7 @@
 namespace clothbench {
 namespace {
 
-const Cell kNotRun("not run", kMissing, "dim");
+const Cell kNotRun("not run", kMissing, "dim", "no run of this solver in this scene in the studies of this report");
 
 /// A row of a table before its cells are computed.
 struct TableRow {
@@ -93,10 +93,7 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
   t.rows.resize(rows.size() + 1);
   t.cells.resize(rows.size());
   t.explains = v.explains;
-  for (const TableRow& r : rows) {
-    t.runs.push_back(r.runs.front());
-    t.again.push_back(r.runs);
-  }
+  for (const TableRow& r : rows) t.again.push_back(r.runs);
   for (std::size_t k = 0; k < v.keys.size(); ++k) {
     if (v.keys[k].head.empty()) continue;
     std::vector<Cell> cells;
@@ -120,13 +117,15 @@ ViewTable table_of(const View& v, const std::string& title, const Group& runs) {
       any = any || (found && !cells.back().is_missing());
       if (at != r.across.end() && v.across->key.is_solver) solver = at->second.front()->solver;
     }
-    if (v.across->leading < SIZE_MAX)
-      (across.size() - n > v.across->leading ? t.late : t.lead).push_back(t.rows[0].size());
+    if (across.size() - n <= v.across->leading) t.lead.push_back(t.rows[0].size());
     add_column(t, across[n], cells, true, solver);
   }
   for (const ViewColumn& c : v.columns) {
     std::vector<Cell> cells;
-    for (const TableRow& r : rows) cells.push_back(c.cell(r.runs, r.keys));
+    for (const TableRow& r : rows) {
+      cells.push_back(c.cell(r.runs, r.keys));
+      if (v.timed && r.runs.size() == 1 && cells.back().is_missing()) cells.back().why = r.runs.front()->not_timed();
+    }
     std::set<std::string> texts;
     for (const Cell& cell : cells)
       if (!cell.is_missing()) texts.insert(cell.text);
@@ -157,18 +156,6 @@ ViewColumn column(std::string head, std::function<Cell(const Row&)> cell, bool i
           if_differs};
 }
 
-Across by_bands(const std::vector<double>& lows, std::function<double(const Row&)> value,
-                std::function<Cell(const Group&, const Keys&)> cell, double gap, const char* unit) {
-  const auto low = [=](const Row& r) {
-    return *std::find_if(lows.rbegin(), lows.rend() - 1, [v = value(r)](double end) { return v >= end; });
-  };
-  const auto name = [=](const Row& r) {
-    const auto next = std::upper_bound(lows.begin(), lows.end(), low(r));
-    return (next == lows.end() ? fmt::format("≥ {:g}", low(r)) : fmt::format("{:g}–{:g}", low(r), *next - gap)) + unit;
-  };
-  return {key("", name), std::move(cell), low, 0};
-}
-
 Cell trials_cell(const Row& r) {
   return r.run->trials.empty() ? Cell() : number_cell(static_cast<double>(r.run->trials.size()), 1);
 }
@@ -183,7 +170,7 @@ std::vector<ViewTable> tables_of(const View& v, const RunTable& table) {
   }
   std::vector<ViewTable> out;
   for (const auto& [title, runs] : groups)
-    if (ViewTable t = table_of(v, title, runs); t.rows.size() > 1 && t.runs[0]->published < 0)
+    if (ViewTable t = table_of(v, title, runs); t.rows.size() > 1 && t.again[0][0]->published < 0)
       out.push_back(std::move(t));
   return out;
 }
@@ -220,10 +207,14 @@ Cell ending_cell(const RunRecord& c) {
 }
 
 Cell verdict_cell(const Row& r) {
-  if (r.status() != "ok") return ending_cell(*r.run);
   const std::string v = verdict(*r.run);
-  Cell out(v == kNoVerdict ? "" : v, kMissing, v == "pass" ? "good" : v == "fail" ? "bad" : "dim");
+  Cell out = r.status() != "ok" ? ending_cell(*r.run)
+                                : Cell(v == kNoVerdict ? "" : v, kMissing,
+                                       v == "pass"   ? "good"
+                                       : v == "fail" ? "bad"
+                                                     : "dim");
   if (v == "fail") out.run = &r;
+  if (v != "pass" && v != "fail") out.why = r.not_judged();
   return out;
 }
 

@@ -20,9 +20,11 @@ struct Cell {
   double value = kMissing;   ///< NaN: the text is not a number
   const char* tone = "";     ///< "good", "bad", "dim" or none
   const Row* run = nullptr;  ///< run with this solver's name, or with this failed verdict, which the page explains
+  std::string why = {};      ///< why there is no verdict or value
 
   Cell() = default;
-  Cell(std::string t, double v = kMissing, const char* tinted = "") : text(std::move(t)), value(v), tone(tinted) {}
+  Cell(std::string t, double v = kMissing, const char* tinted = "", std::string reason = {})
+      : text(std::move(t)), value(v), tone(tinted), why(std::move(reason)) {}
   Cell(const char* t) : text(t) {}
   bool is_missing() const { return text.empty(); }
 };
@@ -75,18 +77,13 @@ Cell ratio_cell(const Row&, double value, const Interval&, double by, const Inte
 Cell trials_cell(const Row&), rank_cell(const Row&), times_as_fast_cell(const Row&);
 
 /// Columns that depend on the runs: one per value of `key`, ascending by `order`. On the page the last `leading` of
-/// them come first, and in a narrow window the others last.
+/// them come first.
 struct Across {
   Key key;
   std::function<Cell(const Group&, const Keys& keys)> cell;
   std::function<double(const Row&)> order = nullptr;
-  std::size_t leading = SIZE_MAX;
+  std::size_t leading = 0;
 };
-
-/// One column per band of `value`; `lows`: lower ends, ascending. A column's name shows both ends of its band; the
-/// upper end is the next band's lower end minus `gap` (1 for integers).
-Across by_bands(const std::vector<double>& lows, std::function<double(const Row&)> value,
-                std::function<Cell(const Group&, const Keys&)> cell, double gap = 0, const char* unit = "");
 
 /// A table of a report as data. Every table of report.md, tables.tex, the page and the terminal is made from one.
 struct View {
@@ -106,11 +103,9 @@ struct View {
 
 /// A table with its runs, for the page's filters and commands.
 struct ViewTable : Table {
-  std::vector<const Row*> runs = {};          ///< the first run of each row
-  std::vector<Group> again = {};              ///< by row: the runs that its command repeats
+  std::vector<Group> again = {};              ///< by row: its runs, which its command repeats
   std::size_t keys = 0;                       ///< number of columns that identify a row
   std::vector<std::size_t> lead = {};         ///< columns that come first on the page, after the keys
-  std::vector<std::size_t> late = {};         ///< columns that come last in a narrow window
   int solver_column = -1;                     ///< column of the key that names the solver; -1: none
   bool explains = false;                      ///< copied from View::explains
   std::vector<std::vector<Cell>> cells = {};  ///< rows below the head; empty if there is only text
@@ -129,24 +124,16 @@ const std::vector<View>& views();
 std::string expected_of(const Row&, const std::string& criterion);
 Cell found_of(const Row&, const std::string& criterion);
 /// Contact offset [mm] of these runs, "3.5 to 20" if they differ; empty without colliders.
-std::string offset_of(const Group&);
+Cell offset_of(const Group&);
+ViewColumn offset_column();
 /// "S01 stiffness" for a scene with stability rules.
 std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if there are no stability rules, the scene is unsupported or the run is missing.
 int grade_of(const Row&);
 
-/// A run for a claim of the article, with the settings that the article leaves open.
-struct ClaimPoint {
-  std::string claim;
-  double iterations = 1, substeps = 1;
-  std::size_t bounds = 0;  ///< without the motion check, which is not part of a claim
-  Texts missed = {};       ///< names of the violated or not measured ones
-  bool ended = false;
-  bool holds() const { return ended && bounds > 0 && missed.empty(); }
-  /// Exactly one of several bounds is violated.
-  bool is_near() const { return ended && bounds > 1 && missed.size() == 1; }
-};
-ClaimPoint claim_point(const Row&);
+/// For the map of a claim: kind, iterations, substeps, dispatches per frame; `claim`: "holds", "near" (one criterion is
+/// violated) or "fails".
+nlohmann::json claim_fields(const Row&);
 /// Table 4: features by solver, from the environments of these runs (describe_features); "not built" for a solver that
 /// a build lacks.
 View feature_view();

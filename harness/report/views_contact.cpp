@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "report/view.hpp"
 
@@ -52,7 +54,7 @@ View contact() {
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
       column("verdict", verdict_cell),
-      column("contact offset [mm]", [](const Row& r) { return Cell(offset_of({&r}), 1e3 * r.offset_m().first); }),
+      offset_column(),
       values("crossings", {"crossings_max"}),
       values("contour, max / settled [mm]", {"contact_length_max_m", "contact_length_settled_m"}, 1e3),
       values("depth [mm]", {"depth_max_m"}, 1e3),
@@ -89,34 +91,51 @@ View pass_rates() {
                return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
              }}};
   const auto speed = [](const Row& r) { return r.drawn().value("speed_m_per_s", 0.0); };
-  v.across = by_bands({0, 2, 5, 10}, speed, pass_rate, 0, " m/s");
-  v.across->key.of = [=, band = v.across->key.of](const Row& r) { return speed(r) > 0 ? band(r) : Keys(); };
+  const auto band = [=](const Row& r) -> Keys {
+    for (const auto& [low, name] : {std::pair{10, "≥ 10 m/s"}, {5, "5–10 m/s"}, {2, "2–5 m/s"}, {0, "0–2 m/s"}})
+      if (speed(r) > 0 && speed(r) >= low) return {std::string(name)};
+    return {};
+  };
+  v.across = Across{{"", band}, pass_rate, speed, 0};
   v.columns = {{kAllRuns, pass_rate},
                column(
                    "device", [](const Row& r) { return short_name(environment_text(*r.run, "gpu")); }, true),
-               {"contact offset [mm]", [](const Group& g, const Keys&) { return Cell(offset_of(g)); }}};
+               offset_column()};
   v.by_key = true;
   v.more = [](const Group& g) {
-    const auto missing = std::count_if(g.begin(), g.end(), [](const Row* r) { return r->status() == "missing"; });
-    return missing == 0 ? std::string()
-                        : fmt::format(
-                              "{} of {} runs are missing. Long runs start first, so rates of an unfinished study are "
-                              "biased; --resume completes it.",
-                              missing, g.size());
+    std::map<std::string, std::set<std::string>> kinds;  // by solver; "": of all
+    for (const Row* r : g)
+      for (const std::string& solver : {label_of(*r->run), std::string()})
+        kinds[solver].insert(r->drawn().value("kind", ""));
+    Texts lacking;
+    for (const auto& [solver, own] : kinds)
+      for (const std::string& kind : kinds.at(""))
+        if (!own.contains(kind)) lacking.push_back(solver + in_brackets(kind));
+    std::string out = lacking.empty() ? "" : "The study's plan leaves out " + joined(lacking) + ". ";
+    if (const auto missing = std::count_if(g.begin(), g.end(), [](auto* r) { return r->status() == "missing"; }))
+      out += fmt::format(
+          "{} of {} runs are missing. Long runs start first, so rates of an unfinished study are biased; --resume "
+          "completes it.",
+          missing, g.size());
+    return out;
   };
   return v;
 }
 
 }  // namespace
 
-std::string offset_of(const Group& g) {
+Cell offset_of(const Group& g) {
   double least = kMissing, most = kMissing;
   for (const Row* r : g) {
-    least = std::fmin(least, r->offset_m().first);
-    most = std::fmax(most, r->offset_m().second);
+    least = std::fmin(least, 1e3 * r->offset_m().first);
+    most = std::fmax(most, 1e3 * r->offset_m().second);
   }
-  if (!std::isfinite(most)) return "";
-  return least == most ? fmt::format("{:.3g}", 1e3 * most) : fmt::format("{:.3g} to {:.3g}", 1e3 * least, 1e3 * most);
+  if (!std::isfinite(most)) return {};
+  return {least == most ? fmt::format("{:.3g}", most) : fmt::format("{:.3g} to {:.3g}", least, most), least};
+}
+
+ViewColumn offset_column() {
+  return {"contact offset [mm]", [](const Group& g, const Keys&) { return offset_of(g); }};
 }
 
 std::vector<View> contact_views() { return {verdicts(), contact(), pass_rates()}; }

@@ -62,13 +62,14 @@ void add_time_columns(View& v, const std::function<Timed(const Group&, const Key
   add("real-time factor", [](auto& r, auto& t) { return number_cell(1 / (r.frame_rate_hz() * t.at(0.5)), 3); });
 }
 
-/// p50, p95, p99 and worst of one clock's times.
+/// p50, p95, p99 and worst.
+Cell quantiles_cell(const FrameTimes& t) {
+  return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
+}
+
 ViewColumn quantiles(const char* head, FrameTimes RunTimes::*times, const Pick& pick) {
-  const auto text = [times](const Row& r) {
-    const FrameTimes& t = (*r.times).*times;
-    return t.sorted.empty() ? Cell() : Cell(milliseconds(t.at(0.5)) + " / " + tails_cell(t).text, t.at(0.5));
-  };
-  return column(head, text, false, pick);
+  return column(
+      head, [times](const Row& r) { return quantiles_cell((*r.times).*times); }, false, pick);
 }
 
 /// Adds columns for conditions in which the solvers of a table can differ.
@@ -156,7 +157,7 @@ View sustained() {
       all.sorted = t.*times;
       std::erase_if(all.sorted, [](double s) { return !std::isfinite(s); });
       std::sort(all.sorted.begin(), all.sorted.end());
-      return all.sorted.empty() ? Cell() : Cell(milliseconds(all.at(0.5)) + " / " + tails_cell(all).text, all.at(0.5));
+      return quantiles_cell(all);
     });
   };
   add("from [s]", [](const Row& r, const TimedTrial& t) {
@@ -214,14 +215,14 @@ View in_short(std::function<bool(const Row&)> where, const Pick& pick = first_of
   v.keys = {scene_key(), solver_key()};
   v.columns = {column("outcome",
                       [](const Row& r) {
-                        const bool judged =
-                            r.status() != "ok" || bounds_of(*r.run) > 0 || !r.run->outcome.expect.empty();
-                        return judged ? verdict_cell(r) : Cell(r.status());
+                        const Cell judged = verdict_cell(r);
+                        return judged.is_missing() ? Cell(r.status()) : judged;
                       }),
                column("stretch [%]", [](const Row& r) {
                  const double percent = 100 * r.value("stretch_max_last_second");
                  return percent > 0 && percent < 1e-3 ? Cell("<0.001", percent) : number_cell(percent, 3);
                })};
+  v.columns.push_back(offset_column());
   v.columns.push_back(column("p50: × " + time_baseline(), times_as_fast_cell));
   v.columns.push_back(column("rank", rank_cell));
   v.columns.push_back(quantiles("with contact: p50 / p95 / p99 / worst [ms]", &RunTimes::contact_wall, pick));

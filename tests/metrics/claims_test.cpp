@@ -68,7 +68,7 @@ Path pops(double by_m) {
   };
 }
 
-/// Violated criteria, counted as in the report's `claim_point`: without the motion check.
+/// Violated criteria, counted as in the report's `claims_of`: without the motion check.
 std::string unmet(const Scene& scene, const Path& path) {
   std::string out;
   for (const std::string& name : unmet_bounds(scene, prescribed(path)))

@@ -68,7 +68,7 @@ def offset(x):
     """Contact offsets: those that a solver states, otherwise the scene's."""
     of = lambda r: stated if len(stated := r.header.get("plan", {}).get("contact_margins", [])) == len(r.scenario.get("colliders", [])) else r.scenario["colliders"]  # noqa: E731
     mm = [1e3 * c["margin_m"] for r in x.runs if r.status not in ("unsupported", "missing") for c in of(r) if "margin_m" in c]
-    return (" to ".join(dict.fromkeys(f"{v:.3g}" for v in (min(mm), max(mm)))), min(mm) if "verdict" in x.keys else None) if mm else "–"
+    return (" to ".join(dict.fromkeys(f"{v:.3g}" for v in (min(mm), max(mm)))), min(mm)) if mm else "–"
 
 
 def stable(g, _):
@@ -166,10 +166,10 @@ def compare_tables(doc, runs):
     compared, faults = collections.Counter(), []
     for t in (t for s in doc["sections"] for t in s["tables"] if not any(re.fullmatch(name, t["title"]) for name in LEFT_OUT)):
         across = next(((of, cell) for start, of, cell in ACROSS if re.match(start, t["title"])), None)
-        pool = [runs[n] for again in t["again"] for n in again] or [r for r in runs if r.status != "missing" and not r.row.get("published")]
-        for cells, again, k in ((c, again, k) for c, again, k in zip(t["rows"][1:], t["again"], t["runs"]) if not runs[k].row.get("published")):
+        pool = [runs[n] for again in t["again"] for n in again]
+        for cells, again in ((c, again) for c, again in zip(t["rows"][1:], t["again"]) if not runs[again[0]].row.get("published")):
             keys = dict(zip(t["rows"][0], map(text_of, cells)))
-            mine = [runs[n] for n in again] or [runs[k]] * ("criterion" in keys) or [r for r in pool if keys.get("solver") in (None, r.row["label"])]
+            mine = [runs[n] for n in again]
             line = Line(mine, keys, [r for r in runs if r.row["part"] == "accuracy" and r.row["scene"] == mine[0].row["scene"]])
             for n, (head, c) in enumerate(zip(keys, cells)):
                 (text, value), group = c[:2] if isinstance(c, list) else (c, None), across and [r for r in mine if across[0](r) == head]
@@ -202,8 +202,9 @@ def compare_rows(runs):
     left_out, count = {*"part study job name plugin file family label scene solver setting published largest fps_low fps_high trust frames ranking refused not_ranked violated".split()}, 0
     fact = lambda r, name: next((q.value(name) for q in runs if q.row["scene"] == r.row["scene"] and finite(q.value(name))), NAN)  # noqa: E731
     for r in runs:
-        s, grid = r.scenario, r.scenario["cloth"].get("grid", [0, 0])
-        told = {"status": r.status, "verdict": r.verdict(), "sides": s["cloth"].get("sides"), "cpu": r.environment.get("gpu") == "CPU", "message": r.outcome["message"], "trials": r.value("trials"), "width": math.sqrt(grid[0] * grid[1]),
+        s, e, grid = r.scenario, r.environment, r.scenario["cloth"].get("grid", [0, 0])
+        device = e["cpu" if e["gpu"] == "CPU" else "gpu"].split(" (")[0]
+        told = {"status": r.status, "verdict": r.verdict(), "sides": s["cloth"].get("sides"), "cpu": r.environment.get("gpu") == "CPU", "message": r.outcome["message"] or r.row.get("message"), "made": f"at {e['git_commit'][:12]}{' (with local changes)' * e['git_dirty']}" + f", on {device}" * (device != ""), "trials": r.value("trials"), "width": math.sqrt(grid[0] * grid[1]),
                 "is_grid": grid[0] > 0, "resolution": f"{grid[0]}²" if grid[0] == grid[1] else f"{grid[0]}×{grid[1]}", "paper_table": s.get("paper", {}).get("table", 0), "grade": r.grade if "stability" in s else None, "wall_ms_per_s": r.wall_ms, "device_ms_per_s": r.device_ms,
                 "error": r.error, "space_error": fact(r, "truth_space_error"), "reference_uncertainty": fact(r, "reference_uncertainty"), "case": "stability" in s and KEYS["case"](r, None), "speed": s.get("drawn", {}).get("speed_m_per_s"),
                 "kind": s.get("drawn", {}).get("kind")}

@@ -54,7 +54,9 @@ json figure_row(const Row& r) {
   };
   add("sides", r.sides);
   add("frames", r.frames_mark());
-  add("message", r.run->outcome.message);
+  add("message", r.not_judged());
+  const std::string commit = commit_of(*r.run), device = device_of(*r.run);
+  if (!commit.empty()) add("made", "at " + commit + (device.empty() ? "" : ", on " + device));
   if (const json plugin = environment_of(*r.run, "plugin"); plugin.is_object())
     add("plugin", fs::path(plugin.value("path", "")).filename());
   if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
@@ -66,16 +68,7 @@ json figure_row(const Row& r) {
   add_times(r, out);
   if (r.part == Part::Generated)
     out.update({{"kind", r.drawn().value("kind", "")}, {"speed", rounded(r.drawn().value("speed_m_per_s", kMissing))}});
-  if (r.part == Part::Claims) {
-    const ClaimPoint p = claim_point(r);
-    out.update({{"kind", p.claim},
-                {"iterations", p.iterations},
-                {"substeps", p.substeps},
-                {"claim", p.holds()     ? "holds"
-                          : p.is_near() ? "near"
-                                        : "fails"},
-                {"dispatches", rounded(r.value("dispatches"))}});
-  }
+  if (r.part == Part::Claims) out.update(claim_fields(r));
   if (r.scaled) {
     out["family"] = r.family;
     out["paper_table"] = r.paper_table;
@@ -141,44 +134,24 @@ json studies_of(const RunTable& table, json& rows) {
   return out;
 }
 
-/// The head, then rows of cells. A cell is a text, or [text, value or null, tone, index of its run if it has one].
-json rows_json(const ViewTable& t, const Row* first) {
-  json out = t.rows;
+/// Its rows are the head, then rows of cells. A cell is a text, or [text, value or null, tone, index of its run or
+/// null, why].
+json table_json(const ViewTable& t, const Row* first) {
+  json rows = t.rows, again = json::array();
   for (std::size_t r = 0; r < t.cells.size(); ++r)
     for (std::size_t c = 0; c < t.cells[r].size(); ++c) {
       const Cell& cell = t.cells[r][c];
-      if (std::isfinite(cell.value) || *cell.tone != 0 || cell.run != nullptr)
-        out[r + 1][c] = {cell.text, rounded(cell.value), cell.tone};
-      if (cell.run != nullptr) out[r + 1][c].push_back(cell.run - first);
+      const json run = cell.run == nullptr ? json() : json(cell.run - first);
+      if (std::isfinite(cell.value) || *cell.tone != 0 || !run.is_null() || !cell.why.empty())
+        rows[r + 1][c] = {cell.text, rounded(cell.value), cell.tone, run, cell.why};
     }
-  return out;
-}
-
-json table_json(const ViewTable& t, const Row* first) {
-  json runs = json::array(), again = json::array();
-  for (const Row* r : t.runs) runs.push_back(r - first);
   for (const Group& g : t.again) {
     again.push_back(json::array());
     for (const Row* r : g) again.back().push_back(r - first);
   }
-  return {{"title", t.title},
-          {"note", t.note},
-          {"rows", rows_json(t, first)},
-          {"runs", runs},
-          {"again", again},
-          {"keys", t.keys},
-          {"late", t.late},
-          {"solver_column", t.solver_column},
-          {"solvers", t.solvers},
-          {"lead", t.lead},
-          {"explains", t.explains}};
-}
-
-json tile_json(const Tile& t) {
-  json entries = json::array();
-  for (const Tile::Entry& e : t.entries)
-    entries.push_back({{"solver", e.solver}, {"label", e.label}, {"value", e.value}, {"about", e.about}});
-  return {{"title", t.title}, {"entries", entries}};
+  return {{"title", t.title},     {"note", t.note}, {"rows", rows},
+          {"again", again},       {"keys", t.keys}, {"solver_column", t.solver_column},
+          {"solvers", t.solvers}, {"lead", t.lead}, {"explains", t.explains}};
 }
 
 std::string escaped(const std::string& text) {
@@ -233,7 +206,12 @@ json rounded(double v) { return std::isfinite(v) ? json(std::stod(fmt::format("{
 
 json page_document(const RunTable& table, const Page& page) {
   json shown = json::array(), rows = json::array(), tiles = json::array();
-  for (const Tile& t : page.tiles) tiles.push_back(tile_json(t));
+  for (const Tile& t : page.tiles) {
+    json entries = json::array();
+    for (const Tile::Entry& e : t.entries)
+      entries.push_back({{"solver", e.solver}, {"label", e.label}, {"value", e.value}, {"about", e.about}});
+    tiles.push_back({{"title", t.title}, {"entries", std::move(entries)}});
+  }
   for (const Row& r : table.rows()) rows.push_back(figure_row(r));
   json studies = studies_of(table, rows);
   for (const PageSection& s : page.sections) {

@@ -123,7 +123,7 @@ function rates(doc) {
     columns: ['label', 'sides', 'resolution', 'fps_median', 'fps_low', 'fps_high', 'free_fall_error', 'value'],
     stills: [
       ...Object.entries(kRates).filter(([, v]) => v.still).map(([Value, v]) => ({file: v.still, state: {Scene: main, Value}})),
-      ...unique(all.filter(r => r.part === 'contact').map(r => r.family)).map(f => ({file: `scale-${f.replace(/ .(\d+)./, '-$1')}`, state: {Scene: f, Value: 'tail'}}))
+      ...unique(all.filter(r => r.part === 'contact').map(r => r.family)).map(f => ({file: `scale-${f.replace(/ \((.*)\)/, '-$1')}`, state: {Scene: f, Value: 'tail'}}))
     ]
   };
 }
@@ -353,20 +353,26 @@ export function settled(figure, given) {
 }
 
 /// Commands that repeat runs, with only their solvers and, unless `whole`, only their scenes and settings: per study one for the
-/// solvers of clothbench and one per plugin, so that a build without a plugin can run all others.
+/// solvers of clothbench and one per plugin, so that a build without a plugin can run all others. A comment before each names the
+/// commit and device of its runs.
 export function command_of(doc, runs, whole = false) {
   if (runs[0]?.again) return runs[0].again;
   const groups = new Map();
   for (const r of runs) if (doc.studies[r.study]?.command) (k => groups.set(k, [...groups.get(k) ?? [], r]))(`${r.study} ${r.plugin ?? ''}`);
   return [...groups.values()].map(mine => {
-    const {study: n, plugin} = mine[0], study = doc.studies[n], solvers = unique(mine.map(r => r.solver)), given = [];
-    const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
-    const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
-    if (whole || !['study', 'run'].includes(words[1]) || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
-    if (words[1] === 'study') return [...words, ...with_solvers, `--out again-${study.study} --job`, mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
-    const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
-    return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
+    const made = unique(mine.map(r => r.made).filter(Boolean)).join('; ');
+    return (made && `# ${made}\n`) + study_command(doc, mine, whole);
   }).join('\n');
+}
+
+function study_command(doc, mine, whole) {
+  const {study: n, plugin} = mine[0], study = doc.studies[n], solvers = unique(mine.map(r => r.solver)), given = [];
+  const words = study.command.replace(/ --(solver|jobs)((?:[ =](?!-)\S+)+)/g, (_, name, values) => (given.push(...values.split(/[ =]/)), '')).split(' ');
+  const chosen = given.filter(w => plugin && w.endsWith(plugin)), with_solvers = ['--solver', ...(chosen.length ? chosen : solvers)];
+  if (whole || !['study', 'run'].includes(words[1]) || doc.runs.filter(r => r.study === n && solvers.includes(r.solver)).length === mine.length) return [...words, ...with_solvers].join(' ');
+  if (words[1] === 'study') return [...words, ...with_solvers, `--out again-${[study.study, ...solvers].join('-')} --job`, mine.map(r => r.name ?? r.file.replace(/\.\w+$/, '')).join(',')].join(' ');
+  const end = words.findIndex((w, k) => k > 2 && w[0] === '-'), scenes = words.slice(2, end < 0 ? undefined : end), each = study.runs / scenes.length;
+  return ['clothbench run', ...scenes.filter((_, k) => mine.some(r => Math.floor(r.job / each) === k)), ...(end < 0 ? [] : words.slice(end)), ...with_solvers].join(' ');
 }
 
 /// The result files of runs: the first ones, and the number of all others.

@@ -133,7 +133,7 @@ class Figure {
     const table = {
       title: `Values: ${entry.title(this.state)}`,
       rows: [entry.columns, ...rows.map(r => entry.columns.map(name => typeof r[name] === 'number' ? [String(r[name]), r[name]] : String(r[name] ?? '')))],
-      again: rows.map(r => (r.behind ?? [r]).map(d => d.index)), runs: [], solver_column: -1, solvers: []
+      again: rows.map(r => (r.behind ?? [r]).map(d => d.index)), solver_column: -1, solvers: []
     };
     const values = new ShownTable(doc, this.look, table, `${entry.id}-values`);
     this.values.replaceChildren(values.block);

@@ -5,9 +5,8 @@ import {icon, unique} from './look.js';
 import {hide_solvers, set_value, shown, state} from './state.js';
 
 const kFew = 15, kMostKeys = 4, kShort = 40, kLong = 60, kNarrow = matchMedia('(max-width: 760px)'), kMedium = matchMedia('(max-width: 1180px)');
-const kPaper = 132, kWrap = 24;  // characters across a printed page; characters at which a cell wraps
-/// A cell of a document's table: a text, or [text, value, tone, index of a run]. Tables sort by the value and tint by the tone.
-const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2], run: c[3]} : {text: c};
+/// A cell of a document's table: a text, or [text, value, tone, index of a run, why]. Tables sort by the value and tint by the tone.
+const typed = c => Array.isArray(c) ? {text: c[0], value: c[1] ?? undefined, tone: c[2], run: c[3] ?? undefined, why: c[4] || null} : {text: c};
 
 const kLongCommand = 400;  // characters
 export const shortened = text => text.length > kLongCommand ? `${text.slice(0, kLongCommand)} …` : text;
@@ -45,7 +44,7 @@ export class ShownTable {
   constructor(doc, look, table, id) {
     Object.assign(this, {doc, look, table, id});
     this.head = table.rows[0];
-    this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.runs[k]], runs: table.again[k].map(n => doc.runs[n])}));
+    this.body = table.rows.slice(1).map((cells, k) => ({cells: cells.map(typed), run: doc.runs[table.again[k][0]], runs: table.again[k].map(n => doc.runs[n])}));
     this.numeric = this.head.map((_, k) => this.body.some(r => r.cells[k].value !== undefined));
     this.place = element('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Table: ${table.title}`, onscroll: () => this.tell_hidden()});
     this.rest = button('', null, () => (this.whole = !this.whole, this.fill()), {class: 'quiet', hidden: true});
@@ -73,26 +72,13 @@ export class ShownTable {
     });
   }
 
-  /// Orders the columns. In a narrow window the first cell also shows the other short keys, and detail columns come last.
+  /// Orders the columns. In a narrow window the first cell also shows the other short keys.
   arrange() {
-    const {solvers, keys = 1, late = [], lead = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
+    const {solvers, keys = 1, lead = []} = this.table, short = k => this.body.every(r => r.cells[k].text.length <= kShort);
     const joins = !this.prints && keys <= kMostKeys && (kNarrow.matches || (keys > 2 && kMedium.matches));
-    const rank = k => k < keys ? 0 : lead.includes(k) ? 1 : kNarrow.matches && late.includes(k) ? 3 : 2, all = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
+    const rank = k => k < keys ? 0 : lead.includes(k) ? 1 : 2, all = this.head.map((_, k) => k).filter(k => shown(solvers[k]));
     this.joined = joins ? all.filter(k => k > 0 && k < keys && short(k)) : [];
     this.columns = all.filter(k => !this.joined.includes(k)).sort((a, b) => rank(a) - rank(b));
-  }
-
-  /// The columns in parts that fit a page; each part repeats the keys.
-  parts() {
-    if (!this.prints) return [this.columns];
-    const {keys = 1} = this.table, out = [[]];
-    const width = k => 2 + Math.max(...this.head[k].split(' ').map(w => w.length), ...this.body.map(r => Math.min(kWrap, r.cells[k].text.length)));
-    const fixed = this.columns.filter(k => k < keys), free = kPaper - fixed.reduce((sum, k) => sum + width(k), 0);
-    for (const k of this.columns.filter(k => k >= keys)) {
-      if (out.at(-1).length && [...out.at(-1), k].reduce((sum, c) => sum + width(c), 0) > free) out.push([]);
-      out.at(-1).push(k);
-    }
-    return out.map(part => [...fixed, ...part]);
   }
 
   /// Shows how many columns are hidden to the right. The first key stays in view; the second does if half of the box is enough.
@@ -128,7 +114,7 @@ export class ShownTable {
     ];
     const content = (named && k !== this.table.solver_column && this.criteria(named, text)) || (long && !this.prints ? element('div', {tabindex: '0'}, text) : parts(k));
     return element(
-        k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value}, content,
+        k === 0 ? 'th' : 'td', {scope: k === 0 && 'row', class: [shape, tone].filter(Boolean).join(' ') || null, 'data-value': value, title: cells[k].why}, content,
         ...more.map(j => element('small', {}, ...parts(j).filter(p => p !== null))));
   }
 
@@ -149,19 +135,17 @@ export class ShownTable {
   fill() {
     const all = this.sorted(), rows = this.prints || this.whole ? all : all.slice(0, kFew), {head} = this, buttons = rows.map(r => this.prints ? null : this.again(r)), any = buttons.some(Boolean);
     this.arrange();
-    const parts = this.parts().map(columns => {
-      const titles = [columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
-      const body = rows.map(({cells, run}, n) => {
-        const last = any ? element('td', {}, buttons[n] ?? '') : null;
-        return element('tr', {class: run?.published && 'published'}, columns.map(k => this.cell(cells, k, run)), last);
-      });
-      return element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body));
+    const titles = [this.columns.map(k => this.head_cell([k, ...(k === 0 ? this.joined : [])].map(j => head[j]).join(', '), k)), any ? element('th', {scope: 'col'}, 'run again') : null];
+    const body = rows.map(({cells, run}, n) => {
+      const last = any ? element('td', {}, buttons[n] ?? '') : null;
+      return element('tr', {class: run?.published && 'published'}, this.columns.map(k => this.cell(cells, k, run)), last);
     });
-    this.place.replaceChildren(...parts);
+    const table = element('table', {}, element('thead', {}, element('tr', {}, ...titles)), element('tbody', {}, body));
+    this.place.replaceChildren(table);
     this.place.classList.toggle('whole', rows.length > kFew);
     this.rest.hidden = all.length <= kFew;
     this.rest.textContent = this.whole ? `show the first ${kFew} rows` : `show all ${all.length} rows`;
-    for (const part of parts) this.sizes.observe(part);
+    this.sizes.observe(table);
     this.filled = true;
   }
 }
