@@ -53,7 +53,7 @@ TEST_P(Hands, VolumeOfPoses) {
   EXPECT_NEAR(1e6 * volume_of(hand, hand.pose("point")), left ? 338.845 : 347.772, 0.01);
 }
 
-TEST_P(Hands, PalmFrame) {
+TEST_P(Hands, PalmFrameAndPinch) {
   NEED_NPM_ASSETS(source);
   const Hand hand = open_hand(source, GetParam());
   for (auto name : kPoseNames) {
@@ -63,14 +63,10 @@ TEST_P(Hands, PalmFrame) {
     const double thumb_x = pose.joints[kThumb].translation().x();
     EXPECT_TRUE(GetParam() == Side::Right ? thumb_x < 0 : thumb_x > 0);
   }
+  const JointFrames& pinch = hand.pose("pinch").joints;
+  EXPECT_LT((pinch[kThumb + 3].translation() - pinch[kIndex + 4].translation()).norm(), 0.005) << "thumb meets finger";
   EXPECT_GT(hand.pose("relaxed").joints[kMiddle + 4].translation().y(), 0.1);
   EXPECT_LT(hand.pose("point").joints[kMiddle + 1 + 1].translation().z(), -0.03) << "fingers bend to the palm, -z";
-}
-
-TEST_P(Hands, PinchMeets) {
-  NEED_NPM_ASSETS(source);
-  const HandPose pose = open_hand(source, GetParam()).pose("pinch");
-  EXPECT_LT((pose.joints[kThumb + 3].translation() - pose.joints[kIndex + 4].translation()).norm(), 0.005);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, Hands, testing::Values(Side::Left, Side::Right),

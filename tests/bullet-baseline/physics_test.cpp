@@ -15,15 +15,6 @@ Collider floor_below(double height_m) {
   return c;
 }
 
-TEST_P(Bullet, SaysWhatItCannotDo) {
-  const SolverInfo& info = find_solver(GetParam()).info;
-  for (Feature f : {Feature::DuplicatedLayer, Feature::SelfCollision})
-    EXPECT_EQ(unsupported(info, {Feature::Stretch, f}), FeatureSet{f});
-  EXPECT_TRUE(
-      unsupported(info, kColliderFeatures | FeatureSet{Feature::Friction, Feature::DoubleSided, Feature::MovingPins})
-          .empty());
-}
-
 TEST_P(Bullet, TellsTheMarginThatItKeepsInsteadOfTheScenes) {
   Scene s = with_collider(sheet(5, 4), floor_below(-0.5));
   s.colliders.push_back(s.colliders[0]);

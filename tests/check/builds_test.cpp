@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <random>
 
 #include "check/compare.hpp"
@@ -192,28 +191,21 @@ TEST(CompareRuns, OneProcessASideMakesNoStatement) {
   EXPECT_TRUE(row["p"].is_null());
 }
 
-struct Other {
-  const char* kind;
-  const char *a, *b;  ///< both values in the error message
-  std::function<void(RunRecord&)> change;
-};
-
 TEST(CompareRuns, OtherConditionsAreRefusedByNameUnlessAllowed) {
-  const Other all[] = {
-      {"scene", "5ce2e", "07e4", [](RunRecord& r) { r.header.scenario_sha256 = "07e4"; }},
-      {"machine", "CPU one", "CPU two", [](RunRecord& r) { r.header.environment["cpu"] = "CPU two"; }},
-      {"device", "GPU one", "GPU two", [](RunRecord& r) { r.header.environment["gpu"] = "GPU two"; }},
-      {"device", "–", "1.2", [](RunRecord& r) { r.header.environment["driver"] = "1.2"; }},
-      {"precision", "float32", "float64", [](RunRecord& r) { r.header.environment["precision"] = "float64"; }},
-      {"length", "0", "1",
-       [](RunRecord& r) {
-         r.accuracy.time_s = {0, 0.5};
-       }},
-      {"trials", "4", "3", [](RunRecord& r) {
-         for (TimedTrial& t : r.trials) t.frame_wall_s.resize(3);
-       }}};
+  const struct {
+    const char *kind, *a, *b;  ///< both values in the error message
+    void (*change)(RunRecord&);
+  } all[] = {{"scene", "5ce2e", "07e4", [](RunRecord& r) { r.header.scenario_sha256 = "07e4"; }},
+             {"machine", "CPU one", "CPU two", [](RunRecord& r) { r.header.environment["cpu"] = "CPU two"; }},
+             {"device", "GPU one", "GPU two", [](RunRecord& r) { r.header.environment["gpu"] = "GPU two"; }},
+             {"device", "–", "1.2", [](RunRecord& r) { r.header.environment["driver"] = "1.2"; }},
+             {"precision", "float32", "float64", [](RunRecord& r) { r.header.environment["precision"] = "float64"; }},
+             {"length", "0", "1", [](RunRecord& r) { r.accuracy.time_s.assign(2, 0); }},
+             {"trials", "4", "3", [](RunRecord& r) {
+                for (TimedTrial& t : r.trials) t.frame_wall_s.resize(3);
+              }}};
   const Processes a = processes({run("x", 1e-3, 0.5)});
-  for (const Other& other : all) {
+  for (const auto& other : all) {
     Processes b = a;
     for (auto& process : b) other.change(process[0]);
     const std::string why = refusal([&] { compare_processes(a, b); }, ExitCode::BadInput);

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
 #include "refusal.hpp"
@@ -128,18 +127,15 @@ TEST(Compare, Stages) {
 }
 
 TEST(Check, OtherConditionsAreRefusedByNameUnlessAllowed) {
-  struct Other {
+  const struct {
     const char *kind, *found;
-    std::function<void(RunRecord&)> change;
-  };
-  const Other all[] = {{"scene", "ffff", [](RunRecord& r) { r.header.scenario_sha256 = "ffff"; }},
-                       {"device", "Other GPU", [](RunRecord& r) { r.header.environment["gpu"] = "Other GPU"; }},
-                       {"precision", "float64", [](RunRecord& r) { r.header.environment["precision"] = "float64"; }},
-                       {"length", "1", [](RunRecord& r) {
-                          r.accuracy.time_s = {0, 1};
-                        }}};
+    void (*change)(RunRecord&);
+  } all[] = {{"scene", "ffff", [](RunRecord& r) { r.header.scenario_sha256 = "ffff"; }},
+             {"device", "Other GPU", [](RunRecord& r) { r.header.environment["gpu"] = "Other GPU"; }},
+             {"precision", "float64", [](RunRecord& r) { r.header.environment["precision"] = "float64"; }},
+             {"length", "1", [](RunRecord& r) { r.accuracy.time_s.assign(2, 0); }}};
   const Baseline baseline = baseline_of({contact_run()});
-  for (const Other& other : all) {
+  for (const auto& other : all) {
     RunRecord changed = contact_run();
     other.change(changed);
     const std::string refused = refusal([&] { check_runs(baseline, {changed}); });

@@ -145,22 +145,22 @@ TEST_F(BaselineFile, IsSortedWithOneValueALineAndGatedScalarsAlone) {
 
 TEST_F(BaselineFile, SaysWhatIsWrongAndWhere) {
   const json good = json::parse(baseline_text(made_));
-  const auto with_change = [&](const char* pointer, const json& value) {
+  EXPECT_EQ(fault(good.dump()), "");
+  for (const auto& [pointer, value, words] : std::vector<std::tuple<const char*, json, const char*>>{
+           {"/runs/1/scalars/fps_median", 60, "/runs/1/scalars/fps_median"},
+           {"/runs/1/scalars/depth_max_m", "deep", "/runs/1/scalars/depth_max_m"},
+           {"/runs/1/solvr", "x", "nearest known: solver"},
+           {"/runs/2/status", "fine", "/runs/2/status"},
+           {"/runs/2/failed_frame", -2, "/runs/2/failed_frame"},
+           {"/runs/2/stages/0", 1, "/runs/2/stages/0"},
+           {"/format", "clothbench-run", "/format"},
+           {"/format_version", 2, "/format_version"},
+           {"/runs", json::array(), "/runs"},
+           {"/runs/1", good["runs"][0], "/runs/1: this run occurs twice"}}) {
     json bad = good;
     bad[json::json_pointer(pointer)] = value;
-    return fault(bad.dump());
-  };
-  EXPECT_EQ(fault(good.dump()), "");
-  EXPECT_NE(with_change("/runs/1/scalars/fps_median", 60).find("/runs/1/scalars/fps_median"), std::string::npos);
-  EXPECT_NE(with_change("/runs/1/scalars/depth_max_m", "deep").find("/runs/1/scalars/depth_max_m"), std::string::npos);
-  EXPECT_NE(with_change("/runs/1/solvr", "x").find("nearest known: solver"), std::string::npos);
-  EXPECT_NE(with_change("/runs/2/status", "fine").find("/runs/2/status"), std::string::npos);
-  EXPECT_NE(with_change("/runs/2/failed_frame", -2).find("/runs/2/failed_frame"), std::string::npos);
-  EXPECT_NE(with_change("/runs/2/stages/0", 1).find("/runs/2/stages/0"), std::string::npos);
-  EXPECT_NE(with_change("/format", "clothbench-run").find("/format"), std::string::npos);
-  EXPECT_NE(with_change("/format_version", 2).find("/format_version"), std::string::npos);
-  EXPECT_NE(with_change("/runs", json::array()).find("/runs"), std::string::npos) << "no runs to compare with";
-  EXPECT_NE(with_change("/runs/1", good["runs"][0]).find("/runs/1: this run occurs twice"), std::string::npos);
+    EXPECT_PRED2(mentions, fault(bad.dump()), words);
+  }
   json bad = good;
   bad["runs"][1].erase("scalars");
   EXPECT_NE(fault(bad.dump()).find("/runs/1: \"scalars\" is missing"), std::string::npos);

@@ -65,6 +65,7 @@ TEST_F(Cli, BadInputExitsTwoAndSaysWhere) {
     const Answer answer = command(std::string(arguments) + " --json", Streams::Out);
     EXPECT_EQ(answer.code, 2) << answer.text;
     EXPECT_EQ(nlohmann::json::parse(answer.text).at("exit_code"), 2) << answer.text;
+    EXPECT_TRUE(nlohmann::json::parse(answer.text).contains("error")) << answer.text;
   }
   for (const auto& [words, near] : {std::pair{"stduy table3", "study"},
                                     {"study table3 --quik", "--quick"},
@@ -169,9 +170,11 @@ TEST_F(Cli, RequiredAssetsMustBeThere) {
   const std::string to = " --solver ballistic --trials 0 --out " + (dir_ / "o").string();
   const Variable procedural("CLOTHBENCH_ASSETS", "procedural");
   EXPECT_EQ(json_of("list assets").at(0).at("name"), "procedural");
-  const Answer a = command("run paper/desk-flat-low --require-assets" + to);
-  EXPECT_EQ(a.code, 2) << a.text;
-  EXPECT_NE(a.text.find("assets required"), std::string::npos) << a.text;
+  for (const char* scene : {"paper/desk-flat-low", "paper/two-hand-stretch-2mps"}) {
+    const Answer a = command(std::string("run ") + scene + " --require-assets" + to);
+    EXPECT_EQ(a.code, 2) << a.text;
+    EXPECT_NE(a.text.find("assets required"), std::string::npos) << a.text;
+  }
   EXPECT_EQ(command("run paper/gravity --require-assets" + to).code, 0) << "a scene that uses none";
   EXPECT_EQ(command("study penetration --quick --require-assets --out " + (dir_ / "s").string()).code, 2);
   EXPECT_FALSE(fs::exists(dir_ / "s")) << "nothing has begun";
@@ -195,35 +198,18 @@ int run_and_signal(const std::string& study, const fs::path& out, int signal_num
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-TEST_F(Cli, CtrlCKeepsFinishedTrialsAndResumeCompletes) {
-  const fs::path out = dir_ / "study";
-  const std::string study = small_study();
-  EXPECT_EQ(run_and_signal(study, out, SIGINT, 250, false), 130);
-  const Answer a = command("study " + study + " --out " + out.string() + " --resume");
-  EXPECT_EQ(a.code, 0) << a.text;
-  for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
-}
-
 TEST_F(Cli, AnEditedSceneIsNotResumed) {
-  const fs::path scene = dir_ / "gravity.json", study = dir_ / "edited.json", out = dir_ / "study", one = dir_ / "run";
-  nlohmann::json j;
-  std::ifstream(CLOTHBENCH_SOURCE_DIR "/scenarios/paper/gravity.json") >> j;
-  std::ofstream(scene) << j.dump();
-  std::ofstream(study) << R"({"name":"edited","why":"A test.","protocol":"fps","scenes":[{"file":"gravity.json",
-      "axes":[{"key":"cloth.grid","values":[[4,4],[5,5]],"labels":["4","5"]}]}],"solvers":[{"solver":"ballistic"}],"trials":1,
-      "rules": {"frames":4,"max_wall_s":1,"min_frames":2,"warmup_s":0},
-      "drop_frames":0,"accuracy_duration_s":0.1})";
-  const std::string run = "run " + scene.string() + " --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
+  const fs::path out = dir_ / "study", one = dir_ / "run";
+  const std::string run = "run paper/gravity --solver ballistic --trials 0 --set time.duration_s=0.1 --out " +
                           one.string(),
-                    some = "study " + study.string() + " --out " + out.string();
+                    some = "study " + small_study() + " --out " + out.string(),
+                    edited = " --set gravity_m_per_s2=[0,-1,0]";
   ASSERT_EQ(command(some + " --job 0").code, 0);
   ASSERT_EQ(command(run).code, 0);
-  j["gravity_m_per_s2"] = {0, -1, 0};
-  std::ofstream(scene) << j.dump();
   const std::string manifest = content_of(out / "study.json"), manifest_of_run = content_of(one / "study.json");
   // Run 1 has not been executed yet; with --job 1 it would be added to runs of another scene.
   for (const std::string& words : {some + " --resume", some + " --job 0", some + " --job 1", run + " --resume"}) {
-    const Answer a = command(words);
+    const Answer a = command(words + edited);
     EXPECT_EQ(a.code, 2) << words << ": " << a.text;
     EXPECT_NE(a.text.find("stored for another scene"), std::string::npos) << a.text;
     EXPECT_NE(a.text.find("__ballistic__default"), std::string::npos) << a.text;
@@ -235,13 +221,20 @@ TEST_F(Cli, AnEditedSceneIsNotResumed) {
       << "study.json, one run's .h5 and .xdmf";
 }
 
-TEST_F(Cli, KilledAnywhereResumeCompletes) {
-  const fs::path out = dir_ / "study";
+TEST_F(Cli, InterruptedOrKilledAnywhereResumeCompletes) {
   const std::string study = small_study();
-  for (int after_ms = 5; after_ms < 700; after_ms += 60) run_and_signal(study, out, SIGKILL, after_ms, after_ms > 5);
-  const Answer a = command("study " + study + " --out " + out.string() + " --resume");
-  EXPECT_EQ(a.code, 0) << a.text;
-  for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
+  for (const int signal_number : {SIGINT, SIGKILL}) {
+    const fs::path out = dir_ / std::to_string(signal_number);
+    if (signal_number == SIGINT) {
+      EXPECT_EQ(run_and_signal(study, out, SIGINT, 250, false), 130);
+    } else {
+      for (int after_ms = 5; after_ms < 700; after_ms += 60)
+        run_and_signal(study, out, SIGKILL, after_ms, after_ms > 5);
+    }
+    const Answer a = command("study " + study + " --out " + out.string() + " --resume");
+    EXPECT_EQ(a.code, 0) << a.text;
+    for (const std::string& run : read_manifest(out).runs) EXPECT_EQ(read_run(out / (run + ".h5")).trials.size(), 3u);
+  }
 }
 
 TEST_F(Cli, OwnOverheadIsUnderOnePercentOfAFrame) {

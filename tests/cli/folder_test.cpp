@@ -32,18 +32,13 @@ class Out : public WithFolder {
 
 TEST_F(Out, ThatCannotBeAFolderExitsTwo) {
   std::ofstream(dir_ / "file") << "mine";
-  for (const auto& [out, word] : {std::pair<std::string, std::string>{(dir_ / "file").string(), "it is a file"},
-                                  {(dir_ / "file" / "below").string(), "Not a directory"},
-                                  {(dir_ / std::string(300, 'x')).string(), "File name too long"},
-                                  {"/proc/clothbench", "cannot be made"}})
-    for (const std::string command_line :
-         {"run paper/gravity --solver ballistic", "study table3 --quick --solver ballistic",
-          "study stability --quick --solver ballistic"}) {
-      const Answer a = command(command_line + " --out '" + out + "'");
-      EXPECT_EQ(a.code, 2) << a.text;
-      EXPECT_NE(a.text.find(word), std::string::npos) << a.text;
-      EXPECT_LT(a.text.size(), 600u) << a.text;
-    }
+  for (const std::string command_line :
+       {"run paper/gravity --solver ballistic", "study table3 --quick --solver ballistic",
+        "study stability --quick --solver ballistic"}) {
+    const Answer a = command(command_line + " --out '" + (dir_ / "file").string() + "'");
+    EXPECT_EQ(a.code, 2) << a.text;
+    EXPECT_NE(a.text.find("it is a file"), std::string::npos) << a.text;
+  }
   std::string text;
   std::getline(std::ifstream(dir_ / "file"), text);
   EXPECT_EQ(text, "mine");
@@ -83,9 +78,6 @@ TEST_F(Out, OfTwoCommandsAtOnceTheSecondIsRefused) {
 }
 
 TEST_F(Out, NamesTooLongForFilesExitTwo) {
-  const Answer a = run((dir_ / "out").string(), "--set name=" + std::string(120, 'a'));
-  EXPECT_EQ(a.code, 2) << a.text;
-  EXPECT_NE(a.text.find("/name: 120 characters"), std::string::npos) << a.text;
   const std::string study = (dir_ / "study.json").string();
   std::ofstream(study) << R"({"name":"long","why":"A label too long.","protocol":"fps","trials":1,"scenes":[{"file":")"
                        << CLOTHBENCH_SOURCE_DIR
@@ -97,13 +89,6 @@ TEST_F(Out, NamesTooLongForFilesExitTwo) {
     EXPECT_EQ(b.code, 2) << b.text;
     EXPECT_NE(b.text.find("its result files would have names of"), std::string::npos) << b.text;
   }
-}
-
-TEST_F(Out, MoreRunsThanAStudyMayHaveExitTwo) {
-  const Answer a = command("study contact --procedural --solver ballistic --count 1000000000 --out " + dir_.string());
-  EXPECT_EQ(a.code, 2) << a.text;
-  EXPECT_NE(a.text.find("1000000000"), std::string::npos) << a.text;
-  EXPECT_NE(a.text.find("100000"), std::string::npos) << a.text;
 }
 
 // `clothbench study contact` as users see it: generates, runs, resumes, reports, and repeats a stored scene.
@@ -148,6 +133,7 @@ TEST_F(DrawnStudy, RefusesBadInputWithOneError) {
     std::string arguments, expected, environment = {};
   } cases[] = {
       {"study contact --seed 1 --count 0", "--count"},
+      {"study contact --procedural --solver ballistic --count 1000000000", "100000"},
       {"study contact --seed many --count 1", "--seed"},
       {"study contact --seed -1 --count 1", "--seed"},
       {"study contact --seed 9007199254740992 --count 1", "--seed 9007199254740992: expected at most"},
@@ -189,34 +175,23 @@ Answer in_a_new_process(const Words& words) {
   return command(quoted, Streams::Out);
 }
 
-struct Pair {
-  Words first, second;
-};
-
-void PrintTo(const Pair& p, std::ostream* out) { *out << p.second.at(1); }
-
-class Commands : public ::testing::TestWithParam<Pair> {};
-
-TEST_P(Commands, TheSecondIsAsIfItWereTheFirst) {
-  in_this_process(GetParam().first);
-  const Answer here = in_this_process(GetParam().second), alone = in_a_new_process(GetParam().second);
-  EXPECT_EQ(alone.code, 0) << alone.text;
-  EXPECT_EQ(here.code, alone.code);
-  EXPECT_EQ(here.text, alone.text);
+TEST(Commands, TheSecondIsAsIfItWereTheFirst) {
+  for (const auto& [first, second] : std::vector<std::pair<Words, Words>>{
+           {{"list", "features"}, {"--json", "list"}},
+           {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
+           {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
+            {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
+           {{"conformance", "ballistic", "--set", "cloth.grid=[3,3]"},
+            {"--json", "conformance", "ballistic", "--scene", "conformance/sheet", "--no-whole"}},
+           {{"study", "table3", "--quick", "--only", "nothing", "--job", "0"},
+            {"--json", "study", "table3", "--list-jobs"}}}) {
+    in_this_process(first);
+    const Answer here = in_this_process(second), only = in_a_new_process(second);
+    EXPECT_EQ(only.code, 0) << only.text;
+    EXPECT_EQ(here.code, only.code) << second.at(1);
+    EXPECT_EQ(here.text, only.text);
+  }
 }
-
-const std::vector<Pair> kPairs = {
-    {{"list", "features"}, {"--json", "list"}},
-    {{"validate", "no-such-scene"}, {"--json", "validate", "paper/gravity"}},
-    {{"plan", "paper/gravity", "--solver", "ballistic", "--set", "cloth.grid=[5,5]", "--json"},
-     {"--json", "plan", "paper/gravity", "--solver", "ballistic"}},
-    {{"conformance", "ballistic", "--set", "cloth.grid=[3,3]"},
-     {"--json", "conformance", "ballistic", "--scene", "conformance/sheet", "--no-whole"}},
-    {{"study", "table3", "--quick", "--only", "nothing", "--job", "0"}, {"--json", "study", "table3", "--list-jobs"}},
-};
-
-INSTANTIATE_TEST_SUITE_P(Every, Commands, ::testing::ValuesIn(kPairs),
-                         [](const auto& one) { return one.param.second.at(1); });
 
 }  // namespace
 }  // namespace clothbench

@@ -45,18 +45,4 @@ with tempfile.TemporaryDirectory() as home:
     parts = [subprocess.Popen([CLOTHBENCH, *apart, "--out", out_apart, "--job", k]) for k in ("0", "1-2")]
     assert [p.wait() for p in parts] == [0, 0]
     assert {f[:-3] for f in os.listdir(out_apart) if f.endswith(".h5")} == set(jobs[:3])
-
-    # Unknown names suggest the nearest.
-    assert "nearest known: table3" in command("study", "tabel3", code=2)
-    assert "nearest known: paper/gravity" in command("run", "paper/gravty", code=2)
-    assert "nearest known: ballistic" in command("run", "paper/gravity", "--solver", "balistic", code=2)
-    assert "nearest known: study" in command("studdy", "table3", code=2)
-
-    # A run compared with itself does not differ, and one process per side gives no statement on times.
-    compared = json.loads(command("compare", out, out, "--json"))["runs"]
-    assert len(compared) == len(names) and all(
-        c["time"]["verdict"].startswith("too few processes") and c["verdict"] == "same" and not c["findings"] for c in compared
-    )
-    text = command("compare", out, out)
-    assert "too few processes" in text and "Results that differ: none" in text
-print("runs, suggestions, compare: as expected")
+print("runs in parts: as expected")

@@ -51,21 +51,8 @@ class Cluster:
                 f"AccountingStorageType=accounting_storage/none\nReturnToService=2\nNodeName={host} NodeAddr=127.0.0.1 CPUs=1 State=UNKNOWN\n"
                 f"PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
             )
-        self.start(
-            "munged",
-            "--foreground",
-            "--force",
-            "--key-file",
-            key,
-            "--socket",
-            munge,
-            "--pid-file",
-            home + "/munged.pid",
-            "--log-file",
-            home + "/munged.log",
-            "--seed-file",
-            home + "/munge/seed",
-        )
+        self.start("munged", "--foreground", "--force", "--key-file", key, "--socket", munge, "--pid-file", home + "/munged.pid",
+                   "--log-file", home + "/munged.log", "--seed-file", home + "/munge/seed")
         time.sleep(1)
         self.start("slurmctld", "-D")
         self.start("slurmd", "-D")
@@ -106,20 +93,14 @@ with tempfile.TemporaryDirectory(prefix="clothbench-slurm-") as home:
         cluster.wait("an idle node", lambda: said("sinfo", "-h", "-o", "%T") == "idle", 60)
         out = os.path.join(home, "a run")
         options = ["--quick", "--trials", "1", "--solver", "ballistic", "--set", "cloth.size_m=[1.0, 0.5]"]
-        submitted = subprocess.run(
-            [os.path.join(SOURCE, "scripts", "slurm_study.sh"), "table3", out, *options],
-            env=dict(os.environ, CLOTHBENCH=CLOTHBENCH),
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        script = os.path.join(SOURCE, "scripts", "slurm_study.sh")
+        submitted = subprocess.run([script, "table3", out, *options], env=dict(os.environ, CLOTHBENCH=CLOTHBENCH),
+                                   capture_output=True, text=True, check=False)
         assert submitted.returncode == 0, submitted.stderr + cluster.logs()
         cluster.wait("the jobs' end", lambda: said("squeue", "-h") == "", 180)
         with open(os.path.join(out, "study.json"), encoding="utf-8") as text:
             planned = json.load(text)["runs"]
-        logs = "".join(
-            open(os.path.join(out, "log", f), encoding="utf-8").read() for f in os.listdir(os.path.join(out, "log"))
-        )
+        logs = "".join(open(os.path.join(out, "log", f), encoding="utf-8").read() for f in os.listdir(os.path.join(out, "log")))
         assert {f[:-3] for f in os.listdir(out) if f.endswith(".h5")} == set(planned), logs
         assert len([f for f in os.listdir(os.path.join(out, "log")) if f.startswith("run-")]) == len(planned)
         with open(os.path.join(out, "report", "report.md"), encoding="utf-8") as text:

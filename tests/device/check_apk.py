@@ -41,12 +41,6 @@ print("ok: manifest")
 must([zipalign, "-c", "-p", "4", apk])
 verified = must([apksigner, "verify", "-v", "--min-sdk-version", "29", apk])
 assert "Verifies" in verified and re.search(r"v3[^:]*\): true", verified), verified
-# A single changed byte is detected.
-with Folder() as folder:
-    bad = bytearray(apk.read_bytes())
-    bad[len(bad) // 3] ^= 1
-    (folder / "bad.apk").write_bytes(bad)
-    assert run([apksigner, "verify", "--min-sdk-version", "29", folder / "bad.apk"])[0] != 0, "a changed APK still verifies"
 print("ok: aligned and signed")
 
 with zipfile.ZipFile(apk) as z:

@@ -12,14 +12,10 @@
 
 namespace clothbench {
 
-// One input for each reader.
+// One input for each reader that needs more than a statement.
 void fuzz_scene(const std::uint8_t* data, std::size_t size);
-void fuzz_obj(const std::uint8_t* data, std::size_t size);
-void fuzz_gltf(const std::uint8_t* data, std::size_t size);
-void fuzz_room(const std::uint8_t* data, std::size_t size);
 void fuzz_hand(const std::uint8_t* data, std::size_t size);
 void fuzz_track(const std::uint8_t* data, std::size_t size);
-void fuzz_part(const std::uint8_t* data, std::size_t size);
 void fuzz_hdf5(const std::uint8_t* data, std::size_t size);
 
 /// A reader may accept an input or throw Error with a message. Anything else ends the program.

@@ -105,40 +105,43 @@ hid_t some_space(Bytes& b) {
   return rank == 0 ? H5Screate(b.next() % 2 == 0 ? H5S_SCALAR : H5S_NULL) : H5Screate_simple(rank, dims, nullptr);
 }
 
+void put_attribute(hid_t file, const std::pair<std::string, std::string>& at, hid_t type, hid_t space,
+                   const void* value = nullptr) {
+  H5Adelete_by_name(file, at.first.c_str(), at.second.c_str(), H5P_DEFAULT);
+  const hid_t a =
+      H5Acreate_by_name(file, at.first.c_str(), at.second.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (a >= 0 && value != nullptr) H5Awrite(a, type, value);
+  if (a >= 0) H5Aclose(a);
+}
+
+void put_dataset(hid_t file, const std::string& name, hid_t type, hid_t space, const void* value = nullptr) {
+  H5Ldelete(file, name.c_str(), H5P_DEFAULT);
+  const hid_t d = H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (d >= 0 && value != nullptr) H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value);
+  if (d >= 0) H5Dclose(d);
+}
+
 void change(hid_t file, Bytes& b) {
   const Sample& s = sample();
   const int what = b.next() % 8;
   const std::string& object = s.objects[(b.next() | b.next() << 8) % s.objects.size()];
-  const auto& [holder, attribute] = s.attributes[(b.next() | b.next() << 8) % s.attributes.size()];
+  const auto& attribute = s.attributes[(b.next() | b.next() << 8) % s.attributes.size()];
   if (what == 0) {
     H5Ldelete(file, object.c_str(), H5P_DEFAULT);
   } else if (what == 1) {
-    H5Adelete_by_name(file, holder.c_str(), attribute.c_str(), H5P_DEFAULT);
+    H5Adelete_by_name(file, attribute.first.c_str(), attribute.second.c_str(), H5P_DEFAULT);
   } else if (what == 2 || what == 3) {
     const hid_t type = some_type(b.next()), space = some_space(b);
-    if (what == 2) {
-      H5Ldelete(file, object.c_str(), H5P_DEFAULT);
-      const hid_t d = H5Dcreate2(file, object.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-      if (d >= 0) H5Dclose(d);
-    } else {
-      H5Adelete_by_name(file, holder.c_str(), attribute.c_str(), H5P_DEFAULT);
-      const hid_t a = H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT,
-                                        H5P_DEFAULT);
-      if (a >= 0) H5Aclose(a);
-    }
+    what == 2 ? put_dataset(file, object, type, space) : put_attribute(file, attribute, type, space);
     H5Sclose(space);
     H5Tclose(type);
   } else if (what == 4 || what == 5) {  // a number, or a text, as attribute
-    H5Adelete_by_name(file, holder.c_str(), attribute.c_str(), H5P_DEFAULT);
     const std::string text = b.text(what == 4 ? 8 : b.next());
     const hid_t space = H5Screate(H5S_SCALAR), type = what == 4 ? H5Tcopy(H5T_NATIVE_DOUBLE) : H5Tcopy(H5T_C_S1);
     if (what == 5) H5Tset_size(type, text.size() + 1);
-    const hid_t a =
-        H5Acreate_by_name(file, holder.c_str(), attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     double number = 0;
     std::memcpy(&number, text.data(), std::min<std::size_t>(8, text.size()));
-    if (a >= 0) H5Awrite(a, type, what == 4 ? static_cast<const void*>(&number) : text.c_str());
-    if (a >= 0) H5Aclose(a);
+    put_attribute(file, attribute, type, space, what == 4 ? static_cast<const void*>(&number) : text.c_str());
     H5Tclose(type);
     H5Sclose(space);
   } else if (what == 6) {  // a dataset's numbers
@@ -158,14 +161,11 @@ void change(hid_t file, Bytes& b) {
     H5Sclose(space);
     H5Dclose(d);
   } else {  // the header, as JSON
-    H5Ldelete(file, "header_json", H5P_DEFAULT);
     const std::string text = b.text(4096);
     const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
     H5Tset_size(type, H5T_VARIABLE);
-    const hid_t d = H5Dcreate2(file, "header_json", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     const char* at = text.c_str();
-    if (d >= 0) H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &at);
-    if (d >= 0) H5Dclose(d);
+    put_dataset(file, "header_json", type, space, &at);
     H5Sclose(space);
     H5Tclose(type);
   }

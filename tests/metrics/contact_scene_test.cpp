@@ -20,33 +20,17 @@ const char* const kSphereScene = R"({"name":"sphere-test","why":"A sheet pushed 
   "time":{"frame_rate_hz":20,"duration_s":1},
   "expect":{"outcome":"ok","depth_max_m":{"at_most":0.0100001},"contact_length_settled_m":{"at_least":0.26,"at_most":0.28}}})";
 
-TEST(ContactScene, WhatASolverSaysOfItsMarginIsStoredAndHeeded) {
-  const Scene scene = load_scene("contact/plane", {"cloth.grid=[9,9]", "time.duration_s=0.1"});
-  const Path path = lifted([&](int) { return 0.02 - scene.cloth.center_m[1]; });
-  const RunRecord reported = stored_run(scene, prescribed(path, {0.02}));
-  EXPECT_NEAR(series(reported, "touching_fraction").back(), 1, 1e-12);
-  ASSERT_EQ(reported.header.plan["contact_margins"].size(), 1u);
-  EXPECT_EQ(reported.header.plan["contact_margins"][0]["margin_m"], 0.02);
-  EXPECT_EQ(reported.header.plan["contact_margins"][0]["collider"], scene.colliders[0].name);
-}
-
-TEST(ContactScene, XpbdTellsThatItKeepsAHundredthOfARun) {
-  const auto margins = [](double margin_m) {
-    const Scene scene =
-        load_scene("contact/plane", {"cloth.grid=[7,7]", "colliders.0.margin_m=" + std::to_string(margin_m)});
-    const SolverEntry& entry = find_solver("xpbd");
-    const auto solver = entry.make(complete_settings(entry.info, nlohmann::json::object()), {});
-    solver->load(scene);
-    return solver->plan().contact_margins_m;
-  };
+TEST(ContactScene, XpbdKeepsTheMarginButAtLeastAHundredthOfAnEdge) {
   for (const SolverEntry& e : solvers())
-    if (e.info.name == "xpbd" && e.make) {
-      EXPECT_EQ(margins(0.004), std::vector<double>{0.004});
-      ASSERT_EQ(margins(0.0001).size(), 1u);
-      EXPECT_NEAR(margins(0.0001)[0], 0.001, 1e-12) << "a hundredth of an edge of 0.1 m";
-      return;
+    for (const auto& [margin_m, kept_m] : {std::pair{"0.004", 0.004}, {"0.0001", 0.001}}) {
+      if (e.info.name != "xpbd" || !e.make) continue;
+      const Scene scene =
+          load_scene("contact/plane", {"cloth.grid=[7,7]", std::string("colliders.0.margin_m=") + margin_m});
+      const auto solver = e.make(complete_settings(e.info, nlohmann::json::object()), {});
+      solver->load(scene);
+      ASSERT_EQ(solver->plan().contact_margins_m.size(), 1u);
+      EXPECT_NEAR(solver->plan().contact_margins_m[0], kept_m, 1e-12) << "edges are 0.1 m long";
     }
-  GTEST_SKIP() << "no xpbd in this build";
 }
 
 TEST(ContactScene, MarginsThatCannotBeAreFaults) {
@@ -92,13 +76,6 @@ TEST(ContactScene, ASheetLoweredIntoASphereGivesTheClosedForms) {
   EXPECT_EQ(broken.outcome.status, "ok") << "a broken expectation is no failure of the solver";
   EXPECT_EQ(broken.summary.at("expect.depth_max_m"), 0);
   EXPECT_EQ(broken.summary.at("expect.outcome"), 1);
-}
-
-TEST(ContactScene, AShortAccuracyPassMeasuresNoExpectation) {
-  const Scene scene = scene_from(kSphereScene);
-  const RunRecord r = stored_run(scene, prescribed(lifted([](int) { return 0.0; })), 0.5);
-  EXPECT_TRUE(std::isnan(r.summary.at("expect.depth_max_m")));
-  EXPECT_TRUE(std::isnan(r.summary.at("contact_length_settled_m")));
 }
 
 TEST(ContactScene, ANaNIsInTheSummaryAndBreaksTheExpectation) {
@@ -153,22 +130,6 @@ TEST(ContactScene, WhatACrossedStartHasIsNotNew) {
   EXPECT_GE(series(r, "self_contact_pairs")[0], 16);
   EXPECT_EQ(r.summary.at("self_contact_pairs_max"), 0);
   EXPECT_TRUE(own_bounds_hold(r)) << r.outcome.expect;
-}
-
-// A curtain of 1 m through the middle of an open patch, half-way and back: half of it passes in one frame.
-TEST(ContactScene, ACurtainHalfWayThroughAPatchCrossesIt) {
-  const Scene scene = scene_from(R"({"name":"curtain","why":"A curtain through an open patch.",
-    "cloth":{"grid":[16,16],"size_m":[1,1],"areal_density_kg_per_m2":0.2,"sides":"double",
-             "pose":{"center_m":[0,0.6,0],"axis_u":[1,0,0],"axis_v":[0,-1,0]}},
-    "material":{"membrane_stiffness_N_per_m":1000},
-    "colliders":[{"type":"mesh","positions_m":[[-0.6,0,-0.6],[0.6,0,-0.6],[0.6,0,0.6],[-0.6,0,0.6]],"triangles":[[0,3,2],[0,2,1]]}],
-    "time":{"frame_rate_hz":20,"duration_s":1},"expect":{"crossings_max":{"at_most":0}}})");
-  const SolverEntry solver = prescribed(lifted([](int frame) { return frame == 10 ? -0.6 : 0; }));
-  const RunRecord r = stored_run(scene, solver);
-  EXPECT_NEAR(series(r, "contact_length_m")[10], 1, 1e-12);
-  EXPECT_EQ(r.summary.at("crossings_max"), 128) << "8 of 16 rows";
-  EXPECT_TRUE(std::isnan(r.summary.at("depth_max_m"))) << "an open patch has no inside";
-  EXPECT_PRED2(mentions, r.outcome.expect, "crossings_max 128 > 0");
 }
 
 // A strip slides around a rim: an edge of 57 degrees, or a slab with a border of 4 mm. Another passes through 0.1 m

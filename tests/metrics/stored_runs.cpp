@@ -77,7 +77,7 @@ std::vector<Sample> samples() {
       R"(colliders=[{"type":"sphere","center_m":[0.02,-0.25,0.01],"radius_m":0.2},{"type":"plane","point_m":[0,-0.4,0],"normal":[0.28,0.96,0]}])";
   const std::string capsule =
       R"(colliders=[{"type":"capsule","center_m":[0.31,0.02,0.21],"radius_m":0.04,"length_m":0.5,"axis":[0.28,0.96,0],"velocity_m_per_s":[-1,0,-0.7],"margin_m":0.004,"friction":0.2}])";
-  std::vector<Sample> out{
+  return {
       {"paper/gravity", {small, few}, falls},
       {"contact/sphere", {small, "time.duration_s=0.6", friction}, falls},
       {"contact/box", {small, few, "colliders.0.rotation_deg=[11,23,5]"}, falls},
@@ -93,7 +93,6 @@ std::vector<Sample> samples() {
       {"paper/hand-push", {"cloth.grid=[9,9]", "time.duration_s=2.4", "time.frame_rate_hz=8"}, prescribed(waves(0.01))},
       {"paper/desk-flat-low", {small, "time.duration_s=0.5"}, prescribed(waves(0.01, 0.03))},
       {"contact/self-fold", {"cloth.grid=[12,12]", few}, prescribed(rolled())}};
-  return out;
 }
 
 void execute(const std::filesystem::path& folder) {

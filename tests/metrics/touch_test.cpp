@@ -1,6 +1,8 @@
 // Touch and slip of whole scenes, and the summary values computed from their series.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenario/load.hpp"
 #include "unmet_bounds.hpp"
 
@@ -50,7 +52,12 @@ TEST(Touch, TouchIsWhereTheSolverSaysThatItHoldsTheCloth) {
     const Path path = [=](int, std::vector<double>& x) {
       for (std::size_t k = 1; k < x.size(); k += 3) x[k] -= down;
     };
-    return series(stored_run(scene, prescribed(path, margins)), "touching_fraction")[0];
+    const RunRecord run = stored_run(scene, prescribed(path, margins));
+    for (std::size_t k = 0; k < margins.size() && std::isfinite(margins[k]); ++k) {
+      EXPECT_EQ(run.header.plan["contact_margins"][k]["margin_m"], margins[k]);
+      EXPECT_EQ(run.header.plan["contact_margins"][k]["collider"], scene.colliders[k].name);
+    }
+    return series(run, "touching_fraction")[0];
   };
   EXPECT_EQ(touching(0.02, {}), 0) << "the scene's margin is 4 mm";
   EXPECT_EQ(touching(0.02, {kMissing}), 0) << "if the solver states no margin, the scene's counts";

@@ -76,18 +76,6 @@ TEST_F(Gpu, PaperFramesAgreeWithDoublePrecision) {
     }
 }
 
-TEST_F(Gpu, PlanStatesSubsteps) {
-  const auto planned = [](const Scene& s, const nlohmann::json& settings) {
-    const auto solver = make("xpbd", settings);
-    solver->load(s);
-    return solver->plan().substeps;
-  };
-  const Scene falling = sheet(9, 9, 1, 1);
-  EXPECT_EQ(planned(falling, nlohmann::json::object()), 5);
-  EXPECT_EQ(planned(falling, {{"quality", "accurate"}}), 20);
-  EXPECT_EQ(planned(falling, {{"substeps", 7}}), 7);
-}
-
 /// Lines within a subgroup of this device, across several subgroups, and side by side.
 TEST_F(Gpu, EveryLayoutOfLinesTakesTheSameSteps) {
   const nlohmann::json layouts[] = {

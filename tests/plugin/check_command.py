@@ -25,10 +25,8 @@ class Plugin(PluginTest):
     # --- a correct plugin
 
     def test_a_run(self):
-        code = self.command(
-            "run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, *SMALL, "--trials", "2", "--out", self.out
-        )
-        self.assertEqual(code, 0, self.text)
+        words = ["run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, *SMALL, "--trials", "2", "--out", self.out]
+        self.assertEqual(self.command(*words), 0, self.text)
         outcome, summary, header = self.stored("gravity__example-xpbd__default")
         self.assertEqual(outcome["status"], "ok")
         # Without free_fall_m the exact fall is used, from which the plugin always differs by half a substep.
@@ -52,10 +50,8 @@ class Plugin(PluginTest):
     def test_settings_plan_and_what_it_cannot_do(self):
         self.assertEqual(self.command("plan", "paper/gravity", "--solver", "plugin:" + EXAMPLE), 0)
         self.assertIn("bending", self.text)
-        code = self.command(
-            "run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, "--set", "solver.substep=5", "--out", self.out
-        )
-        self.assertEqual(code, 2)
+        words = ["run", "paper/gravity", "--solver", "plugin:" + EXAMPLE, "--set", "solver.substep=5", "--out", self.out]
+        self.assertEqual(self.command(*words), 2)
         self.assertIn("substeps", self.text)
         self.command("run", "paper/capsule-sweep", "--solver", "plugin:" + EXAMPLE, *SMALL, "--out", self.out)
         self.assertEqual(self.stored("capsule-sweep__example-xpbd__default")[0]["status"], "unsupported")

@@ -50,10 +50,8 @@ class Interface(PluginTest):
             self.assertEqual(f["outcome"].attrs["status"], "ok", dict(f["outcome"].attrs))
             header = json.loads(f["header_json"][0])
             environment = header["environment"]
-            self.assertEqual(
-                [environment[k] for k in ("gpu", "driver", "api", "gpu_is_software")],
-                ["Paper GPU", "driver 7", "CUDA 1.0", True],
-            )
+            said = [environment[k] for k in ("gpu", "driver", "api", "gpu_is_software")]
+            self.assertEqual(said, ["Paper GPU", "driver 7", "CUDA 1.0", True])
             self.assertEqual(environment["gpu_properties"], {"cores": 3})
             self.assertEqual(environment["plugin"]["engine"], "Engine")
             self.assertNotIn("frame_cpu_s", f["timing"], "a solver on a GPU")

@@ -58,30 +58,6 @@ TEST_P(Integrators, SwingConvergesWithOrderTwoToTheChain) {
   EXPECT_NEAR(y3 + (y3 - y2) / 3, -0.441450, 2e-6);
 }
 
-/// T = 2.367842 s from 90 degrees at L = 1 m; theta(0.5 s) = 0.4017708 (elliptic functions).
-TEST_P(Integrators, OneLinkIsAPendulum) {
-  const Scene s = strip(1, 0.5, {{"cloth", {{"size_m", {1.0, 0.5}}}}});
-  const auto [x, y] = tip(s, run(s, GetParam(), 64));
-  EXPECT_NEAR(std::atan2(x, -y), 0.4017708, 2e-5);
-}
-
-/// Hanging at rest: u = rho g L^2 / (2 Y), exactly for springs with half-mass ends.
-TEST_P(Integrators, HeavyStripStretches) {
-  const double Y = 1000;
-  Scene s = strip(8, 4,
-                  {{"material", {{"membrane_stiffness_N_per_m", Y}, {"damping_per_s", 20}}},
-                   {"cloth", {{"pose", {{"center_m", {0, -0.5, 0}}, {"axis_u", {0, -1, 0}}, {"axis_v", {1, 0, 0}}}}}}});
-  const ClothState state = run(s, GetParam(), 8);
-  EXPECT_NEAR(-1 - tip(s, state).second, 0.2 * 9.81 / (2 * Y), 1e-8);
-}
-
-TEST(Reference, ConservativeKeepsEnergyAndBothAgree) {
-  const Scene s = strip(6, 0.4, {{"material", {{"membrane_stiffness_N_per_m", 1000}, {"bending_rigidity_N_m", 1e-3}}}});
-  const auto a = tip(s, run(s, "bdf2", 32)), b = tip(s, run(s, "conservative", 32));
-  EXPECT_NEAR(a.first, b.first, 1e-3);
-  EXPECT_NEAR(a.second, b.second, 1e-3);
-}
-
 TEST_P(Integrators, FreeFallIsItsOwnRecurrence) {
   const Scene s = strip(
       4, 0.25, {{"pins", json::array()}, {"material", {{"membrane_stiffness_N_per_m", 1000}, {"damping_per_s", 0.7}}}});

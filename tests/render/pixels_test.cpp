@@ -223,33 +223,6 @@ TEST_F(Pixels, SaysWhatDoesNotFit) {
   EXPECT_THROW(Offscreen(device_, {1u << 20, 10}, 1), Error);
 }
 
-TEST_F(Pixels, DrawsIntoAnImageOfAnyone) {
-  // Like a headset's loop, which has its own image, matrices and command buffer.
-  const Cloth cloth = upright(9, 9);
-  const Picture expected = draw(cloth, positions_of(cloth));
-  const Image image(device_, Offscreen::kFormat, {kSize, kSize}, VK_SAMPLE_COUNT_1_BIT,
-                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, device_->command_pool(),
-                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-  ASSERT_EQ(vkAllocateCommandBuffers(device_->handle(), &allocate, &commands), VK_SUCCESS);
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  ASSERT_EQ(vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
-  const Drawing d{image.handle(), {kSize, kSize}, camera_.view({0, 0, 0}), camera_.projection()};
-  renderer_.record(commands, std::span(&d, 1));
-  ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands;
-  ASSERT_EQ(vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
-  ASSERT_EQ(vkQueueWaitIdle(device_->queue()), VK_SUCCESS);
-  renderer_.forget(image.handle());
-  vkFreeCommandBuffers(device_->handle(), device_->command_pool(), 1, &commands);
-  EXPECT_EQ(shoot().rgb, expected.rgb) << "the renderer's own images are unchanged";
-}
-
 /// Clip coordinates of a point, as the vertex shader computes them.
 std::array<double, 4> clip(const Camera& c, const Vec3& origin, const Vec3& p) {
   const Mat4 m = c.projection() * c.view(origin);

@@ -3,7 +3,6 @@
 usage: check_publish.py ROOT CLOTHBENCH
 """
 import csv
-import json
 import lzma
 import os
 import pathlib
@@ -94,13 +93,8 @@ for name in ("h200", "peers"):
 size = sum(p.stat().st_size for p in (root / "results/reference/h200").rglob("*") if p.name in ("index.html", "runs.csv.xz"))
 assert size <= 6e6, f"page and run tables have {size / 1e6} MB"
 
-# The criteria of claims accept right motions (in the slow pull, xpbd's strain is 1 % too large) and reject cloth that falls away.
-runs = list(csv.DictReader(lzma.open(root / "results/reference/h200/penetration/runs.csv.xz", "rt")))
-for entry in json.loads((root / "scenarios/studies/reproduction.json").read_text(encoding="utf-8"))["scenes"]:
-    for row in (r for r in runs if r["scene"] == pathlib.Path(entry["file"]).stem and r["solver"] in ("xpbd", "ballistic")):
-        missed = [name for name, limit in entry["draw"]["set"]["expect"].items() if name != "outcome" and not limit.get("at_least", -1e9) <= float(row[name]) <= limit.get("at_most", 1e9)]
-        assert bool(missed) == (row["solver"] == "ballistic" or row["scene"] == "two-hand-stretch-0p5mps"), (row["scene"], row["solver"], missed)
 # C11 compares with NvCloth's roughness in the published sweep.
+runs = list(csv.DictReader(lzma.open(root / "results/reference/h200/penetration/runs.csv.xz", "rt")))
 limit = float(re.search(r"kEngineRoughness = ([0-9.]+)", (root / "harness/report/views_reproduction.cpp").read_text(encoding="utf-8"))[1])
 engine = next(float(row["roughness_end"]) for row in runs if row["scene"] == "capsule-sweep" and row["solver"] == "nvcloth")
 assert abs(limit - engine) < 5e-5, (limit, engine)

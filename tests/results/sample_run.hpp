@@ -31,6 +31,7 @@ inline RunRecord sample_run(int trials = 3, int frames = 4, std::uint32_t vertic
     for (int f = 0; f < frames; ++f) {
       trial.frame_wall_s.push_back(1e-3 * (1 + t) + 1e-5 * f);
       if (t != 1) trial.frame_cpu_s.push_back(1.1e-3 * (1 + t) + 1e-7 * f);
+      if (t == 0 && f < 3) trial.frame_rendered_s.push_back(2e-3 + 1e-5 * f);  // fewer than frames
       trial.frame_device_s.push_back(t == 1 ? kMissing : 9e-4 + 1e-6 * f);
       for (int s = 0; s < 2; ++s) {
         trial.stage_device_s.push_back(f < 2 ? 1e-4 * (s + 1) : kMissing);

@@ -207,12 +207,9 @@ TEST(SolverEnds, EveryKindOfFailureCountsAlike) {
   }
 }
 
-TEST(SolverEnds, WhatWasNotRunIsNoFailure) {
+TEST(SolverEnds, NoRunAndAnEndThatTheSceneExpectsAreNoFailures) {
   EXPECT_TRUE(faults({{"mine", "unsupported"}, {"mine", "over_budget"}}).empty());
   EXPECT_TRUE(faults({}).empty());
-}
-
-TEST(SolverEnds, AnEndThatTheSceneExpectsIsNoFailure) {
   std::vector<RunRecord> runs(1);
   runs[0].outcome = {"diverged", "F0", 3, "why", "pass"};
   EXPECT_TRUE(solver_faults(runs).empty());

@@ -191,11 +191,6 @@ class Resume : public SmallRuns {
   const Scene edited_ = load_scene("paper/gravity", {"cloth.grid=[4,5]"});
 };
 
-TEST_F(Resume, TheSameIsGoneOnWith) {
-  execute_runs(plan(scene_), options_);
-  EXPECT_EQ(refused(plan(scene_)), "");
-}
-
 TEST_F(Resume, ARunThatWasOnlyBegunIsLookedAtToo) {
   const SolverRun run(plan(scene_).groups[0][0], {}, "test");
   const RunWriter begun(options_.out, run.header());
@@ -204,19 +199,19 @@ TEST_F(Resume, ARunThatWasOnlyBegunIsLookedAtToo) {
   EXPECT_THROW(require_same_runs(options_.out, plan(edited_), true), Error);
 }
 
-TEST_F(Resume, OtherSettingsAreRefusedAndDefaultsAreFilledIn) {
+TEST_F(Resume, OtherSettingsAndVersionsAreRefusedAndDefaultsAreFilledIn) {
   execute_runs(plan(scene_), options_);
+  EXPECT_EQ(refused(plan(scene_)), "");
+  EXPECT_THROW(require_same_runs(options_.out, plan(scene_), false), Error) << "finished, and not resumed";
   EXPECT_NE(refused(plan(scene_, 5)).find("\"substeps\":5"), std::string::npos);
-  EXPECT_EQ(refused(plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2)), "");
+  const RunPlan by_default = plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2);
+  EXPECT_EQ(refused(by_default), "");
+  const std::string version = std::exchange(entry_.info.version, "next");
+  EXPECT_NE(refused(plan(scene_)).find("next"), std::string::npos);
+  entry_.info.version = version;
   entry_.make = nullptr;  // as for a solver that this process does not have
-  require_same_runs(options_.out, plan_of({{&scene_, &entry_, nlohmann::json::object()}}, 1, 2), true);
+  require_same_runs(options_.out, by_default, true);
   EXPECT_THROW(require_same_runs(options_.out, plan(scene_, 5), true), Error);
-}
-
-TEST_F(Resume, AnotherVersionOfTheSolverIsRefused) {
-  execute_runs(plan(scene_), options_);
-  entry_.info.version += "-next";
-  EXPECT_NE(refused(plan(scene_)).find("-next"), std::string::npos);
 }
 
 /// A plan with trials continues from earlier untimed passes, also from passes that ended badly.
@@ -252,11 +247,6 @@ TEST_F(Resume, UntimedPassesAreNotRepeated) {
     EXPECT_EQ(jobs_of(b), 1) << "other jobs during the untimed pass do not affect trials";
   }
   unsetenv("CLOTHBENCH_JOBS");
-}
-
-TEST_F(Resume, WithoutItWhatIsFinishedIsRefused) {
-  execute_runs(plan(scene_), options_);
-  EXPECT_THROW(require_same_runs(options_.out, plan(scene_), false), Error);
 }
 
 }  // namespace

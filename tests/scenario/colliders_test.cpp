@@ -122,6 +122,14 @@ TEST_F(Colliders, HandsMoveFrameByFrame) {
 }
 
 TEST_F(Colliders, GripsFollowTheHandAndLetGo) {
+  for (const auto& [name, way_m] : {std::pair{"0p5", 0.15}, {"10", 0.5}}) {
+    const Scene other = load_scene(std::string("paper/two-hand-stretch-") + name + "mps");
+    double farthest_m = 0;
+    for (const FrameMotion& m : other.motion)
+      if (m.grip_held[0] == 1) farthest_m = std::max(farthest_m, std::abs(m.grip_position_m[0][0]));
+    EXPECT_NEAR(farthest_m, 0.5 + way_m, 1e-9) << name;
+    EXPECT_EQ(other.motion.back().grip_held[0], 0) << name;
+  }
   const Scene s = load_scene("paper/two-hand-stretch-2mps");
   EXPECT_EQ(s.grips.vertices.size(), 4u);
   EXPECT_TRUE(s.needs.has(Feature::MovingPins));

@@ -293,7 +293,7 @@ TEST(DrawBox, CoordinatesBeyondTheSequenceDoNotFollowTheLast) {
   EXPECT_LT(opposite, 5);
 }
 
-TEST(DrawBox, RefusesRangesThatAreNone) {
+TEST(DrawBox, RefusesRangesThatAreNoneAndAStudyWithoutABox) {
   ContactDrawer drawer(Assets::MayBeProcedural);
   for (const auto& [range, words] : {std::pair{json{2, 1}, "iterations: expected the lower bound first"},
                                      {json{1, "a"}, "iterations: expected a list of words, or two numbers"},
@@ -301,13 +301,10 @@ TEST(DrawBox, RefusesRangesThatAreNone) {
     const ContactKind wrong = kind({{"iterations", range}});
     EXPECT_PRED2(mentions, refusal([&] { drawer.draw(wrong, "mine", 1); }), words) << range;
   }
-}
-
-TEST(DrawBox, RefusesAStudyWithoutABox) {
   ContactKind none = kind(kSettings);
   for (const json& box : {json(), json::object(), json{{"settings", json::object()}}}) {
     none.box = box;
-    EXPECT_THROW(ContactDrawer(Assets::MayBeProcedural).draw(none, "mine", 1), Error) << box;
+    EXPECT_THROW(drawer.draw(none, "mine", 1), Error) << box;
   }
 }
 

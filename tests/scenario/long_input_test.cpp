@@ -43,9 +43,6 @@ json study(const std::string& scene_file) {
           {"rules", {{"frames", 24}, {"max_wall_s", 1}, {"min_frames", 12}, {"warmup_s", 0.05}}}};
 }
 
-const json kTrack = {{"hand", "left"},
-                     {"anchor", "palm"},
-                     {"keys", {{{"time_s", 0}, {"pose", "relaxed"}, {"position_m", {0, 0, 0}}, {"grip", false}}}}};
 const json kRoom = {{"type", "scene"},
                     {"version", 1},
                     {"spatialEntities",
@@ -109,7 +106,8 @@ TEST(LongInput, IsNotInTheMessage) {
   EXPECT_EQ(refusal([&] { load_study(folder.file("study.json", study(file).dump())); }), "");
   expect_short("scene", scene(), [](const std::string& t) { scene_from_json(parse_json(t, "s.json"), "s.json"); });
   expect_short("study", study(file), [&](const std::string& t) { load_study(folder.file("study.json", t)); });
-  expect_short("track", kTrack, [](const std::string& t) { assets::parse_hand_track(t, "t.json"); });
+  expect_short("track", parse_json(read_text(scenario_root() / "assets/left-hand-stretch-2mps.json"), "t.json"),
+               [](const std::string& t) { assets::parse_hand_track(t, "t.json"); });
   expect_short("room", kRoom, [](const std::string& t) { assets::parse_room(t, "r.json", "r"); });
   expect_short("glTF", kGltf, [](const std::string& t) { assets::parse_gltf(t, "m.gltf"); });
   expect_short("recording", json::parse(assets::to_json(recording(0.01f, true), "a test")),

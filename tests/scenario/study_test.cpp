@@ -143,19 +143,16 @@ TEST(Study, WordsThatChooseNothingAreFaults) {
                       R"(,"quick":{"rules":{"frames":5,"max_wall_s":0,"min_frames":5,"warmup_s":0},)" + inside + "}");
   };
   EXPECT_EQ(study_error(quick(R"("tags":["shape"])")), "");
-  EXPECT_PRED2(mentions, study_error(quick(R"("tags":["shapes"])")),
-               "/quick/tags/0: \"shapes\" is unknown; nearest known: shape");
-  EXPECT_PRED2(mentions, study_error(quick(R"("tags":{"a x":["shape"]})")), "/quick/tags: \"a x\" is unknown");
-  EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a","tags":["shape","fre"]}])")), "/solvers/0/tags/1");
-  EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a"},{"solver":"a"}])")), "two runs are named");
-  EXPECT_PRED2(mentions, study_error(study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])")),
-               "nearest known: sides");
-  EXPECT_PRED2(mentions,
-               study_error(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.1.friction":0}}])")),
-               "/colliders/1: expected an item");
-  EXPECT_PRED2(mentions,
-               study_error(study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.x.friction":0}}])")),
-               "/colliders/x");
+  for (const auto& [text, fault] :
+       {std::pair{quick(R"("tags":["shapes"])"), "/quick/tags/0: \"shapes\" is unknown; nearest known: shape"},
+        {quick(R"("tags":{"a x":["shape"]})"), "/quick/tags: \"a x\" is unknown"},
+        {study_text(R"([{"solver":"a","tags":["shape","fre"]}])"), "/solvers/0/tags/1"},
+        {study_text(R"([{"solver":"a"},{"solver":"a"}])"), "two runs are named"},
+        {study_text(R"([{"solver":"a","set":{"cloth.side":"double"}}])"), "nearest known: sides"},
+        {study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.1.friction":0}}])"),
+         "/colliders/1: expected an item"},
+        {study_text(R"([{"solver":"a","tags":["shape"],"set":{"colliders.x.friction":0}}])"), "/colliders/x"}})
+    EXPECT_PRED2(mentions, study_error(text), fault);
 }
 
 TEST(Study, PenetrationHasEveryCombinationItNames) {
@@ -174,15 +171,6 @@ TEST(Study, PenetrationHasEveryCombinationItNames) {
   }
   EXPECT_TRUE(scenes.contains("self-fold") && scenes.contains("self-crumple"));
   EXPECT_EQ(scenes.size(), 18u);
-}
-
-TEST(Study, RequiredAssetsMustBeThere) {
-  const Variable procedural("CLOTHBENCH_ASSETS", "procedural");
-  EXPECT_NO_THROW(load_scene("paper/desk-flat-low"));
-  EXPECT_NO_THROW(load_scene("paper/gravity", {}, Assets::Required)) << "a scene that uses none";
-  EXPECT_THROW(load_scene("paper/desk-flat-low", {}, Assets::Required), Error);
-  EXPECT_THROW(load_scene("paper/two-hand-stretch-2mps", {}, Assets::Required), Error);
-  EXPECT_THROW(load_study("penetration", {{}, StudyLength::Full, Assets::Required}), Error);
 }
 
 TEST(Settings, AreCompletedAndChecked) {
@@ -214,10 +202,6 @@ TEST(Settings, TuningIsOneObject) {
     EXPECT_THROW(complete_settings(info, bad), Error) << bad;
   info.tuning.clear();
   EXPECT_THROW(complete_settings(info, given), Error) << "another solver has none";
-}
-
-TEST(Solvers, NearestNameIsNamed) {
-  EXPECT_PRED2(mentions, refusal([] { find_solver("balistic"); }), "nearest known: ballistic");
 }
 
 }  // namespace

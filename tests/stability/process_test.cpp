@@ -29,7 +29,7 @@ class Process : public WithFolder {
  protected:
   RunRecord run(const std::string& solver, double limit_s = 0) {
     if (!worker_) worker_ = std::make_unique<Worker>(FAULTY_CHILD, dir_ / "scratch");
-    Scene scene = scene_from_json(kScenario, "test");
+    Scene scene = scene_;
     scene.name = fmt::format("fall-{}-{}", solver, ++runs_);
     SolverEntry entry;
     entry.info.name = solver;
@@ -41,6 +41,19 @@ class Process : public WithFolder {
     options.out = dir_;
     return run_apart(*worker_, plan, {&scene, &entry, nlohmann::json::object(), "default"}, options);
   }
+  /// Trials of these solvers in one group.
+  RunPlan timed(const std::vector<std::string>& names, int trials, double accuracy_s) {
+    RunPlan plan;
+    plan.groups.emplace_back();
+    plan.rules = {.trials = trials, .frames = 6, .warmup_s = 0, .drop_frames = 0, .accuracy_duration_s = accuracy_s};
+    for (const std::string& name : names) {
+      solvers_.emplace_back().info.name = name;
+      plan.groups[0].push_back({&scene_, &solvers_.back(), nlohmann::json::object(), "default"});
+    }
+    return plan;
+  }
+  const Scene scene_ = scene_from_json(kScenario, "test");
+  std::deque<SolverEntry> solvers_;
   std::unique_ptr<Worker> worker_;
   int runs_ = 0;
 };
@@ -49,15 +62,7 @@ class Process : public WithFolder {
 TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
   const char* const kLimit = "CLOTHBENCH_SOLVER_LIMIT_S";
   setenv(kLimit, "4", 1);
-  const Scene scene = scene_from_json(kScenario, "test");
-  std::deque<SolverEntry> solvers;
-  RunPlan plan;
-  plan.groups.emplace_back();
-  plan.rules = {.trials = 2, .frames = 6, .warmup_s = 0, .drop_frames = 0, .accuracy_duration_s = 0};
-  for (const char* name : {"crashes", "falls", "hangs", "loses-device"}) {
-    solvers.emplace_back().info.name = name;
-    plan.groups[0].push_back({&scene, &solvers.back(), nlohmann::json::object(), "default"});
-  }
+  const RunPlan plan = timed({"crashes", "falls", "hangs", "loses-device"}, 2, 0);
   RunOptions options;
   options.out = dir_;
   options.program = FAULTY_CHILD;
@@ -80,15 +85,7 @@ TEST_F(Process, ATimedStudyGoesOnAfterEveryFault) {
 
 /// Parallel untimed passes give the same rows as sequential ones.
 TEST_F(Process, UntimedPassesSideBySideChangeNoRow) {
-  const Scene scene = scene_from_json(kScenario, "test");
-  std::deque<SolverEntry> solvers;
-  RunPlan plan;
-  plan.groups.emplace_back();
-  plan.rules = {.trials = 1, .frames = 6, .warmup_s = 0, .drop_frames = 0, .accuracy_duration_s = 0.5};
-  for (const char* name : {"falls", "crashes", "nan"}) {
-    solvers.emplace_back().info.name = name;
-    plan.groups[0].push_back({&scene, &solvers.back(), nlohmann::json::object(), "default"});
-  }
+  const RunPlan plan = timed({"falls", "crashes", "nan"}, 1, 0.5);
   RunOptions options;
   options.program = FAULTY_CHILD;
   for (const int jobs : {1, 3}) {

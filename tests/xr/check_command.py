@@ -18,10 +18,10 @@ if not ctypes.util.find_library("openxr_loader"):
     sys.exit(77)
 
 
-def run(*words, code=0, **environment):
+def run(*words, **environment):
     done = subprocess.run([command, *map(str, words)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           env={**os.environ, "XR_RUNTIME_JSON": manifest, "CLOTHBENCH_ASSETS": "procedural", **environment})
-    assert done.returncode == code, f"exit code {done.returncode}, expected {code}: {words}\n{done.stdout}\n{done.stderr}"
+    assert done.returncode == 0, f"exit code {done.returncode}: {words}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr
 
 
@@ -54,6 +54,4 @@ with tempfile.TemporaryDirectory(prefix="clothbench-xr-") as top:
     assert told["summary"]["xr_frames"] == 5 and told["status"] == "ok", told
     text = run("xr", "paper/desk-flat-low", "--table", "--frames", 3, "--out", top / "table", CLOTHBENCH_NULL_XR="planes=1,blind=1")
     assert "on the user's table" in text, text
-    text = run("xr", "paper/capsule-sweep", "--out", top / "none", code=3, XR_RUNTIME_JSON="/nowhere")
-    assert "OpenXR" in text, text
-    print("ok: as JSON, without a runtime")
+    print("ok: as JSON, on a table")

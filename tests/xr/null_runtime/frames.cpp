@@ -1,5 +1,4 @@
 // Session, clock, composition, spaces and hands.
-#include <algorithm>
 #include <sstream>
 
 #include "runtime.hpp"
@@ -8,15 +7,6 @@ namespace null_xr {
 namespace {
 
 namespace cb = clothbench::xr;
-
-template <class T>
-XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t* count, T* out) {
-  *count = static_cast<std::uint32_t>(items.size());
-  if (capacity == 0) return XR_SUCCESS;
-  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
-  std::copy(items.begin(), items.end(), out);
-  return XR_SUCCESS;
-}
 
 XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity,
                                 std::uint32_t* count, XrEnvironmentBlendMode* out) {

@@ -56,11 +56,7 @@ XrResult XRAPI_CALL destroy_session(XrSession) {
 }
 
 XrResult XRAPI_CALL formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
-  *count = 2;
-  if (capacity == 0) return XR_SUCCESS;
-  out[0] = VK_FORMAT_R16G16B16A16_SFLOAT;
-  out[1] = VK_FORMAT_R8G8B8A8_SRGB;
-  return XR_SUCCESS;
+  return list<std::int64_t>({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB}, capacity, count, out);
 }
 
 XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* info, XrSwapchain* out) {

@@ -54,17 +54,13 @@ XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint32_t capaci
                                          XrExtensionProperties* out) {
   if (layer != nullptr) return XR_ERROR_API_LAYER_NOT_PRESENT;
   const Runtime options;  // an instance need not be there
-  std::vector<const char*> names;
-  for (const Offer& o : kOffers)
-    if (offers(options, o)) names.push_back(o.extension);
-  *count = static_cast<std::uint32_t>(names.size());
-  if (capacity == 0) return XR_SUCCESS;
-  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    std::strcpy(out[k].extensionName, names[k]);
-    out[k].extensionVersion = 1;
+  std::vector<XrExtensionProperties> offered;
+  for (const Offer& o : kOffers) {
+    if (!offers(options, o)) continue;
+    std::strcpy(offered.emplace_back(XrExtensionProperties{XR_TYPE_EXTENSION_PROPERTIES, nullptr, "", 1}).extensionName,
+                o.extension);
   }
-  return XR_SUCCESS;
+  return list(offered, capacity, count, out);
 }
 
 XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {

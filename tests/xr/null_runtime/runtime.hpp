@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -88,6 +89,16 @@ Handle handle(std::uint64_t n) {
 template <class Handle>
 std::uint64_t number_of(Handle h) {
   return reinterpret_cast<std::uint64_t>(h);
+}
+
+/// The items that a function of OpenXR enumerates.
+template <class T>
+XrResult list(const std::vector<T>& items, std::uint32_t capacity, std::uint32_t* count, T* out) {
+  *count = static_cast<std::uint32_t>(items.size());
+  if (capacity == 0) return XR_SUCCESS;
+  if (capacity < *count) return XR_ERROR_SIZE_INSUFFICIENT;
+  std::copy(items.begin(), items.end(), out);
+  return XR_SUCCESS;
 }
 
 XrPosef as_xr(const Pose&);
