@@ -50,7 +50,7 @@ inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Each
 inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
 // Attachments pull a sheet apart by more than kMaxGripStrain: with a fifth, long links turn so far in a substep that
 // corrections change the angular momentum (random pulls of the study `contact`)
-inline constexpr LinkRule kPulledSheet = {{50, 100, 200}, {1.2, 0.6, 0.3}};
+inline constexpr LinkRule kPulledSheet = {{80, 100, 200}, {0.75, 0.6, 0.3}};
 // A collider strains the cloth in directions that tethers do not limit (capsule-sweep)
 inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
 // Chains of a mesh are less accurate than grid lines (garments under capsules)
