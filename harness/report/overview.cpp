@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr double kFallLimit = 0.01;  // with a larger free-fall error, a frame rate means nothing
 constexpr double kBudget_ms = 1;     // budget of wall time per frame
-constexpr double kMaxError = 0.1;     // with a larger error, a solver does not lead, however fast it is
+constexpr double kMaxError = 0.1;    // with a larger error, a solver does not lead, however fast it is
 constexpr double kUneven = 1.5;      // mean over median frame time
 constexpr double kFastest = 1e9;     // frames per second: above any real rate
 constexpr std::size_t kNamed = 3;    // studies in a title

@@ -1,7 +1,5 @@
 """scripts/publish.sh resumes, skips complete studies and refuses mixed sources; the published files have one commit and the stated hashes.
-
-usage: check_publish.py ROOT CLOTHBENCH
-"""
+usage: check_publish.py ROOT CLOTHBENCH"""
 import csv
 import lzma
 import os

@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Checks what keeps the code easy to read: includes go one way, rooms stay within their lines, one metric group per file, short files and functions, one format.
 
-usage: check_structure.py
-
 Prints one line per fault and exits with 1. If there is no fault but a needed program is missing, it exits with 77 (skipped).
 """
 import ast
