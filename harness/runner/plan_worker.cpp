@@ -193,8 +193,8 @@ void run_tasks(const std::vector<Task>& tasks, const RunOptions& options) {
   fs::remove_all(scratch, ignored);
 }
 
-/// The untimed passes of all runs. Passes of one solver in one group form one task and keep their order, because a
-/// settings sweep ends at its first timeout.
+/// The untimed passes of all runs. Passes of one solver's settings sweep in one group form one task and keep their
+/// order, because the sweep ends at its first timeout.
 void execute_untimed(const RunPlan& plan, const RunOptions& given) {
   std::mutex mutex;
   RunOptions options = given;
@@ -206,9 +206,10 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
   std::stable_sort(groups.begin(), groups.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
   std::vector<Task> tasks;
   for (const auto& group : groups) {
-    std::map<std::string, std::vector<RunSpec>> by_solver;
-    for (const RunSpec& spec : group) by_solver[spec.entry->info.name].push_back(spec);
-    for (auto& [solver, specs] : by_solver)
+    std::map<std::pair<std::string, std::string>, std::vector<RunSpec>> sweeps;
+    for (const RunSpec& spec : group)
+      sweeps[{spec.entry->info.name, spec.work > 0 ? "" : spec.setting}].push_back(spec);
+    for (auto& [unused, specs] : sweeps)
       tasks.push_back([&, specs = std::move(specs)](Worker& worker) {
         stop_if_interrupted(kTrialsKept);
         RunPlan part;
