@@ -131,6 +131,8 @@ std::string case_of(const Row&);
 /// 0 stable, 1 degraded, 2 failed; -1 if there are no stability rules, the scene is unsupported or the run is missing.
 int grade_of(const Row&);
 
+/// Work of a frame of the same runs on several devices.
+View devices();
 /// For the map of a claim: kind, iterations, substeps, dispatches per frame; `claim`: "holds", "near" (one criterion is
 /// violated) or "fails".
 nlohmann::json claim_fields(const Row&);

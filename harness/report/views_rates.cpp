@@ -182,34 +182,6 @@ View sustained() {
   return v;
 }
 
-View devices() {
-  View v{"rates", "Work and rate by device", note("devices"),
-         [](const Row& r) { return r.elsewhere && std::isfinite(r.value("frame_device_median_s")); }};
-  v.keys = {{"scene",
-             [](const Row& r) {
-               return Keys{r.scene, {"all", true}};
-             }},
-            key(
-                "solver", [](const Row& r) { return label_of(*r.run); }, true),
-            key("device", [](const Row& r) { return environment_text(*r.run, "gpu"); })};
-  const auto add = [&](const char* head, int digits, double scale, const char* of, const char* per = nullptr) {
-    const auto sum = [](const Group& g, const char* name) {
-      return std::accumulate(g.begin(), g.end(), 0.0, [=](double s, const Row* r) { return s + r->value(name); });
-    };
-    v.columns.push_back({head, [=](const Group& g, const Keys&) {
-                           return number_cell(scale * sum(g, of) / (per ? sum(g, per) : 1), digits);
-                         }});
-  };
-  add("dispatches", 1, 1, "dispatches");
-  add("read [MB]", 4, 1e-6, "read_B_per_frame");
-  add("written [MB]", 4, 1e-6, "write_B_per_frame");
-  add("GPU time [ms]", 3, 1e3, "frame_device_median_s");
-  add("µs per dispatch", 3, 1e6, "frame_device_median_s", "dispatches");
-  add("ns per byte read", 3, 1e9, "frame_device_median_s", "read_B_per_frame");
-  v.by_key = v.timed = true;
-  return v;
-}
-
 View in_short(std::function<bool(const Row&)> where, const Pick& pick = first_of) {
   View v{"overview", "In short", note("in short"), std::move(where)};
   v.keys = {scene_key(), solver_key()};
@@ -262,11 +234,39 @@ void add_tail_columns(View& v, const Pick& pick, const Pick& about) {
   add_conditions(v, about ? about : pick);
 }
 
+View devices() {
+  View v{"rates", "Work and rate by device", note("devices"),
+         [](const Row& r) { return r.elsewhere && std::isfinite(r.value("frame_device_median_s")); }};
+  v.keys = {{"scene",
+             [](const Row& r) {
+               return Keys{r.scene, {"all", true}};
+             }},
+            key(
+                "solver", [](const Row& r) { return label_of(*r.run); }, true),
+            key("device", [](const Row& r) { return environment_text(*r.run, "gpu"); })};
+  const auto add = [&](const char* head, int digits, double scale, const char* of, const char* per = nullptr) {
+    const auto sum = [](const Group& g, const char* name) {
+      return std::accumulate(g.begin(), g.end(), 0.0, [=](double s, const Row* r) { return s + r->value(name); });
+    };
+    v.columns.push_back({head, [=](const Group& g, const Keys&) {
+                           return number_cell(scale * sum(g, of) / (per ? sum(g, per) : 1), digits);
+                         }});
+  };
+  add("dispatches", 1, 1, "dispatches");
+  add("read [MB]", 4, 1e-6, "read_B_per_frame");
+  add("written [MB]", 4, 1e-6, "write_B_per_frame");
+  add("GPU time [ms]", 3, 1e3, "frame_device_median_s");
+  add("µs per dispatch", 3, 1e6, "frame_device_median_s", "dispatches");
+  add("ns per byte read", 3, 1e9, "frame_device_median_s", "read_B_per_frame");
+  v.by_key = v.timed = true;
+  return v;
+}
+
 std::vector<View> rate_views() {
   View leading = in_short(&Row::leads, [](const Group& g) { return g.front()->on_software ? nullptr : g.front(); });
   leading.title = "Leading scenes with contact";
   leading.note = note("leading") + leading.note;
-  return {std::move(leading), devices(), frame_times(), sustained(), memory()};
+  return {std::move(leading), frame_times(), sustained(), memory()};
 }
 
 Table in_short_table(const RunTable& table) {

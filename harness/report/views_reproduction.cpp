@@ -328,6 +328,6 @@ void mark_best_points(std::vector<Row>& rows) {
   }
 }
 
-std::vector<View> reproduction_views() { return {work_model(), claims()}; }
+std::vector<View> reproduction_views() { return {work_model(), devices(), claims()}; }
 
 }  // namespace clothbench
