@@ -66,6 +66,7 @@ TEST(Substeps, FollowTheRule) {
     EXPECT_EQ(of(s, "fast"), fast);
   }
   EXPECT_EQ(of(sheet(128, 128), "default"), 5) << "nothing touches it";
+  EXPECT_EQ(of(load_scene("paper/two-hand-stretch-10mps"), "fast"), 80) << "hands pull it apart by more than half";
 }
 
 TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {

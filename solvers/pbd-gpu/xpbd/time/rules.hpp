@@ -48,8 +48,8 @@ inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Teth
 inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
 inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Each colour disturbs the others
 inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
-// Attachments pull a sheet apart by more than kMaxGripStrain: with a fifth, long links turn so far in a substep that
-// corrections change the angular momentum (random pulls of the study `contact`)
+// Attachments pull a sheet apart by more than kMaxGripStrain. With a fifth of these substeps, long links turn so far in
+// one that corrections change the angular momentum (motion check of random pulls in the study `contact`)
 inline constexpr LinkRule kPulledSheet = {{80, 100, 200}, {0.75, 0.6, 0.3}};
 // A collider strains the cloth in directions that tethers do not limit (capsule-sweep)
 inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
