@@ -42,14 +42,12 @@ async function bundled(entry, options) {
   return {text: result.outputFiles[0].text, inputs: Object.keys(result.metafile.inputs)};
 }
 
-const escaped = text => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;');
-
 /// Name, version and licence of every package in the bundle.
 function licences(inputs) {
   const names = new Set(inputs.map(i => i.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1]).filter(Boolean));
   return [...names].sort().map(name => {
     const {version} = JSON.parse(read(join(packages, name, 'package.json'))), text = read(join(packages, name, 'LICENSE')).trim();
-    return `<h4>${name} ${version}</h4><pre>${escaped(text)}</pre>`;
+    return `<h4>${name} ${version}</h4><pre>${text.replaceAll('&', '&amp;').replaceAll('<', '&lt;')}</pre>`;
   }).join('\n');
 }
 

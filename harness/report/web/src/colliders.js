@@ -45,16 +45,6 @@ function capsules(array, rate) {
   };
 }
 
-/// Function that returns a point's depth in a convex body: the distance behind the nearest of its triangles' planes.
-function convex_depth(position, corners) {
-  const planes = [];
-  for (let k = 0; k < corners.length; k += 3) {
-    const [a, b, c] = [0, 1, 2].map(i => new THREE.Vector3().fromArray(position, 3 * corners[k + i]));
-    planes.push(new THREE.Plane().setFromCoplanarPoints(a, b, c));
-  }
-  return x => Math.min(...planes.map(p => -p.distanceToPoint(x)));
-}
-
 /// Static triangles, or skinned ones: x(t) = Σ weight · matrix(t) (position, 1).
 function triangle_mesh(arrays, rate, convex) {
   const rest = arrays.position_m.values, position = new Float32Array(rest);
@@ -81,10 +71,12 @@ function triangle_mesh(arrays, rate, convex) {
       tree.refit();
     };
   }
-  if (convex) {  // flat shading
-    const faces = geometry.toNonIndexed();
+  if (convex) {  // flat shading; the depth of a point is its distance behind the nearest plane
+    const faces = geometry.toNonIndexed(), corners = faces.attributes.position;
     faces.computeVertexNormals();
-    return {object: new THREE.Mesh(faces), depth: convex_depth(rest, arrays.triangles.values)};
+    const plane = (_, k) => new THREE.Plane().setFromCoplanarPoints(...[0, 1, 2].map(i => new THREE.Vector3().fromBufferAttribute(corners, 3 * k + i)));
+    const planes = Array.from({length: corners.count / 3}, plane);
+    return {object: new THREE.Mesh(faces), depth: x => Math.min(...planes.map(p => -p.distanceToPoint(x)))};
   }
   geometry.computeVertexNormals();
   const ray = new THREE.Ray();

@@ -27,9 +27,6 @@ export function unpacked(id) {
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
 }
 
-/// "Table 3: frames…" -> "table-3-frames"
-export const file_name = title => title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
-
 /// The element whose text screen readers announce.
 let live = null;
 export function say(text) {

@@ -10,7 +10,6 @@ import {kSymbols, number, unique} from './look.js';
 import {band, by_solver, interval, legend, lines, log, panels, rules, symbols} from './spec.js';
 
 const kFailed = ['not_finite', 'diverged', 'device_lost', 'timed_out', 'crashed', 'error'];
-const kRefresh_Hz = [72, 90];
 const percent = v => v === null || v === undefined ? '–' : `${number(100 * v, 3)} %`;
 const ms = s => s === null || s === undefined ? '–' : `${number(1e3 * s)} ms`;
 const choice = (label, values, first, text = String) =>
@@ -149,7 +148,7 @@ function frame_times(doc) {
     }),
     spec: (rows, s, look) => {
       const present = unique(rows.map(r => r.solver)), scenes = unique(rows.map(r => r.scene)), worst = Math.max(...rows.map(r => r.p99)), solver = by_solver(rows, look);
-      const lines = kRefresh_Hz.filter(hz => worst > 100 / hz).map(hz => ({at: 1e3 / hz, text: `${hz} Hz`})), near = lines.filter(l => worst > l.at / 3);
+      const lines = [72, 90].filter(hz => worst > 100 / hz).map(hz => ({at: 1e3 / hz, text: `${hz} Hz`})), near = lines.filter(l => worst > l.at / 3);
       const x = log('p50', 'time per frame [ms]', [...near.map(l => l.at), ...rows.flatMap(r => [r.p50, r.p99])]);
       const shared = {x, y: band('scene', scenes, look), yOffset: {field: 'solver', scale: {domain: present}}};
       const to = (high, mark) => interval('p50', high, {mark, ...shared, x2: {field: high}, stroke: solver.stroke});

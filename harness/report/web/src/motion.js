@@ -81,14 +81,9 @@ export function strain(edges, position, out) {
   return out;
 }
 
-/// Groups of a scene's colliders with their arrays as numbers.
+/// Unpacks the arrays of a scene's colliders into numbers, once for all of its motions.
 export async function load_colliders(groups) {
-  return Promise.all(groups.map(async g => {
-    const arrays = {};
-    for (const [name, a] of Object.entries(g.arrays)) {
-      const bytes = await words(a.blob);
-      arrays[name] = {shape: a.shape, values: a.integer ? new Uint32Array(bytes) : new Float32Array(bytes)};
-    }
-    return {path: g.path, attributes: g.attributes, arrays};
-  }));
+  for (const {arrays} of groups)
+    for (const a of Object.values(arrays)) a.values ??= new (a.integer ? Uint32Array : Float32Array)(await words(a.blob));
+  return groups;
 }

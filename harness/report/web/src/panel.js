@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 
 import {make_colliders, penetration} from './colliders.js';
-import {load_colliders, Motion, strain} from './motion.js';
+import {strain} from './motion.js';
 
 // Six equally spaced colours of Viridis; readable with all common colour-vision deficiencies.
 const kRamp = ['#440154', '#414487', '#2a788e', '#22a884', '#7ad151', '#fde725'].map(c => new THREE.Color(c));
@@ -57,18 +57,6 @@ export class Panel {
     const sky = new THREE.HemisphereLight(0xffffff, 0x8a8378, 1.7), sun = new THREE.DirectionalLight(0xffffff, 2.0);
     sun.position.set(0.6, 1, 0.8);
     this.scene.add(this.cloth, sky, sun);
-  }
-
-  static async load(motions, entry) {
-    const [motion, colliders] = await Promise.all([Motion.load(entry), load_colliders(motions.colliders[entry.colliders])]);
-    return new Panel(motion, colliders);
-  }
-
-  /// The box to view: around the initial cloth. A cloth that slides off a desk falls for metres; in a box around its whole
-  /// path it would be a dot.
-  view_box() {
-    const {box} = this.motion;
-    return box.clone().expandByScalar(0.25 * Math.max(...box.getSize(new THREE.Vector3()).toArray()));
   }
 
   /// The corner from which the cloth is in front of its colliders: signs of x and z.

@@ -8,18 +8,8 @@ import {set_value, shown, state} from './state.js';
 import {block_head, copy_command, near_window, reproduce, shortened, ShownTable, solver_buttons} from './tables.js';
 
 const tip = element('div', {id: 'tip', role: 'status', hidden: true});
-const figures = [];
+export const all_figures = [];
 let pinned = null;  // the figure whose value stays in view until it is closed
-export {figures as all_figures};  // for tests
-
-function show_tip(lines, x, y, controls = []) {
-  tip.replaceChildren(lines.filter(Boolean).join('\n'), ...controls);
-  tip.hidden = !lines.length;
-  if (!lines.length) return;
-  const box = tip.getBoundingClientRect();
-  tip.style.left = `${Math.max(6, Math.min(x + 14, innerWidth - box.width - 8))}px`;
-  tip.style.top = `${y + 18 + box.height > innerHeight ? y - box.height - 12 : y + 18}px`;
-}
 
 /// The runs behind a row; a row of a log has its own command, and no run in this report.
 const runs_of = r => r.again ? [r] : r.behind ?? [r];
@@ -42,7 +32,7 @@ class Figure {
     this.block = element('figure', {id: entry.id}, block_head(entry.id, this.heading, `figure ${entry.id}`, [...this.controls, this.again]), this.plot, this.legend,
                          captioned('figcaption', {}, entry.caption.split('\n')), this.remark, element('div', {class: 'bar small'}, this.details));
     this.listen();
-    figures.push(this);
+    all_figures.push(this);
   }
 
   listen() {
@@ -79,9 +69,14 @@ class Figure {
     const row = this.marks[at], runs = row && runs_of(row);
     this.command = row && command_of(this.doc, runs);
     pinned = pin && row ? this : null;
+    tip.hidden = !row;
+    if (!row) return;
     const copy = this.command && button('Copy the command', null, () => copy_command(this.command));
-    const controls = pinned ? [element('div', {class: 'bar'}, copy, button('Close', null, unpin))] : [];
-    show_tip(row ? [...this.entry.tip(row), files_of(runs), shortened(this.command)] : [], x, y, controls);
+    const lines = [...this.entry.tip(row), files_of(runs), shortened(this.command)].filter(Boolean);
+    tip.replaceChildren(lines.join('\n'), ...(pinned ? [element('div', {class: 'bar'}, copy, button('Close', null, unpin))] : []));
+    const box = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(6, Math.min(x + 14, innerWidth - box.width - 8))}px`;
+    tip.style.top = `${y + 18 + box.height > innerHeight ? y - box.height - 12 : y + 18}px`;
   }
 
   settle() {
@@ -141,7 +136,7 @@ class Figure {
   }
 }
 
-const unpin = () => figures.find(f => f.at >= 0)?.point(-1);
+const unpin = () => all_figures.find(f => f.at >= 0)?.point(-1);
 
 export const figure_block = (doc, look, entry) => new Figure(doc, look, entry).block;
 
@@ -150,11 +145,11 @@ export function start_figures() {
   document.body.append(tip);
   addEventListener('click', e => e.target.closest?.('#tip button') || unpin());
   addEventListener('keydown', e => e.key === 'Escape' && unpin());
-  near_window(figures, f => f.redraw());
+  near_window(all_figures, f => f.redraw());
   let timer = 0;
   addEventListener('resize', () => {
     clearTimeout(timer);
     const changed = f => f.drawn && f.plot.clientWidth && f.drawn !== Math.floor(f.plot.clientWidth);
-    timer = setTimeout(() => figures.filter(changed).forEach(f => f.redraw()), 150);
+    timer = setTimeout(() => all_figures.filter(changed).forEach(f => f.redraw()), 150);
   });
 }

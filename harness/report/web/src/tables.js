@@ -1,5 +1,5 @@
 // Tables: sortable by a click on a head, filtered by solver and words, with an anchor and a command per row.
-import {button, captioned, element, file_name, say} from './dom.js';
+import {button, captioned, element, say} from './dom.js';
 import {command_of, files_of} from './figures.js';
 import {icon, unique} from './look.js';
 import {hide_solvers, set_value, shown, state} from './state.js';
@@ -39,6 +39,8 @@ export const solver_buttons = (look, solvers) => solvers.map(s => {
 /// A head with an anchor; `more`: controls next to it.
 export const block_head = (id, name, what, more) =>
     element('div', {class: 'head'}, element('h3', {}, name, element('a', {class: 'anchor', href: `#${id}`, 'aria-label': `Link to ${what}`}, '#')), more);
+
+export const all_tables = [];
 
 export class ShownTable {
   constructor(doc, look, table, id) {
@@ -120,7 +122,7 @@ export class ShownTable {
 
   /// A link from a failed run to the criteria that it violates; null if no other table lists them.
   criteria(run, text) {
-    const list = tables.find(t => t.table.explains && t !== this && t.body.some(r => r.run === run));
+    const list = all_tables.find(t => t.table.explains && t !== this && t.body.some(r => r.run === run));
     const pick = () => (list.picked = run, Object.assign(list.find, {hidden: false, value: `${run.scene}, ${run.label}`}), list.fill());
     return list ? element('a', {href: `#${list.id}`, title: 'Show the criteria that it violates', onclick: pick}, text) : null;
   }
@@ -150,13 +152,10 @@ export class ShownTable {
   }
 }
 
-const tables = [];
-
-export {tables as all_tables};  // for tests
 export function table_block(doc, look, table) {
-  const base = `t-${file_name(table.title)}`, same = tables.filter(t => t.id.startsWith(base)).length;
+  const base = `t-${table.title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60)}`, same = all_tables.filter(t => t.id.startsWith(base)).length;
   const t = new ShownTable(doc, look, table, same ? `${base}-${same + 1}` : base);
-  tables.push(t);
+  all_tables.push(t);
   return t.block;
 }
 
@@ -176,10 +175,10 @@ export function near_window(list, make) {
 }
 
 export function start_tables() {
-  const fill = () => tables.filter(t => t.filled).forEach(t => t.fill());
-  near_window(tables, t => t.fill());
+  const fill = () => all_tables.filter(t => t.filled).forEach(t => t.fill());
+  near_window(all_tables, t => t.fill());
   for (const width of [kNarrow, kMedium]) width.addEventListener('change', fill);
-  const print = on => (tables.forEach(t => t.prints = on), fill());
+  const print = on => (all_tables.forEach(t => t.prints = on), fill());
   addEventListener('beforeprint', () => print(true));
   addEventListener('afterprint', () => print(false));
   addEventListener('solvers', () => document.querySelectorAll('[data-solver]').forEach(b => b.setAttribute('aria-pressed', String(shown(b.dataset.solver)))));

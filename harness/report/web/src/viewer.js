@@ -5,6 +5,7 @@ import {SVGRenderer} from 'three/examples/jsm/renderers/SVGRenderer.js';
 
 import {button, element, say, select} from './dom.js';
 import {number, unique} from './look.js';
+import {load_colliders, Motion} from './motion.js';
 import {crossing_css, Panel, ramp_css} from './panel.js';
 import {reproduce} from './tables.js';
 
@@ -65,7 +66,7 @@ class Viewer {
 
   async set(entries) {
     const turn = this.turn = (this.turn ?? 0) + 1;
-    const panels = await Promise.all(entries.map(m => Panel.load(this.motions, m)));
+    const panels = await Promise.all(entries.map(async m => new Panel(await Motion.load(m), await load_colliders(this.motions.colliders[m.colliders]))));
     if (turn !== this.turn) return panels.forEach(p => p.dispose());  // the reader has chosen another scene meanwhile
     this.panels.forEach(p => p.dispose());
     this.panels = panels;
@@ -73,14 +74,15 @@ class Viewer {
     this.seek(0);
   }
 
-  /// All panels show the same part of the scene.
+  /// All panels show the same part of the scene, around the initial cloths. A cloth that slides off a desk falls for metres; in a
+  /// box around its whole path it would be a dot.
   arrange() {
     [this.times = [0]] = this.panels.map(p => p.motion.time_s).sort((a, b) => b.at(-1) - a.at(-1));
     this.end = this.times.at(-1);
     this.scrub.max = String(this.times.length - 1);
-    const box = this.panels.reduce((all, p) => all.union(p.view_box()), new THREE.Box3());
+    const around = box => box.clone().expandByScalar(0.25 * Math.max(...box.getSize(new THREE.Vector3()).toArray()));
+    const box = this.panels.reduce((all, p) => all.union(around(p.motion.box)), new THREE.Box3());
     this.radius = box.isEmpty() ? 1 : Math.max(0.1, box.getSize(new THREE.Vector3()).length() / 2);
-    this.middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
     const count = this.panels.length;
     this.columns = Math.max(1, Math.min(count === 4 ? 2 : 3, count, Math.floor(this.stage.clientWidth / 230)));
     this.rows_of_panels = Math.max(1, Math.ceil(count / this.columns));
@@ -95,7 +97,12 @@ class Viewer {
     this.notes.replaceChildren(...notes.map(n => element('li', {}, n)));
     this.colour(this.colouring);
     this.resize();
-    this.look();
+    // The camera is at the corner from which the cloth is in front of its colliders.
+    const away = 0.9 * this.radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)), {target} = this.controls;
+    const tile = this.stage.clientWidth / this.columns / (this.stage.clientHeight / this.rows_of_panels), [x, z] = this.panels[0]?.side() ?? [1, 1];
+    box.getCenter(target);
+    this.camera.position.set(0.75 * x, 0.55, 0.8 * z).setLength(away / Math.min(1, tile)).add(target);
+    this.controls.update();
   }
 
   resize() {
@@ -105,16 +112,6 @@ class Viewer {
     this.renderer?.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
     this.renderer?.setSize(width, height, false);
     this.stale = true;
-  }
-
-  /// Views from the corner at which the cloth is in front of its colliders.
-  look() {
-    const away = 0.9 * this.radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2));
-    const tile = this.stage.clientWidth / this.columns / (this.stage.clientHeight / this.rows_of_panels);
-    const [x, z] = this.panels[0]?.side() ?? [1, 1];
-    this.controls.target.copy(this.middle);
-    this.camera.position.set(0.75 * x, 0.55, 0.8 * z).setLength(away / Math.min(1, tile)).add(this.middle);
-    this.controls.update();
   }
 
   colour(kind) {
