@@ -256,8 +256,6 @@ Tile shares(const Group& rows, Part part, std::string title) {
   return out;
 }
 
-bool flag(const RunRecord& c, const char* key) { return environment_of(c, key) == json(true); }
-
 /// The value of a run's environment as shown in the heading.
 std::string fact(const RunRecord& c, const std::string& key) {
   const std::string value = environment_text(c, key.c_str());
@@ -265,7 +263,7 @@ std::string fact(const RunRecord& c, const std::string& key) {
   if (key == "cpu" && environment_of(c, "cpu_threads").is_number())
     return fmt::format("{} ({} threads)", value, environment_of(c, "cpu_threads").dump());
   if (key == "protocol" && (value == "full" || value == "run")) return "";  // the usual protocol needs no word
-  if (key == "gpu") return value + (flag(c, "gpu_is_software") ? " (software)" : "");
+  if (key == "gpu") return value + (environment_of(c, "gpu_is_software") == json(true) ? " (software)" : "");
   if (key == "git_commit") return commit_of(c);
   return key == "created" ? value.substr(0, 10) : value;
 }
@@ -323,8 +321,8 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
   }
   std::map<std::string, std::set<std::string>> trials, devices;  // folders by number of trials; by device
   for (const RunRecord& c : table.runs()) {
-    const std::string device = device_of(c), folder = folder_of(c);
-    if (!device.empty()) devices[device].insert(folder);
+    const std::string machine = device_of(c), folder = folder_of(c);
+    if (!machine.empty()) devices[machine].insert(folder);
     if (const bool withheld = c.withheld.contains("frame_wall_median_s"); withheld || !c.trials.empty())
       trials[withheld ? "withheld" : std::to_string(c.trials.size())].insert(folder);
   }

@@ -140,10 +140,8 @@ void print_console_report(const std::vector<fs::path>& results) {
   constexpr std::size_t kShown = 2, kFew = 24;
   const RunTable table(withhold_times(collect(results)));
   const Page page = page_of(table, results);
-  std::vector<std::string> head = page.warnings;
-  head.push_back(facts_of(page.heading));
-  head.insert(head.end(), page.notes.begin(), page.notes.end());
-  for (const std::string& line : head) fmt::print("{}", wrapped(line, 0, console_columns()));
+  for (const Texts& lines : {page.warnings, {facts_of(page.heading)}, page.notes})
+    for (const std::string& line : lines) fmt::print("{}", wrapped(line, 0, console_columns()));
   std::size_t shown = 0, rest = 0;
   const bool few = table.runs().size() <= kFew;
   if (few)

@@ -133,8 +133,6 @@ View reference_cases() {
 
 constexpr const char* kGrades[] = {"stable", "degraded", "failed"};
 
-bool in_stability(const Row& r) { return r.part == Part::Stability; }
-
 /// "5/7 stable, 2 failed (F1), 1 unsupported".
 Cell tally(const Group& g, const Keys& /*keys*/) {
   std::map<std::pair<int, std::string>, int> others;  // number of runs by grade and class
@@ -155,24 +153,21 @@ Cell tally(const Group& g, const Keys& /*keys*/) {
 }
 
 View robustness() {
-  View v{"stability", "Robustness", note("robustness"), in_stability};
+  View v{"stability", "Robustness", note("robustness"), [](const Row& r) { return r.part == Part::Stability; }};
   v.keys = {{"case", [](const Row& r) { return Keys{case_of(r), {"all", true}}; }}};
   v.across = {solver_key(), tally};
   v.by_key = true;
   return v;
 }
 
-/// Status, or "ended, but …" with the grade for a run that is complete but not stable.
-std::string status_of(const Row& r) {
-  const Outcome& o = r.run->outcome;
-  return o.status == "ok" ? fmt::format("ended, but {} ({})", kGrades[grade_of(r)], o.klass) : status_with_class(o);
-}
-
 View failed() {
   View v{"failed", "Runs that failed", note("failed"),
          [](const Row& r) { return r.published < 0 && (r.status() != "ok" || grade_of(r) > 0); }};
-  v.keys = {solver_key(), key("status", status_of),
-            key("message", [](const Row& r) { return r.run->outcome.message; })};
+  const auto status = [](const Row& r) {
+    const Outcome& o = r.run->outcome;
+    return o.status == "ok" ? fmt::format("ended, but {} ({})", kGrades[grade_of(r)], o.klass) : status_with_class(o);
+  };
+  v.keys = {solver_key(), key("status", status), key("message", [](const Row& r) { return r.run->outcome.message; })};
   v.columns = {{"scenes", [](const Group& g, const Keys&) {
                   const std::string names = joined(g, ", ", [](const Row* r) {
                     const int frame = r->run->outcome.failed_frame;

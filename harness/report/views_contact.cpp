@@ -11,11 +11,7 @@
 namespace clothbench {
 namespace {
 
-using nlohmann::json;
-
 constexpr const char* kAllRuns = "all";
-
-bool in_contact(const Row& r) { return r.part == Part::Contact; }
 
 /// Summary values in one column, separated by " / ".
 ViewColumn values(const char* head, std::vector<const char*> names, double per_si = 1) {
@@ -39,7 +35,7 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
 
 View verdicts() {
   View v{"contact", "Verdict on the acceptance criteria of each scene", note("verdicts"),
-         [](const Row& r) { return in_contact(r) && r.repeat == 1 && !r.scaled; }};
+         [](const Row& r) { return r.part == Part::Contact && r.repeat == 1 && !r.scaled; }};
   v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
   v.by_key = true;
   v.across = {solver_key(), [](const Group& g, const Keys& keys) {
@@ -50,7 +46,7 @@ View verdicts() {
 
 View contact() {
   View v{"contact", "Contact", note("contact"),
-         [](const Row& r) { return in_contact(r) || (r.is_best && r.part == Part::Claims); }};
+         [](const Row& r) { return r.part == Part::Contact || (r.is_best && r.part == Part::Claims); }};
   v.keys = {scene_key(), solver_key(), sides_key()};
   v.columns = {
       column("verdict", verdict_cell),

@@ -85,11 +85,6 @@ std::pair<std::size_t, std::size_t> held_of(const Group& g, const Keys& keys) {
   return {static_cast<std::size_t>(held), points.size()};
 }
 
-Cell share(const Group& g, const Keys& keys) {
-  const auto [held, all] = held_of(g, keys);
-  return share_cell(held, all);
-}
-
 std::string reading(const Group& g, const Keys& keys) {
   const auto [held, all] = held_of(g, keys);
   if (all == 0) return "";
@@ -179,7 +174,7 @@ View claims() {
                                                   return out;
                                                 }}};
   v.columns = {{"reading", reading},
-               {"holds", share},
+               {"holds", [](const Group& g, const Keys& keys) { return std::apply(share_cell, held_of(g, keys)); }},
                at_best("fewest dispatches",
                        [](const Point& p) { return p.held == p.claims ? number_cell(p.dispatches, 1) : Cell(); }),
                {"at all points with", always_with},
@@ -290,9 +285,7 @@ View work_model() {
     return number_cell(rise("double-duplicated") / rise("single"), 3);
   });
   v.columns.push_back({"iterations at the published slope", allowed_iterations});
-  v.columns.push_back({"trials", [](const Group& g, const Keys& keys) {
-                         return keys.front().text == kPublished ? Cell() : trials_cell(*g.front());
-                       }});
+  v.columns.push_back(column("trials", trials_cell));
   v.timed = true;
   return v;
 }

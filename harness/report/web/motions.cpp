@@ -39,21 +39,6 @@ std::string base64_of(const std::string& bytes) {
   return assets::encode_base64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
-std::string deflated(const StoredArray& a) {
-  std::vector<std::uint32_t> words;
-  for (const double v : a.values)
-    words.push_back(a.integer ? static_cast<std::uint32_t>(v) : std::bit_cast<std::uint32_t>(static_cast<float>(v)));
-  return deflated(words);
-}
-
-/// Bounding box of the positions of one frame; empty if one is not finite.
-Eigen::AlignedBox3d box_of(const float* position, std::size_t vertices) {
-  const Eigen::Matrix3Xd x =
-      Eigen::Map<const Eigen::Matrix3Xf>(position, 3, static_cast<Eigen::Index>(vertices)).cast<double>();
-  if (vertices == 0 || !x.allFinite()) return {};
-  return {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
-}
-
 /// Rows with a trajectory, most important for the page first: the first leading scene, garments with contact, other
 /// leading scenes, other and random scenes with contact, scenes without contact; last, runs without a cloth model.
 /// Within each group: default settings first; each solver's first row before any second row. At most six per scene.
@@ -75,19 +60,21 @@ std::vector<const Row*> candidates(const RunTable& table) {
   return out;
 }
 
-class Packer {
- public:
-  explicit Packer(std::size_t budget_B) : left_B_(budget_B) {}
+struct Packer {
+  std::size_t left_B;
+  std::vector<std::string> blobs = {};
+  std::vector<json> runs = {}, colliders = {};
+  std::map<std::string, std::size_t> scenes = {};  ///< hash of a scenario -> index into colliders
 
   /// Adds the motion of a row; false if the budget is exhausted or the initial cloth is not finite.
   bool add(const Row& r, std::size_t index) {
     const RunRecord& c = *r.run;
     const std::size_t stride = 1 + c.accuracy.time_s.size() / kMostFrames;
     // Six bytes per vertex, compressed to a twentieth at best: a motion that cannot fit is not read.
-    if (c.accuracy.time_s.size() / stride * c.header.vertices * 6 / 20 > left_B_) return false;
+    if (c.accuracy.time_s.size() / stride * c.header.vertices * 6 / 20 > left_B) return false;
     const Replay replay = read_replay(c.file, stride);
     const PackedMotion motion = pack_motion(replay);
-    if (motion.frames.empty() || motion.bytes.size() * 4 / 3 > left_B_) return false;
+    if (motion.frames.empty() || motion.bytes.size() * 4 / 3 > left_B) return false;
     json time_s = json::array(), metrics = json::object();
     for (std::size_t f = 0; f < motion.frames.size(); ++f) time_s.push_back(replay.time_s[f]);
     for (const MetricSeries& m : c.accuracy.metrics) {
@@ -103,33 +90,25 @@ class Packer {
               {"low_m", motion.low_m},
               {"cut_at", motion.cut_at},
               {"metrics", std::move(metrics)},
-              {"colliders", colliders(c, replay.groups)},
+              {"colliders", colliders_of(c, replay.groups)},
               {"blob", blob(motion.bytes)}};
     if (r.resolution.grid[0] > 0)
       e["grid"] = r.resolution.grid;
     else
       e["triangles"] = blob(deflated(c.header.triangles));
-    runs_.push_back(std::move(e));
+    runs.push_back(std::move(e));
     return true;
   }
 
-  Motions take() {
-    const json first = runs_.empty() ? json() : runs_.front()["run"];
-    std::sort(runs_.begin(), runs_.end(), [](const json& a, const json& b) { return a["run"] < b["run"]; });
-    out_.document = {{"first", first}, {"runs", std::move(runs_)}, {"colliders", std::move(colliders_)}};
-    return std::move(out_);
-  }
-
- private:
   std::size_t blob(const std::string& bytes) {
-    out_.blobs.push_back(base64_of(bytes));
-    left_B_ -= std::min(left_B_, out_.blobs.back().size());
-    return out_.blobs.size() - 1;
+    blobs.push_back(base64_of(bytes));
+    left_B -= std::min(left_B, blobs.back().size());
+    return blobs.size() - 1;
   }
 
   /// Index of the scene's colliders and grips in the page's list.
-  std::size_t colliders(const RunRecord& c, std::vector<StoredGroup> groups) {
-    const auto [at, is_new] = scenes_.try_emplace(c.header.scenario_sha256, colliders_.size());
+  std::size_t colliders_of(const RunRecord& c, std::vector<StoredGroup> groups) {
+    const auto [at, is_new] = scenes.try_emplace(c.header.scenario_sha256, colliders.size());
     if (!is_new) return at->second;
     std::erase_if(groups, [](const StoredGroup& g) { return !g.path.starts_with("colliders"); });
     json described = json::array();
@@ -140,18 +119,18 @@ class Packer {
         throw Error(c.file + ": /" + g.path + ": " + error.what());
       }
       json arrays = json::object();
-      for (const StoredArray& a : g.arrays)
-        arrays[a.name] = {{"shape", a.shape}, {"integer", a.integer}, {"blob", blob(deflated(a))}};
+      for (const StoredArray& a : g.arrays) {
+        std::vector<std::uint32_t> words;
+        for (const double v : a.values)
+          words.push_back(a.integer ? static_cast<std::uint32_t>(v)
+                                    : std::bit_cast<std::uint32_t>(static_cast<float>(v)));
+        arrays[a.name] = {{"shape", a.shape}, {"integer", a.integer}, {"blob", blob(deflated(words))}};
+      }
       described.push_back({{"path", g.path}, {"attributes", g.attributes}, {"arrays", std::move(arrays)}});
     }
-    colliders_.push_back(std::move(described));
+    colliders.push_back(std::move(described));
     return at->second;
   }
-
-  std::size_t left_B_;
-  Motions out_;
-  std::vector<json> runs_, colliders_;
-  std::map<std::string, std::size_t> scenes_;  ///< hash of a scenario -> index into colliders_
 };
 
 }  // namespace
@@ -165,7 +144,10 @@ PackedMotion pack_motion(const Replay& replay) {
   Eigen::AlignedBox3d all;
   double first = 0;
   for (std::size_t f = 0; f < replay.frames.size(); ++f) {
-    const Eigen::AlignedBox3d box = box_of(&replay.position[size * f], vertices);
+    const Eigen::Map<const Eigen::Matrix3Xf> x(&replay.position[size * f], 3, static_cast<Eigen::Index>(vertices));
+    Eigen::AlignedBox3d box;  // empty if a position is not finite
+    if (vertices > 0 && x.allFinite())
+      box = Eigen::AlignedBox3f(x.rowwise().minCoeff(), x.rowwise().maxCoeff()).cast<double>();
     if (box.isEmpty() || (f > 0 && box.sizes().maxCoeff() > kMostGrowth * first)) {
       out.cut_at = static_cast<long>(replay.frames[f]);
       break;
@@ -193,12 +175,12 @@ PackedMotion pack_motion(const Replay& replay) {
 }
 
 Motions motions_of(const RunTable& table, std::size_t budget_B) {
-  Packer packer(budget_B);
+  Packer all{budget_B};
   std::size_t left_out = 0;
-  for (const Row* r : candidates(table)) left_out += !packer.add(*r, static_cast<std::size_t>(r - table.rows().data()));
-  Motions out = packer.take();
-  out.document["left_out"] = left_out;
-  return out;
+  for (const Row* r : candidates(table)) left_out += !all.add(*r, static_cast<std::size_t>(r - table.rows().data()));
+  const json first = all.runs.empty() ? json() : all.runs.front()["run"];
+  std::sort(all.runs.begin(), all.runs.end(), [](const json& a, const json& b) { return a["run"] < b["run"]; });
+  return {{{"first", first}, {"runs", all.runs}, {"colliders", all.colliders}, {"left_out", left_out}}, all.blobs};
 }
 
 }  // namespace clothbench

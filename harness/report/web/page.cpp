@@ -59,7 +59,7 @@ json figure_row(const Row& r) {
   if (!commit.empty()) add("made", "at " + commit + (device.empty() ? "" : ", on " + device));
   if (const json plugin = environment_of(*r.run, "plugin"); plugin.is_object())
     add("plugin", fs::path(plugin.value("path", "")).filename());
-  if (!r.run->file.empty()) out["file"] = fs::path(r.run->file).filename().string();
+  add("file", fs::path(r.run->file).filename());
   if (environment_text(*r.run, "gpu") == "CPU") out["cpu"] = true;
   if (r.repeat > 1) out["repeated"] = true;
   if (!r.in_sweep())
@@ -94,42 +94,38 @@ json figure_row(const Row& r) {
   return out;
 }
 
-/// A command without the folders and the device of the machine that ran it.
-std::string plain_command(const std::string& line) {
-  return regex_replaced(regex_replaced(line, "^\\S*clothbench", "clothbench"),
-                        " (--out|-o|--device|--job)[ =]\\S+| --resume", "");
-}
-
 /// The study folders of the runs. Also stores in each row the index of its folder, the name of a missing run, and the
 /// index of a run in the folder of a command `run`, by which figures.js finds its scene.
 json studies_of(const RunTable& table, json& rows) {
   json out = json::array();
-  std::map<std::string, std::size_t> folders;
-  std::vector<Texts> names;  // of the runs, by folder
+  std::vector<std::pair<fs::path, Texts>> folders;  // with the names of their runs
   for (const RunRecord& c : table.runs()) {
     const fs::path folder = fs::path(c.file).parent_path();
-    if (c.file.empty() || !fs::exists(folder / "study.json") || !folders.try_emplace(folder, out.size()).second)
+    const auto is_known = [&](const auto& f) { return f.first == folder; };
+    if (c.file.empty() || std::any_of(folders.begin(), folders.end(), is_known) || !fs::exists(folder / "study.json"))
       continue;
     const StudyManifest m = read_manifest(folder);
+    // Without the folders and the device of the machine that ran it.
+    const std::string command = regex_replaced(regex_replaced(m.command_line, "^\\S*clothbench", "clothbench"),
+                                               " (--out|-o|--device|--job)[ =]\\S+| --resume", "");
     out.push_back({{"study", m.study},
                    {"folder", fs::absolute(folder).lexically_normal().filename().string()},
-                   {"command", plain_command(m.command_line)},
+                   {"command", command},
                    {"runs", m.runs.size()}});
-    names.push_back(m.runs);
+    folders.emplace_back(folder, m.runs);
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const RunRecord& c = *table.rows()[k].run;
-    if (table.rows()[k].published >= 0) continue;
-    const auto has = [&](const Texts& all) { return contains(all, run_name(c.header)); };
-    std::size_t n =
-        folders.contains(fs::path(c.file).parent_path()) ? folders.at(fs::path(c.file).parent_path()) : names.size();
-    if (c.file.empty())  // a missing run: of the first study that plans it
-      n = static_cast<std::size_t>(std::find_if(names.begin(), names.end(), has) - names.begin());
-    if (n == names.size() || !has(names[n])) continue;
+    const std::string name = run_name(c.header);
+    const auto at = std::find_if(folders.begin(), folders.end(), [&](const auto& f) {  // a missing run has no folder
+      return (c.file.empty() || f.first == fs::path(c.file).parent_path()) && contains(f.second, name);
+    });
+    if (at == folders.end()) continue;
+    const auto n = static_cast<std::size_t>(at - folders.begin());
     rows[k]["study"] = n;
-    if (c.file.empty()) rows[k]["name"] = run_name(c.header);
+    if (c.file.empty()) rows[k]["name"] = name;
     if (out[n]["study"] == "run")
-      rows[k]["job"] = std::find(names[n].begin(), names[n].end(), run_name(c.header)) - names[n].begin();
+      rows[k]["job"] = std::find(at->second.begin(), at->second.end(), name) - at->second.begin();
   }
   return out;
 }
