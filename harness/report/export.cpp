@@ -1,7 +1,6 @@
 // CSV and JSON files: runs, series, trials.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numeric>
 #include <set>
 

@@ -1,10 +1,7 @@
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <random>
 #include <tuple>
-#include <utility>
 
 #include "report/run_table.hpp"
 

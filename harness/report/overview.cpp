@@ -1,8 +1,6 @@
 // First part of a report: title, facts, warnings and notes on all runs, four tiles, and Table 3 with errors.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 

@@ -1,8 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "base/table.hpp"
 #include "report/run_table.hpp"

@@ -1,8 +1,6 @@
 #pragma once
 #include <functional>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "base/table.hpp"
 #include "report/run_table.hpp"

@@ -1,8 +1,6 @@
 // Tables of contact: verdicts, penetration, pass rates.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 

@@ -1,7 +1,6 @@
 // Tables of frame rates, times and memory.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numeric>
 
 #include "report/report.hpp"

@@ -1,11 +1,8 @@
 // Tables of the study `reproduction`: for which settings left open by the article its claims hold.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <tuple>
 

@@ -2,16 +2,13 @@
 #include <zlib.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <map>
 #include <tuple>
 
 #include "assets/base64.hpp"
 #include "clothbench/error.hpp"
 #include "report/web/page.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 namespace {

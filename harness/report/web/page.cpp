@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
-#include <set>
 
 #include "base/child_process.hpp"
 #include "base/files.hpp"

@@ -1,13 +1,9 @@
 #pragma once
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "report/report.hpp"
 #include "report/view.hpp"
-#include "results/store.hpp"
 
 namespace clothbench {
 
