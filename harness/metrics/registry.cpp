@@ -99,9 +99,13 @@ std::vector<std::string> series_columns() {
 
 std::map<std::string, double> scalars_of(const RunView& run, const std::string& start) {
   std::map<std::string, double> out;
-  for (const Scalar& s : scalars())
-    if (s.name.starts_with(start) && s.from.value && (s.present == nullptr || s.present(run)))
-      out[s.name] = s.from.value(run);
+  const std::map<std::string, double> none;
+  const auto& known = run.run == nullptr ? none : run.run->summary;
+  for (const Scalar& s : scalars()) {
+    if (!s.name.starts_with(start) || !s.from.value || (s.present != nullptr && !s.present(run))) continue;
+    const auto at = s.of_trials ? known.end() : known.find(s.name);
+    out[s.name] = at != known.end() ? at->second : s.from.value(run);
+  }
   return out;
 }
 

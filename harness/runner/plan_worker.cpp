@@ -119,6 +119,7 @@ void write_row(const RunSpec& c, const RunPlan& plan, const fs::path& out, const
   RunWriter writer(out, header_of(*c.scene, c.entry->info.name, c.setting, c.settings, plan.protocol));
   RunRecord r = writer.recovered();
   r.trials.clear();  // no times for a run that did not end
+  r.summary.clear();
   r.outcome = outcome;
   writer.finish(outcome, summarise(c, {}, r));
 }

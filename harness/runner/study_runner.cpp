@@ -129,6 +129,8 @@ class GroupRun {
         if (!plan_.rules.rendering.make || !t.frame_rendered_s.empty()) r.record.trials.push_back(t);
       if (r.run->alive() && r.run->take_over(before, plan_.rules.accuracy_duration_s)) {
         r.record.accuracy = before.accuracy;
+        r.record.outcome = before.outcome;
+        r.record.summary = before.summary;
         r.untimed_s = before.summary.at(kUntimed);
       }
     }
@@ -141,7 +143,11 @@ class GroupRun {
     r.record.accuracy =
         r.run->run_accuracy(plan_.rules, [&](const AccuracyPass& so_far) { r.writer->write_frames(so_far); });
     r.untimed_s = std::chrono::duration<double>(Clock::now() - start).count();
-    r.writer->write_accuracy(r.record.accuracy, outcome_of(r), {{kUntimed, r.untimed_s}});
+    std::map<std::string, double> summary = {{kUntimed, r.untimed_s}};
+    r.record.outcome = outcome_of(r);
+    // Only these processes run side by side; the one with the trials copies what is known.
+    if (plan_.untimed) summary.merge(summarise(r.run->spec(), r.run->plan(), r.record));
+    r.writer->write_accuracy(r.record.accuracy, r.record.outcome, summary);
   }
 
   static Outcome outcome_of(const Running& r) {
@@ -171,6 +177,7 @@ class GroupRun {
   void finish(Running& r) {
     Outcome outcome = outcome_of(r);
     if (outcome.status == "error" && outcome.klass != "F3") result_.faults.push_back(r.name() + ": " + outcome.message);
+    if (outcome.status != r.record.outcome.status) r.record.summary.clear();  // ended by a trial
     r.record.outcome = outcome;
     std::map<std::string, double> summary = summarise(r.run->spec(), r.run->plan(), r.record);
     TimedTrial start;
