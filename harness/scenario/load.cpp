@@ -324,9 +324,9 @@ const std::vector<StrictBound>& strict_contact() {
                                                {"contact_length_max_m", 0.005, touches},
                                                {"depth_max_m", 0.001, any_collider<has_inside>},
                                                {"self_contact_length_max_m", 0, meets_itself},
-                                               {"pop_max_m", 0.01, lets_go_of_nothing},
+                                               {"pop_max_m", 0.025, lets_go_of_nothing},
                                                {"stretch_max", 0.5, always},
-                                               {"stretch_max_end", 0.05, lets_go_of_nothing}};
+                                               {"stretch_max_end", 0.1, lets_go_of_nothing}};
   return all;
 }
 

@@ -115,11 +115,11 @@ TEST(Substeps, GrowWithTheSpeedOfWhatComes) {
     return xpbd_substeps(changed, {{"quality", quality}});
   };
   EXPECT_EQ(of(0.8, "default"), 5) << "31 links / 6; the 11 mm per frame are less than 4 mm per substep";
-  EXPECT_EQ(of(5, "default"), 18);
-  EXPECT_EQ(of(7.5, "default"), 26) << "per substep an eighth of a cell, which is more than a margin";
-  EXPECT_EQ(of(5, "fast"), 9);
-  EXPECT_EQ(of(100, "fast"), 16) << "the maximum";
-  EXPECT_EQ(of(100, "default"), 32) << "the maximum";
+  EXPECT_EQ(of(5, "default"), 25);
+  EXPECT_EQ(of(7.5, "default"), 37) << "per substep an eighth of a cell, which is more than a margin";
+  EXPECT_EQ(of(5, "fast"), 13);
+  EXPECT_EQ(of(100, "fast"), 24) << "the maximum";
+  EXPECT_EQ(of(100, "default"), 48) << "the maximum";
   s.jumps = {{2, 1.0}};
   for (std::size_t f = 0; f < s.motion.size(); ++f) {
     s.motion[f].colliders[0].capsules = s.colliders[0].capsules;

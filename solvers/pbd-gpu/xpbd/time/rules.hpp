@@ -52,12 +52,12 @@ inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Atta
 // one that corrections change the angular momentum (motion check of random pulls in the study `contact`)
 inline constexpr LinkRule kPulledSheet = {{80, 100, 200}, {0.75, 0.6, 0.3}};
 // A collider strains the cloth in directions that tethers do not limit (capsule-sweep)
-inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {8, 6, 1.5}};
+inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {6, 6, 1.5}};
 // Chains of a mesh are less accurate than grid lines (garments under capsules)
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 // Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
-inline constexpr LinkRule kResting = {{8, 16, 32}, {4, 2, 1}};  // Much of the cloth hits the collider at once
+inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};  // Much of the cloth hits the collider at once
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
@@ -70,14 +70,15 @@ inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
 
 // Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima only limit cost.
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
-inline constexpr PerQuality kTravelMargins = {2, 1, 0.5};
+// (strain of random contact scenes)
+inline constexpr PerQuality kTravelMargins = {1.33, 0.7, 0.5};
 inline constexpr double kMinMarginOfCell = 0.125;  // [cells] Smaller contact offsets count as this
 // [thicknesses per substep] Above, responses cannot separate layers, and planes cut off their motion
 inline constexpr double kMaxLayerApproach = 2.0 / 3;
 // [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
-inline constexpr PerQuality kMaxForSpeed = {16, 32, 64};   // [substeps] Maximum cost of a frame
-inline constexpr PerQuality kMaxForImpact = {32, 96, 96};  // [substeps] For free cloth on static colliders
+inline constexpr PerQuality kMaxForSpeed = {24, 48, 64};   // [substeps] Maximum cost of a frame
+inline constexpr PerQuality kMaxForImpact = {48, 96, 96};  // [substeps] For free cloth on static colliders
 
 // Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
 inline constexpr double kMinOfLast = 0.75;  // [of the last number] The strain of an impact relaxes over several frames
