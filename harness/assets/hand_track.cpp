@@ -205,7 +205,7 @@ std::string to_json(const HandRecording& r, const std::string& why) {
   nlohmann::json recording = {
       {"frame_rate_hz", r.frame_rate_hz}, {"frames", r.frames.size()}, {"joints", block(joints.data(), joints.size())}};
   if (r.has_capsules) recording["capsules"] = block(capsules.data(), capsules.size());
-  return nlohmann::json({{"hand", name_of(r.side)}, {"why", why}, {"recording", recording}}).dump(1) + "\n";
+  return dump(nlohmann::json({{"hand", name_of(r.side)}, {"why", why}, {"recording", recording}}), 1) + "\n";
 }
 
 Frame frame_of(const RecordedJoint& j) {

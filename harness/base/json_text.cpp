@@ -144,18 +144,18 @@ json schema_at(const json& root, const std::string& pointer) {
 std::string expectation(const json& s) {
   if (!s.is_object()) return "";
   std::vector<std::string> parts;
-  if (s.contains("type")) parts.push_back(s["type"].is_string() ? s["type"].get<std::string>() : s["type"].dump());
-  if (s.contains("enum")) parts.push_back("one of " + s["enum"].dump());
-  if (s.contains("minimum")) parts.push_back(">= " + s["minimum"].dump());
-  if (s.contains("exclusiveMinimum")) parts.push_back("> " + s["exclusiveMinimum"].dump());
-  if (s.contains("maximum")) parts.push_back("<= " + s["maximum"].dump());
+  if (s.contains("type")) parts.push_back(s["type"].is_string() ? s["type"].get<std::string>() : dump(s["type"]));
+  if (s.contains("enum")) parts.push_back("one of " + dump(s["enum"]));
+  if (s.contains("minimum")) parts.push_back(">= " + dump(s["minimum"]));
+  if (s.contains("exclusiveMinimum")) parts.push_back("> " + dump(s["exclusiveMinimum"]));
+  if (s.contains("maximum")) parts.push_back("<= " + dump(s["maximum"]));
   if (s.contains("minItems") && s.contains("maxItems") && s["minItems"] == s["maxItems"])
-    parts.push_back(s["minItems"].dump() + " items");
+    parts.push_back(dump(s["minItems"]) + " items");
   else if (s.contains("minItems"))
-    parts.push_back("at least " + s["minItems"].dump() + " items");
+    parts.push_back("at least " + dump(s["minItems"]) + " items");
   else if (s.contains("maxItems"))
-    parts.push_back("at most " + s["maxItems"].dump() + " items");
-  if (s.contains("minLength")) parts.push_back("at least " + s["minLength"].dump() + " characters");
+    parts.push_back("at most " + dump(s["maxItems"]) + " items");
+  if (s.contains("minLength")) parts.push_back("at least " + dump(s["minLength"]) + " characters");
   if (s.contains("pattern")) parts.push_back("matching " + s["pattern"].get<std::string>());
   return joined(parts);
 }
@@ -234,11 +234,19 @@ nlohmann::json parse_json(const std::string& text, const std::string& source) {
   if (text.empty()) throw Error(source + ": line 1, column 1: not valid JSON: the file is empty");
   Strict strict(text, source);
   json::sax_parse(text, &strict);
-  return json::parse(text);
+  return json_from(text);
+}
+
+nlohmann::json json_from(std::string_view text) { return json::parse(text); }
+
+nlohmann::json json_or_discarded(std::string_view text) { return json::parse(text, nullptr, false); }
+
+std::string dump(const nlohmann::json& value, int indent, bool ascii, json::error_handler_t on_error) {
+  return value.dump(indent, ' ', ascii, on_error);
 }
 
 void fill_defaults(nlohmann::json& value, const std::string& schema_text) {
-  const json schema = json::parse(schema_text);
+  const json schema = json_from(schema_text);
   fill(value, schema, schema);
 }
 
@@ -246,7 +254,7 @@ void fill_defaults(nlohmann::json& value, const std::string& schema_text) {
 
 void validate_json(const nlohmann::json& value, const std::string& schema_text, const std::string& source,
                    const std::string& base) {
-  const json schema_json = json::parse(schema_text);
+  const json schema_json = json_from(schema_text);
   if (const std::string fault = unknown_key(value, schema_json, schema_json, base); !fault.empty())
     throw Error(source + ": " + fault);
   if (schema_text.find("\"pattern\"") != std::string::npos) refuse_long_strings(value, source, base);
@@ -269,7 +277,7 @@ void validate_json(const nlohmann::json& value, const std::string& schema_text, 
   if (const std::string key = missing_key(found, sub); !key.empty())
     throw Error(fmt::format("{}: {}: \"{}\" is missing", source, where.empty() ? "/" : where, key));
   throw Error(fmt::format("{}: {}: expected {}; found {}", source, where.empty() ? "/" : where, expectation(sub),
-                          shortened(found.dump(-1, ' ', false, json::error_handler_t::replace), 60)));
+                          shortened(dump(found, -1, false, json::error_handler_t::replace), 60)));
 }
 
 json finite_or_null(double v) { return std::isfinite(v) ? json(v) : json(); }
@@ -286,7 +294,7 @@ double number_from_json(const json& j, const std::string& name) {
   if (j.is_null()) return kMissing;
   if (j == "inf") return kInfinity;
   if (j == "-inf") return -kInfinity;
-  throw Error(name + R"(: expected a number, null, "inf" or "-inf"; found )" + shortened(j.dump(), 60));
+  throw Error(name + R"(: expected a number, null, "inf" or "-inf"; found )" + shortened(dump(j), 60));
 }
 
 json numbers_to_json(const std::map<std::string, double>& values) {

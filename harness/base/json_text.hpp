@@ -14,6 +14,12 @@ std::string read_text(const std::filesystem::path&, std::uintmax_t most_bytes = 
 /// Error with `source` and line and column, or with the JSON pointer of a repeated key.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
+/// `parse` and `dump` of the JSON library, whose templates are compiled here once instead of in every module.
+nlohmann::json json_from(std::string_view);
+nlohmann::json json_or_discarded(std::string_view);
+std::string dump(const nlohmann::json&, int indent = -1, bool ascii = false,
+                 nlohmann::json::error_handler_t = nlohmann::json::error_handler_t::strict);
+
 /// Message of a JSON library's exception, without the input text that it quotes.
 std::string what_without_text(const std::exception&);
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -31,11 +30,11 @@ json complete_settings(const SolverInfo& info, const json& given) {
   json all = json::object(), tuning = json::object();
   std::vector<std::string> names;
   for (const SettingSpec& s : info.settings) {
-    all[s.name] = json::parse(s.default_json);
+    all[s.name] = json_from(s.default_json);
     names.push_back(s.name);
   }
   for (const SettingSpec& s : info.tuning) {
-    tuning[s.name] = json::parse(s.default_json);
+    tuning[s.name] = json_from(s.default_json);
     names.push_back(fmt::format("{}.{}", kTuning, s.name));
   }
   if (!tuning.empty()) all[kTuning] = json::object();
@@ -45,7 +44,7 @@ json complete_settings(const SolverInfo& info, const json& given) {
                               names.empty() ? "; it has none" : nearest_known(path, names)));
     if (!fits(value, of[key]))
       throw Error(fmt::format("solver {}: setting {}: expected {}; found {}", info.name, path, kind(of[key]),
-                              shortened(value.dump(), 60)));
+                              shortened(dump(value), 60)));
     of[key] = value;
   };
   for (const auto& [key, value] : given.items()) {

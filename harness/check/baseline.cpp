@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "check/compare.hpp"
 #include "clothbench/error.hpp"
@@ -20,7 +19,7 @@ constexpr const char* kAssets = "rooms and hands";
 
 std::string shown_value(const nlohmann::json& value) {
   if (value.is_null() || value == "") return kNotStated;
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>() : dump(value);
 }
 
 std::string trial_frames(const RunRecord& r) {
@@ -42,7 +41,7 @@ double number_at(const json& value, const std::string& name, const std::string& 
                             where, nearest_known(name, gated_names())));
   if (value.is_null()) return kMissing;
   if (!value.is_number())
-    throw Error(fmt::format("{}: expected a number, or null for not measured; found {}", where, value.dump()));
+    throw Error(fmt::format("{}: expected a number, or null for not measured; found {}", where, dump(value)));
   return value.get<double>();
 }
 
@@ -130,7 +129,7 @@ std::vector<Condition> conditions_of(const RunRecord& r) {
       {"precision", "precision", environment("precision")},
   };
   // Procedural rooms and hands differ from the scanned ones: a run without the scans must not count as a run with them.
-  const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
+  const nlohmann::json scene = json_or_discarded(r.header.scenario_json);
   if (scene.is_object() && scene.contains("assets"))
     out.insert(out.begin() + 1, {"scene", kAssets, shown_value(scene["assets"])});
   if (r.outcome.status == "ok") {
@@ -154,8 +153,7 @@ std::vector<ConditionDifference> differences(const std::vector<Condition>& a, co
 
 std::string scene_difference(const RunRecord& a, const RunRecord& b) {
   constexpr std::size_t kShown = 4;
-  const nlohmann::json p = nlohmann::json::parse(a.header.scenario_json, nullptr, false),
-                       q = nlohmann::json::parse(b.header.scenario_json, nullptr, false);
+  const nlohmann::json p = json_or_discarded(a.header.scenario_json), q = json_or_discarded(b.header.scenario_json);
   if (!p.is_object() || !q.is_object()) return "";
   const nlohmann::json left = p.flatten(), right = q.flatten();
   std::set<std::string> keys;
@@ -163,7 +161,7 @@ std::string scene_difference(const RunRecord& a, const RunRecord& b) {
     for (const auto& [key, unused] : side->items()) keys.insert(key);
   std::vector<std::string> found;
   const auto at = [](const nlohmann::json& side, const std::string& key) {
-    return side.contains(key) ? side[key].dump() : std::string(kNotStated);
+    return side.contains(key) ? dump(side[key]) : std::string(kNotStated);
   };
   for (const std::string& key : keys)
     if (at(left, key) != at(right, key)) found.push_back(key + ": " + at(left, key) + ", " + at(right, key));

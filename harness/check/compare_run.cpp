@@ -23,7 +23,7 @@ constexpr const char* kNotMeasured = "not measured";
 
 /// Sides [m] of the cloth grid, or of the bounding box of its mesh; none if the result file has neither.
 std::optional<std::array<double, 2>> cloth_size_m(const RunRecord& r) {
-  const nlohmann::json scene = nlohmann::json::parse(r.header.scenario_json, nullptr, false);
+  const nlohmann::json scene = json_or_discarded(r.header.scenario_json);
   const nlohmann::json::json_pointer width("/cloth/size_m/0"), height("/cloth/size_m/1");
   if (!r.file.empty() && scene.is_object() && scene.contains(nlohmann::json::json_pointer("/cloth/mesh"))) {
     const Cloth cloth = read_motion(r.file).scene.cloth;

@@ -91,7 +91,7 @@ std::string runs_word(std::size_t n) { return fmt::format("{} run{}", n, n == 1 
 
 /// Valid UTF-8 for any bytes in a solver's message.
 std::string valid_utf8(const std::string& text) {
-  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+  return json_from(dump(json(text), -1, false, json::error_handler_t::replace)).get<std::string>();
 }
 
 /// Escapes element text and attributes alike. Line breaks become references, because attributes would lose them; other
@@ -248,7 +248,7 @@ std::string log_line(const std::vector<RunRecord>& runs, const std::string& comm
     run.update({{"gpu", e.value("gpu", "")}, {"status", part.status}, {"values", values}});
     out["runs"].push_back(std::move(run));
   }
-  return out.dump() + "\n";
+  return dump(out) + "\n";
 }
 
 }  // namespace clothbench

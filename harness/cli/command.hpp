@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "base/status_line.hpp"
 #include "clothbench/error.hpp"
 #include "runner/study_plan.hpp"
@@ -38,7 +38,7 @@ struct Console {
   }
 
   static void print(const nlohmann::json& j) {
-    SummaryOutput::write(j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    SummaryOutput::write(dump(j, 2, false, nlohmann::json::error_handler_t::replace) + "\n");
   }
   /// Prints only the requested form, and does not compute the other one.
   template <class Json, class Text>

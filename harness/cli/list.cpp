@@ -3,7 +3,6 @@
 #include <map>
 
 #include "assets/assets.hpp"
-#include "base/json_text.hpp"
 #include "base/table.hpp"
 #include "base/words.hpp"
 #include "check/compare.hpp"
@@ -26,7 +25,7 @@ nlohmann::json list_solvers() {
   for (const SolverEntry* e : all_solvers()) {
     nlohmann::json settings = nlohmann::json::array();
     for (const SettingSpec& s : e->info.settings)
-      settings.push_back({{"name", s.name}, {"default", nlohmann::json::parse(s.default_json)}, {"doc", s.doc}});
+      settings.push_back({{"name", s.name}, {"default", json_from(s.default_json)}, {"doc", s.doc}});
     rows.push_back({{"name", e->info.name},
                     {"folder", e->info.folder},
                     {"summary", e->info.summary},
@@ -158,7 +157,7 @@ std::string rows_text(const nlohmann::json& rows) {
     if (r.contains("settings"))
       for (const auto& s : r["settings"])
         out += wrapped(s["doc"], 29, console_columns(),
-                       fmt::format("    solver.{}={}", s["name"].get<std::string>(), s["default"].dump()));
+                       fmt::format("    solver.{}={}", s["name"].get<std::string>(), dump(s["default"])));
   }
   return out;
 }

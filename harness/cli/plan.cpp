@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "base/json_text.hpp"
 #include "base/table.hpp"
 #include "base/words.hpp"
 #include "cli/command.hpp"
@@ -68,11 +67,11 @@ std::string plan_text(const json& p) {
   if (p.contains("substeps")) out += fmt::format("  substeps per frame, at most: {}\n", p["substeps"].get<int>());
   using Cells = std::vector<std::string>;
   add("Each frame", "stages", {"stage", "dispatches", "read B", "written B", "serves"}, [&](const json& s) {
-    return Cells{text(s["name"]), s["dispatches"].dump(), bytes(s["read_B"]), bytes(s["write_B"]),
+    return Cells{text(s["name"]), dump(s["dispatches"]), bytes(s["read_B"]), bytes(s["write_B"]),
                  joined(words(s["serves"]))};
   });
   add("Buffers", "buffers", {"buffer", "bytes", "memory"}, [&](const json& b) {
-    return Cells{text(b["name"]), b["bytes"].dump(), b["device_local"].get<bool>() ? "device" : "host"};
+    return Cells{text(b["name"]), dump(b["bytes"]), b["device_local"].get<bool>() ? "device" : "host"};
   });
   add("Contact offsets", "contact_margins", {"collider", "offset [m]"}, [&](const json& m) {
     return Cells{text(m["collider"]), fmt::format("{:g}", m["margin_m"].get<double>())};

@@ -44,13 +44,13 @@ void print_drawn(const Study& study) {
   if (names.size() > kFew) return;
   for (const Study::Item& item : study.scenes) {
     if (names.erase(item.scene.name) == 0) continue;
-    const nlohmann::json drawn = nlohmann::json::parse(item.scene.json)["drawn"];
+    const nlohmann::json drawn = json_from(item.scene.json)["drawn"];
     std::string text = fmt::format("{}: speed {:.3g} m/s;", item.scene.name, drawn["speed_m_per_s"].get<double>());
     std::set<std::string> run;
     for (const std::size_t k : item.solvers) run.insert(study.solvers[k].solver);
     for (const auto& [name, value] : drawn["values"].items())
       if (const std::string of = name.substr(0, name.find('.')); run.contains(of) || !item.drawn_settings.contains(of))
-        text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : value.dump());
+        text += fmt::format(" {}={}", name, value.is_string() ? value.get<std::string>() : dump(value));
     fmt::print("{}\n", text);
   }
 }

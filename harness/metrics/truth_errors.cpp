@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "clothbench/error.hpp"
 #include "scenario/load.hpp"
@@ -30,8 +29,7 @@ constexpr double kMore = 1.1;
 constexpr int kFrames = 4;
 
 double change(const TruthJudge& judge, const Scene& scene, const std::string& key, double value) {
-  const Scene other =
-      scene_from_json(nlohmann::json::parse(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
+  const Scene other = scene_from_json(json_from(scene.json), scene.source, {fmt::format("{}={}", key, kMore * value)});
   const auto known = truth::reference_case_of(other);
   const int last = scene.time.frames();
   double most = 0;

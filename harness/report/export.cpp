@@ -25,7 +25,7 @@ using Item = std::pair<const Row*, std::size_t>;
 std::string csv_field(const json& v) {
   if (v.is_null()) return "";
   if (v.is_number_float()) return std::isnan(v.get<double>()) ? "" : fmt::format("{}", v.get<double>());
-  std::string text = v.is_string() ? v.get<std::string>() : v.dump();
+  std::string text = v.is_string() ? v.get<std::string>() : dump(v);
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
   return "\"" + text + "\"";

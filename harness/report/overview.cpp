@@ -259,7 +259,7 @@ std::string fact(const RunRecord& c, const std::string& key) {
   const std::string value = environment_text(c, key.c_str());
   if ((key == "gpu" || key == "driver") && environment_text(c, "gpu") == "CPU") return "";
   if (key == "cpu" && environment_of(c, "cpu_threads").is_number())
-    return fmt::format("{} ({} threads)", value, environment_of(c, "cpu_threads").dump());
+    return fmt::format("{} ({} threads)", value, dump(environment_of(c, "cpu_threads")));
   if (key == "protocol" && (value == "full" || value == "run")) return "";  // the usual protocol needs no word
   if (key == "gpu") return value + (environment_of(c, "gpu_is_software") == json(true) ? " (software)" : "");
   if (key == "git_commit") return commit_of(c);

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "report/view.hpp"
 #include "report/web/page.hpp"
 #include "results/store.hpp"
@@ -109,7 +108,7 @@ void write_report(const std::vector<fs::path>& results, const fs::path& out, con
   const auto write = [&](const std::string& name, const std::string& text) { write_file_atomically(out / name, text); };
   fs::create_directories(out);
   write("runs.csv", runs_csv(table));
-  write("runs.json", runs_json(table.runs()).dump(1) + "\n");
+  write("runs.json", dump(runs_json(table.runs()), 1) + "\n");
   write("series.csv", series_csv(table));
   write("trials.csv", trials_csv(table));
   const Page page = page_of(table, results, history);

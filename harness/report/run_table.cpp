@@ -61,7 +61,7 @@ std::string read_scenario(Row& row) {
       if (cloth.contains("mesh") && cloth["mesh"].contains("drawn")) cloth["mesh"]["drawn"].erase(key);
   }
   if (cloth.is_object()) cloth.erase("sides");
-  return family.dump();
+  return dump(family);
 }
 
 /// The words at the start of both names: "drop-scale" of "drop-scale-32" and "drop-scale-64".
@@ -141,7 +141,7 @@ void compare_devices(std::vector<Row>& rows) {
 }  // namespace
 
 json scenario_of(const RunRecord& c) {
-  return c.header.scenario_json.empty() ? json::object() : json::parse(c.header.scenario_json);
+  return c.header.scenario_json.empty() ? json::object() : json_from(c.header.scenario_json);
 }
 
 json environment_of(const RunRecord& c, const char* key) {
@@ -169,7 +169,7 @@ std::string folder_of(const RunRecord& c) { return std::filesystem::path(c.file)
 std::string engine_of(const RunRecord& c) { return text_at(c.header.environment, "/plugin/engine"); }
 
 const json& solver_roles() {
-  static const json all = json::parse(kSolverRoles);
+  static const json all = json_from(kSolverRoles);
   return all;
 }
 

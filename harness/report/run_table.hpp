@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "base/interval.hpp"
+#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/record.hpp"
 #include "results/store.hpp"
@@ -193,7 +193,7 @@ void mark_best_points(std::vector<Row>&);
 /// True if the run's scene has colliders or hands that grip the cloth.
 bool has_contact(const RunRecord&);
 /// results/paper-table3.json as of build time.
-inline nlohmann::json published_table3() { return nlohmann::json::parse(kPublishedTable3); }
+inline nlohmann::json published_table3() { return json_from(kPublishedTable3); }
 
 /// All runs of a report as typed rows. Rows hold pointers into the table, so do not copy or move it.
 class RunTable {

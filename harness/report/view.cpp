@@ -184,7 +184,7 @@ const std::vector<View>& views() {
   return all;
 }
 
-std::string note(const char* table) { return nlohmann::json::parse(kNotes).at(table); }
+std::string note(const char* table) { return json_from(kNotes).at(table); }
 
 Cell number_cell(double v, int digits) { return std::isfinite(v) ? Cell(significant(v, digits), v) : Cell(); }
 

@@ -224,7 +224,7 @@ constexpr const char* kStated[] = {"gpu",         "gpu_is_software", "device_pro
 std::string stated(const Row& r, const char* name) {
   const json e = environment_of(*r.run, name);
   if (e.is_boolean()) return e.get<bool>() ? "yes" : "no";
-  return e.is_null() ? "" : e.is_string() ? e.get<std::string>() : e.dump();
+  return e.is_null() ? "" : e.is_string() ? e.get<std::string>() : dump(e);
 }
 
 View environment() {

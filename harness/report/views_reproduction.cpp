@@ -58,7 +58,7 @@ std::map<std::string, Point> points_of(const Group& runs, const Keys& keys) {
   std::map<std::string, Point> out;
   const std::size_t wanted = keys.back().all ? runs.front()->drawn().value("claims", std::size_t{0}) : 1;
   for (const Row* r : runs) {
-    Point& p = out[r->drawn()["settings"].dump()];
+    Point& p = out[dump(r->drawn()["settings"])];
     for (const Claim& c : claims_of(*r)) {
       if (!keys.back().all && keys.back().text != c.name) continue;
       ++p.claims;
@@ -121,7 +121,7 @@ Cell always_with(const Group& g, const Keys& keys) {
         if (failed > 0 || inside <= most || inside == points.size()) continue;
         most = inside;
         const char* sign = limit.is_string() ? "=" : above ? "≥" : "≤";
-        out = fmt::format("{} {} {} ({} points)", name, sign, limit.dump(), inside);
+        out = fmt::format("{} {} {} ({} points)", name, sign, dump(limit), inside);
       }
   return out;
 }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "results/store.hpp"
 
@@ -144,7 +143,7 @@ void DeviceSamples::attach_to(RunRecord& r) {
   }
   r.samples[0].path = "device_samples";
   r.samples[0].attributes = {
-      {"valid", reasons.empty() ? 1 : 0}, {"reasons", reasons.dump()}, {"device_json", all_["device"].dump()}};
+      {"valid", reasons.empty() ? 1 : 0}, {"reasons", dump(reasons)}, {"device_json", dump(all_["device"])}};
   r.summary["sampled_valid"] = reasons.empty() ? 1 : 0;
   r.header.environment["distrusted_trials"] = std::move(reasons);
 }

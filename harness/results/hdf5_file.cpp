@@ -145,7 +145,7 @@ class Writer {
     text_attribute(file_, "setting", r_.header.setting);
     nlohmann::json header = header_to_json(r_.header);
     header.erase("triangles");
-    write_strings(file_, "header_json", {header.dump()}, {"1", "everything known before the first frame, as JSON"});
+    write_strings(file_, "header_json", {dump(header)}, {"1", "everything known before the first frame, as JSON"});
     scalars();
     if (!r_.trials.empty()) timing();
     for (const StoredGroup& g : r_.replay) stored(g);

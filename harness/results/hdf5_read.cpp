@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "base/json_text.hpp"
 #include "results/hdf5_handle.hpp"
 #include "results/part_file.hpp"
 #include "results/store.hpp"
@@ -236,7 +235,7 @@ RunRecord read_hdf5(const std::filesystem::path& path, std::size_t stride) {
     if (const int version = whole(attribute(file, "format_version"), "format_version"); version != 2)
       throw Error("format_version " + std::to_string(version) + "; this build reads 2");
     RunRecord r;
-    json header = json::parse(text_dataset(file, "header_json"));
+    json header = json_from(text_dataset(file, "header_json"));
     header["triangles"] = json::array();
     r.header = header_from_json(header);
     read_scalars(file, r);

@@ -308,7 +308,7 @@ std::shared_ptr<const ClothMesh> restore_mesh(const std::vector<StoredGroup>& gr
 }
 
 Scene stored_scene(const RunHeader& header, const std::vector<StoredGroup>& groups) {
-  Scene scene = scene_from_parts(json::parse(header.scenario_json), "scenario_json",
+  Scene scene = scene_from_parts(json_from(header.scenario_json), "scenario_json",
                                  {[&](json&) { return restore_mesh(groups, header.triangles); },
                                   [&](json&, Scene& s) { restore_replay(groups, s); }});
   // A study renames scenes (header.scene); scenario_json still has the name in the scene's file.

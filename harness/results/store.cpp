@@ -15,7 +15,6 @@
 #include <fstream>
 
 #include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/solver.hpp"
@@ -144,8 +143,8 @@ RunWriter::RunWriter(fs::path dir, RunHeader header, Finish finish)
   if (h.scenario_sha256 != header.scenario_sha256 || h.settings != header.settings)
     throw Error(fmt::format(
         "{}: holds trials of a different run (scene {} settings {}; now scene {} settings {}); give another --out",
-        part_.string(), h.scenario_sha256.substr(0, 12), h.settings.dump(), header.scenario_sha256.substr(0, 12),
-        header.settings.dump()));
+        part_.string(), h.scenario_sha256.substr(0, 12), dump(h.settings), header.scenario_sha256.substr(0, 12),
+        dump(header.settings)));
   has_replay_ = !before.replay.empty();
   fs::resize_file(part_, complete_B);  // removes an incomplete item
   // The header describes the machine as it was when the run was loaded, before the trials.
@@ -295,7 +294,7 @@ void write_manifest(const fs::path& dir, const StudyManifest& m) {
   const nlohmann::json j = {
       {"format", "clothbench-study"},   {"format_version", 1},        {"study", m.study}, {"created", m.created},
       {"command_line", m.command_line}, {"definition", m.definition}, {"runs", m.runs}};
-  write_file_atomically(dir / "study.json", j.dump(2) + "\n");
+  write_file_atomically(dir / "study.json", dump(j, 2) + "\n");
 }
 
 StudyManifest read_manifest(const fs::path& dir) {
@@ -303,8 +302,7 @@ StudyManifest read_manifest(const fs::path& dir) {
   std::error_code ec;
   if (!fs::is_regular_file(file, ec)) throw Error(file.string() + ": no such file; expected a study folder");
   try {
-    std::ifstream in(file);
-    const nlohmann::json j = nlohmann::json::parse(in);
+    const nlohmann::json j = json_from(content_of(file));
     return {j.at("study"), j.at("created"), j.at("command_line"), j.at("definition"), j.at("runs")};
   } catch (const nlohmann::json::exception& e) {
     throw Error(file.string() + ": not a study manifest: " + what_without_text(e));

@@ -1,11 +1,11 @@
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "base/files.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/scene.hpp"
 

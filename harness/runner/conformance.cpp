@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/words.hpp"
 #include "clothbench/error.hpp"
@@ -70,7 +69,7 @@ class Conformer {
     const DeviceInfo device = solver_.device();
     if (device.name.find(profile) == std::string::npos)
       fault("device " + device.name + ": its name does not contain " + profile);
-    if (json::parse(device.properties_json).value("device_profile", "") != profile)
+    if (json_from(device.properties_json).value("device_profile", "") != profile)
       fault("device " + device.name + ": its properties do not state device_profile " + profile);
   }
 

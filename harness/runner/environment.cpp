@@ -82,7 +82,7 @@ nlohmann::json describe_environment(const DeviceInfo& device, const std::string&
   e["driver"] = device.driver;
   e["api"] = device.api;
   e["gpu_is_software"] = device.is_software;
-  e["gpu_properties"] = nlohmann::json::parse(device.properties_json, nullptr, false);
+  e["gpu_properties"] = json_or_discarded(device.properties_json);
   e["device_profile"] = e["gpu_properties"].value("device_profile", std::string("none"));
   e["cpu"] = cpu_model();
   e["cpu_threads"] = std::thread::hardware_concurrency();

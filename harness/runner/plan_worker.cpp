@@ -50,7 +50,7 @@ json to_json(const RunPlan& plan) {
   for (const auto& group : plan.groups) {
     json& specs = j["groups"].emplace_back(json::array());
     for (const RunSpec& c : group)
-      specs.push_back({{"scenario", json::parse(c.scene->json)},
+      specs.push_back({{"scenario", json_from(c.scene->json)},
                        {"source", c.scene->source},
                        {"name", c.scene->name},
                        {"sha256", c.scene->sha256},

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -15,7 +14,6 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
@@ -38,7 +36,7 @@ constexpr double kRounding = 1e-10;  // fraction of the scale; smaller differenc
 /// The scene with two rows if all its rows move alike; a sheet with shear and a mesh are returned unchanged.
 Scene two_rows(const Scene& s) {
   if (s.cloth.mesh || s.needs.has(Feature::Shear)) return s;
-  Scene out = scene_from_json(json::parse(s.json), s.source, {fmt::format("cloth.grid=[{},2]", s.cloth.columns)});
+  Scene out = scene_from_json(json_from(s.json), s.source, {fmt::format("cloth.grid=[{},2]", s.cloth.columns)});
   out.name = s.name;
   return out;
 }
@@ -220,7 +218,7 @@ namespace {
 /// Name: the scene (for people), then a short form of the rest of the key. The file contains the complete key.
 fs::path cache_file(const fs::path& folder, const json& key) {
   return folder /
-         fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(key.dump()).substr(0, 16));
+         fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(dump(key)).substr(0, 16));
 }
 
 }  // namespace
@@ -242,8 +240,7 @@ json reference_key(const Scene& scene, const ReferenceRules& rules) {
 }
 
 std::optional<ReferenceResult> read_reference(const fs::path& folder, const json& key) {
-  std::ifstream in(cache_file(folder, key));
-  const json j = in ? json::parse(in, nullptr, false) : json();
+  const json j = json_or_discarded(content_of(cache_file(folder, key)));
   if (!j.is_object() || j.value("key", json()) != key) return std::nullopt;
   ReferenceResult r;
   try {
@@ -257,7 +254,7 @@ std::optional<ReferenceResult> read_reference(const fs::path& folder, const json
 
 void write_reference(const fs::path& folder, const json& key, const ReferenceResult& r) {
   write_file_atomically(cache_file(folder, key),
-                        json{{"key", key}, {"values", numbers_to_json(r.scalars())}}.dump(2) + "\n");
+                        dump(json{{"key", key}, {"values", numbers_to_json(r.scalars())}}, 2) + "\n");
 }
 
 }  // namespace clothbench

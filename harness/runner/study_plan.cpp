@@ -190,7 +190,7 @@ Overrides split_overrides(const std::vector<std::string>& set) {
     const auto eq = item.find('=');
     if (eq == std::string::npos) throw Error("--set " + shortened(item, 200) + ": expected solver.<name>=<value>");
     const std::string key = item.substr(prefix.size(), eq - prefix.size()), text = item.substr(eq + 1);
-    nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+    nlohmann::json value = json_or_discarded(text);
     if (value.is_discarded()) value = text;
     if (const std::string tuning = std::string(kTuning) + "."; key.starts_with(tuning))
       out.solver[kTuning].update({{key.substr(tuning.size()), value}});
@@ -206,7 +206,7 @@ std::string Overrides::label() const {
   flat.erase(kTuning);
   if (solver.contains(kTuning)) flat.update(solver[kTuning]);
   for (const auto& [key, value] : flat.items())
-    text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+    text += (text.empty() ? "" : ",") + key + "=" + (value.is_string() ? value.get<std::string>() : dump(value));
   return text.empty() ? "default" : text;
 }
 
@@ -257,7 +257,7 @@ void require_same_run(const fs::path& folder, const RunSpec& run, std::optional<
                             file.string(), short_hash(h->scenario_sha256), short_hash(run.scene->sha256), kWhatToDo));
   if (!same_settings(run, h->settings))
     throw Error(fmt::format("{}: run with different settings ({}, now {}); {}", file.string(),
-                            shortened(h->settings.dump(), 200), shortened(run.settings.dump(), 200), kWhatToDo));
+                            shortened(dump(h->settings), 200), shortened(dump(run.settings), 200), kWhatToDo));
   const nlohmann::json& e = h->environment;
   const std::string version = e.is_object() ? e.value("solver_version", "") : "";
   if (const double stored_s = e.is_object() ? e.value("window_s", 0.0) : 0;

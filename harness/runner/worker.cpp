@@ -76,7 +76,7 @@ int run_child_main(const WorkerFunctions& functions) {
     // If the parent was killed before prctl, no signal follows, but its end of the socket is closed.
     pollfd parent{STDIN_FILENO, POLLIN, 0};
     if (poll(&parent, 1, 0) > 0 && (parent.revents & POLLHUP) != 0) return 0;
-    tell_parent(answer_of(functions, json::parse(line)).dump());
+    tell_parent(dump(answer_of(functions, json_from(line))));
     line.clear();
   }
   return 0;
@@ -164,12 +164,12 @@ WorkerAnswer Worker::call(const std::string& function, const json& request, doub
   };
   std::string text;
   const std::optional<ChildEnd> end =
-      ask(json{{"function", function}, {"request", request}}.dump(), limit_s, interrupted, progress, text);
+      ask(dump(json{{"function", function}, {"request", request}}), limit_s, interrupted, progress, text);
   if (end) {
     child_.reset();
     return {nullptr, end, log.empty() ? "" : last_words(log, said_)};
   }
-  const json answer = json::parse(text);
+  const json answer = json_from(text);
   if (answer.contains("error"))
     throw Error(answer["error"].get<std::string>(), static_cast<ExitCode>(answer["code"].get<int>()));
   return {answer["value"]};

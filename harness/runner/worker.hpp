@@ -3,11 +3,11 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "base/child_process.hpp"
+#include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 
 namespace clothbench {

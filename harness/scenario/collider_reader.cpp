@@ -21,11 +21,11 @@ void ColliderReader::enter(std::string at) {
 }
 
 void ColliderReader::complete(nlohmann::json& j, const std::string& definition) const {
-  const nlohmann::json schema = nlohmann::json::parse(kSceneSchema);
+  const nlohmann::json schema = json_from(kSceneSchema);
   nlohmann::json sub = schema["definitions"][definition];
   sub["definitions"] = schema["definitions"];
-  validate_json(j, sub.dump(), source_, at_);
-  fill_defaults(j, sub.dump());
+  validate_json(j, dump(sub), source_, at_);
+  fill_defaults(j, dump(sub));
 }
 
 void ColliderReader::refuse(const std::string& key, const std::string& expected) const {
@@ -124,7 +124,7 @@ Vec3 Path::displacement(double time_s) const {
 
 MovingHand moving_hand(const nlohmann::json& j, ColliderReader& reader, bool as_mesh) {
   const nlohmann::json& track = j["track"];
-  MovingHand m = track.is_object() ? MovingHand{{}, assets::parse_hand_track(track.dump(), reader.where("/track")), {}}
+  MovingHand m = track.is_object() ? MovingHand{{}, assets::parse_hand_track(dump(track), reader.where("/track")), {}}
                                    : hand_of_file(j, reader, as_mesh);
   if (m.recording) return m;
   if (j.contains("speed_m_per_s")) {

@@ -127,7 +127,7 @@ double draw_keys(json& scene, DrawnValues& draw) {
   for (const auto& [key, unused] : draw.ranges().items()) {
     const auto [low, high] = draw.bounds(key);
     const double x = is_wide(low, high) ? draw.log_between(key) : draw.between(key);
-    apply_override(scene, key + "=" + json(x).dump(), draw.at());
+    apply_override(scene, key + "=" + dump(json(x)), draw.at());
   }
   return 0;
 }
@@ -189,7 +189,7 @@ void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint
       const json value = at_point(range, point.next(), false, draw.at() + "/" + key);
       draw.note(key, value);
       // The value is the side of a square.
-      apply_override(scene, key + "=" + (key == "cloth.size_m" ? json{value, value} : value).dump(), draw.at());
+      apply_override(scene, key + "=" + dump(key == "cloth.size_m" ? json{value, value} : value), draw.at());
     }
 }
 
@@ -262,7 +262,7 @@ ContactKind contact_kind(const json& entry, const std::filesystem::path& base, c
   ContactKind kind{draw["kind"],   draw["how"],  parse_json(read_text(base), base.string()),
                    draw["ranges"], at + "/draw", box};
   for (const json& set : {draw["set"], quick.value("/set"_json_pointer / kind.name, json::object())})
-    for (const auto& [key, value] : set.items()) apply_override(kind.base, key + "=" + value.dump(), base.string());
+    for (const auto& [key, value] : set.items()) apply_override(kind.base, key + "=" + dump(value), base.string());
   const json ranges = quick.value("ranges", json::object());
   narrow(kind.ranges, ranges);
   for (auto& [part, of_box] : kind.box.items())

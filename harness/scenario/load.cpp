@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench/vector.hpp"
@@ -208,8 +207,7 @@ std::filesystem::path find_scenario(const std::string& name_or_path) {
   for (std::string& known : names) {  // tables show the "name" in the file
     const std::filesystem::path file = scenario_root() / (known + ".json");
     if (known.starts_with("studies/")) known.erase(0, 8);
-    const json scene =
-        std::filesystem::is_regular_file(file, ec) ? json::parse(read_text(file), nullptr, false) : json();
+    const json scene = std::filesystem::is_regular_file(file, ec) ? json_or_discarded(read_text(file)) : json();
     if (scene.is_object() && scene.value("name", json()) == name_or_path) return file;
   }
   throw Error(fmt::format("{}: no such file, nor a scene or study of that name in {}{}",
@@ -232,7 +230,7 @@ void apply_override(json& scenario, const std::string& assignment, const std::st
     throw Error("--set " + shortened(assignment, kShown) + ": expected key=value, such as cloth.grid=[64,64]");
   const std::string text = assignment.substr(eq + 1);
   const bool has_nan = text.find("NaN") != std::string::npos;
-  json value = json::parse(text, nullptr, false);
+  json value = json_or_discarded(text);
   if (value.is_discarded() && (has_nan || text.empty()))
     throw Error("--set " + shortened(assignment, kShown) + ": expected a JSON value");
   if (value.is_discarded()) value = text;
@@ -297,7 +295,7 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
     complete_expect(scenario["expect"], s, source);
     read_expect(scenario["expect"], s, source);
   }
-  s.json = scenario.dump();
+  s.json = dump(scenario);
   s.sha256 = sha256(s.json);
   return s;
 }

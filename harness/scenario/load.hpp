@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/scene.hpp"
 

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "base/json_text.hpp"
 #include "base/words.hpp"
 #include "scenario/draw_contact.hpp"
 #include "scenario/load.hpp"
@@ -30,7 +29,7 @@ StudyRules read_rules(const json& j) {
 /// Converts {"cloth.sides": "double"} to arguments as for `--set`.
 Words assignments(const json& set) {
   Words out;
-  for (const auto& [key, value] : set.items()) out.push_back(key + "=" + value.dump());
+  for (const auto& [key, value] : set.items()) out.push_back(key + "=" + dump(value));
   return out;
 }
 
@@ -67,8 +66,8 @@ void check_free(const json& axis, const std::vector<std::string>& set) {
 Variant with_value(Variant v, const json& axis, std::size_t k) {
   v.tags.push_back(axis["labels"][k].get<std::string>());
   v.suffix += "-" + v.tags.back();
-  v.overrides.push_back(axis["key"].get<std::string>() + "=" + axis["values"][k].dump());
-  for (const auto& [key, values] : axis["with"].items()) v.overrides.push_back(key + "=" + values[k].dump());
+  v.overrides.push_back(axis["key"].get<std::string>() + "=" + dump(axis["values"][k]));
+  for (const auto& [key, values] : axis["with"].items()) v.overrides.push_back(key + "=" + dump(values[k]));
   return v;
 }
 

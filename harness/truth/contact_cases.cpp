@@ -1,8 +1,8 @@
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/json_text.hpp"
 #include "truth/solutions.hpp"
 #include "truth/strip.hpp"
 
@@ -132,7 +132,7 @@ ReferenceCase capstan(const Strip& s) {
   s.need_no_bending();
   s.need_damping(false);
   const Collider& collider = only_collider(s, "a cylinder");
-  const nlohmann::json j = nlohmann::json::parse(s.scene.json).at("colliders").at(0);
+  const nlohmann::json j = json_from(s.scene.json).at("colliders").at(0);
   s.need(j.at("type") == "cylinder", "one collider: a cylinder");
   const auto vec = [&](const char* key) {
     return Vec3{j.at(key)[0].get<double>(), j.at(key)[1].get<double>(), j.at(key)[2].get<double>()};

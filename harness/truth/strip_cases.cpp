@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/json_text.hpp"
 #include "truth/solutions.hpp"
 #include "truth/strip.hpp"
 
@@ -48,7 +48,7 @@ double clamp_of_mesh_m(const Strip& s) {
 
 /// Two hands that pull symmetrically in opposite directions, as in the scene's file.
 PullWave hands_of(const Strip& s) {
-  const nlohmann::json grips = nlohmann::json::parse(s.scene.json).at("grips");
+  const nlohmann::json grips = json_from(s.scene.json).at("grips");
   const auto velocity = [&](std::size_t k) {
     const nlohmann::json v = grips.at(k).value("velocity_m_per_s", nlohmann::json::array({0, 0, 0}));
     return Vec3{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()};

@@ -6,7 +6,6 @@
 
 #include "assets/assets.hpp"
 #include "base/files.hpp"
-#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/vector.hpp"
 #include "render/camera.hpp"
@@ -49,7 +48,7 @@ void LiveScene::find_live(const std::string& source) {
     LiveHand hand;
     hand.collider = k;
     json track = list[k]["track"];
-    if (track.is_string()) track = json::parse(read_text(file_of_scene(track.get<std::string>(), source).value()));
+    if (track.is_string()) track = json_from(read_text(file_of_scene(track.get<std::string>(), source).value()));
     hand.side = track["hand"] == "left" ? Side::Left : Side::Right;
     hand.as_mesh = type == "hand_mesh";
     hand.file = std::string(assets::name_of(hand.side)) + "-hand.json";
@@ -158,7 +157,7 @@ void LiveScene::write_hand(const LiveHand& h) const {
 fs::path LiveScene::save() {
   for (const LiveHand& h : hands_) write_hand(h);
   document_["time"]["duration_s"] = std::max(frames_, 1) / scene_.time.frame_rate_hz;
-  write_file_atomically(file(), document_.dump(1) + "\n");
+  write_file_atomically(file(), dump(document_, 1) + "\n");
   return file();
 }
 

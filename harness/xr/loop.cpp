@@ -177,7 +177,7 @@ class Loop {
     if (const nlohmann::json table = search_->step(time); !table.is_null()) {
       session_.create_space(minus(live_.place_m(), live_.put_on(table)));
       search_.reset();
-      tell("on the user's table, size " + table["size_m"].dump() + " m");
+      tell("on the user's table, size " + dump(table["size_m"]) + " m");
     } else if (seconds(first_frame_, Clock::now()) > std::min(10.0, o_.timeout_s / 2)) {
       throw Error("no table was found: mark it in the headset's room settings, or leave --table out",
                   ExitCode::CheckFailed);

@@ -35,7 +35,7 @@ int integer_setting(const SolverInfo& info, const nlohmann::json& settings, cons
   const auto value = settings[name].get<long long>();
   if (!(value >= least && value <= most))
     throw Error("solver " + info.name + ": setting " + name + ": expected " + std::to_string(least) + " to " +
-                std::to_string(most) + "; found " + settings[name].dump());
+                std::to_string(most) + "; found " + dump(settings[name]));
   return static_cast<int>(value);
 }
 
@@ -44,7 +44,7 @@ double number_setting(const SolverInfo& info, const nlohmann::json& settings, co
   const auto value = settings[name].get<double>();
   if (!(value > least && value <= most))
     throw Error("solver " + info.name + ": setting " + name + ": expected more than " + std::to_string(least) +
-                ", at most " + std::to_string(most) + "; found " + settings[name].dump());
+                ", at most " + std::to_string(most) + "; found " + dump(settings[name]));
   return value;
 }
 
@@ -54,7 +54,7 @@ BulletSolver::BulletSolver(SolverInfo info, const nlohmann::json& settings)
       voxel_m_(number_setting(info_, settings, "sdf_voxel_m", 0, 1)) {
   if (!(collision_margin_m_ >= 0 && collision_margin_m_ <= 1))
     throw Error("solver " + info_.name + ": setting collision_margin_m: expected 0 to 1; found " +
-                settings["collision_margin_m"].dump());
+                dump(settings["collision_margin_m"]));
 }
 
 DeviceInfo BulletSolver::device() const { return {"CPU", info_.version, "C++", false, "{}"}; }

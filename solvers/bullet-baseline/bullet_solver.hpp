@@ -4,9 +4,9 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 

@@ -157,7 +157,7 @@ SolverInfo describe(const std::string& path, const ClothbenchPlugin& c) {
     const ClothbenchSetting& s = c.settings[k];
     const nlohmann::json value =
         s.integer != 0 ? nlohmann::json(static_cast<std::int64_t>(s.default_value)) : nlohmann::json(s.default_value);
-    info.settings.push_back({s.name, value.dump(), s.doc});
+    info.settings.push_back({s.name, dump(value), s.doc});
   }
   return info;
 }

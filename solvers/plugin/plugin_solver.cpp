@@ -107,7 +107,7 @@ class PluginSolver final : public ClothSolver {
     for (const auto& [what, text] : {std::pair{"name", d.name}, {"driver", d.driver}, {"api", d.api}})
       if (text == nullptr || *text == '\0') fault("device_info", fmt::format("{}: expected a text", what));
     const std::string properties = d.properties_json != nullptr ? d.properties_json : "{}";
-    if (!nlohmann::json::parse(properties, nullptr, false).is_object())
+    if (!json_or_discarded(properties).is_object())
       fault("device_info", "properties_json: expected a JSON object; found " + properties.substr(0, 40));
     return {d.name, d.driver, d.api, d.is_software != 0, properties};
   }

@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "clothbench/scene.hpp"
 #include "clothbench/solver.hpp"
 #include "clothbench_plugin.h"

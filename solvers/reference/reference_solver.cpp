@@ -1,7 +1,7 @@
 // The reference solver: double precision, implicit, sparse direct solves; springs without compliance are constraints.
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "clothbench/error.hpp"
 #include "clothbench/record.hpp"
 #include "integrator.hpp"
@@ -164,12 +164,12 @@ double free_fall_m(const Scene& s, const nlohmann::json& settings, int frames) {
 
 std::unique_ptr<ClothSolver> make(const nlohmann::json& s, const DeviceOptions&) {
   if (!(s["substeps"].get<double>() >= 1 && s["substeps"].get<double>() <= 1e6))
-    throw Error("solver reference: setting substeps: expected 1 to 1000000; found " + s["substeps"].dump());
+    throw Error("solver reference: setting substeps: expected 1 to 1000000; found " + dump(s["substeps"]));
   if (s["integrator"] != "bdf2" && s["integrator"] != "conservative")
     throw Error("solver reference: setting integrator: expected \"bdf2\" or \"conservative\"; found " +
-                s["integrator"].dump());
+                dump(s["integrator"]));
   if (!(s["tolerance"].get<double>() > 0 && s["tolerance"].get<double>() <= 1))
-    throw Error("solver reference: setting tolerance: expected above 0, at most 1; found " + s["tolerance"].dump());
+    throw Error("solver reference: setting tolerance: expected above 0, at most 1; found " + dump(s["tolerance"]));
   return std::make_unique<Reference>(s);
 }
 

@@ -132,7 +132,7 @@ struct Packer {
 
 }  // namespace
 
-std::string packed(const json& j) { return base64_of(deflated(j.dump(-1, ' ', true, json::error_handler_t::replace))); }
+std::string packed(const json& j) { return base64_of(deflated(dump(j, -1, true, json::error_handler_t::replace))); }
 
 PackedMotion pack_motion(const Replay& replay) {
   PackedMotion out;

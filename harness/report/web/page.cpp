@@ -236,7 +236,7 @@ std::string page_html(const std::string& html, const Page& page, const json& doc
 
 #ifdef CLOTHBENCH_WITH_PAGE
 PageTemplate page_template() {
-  const json page = json::parse(_binary_page_json_start, _binary_page_json_end);
+  const json page = json_from({_binary_page_json_start, _binary_page_json_end});
   return {page["html"], page["missing"], page["figures"]};
 }
 #else

@@ -1,10 +1,10 @@
 #pragma once
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "clothbench/solver.hpp"
 #include "common/gpu_types.h"
 #include "vulkan/program.hpp"

@@ -24,7 +24,7 @@ void require_one_of(const char* solver, const nlohmann::json& settings, const ch
                     const std::vector<nlohmann::json>& known) {
   if (std::find(known.begin(), known.end(), settings[key]) == known.end())
     throw Error(fmt::format("solver {}: setting {}: expected one of {}; found {}", solver, key,
-                            nlohmann::json(known).dump(), settings[key].dump()));
+                            dump(nlohmann::json(known)), dump(settings[key])));
 }
 
 GpuSolver::GpuSolver(SolverInfo info, const nlohmann::json& settings, const DeviceOptions& device)

@@ -9,9 +9,10 @@
 #include <limits>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
+
+#include "base/json_text.hpp"
 
 namespace clothbench::vulkan {
 namespace {
@@ -264,9 +265,9 @@ DeviceInfo Device::info() const {
   if (profile_.empty()) return info;
   // Results under a profile must not be mistaken for results of the device itself.
   info.name += " [" + profile_ + "]";
-  nlohmann::json j = nlohmann::json::parse(info.properties_json);
+  nlohmann::json j = json_from(info.properties_json);
   j["device_profile"] = profile_;
-  info.properties_json = j.dump();
+  info.properties_json = dump(j);
   return info;
 }
 

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json_text.hpp"
 #include "vulkan/device.hpp"
 
 namespace clothbench::vulkan {
@@ -47,7 +46,7 @@ DeviceInfo describe(VkPhysicalDevice physical) {
   info.api = fmt::format("Vulkan {}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion), VK_API_VERSION_MINOR(p.apiVersion),
                          VK_API_VERSION_PATCH(p.apiVersion));
   info.is_software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  info.properties_json = j.dump();
+  info.properties_json = dump(j);
   return info;
 }
 

@@ -289,7 +289,7 @@ SolverInfo xpbd_info() {
   info.tuning = {
       {"contact_groups", "0", "minimum workgroups of a fused frame with contact; 0: 96, or as many as the lines need"},
       {"contact_pairs", "0", "capacity of the list of pairs; 0: by the number of the cloth's primitives"}};
-  for (const Tuning& t : tunings()) info.tuning.push_back({t.name, t.values.front().dump(), t.doc});
+  for (const Tuning& t : tunings()) info.tuning.push_back({t.name, dump(t.values.front()), t.doc});
   return info;
 }
 
