@@ -124,7 +124,9 @@ View speed_and_error(bool paper) {
       at_largest("stretch, mean / maximum [%]",
                  [](const Row& r) {
                    const auto percent = [&](auto* name) { return std::round(1e5 * r.value(name)) / 1e3; };
-                   return paired_cell(percent("stretch_mean_last_second"), percent("stretch_max_last_second"), 2);
+                   const Cell c =
+                       paired_cell(percent("stretch_mean_last_second"), percent("stretch_max_last_second"), 2);
+                   return r.value("stretch_max_last_second") > kTornApart ? Cell(c.text + " !", c.value, "bad") : c;
                  }),
       at_largest("trials", trials_cell)};
   for (std::size_t k = 0; k < 3; ++k) v.columns[k].leads = true;
@@ -181,7 +183,8 @@ Tile rates(const Group& rows) {
     out.title = "Frames per second at " + r->resolution.label();
     const std::string interval = rate_interval(*r);
     const double off = r->value("free_fall_error");
-    const std::string error = std::isfinite(off) ? fmt::format("free-fall error {:.1e}", off) : "no error measured";
+    const std::string error =
+        std::isfinite(off) ? fmt::format("free fall off by {:.1e}", off) : "free fall not checked";
     out.entries.push_back({r->solver, r->label(), rate_text(r->value("fps_median")),
                            in_one_line({interval.empty() ? "too few frames for an interval" : interval,
                                         trials_text({r->run->trials.size()}), r->frames_mark(),

@@ -15,7 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kThrottled = 0.95;  // fraction of the GPU's clock at the start
-constexpr double kTornApart = 1;     // strain at which an edge has twice its rest length
 
 json at(const json& j, const char* pointer) {
   return j.is_object() ? j.value(json::json_pointer(pointer), json()) : json();

@@ -54,6 +54,7 @@ std::string label_of(const RunRecord&);
 /// Names of the summary values that violate a bound of the run's scene; "outcome" if the run did not end as expected.
 std::vector<std::string> violated_bounds(const RunRecord&);
 inline constexpr const char* kNoVerdict = "–";
+inline constexpr double kTornApart = 1;  ///< strain at which an edge has twice its rest length
 /// Verdict on a run: "pass", "fail", "not measured"; kNoVerdict if there are no bounds; "ignored" if the bounds are met
 /// but the solver ignores all of the scene's contact, so that the result proves nothing; its ending if it is not ok.
 std::string verdict(const RunRecord&);

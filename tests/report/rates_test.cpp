@@ -27,11 +27,12 @@ std::vector<Table> all_tables(const std::vector<RunRecord>& runs) {
 TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
   std::vector<RunRecord> runs = study();
   runs[1].summary["free_fall_error"] = 0.74;  // of xpbd, 128², single
+  runs[1].summary.insert({{"stretch_mean_last_second", 0.2}, {"stretch_max_last_second", 1.5}});
   const Table t = table_of(runs, kTable3);
   std::string heads, rows;
   for (const std::string& head : t.rows[0]) heads += head + "|";
   for (const auto& row : t.rows) rows += row[0] + "|";
-  EXPECT_EQ(heads, "solver|8²|16²|32²|64²|128²|free-fall error [g T²/2]|device|");
+  EXPECT_EQ(heads, "solver|8²|16²|32²|64²|128²|free-fall error [g T²/2]|stretch, mean / maximum [%]|device|");
   EXPECT_EQ(rows,
             "solver|bullet-soft|xpbd|xpbd, double|published: Unity Cloth|published: PBD single-sided|"
             "published: PBD double-sided|")
@@ -41,6 +42,7 @@ TEST(Overview, Table3HasSpeedAndErrorInOneRow) {
   EXPECT_EQ(entry(t, "xpbd, double", "8²"), "5000") << "four digits";
   EXPECT_EQ(entry(t, "xpbd", "8²"), "10.0k");
   EXPECT_EQ(entry(t, "xpbd", "free-fall error [g T²/2]"), "7.4e-01 !") << "a rate without meaning is marked";
+  EXPECT_EQ(entry(t, "xpbd", "stretch, mean / maximum [%]"), "20 / 150 !");
   EXPECT_EQ(entry(t, "published: PBD single-sided", "128²"), "42");
   EXPECT_EQ(entry(t, "published: PBD double-sided", "128²"), "16");
 }

@@ -144,7 +144,7 @@ TEST(Overview, TilesAreOfTheRunsPresent) {
   ASSERT_EQ(tiles.size(), 1u) << "rates only";
   EXPECT_EQ(tiles[0].title + ", " + tiles[0].entries[0].label, "Frames per second at 128², bullet-soft");
   EXPECT_EQ(tiles[0].entries[0].value, "1000");
-  EXPECT_EQ(tiles[0].others(), "xpbd 50.0 (too few frames for an interval, 0 trials, free-fall error 1.2e-06)")
+  EXPECT_EQ(tiles[0].others(), "xpbd 50.0 (too few frames for an interval, 0 trials, free fall off by 1.2e-06)")
       << "without the harness's cost";
   EXPECT_EQ(heading_of(RunTable(study()), {"table3"}).title, "Cloth solvers on Fake GPU: table3");
   EXPECT_EQ(heading_of(RunTable(study()), {"a", "b", "c", "d"}).title,
@@ -162,7 +162,7 @@ TEST(Overview, TilesAreOfTheRunsPresent) {
     }
   const auto tile = [&] { return tiles_of(RunTable(runs))[0]; };
   EXPECT_EQ(tile().left_out, "2 not ranked: software (software device), wrong (free-fall error above 1 %)");
-  EXPECT_TRUE(tile().entries[0].about.ends_with(", no error measured"));
+  EXPECT_TRUE(tile().entries[0].about.ends_with(", free fall not checked"));
   EXPECT_TRUE(tiles_of(RunTable({})).empty());
 }
 
