@@ -47,7 +47,8 @@ fs::path find_data(const DataFolder& folder, const DataRoots& roots) {
   }
   for (const fs::path& place : places)
     if (fs::is_directory(place, ec)) return place;
-  throw Error(fmt::format("no {}: looked in ${} (not set), then {}", folder.what, folder.variable, listed(places)));
+  throw Error(fmt::format("no {}: not found in {}; set {} to the folder that contains them", folder.what,
+                          listed(places), folder.variable));
 }
 
 }  // namespace clothbench

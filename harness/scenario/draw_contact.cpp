@@ -175,7 +175,9 @@ json at_point(const json& range, double u, bool may_be_whole, const std::string&
 /// Samples the ranges that all kinds share first, so that kinds with the same point of the box share these values.
 void draw_box(json& scene, DrawnValues& draw, const ContactKind& kind, std::uint64_t seed) {
   if (!kind.box.contains("settings") || kind.box["settings"].empty())
-    throw Error(kind.at + "/how: \"box\" needs \"box\" of the study, with \"settings\" of a solver");
+    throw Error(kind.at +
+                "/how: \"box\" samples the ranges of the study's key \"box\", which is missing or has no settings; add "
+                "/box/settings/SOLVER");
   BoxPoint point(seed > 0 ? (seed - 1) / kind.kinds : 0);
   for (const auto& [solver, settings] : kind.box["settings"].items())
     for (const auto& [name, range] : settings.items()) {

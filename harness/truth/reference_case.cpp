@@ -222,10 +222,11 @@ std::optional<ReferenceCase> reference_case_of(const Scene& scene) {
   if (found == std::end(kSolutions)) throw Error(scene.source + ": /truth/case: no reference case \"" + name + "\"");
   const Strip s(scene);
   if (name != "incline") s.need_rows(name == "heavy-strip");
-  if (name != "incline" && name != "capstan") s.need((scene.needs & kColliderFeatures).empty(), "no collider");
+  if (name != "incline" && name != "capstan")
+    s.need((scene.needs & kColliderFeatures).empty(), "a scene without colliders");
   if (!scene.cloth.mesh) return found->of(s);
   need_flat_mesh(s);
-  s.need(found->on_mesh, "a cloth that is a grid");
+  s.need(found->on_mesh, "a grid cloth");
   return on_mesh(s, found->of(s));
 }
 

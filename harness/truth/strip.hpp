@@ -42,7 +42,7 @@ struct Strip {
   }
 
   void need(bool good, const std::string& what) const {
-    if (!good) throw Error(scene.source + ": /truth/case: \"" + scene.reference_case + "\" needs " + what);
+    if (!good) throw Error(scene.source + ": /truth/case: \"" + scene.reference_case + "\" requires " + what);
   }
   void need_gravity() const { need(g > 0, "gravity"); }
   void need_level() const {

@@ -82,7 +82,7 @@ SolverInfo deformable_info() {
       bullet_info("bullet-deformable",
                   "Bullet's deformable body with springs in N/m (btDeformableMultiBodyDynamicsWorld) on one CPU core",
                   {{"substeps", "0",
-                    "substeps per frame; 0: if explicit, as many as keep the stiffest vertex stable; if implicit, 4"},
+                    "substeps per frame; 0: 4 if implicit, otherwise the fewest that keep the stiffest vertex stable"},
                    {"implicit", "false",
                     "backward Euler (one Newton step, conjugate gradients, projection); blows up on contact"}});
   info.supports.add(Feature::Regions);

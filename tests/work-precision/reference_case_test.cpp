@@ -136,7 +136,7 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   const auto refused = [](const std::string& name, const std::string& set, const std::string& why) {
     EXPECT_PRED2(mentions, refusal([&] { truth::reference_case_of(scene(name, {set})); }), why) << name;
   };
-  refused("swing-strip", "material.shear=true", "/truth/case: \"swing-strip\" needs \"shear\": false");
+  refused("swing-strip", "material.shear=true", "/truth/case: \"swing-strip\" requires \"shear\": false");
   refused("swing-strip", "time.duration_s=2", "chaotic");
   refused("swing-strip", "material.damping_per_s=1", "no damping");
   refused("heavy-strip", "material.damping_per_s=0", "damping, to come to rest");
@@ -144,7 +144,7 @@ TEST(ReferenceCases, RefuseScenesTheyDoNotAnswer) {
   refused("two-hand-pull", "grips.0.ramp_s=0.01", "one ramp_s");
   refused("free-fall", "pins=[{\"edge\":\"u0\"}]", "no pins and no grips");
   refused("swing-strip-mesh", "material.membrane_stiffness_N_per_m=1000", "1e-3");
-  refused("swing-strip-mesh", "truth.case=two-hand-pull", "a cloth that is a grid");
+  refused("swing-strip-mesh", "truth.case=two-hand-pull", "a grid cloth");
   refused("swing-strip-mesh", "cloth.mesh.drawn.size_m=[0.125,1]", "longer side along x");
   refused("swing-strip-mesh", "pins=[{\"group\":\"v0\"}]", "edge u0 pinned");
   refused("cantilever-10-mesh", "pins=[{\"group\":\"u0\"}]", "less than half of the width");

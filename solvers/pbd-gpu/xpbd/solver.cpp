@@ -74,7 +74,8 @@ class Xpbd final : public GpuSolver {
     if (!tension.enabled) disable("implicit tension", tension.reason);
     if (!membrane.enabled && scene().cloth.mesh && scene().material.membrane_stiffness_N_per_m)
       disable("triangles of constant strain",
-              membrane.reason + ": springs along edges take their place, and the sheet is softer than Y", "sheet_Y");
+              membrane.reason + ": springs along edges take their place, and the sheet is softer than Y implies",
+              "sheet_Y");
     const FeatureDecision splitting_correction = splitting_correction_decision(scene(), settings());
     const bool soft = scene().material.membrane_stiffness_N_per_m && scene().needs.has(Feature::Shear);
     if (!splitting_correction.enabled)

@@ -30,8 +30,9 @@ struct Settings {
 inline std::string obstacle(const Settings& settings, const ClothbenchScene& s) {
   if (mj_version() != mjVERSION_HEADER) return "the adapter was built for another version of MuJoCo";
   if (settings.contact < 0 || settings.contact > 1)
-    return "MuJoCo " + std::string(mj_versionString()) + " has constraint contact (0) and passive contact (1)";
-  if (settings.iterations < 1 || !(settings.timestep_s > 0)) return "MuJoCo takes at least one iteration and a step";
+    return "setting contact: expected 0 (constraints) or 1 (passive) in MuJoCo " + std::string(mj_versionString());
+  if (settings.iterations < 1 || !(settings.timestep_s > 0))
+    return "expected iterations of at least 1 and timestep_s above 0";
   if (s.vertex_count > 60000) return "MuJoCo numbers bodies with 16 bits, so a cloth has at most 60000 vertices";
   if (settings.passive() && peer::needs(s, CLOTHBENCH_FRICTION) && !(settings.frictionless > 0))
     return "MuJoCo's passive contact has no friction (solver.frictionless=1 runs it without)";

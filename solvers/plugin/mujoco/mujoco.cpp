@@ -170,8 +170,10 @@ const ClothbenchSetting kSettings[] = {
     {"iterations", "maximum iterations of the constraint solver per step", 100, 1},
     {"timestep_s", "largest time step", 0.002, 0},
     {"collision_margin_m", "contact offset of all colliders; 0: the scene's margins", 0, 0},
-    {"frictionless", "1: passive contact in scenes with friction, without it; 0: refuse them", 0, 1},
-    {"nominal", "1: Young's modulus and thickness by a plate's formulas; 0: by the elements' own", 0, 1}};
+    {"frictionless",
+     "with contact=1, which has no friction: 1 runs scenes that need friction without it; 0 refuses them", 0, 1},
+    {"nominal", "1: Young's modulus and thickness by the formulas of an elastic plate; 0: fitted to MuJoCo's elements",
+     0, 1}};
 
 }  // namespace
 }  // namespace clothbench::mujoco
