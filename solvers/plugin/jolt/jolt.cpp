@@ -6,7 +6,6 @@
 
 #include <Jolt/Core/Factory.h>
 #include <Jolt/Core/JobSystemSingleThreaded.h>
-#include <Jolt/Core/JobSystemThreadPool.h>
 #include <Jolt/Core/TempAllocator.h>
 #include <Jolt/Physics/Body/BodyCreationSettings.h>
 #include <Jolt/Physics/Collision/BroadPhase/BroadPhaseLayerInterfaceTable.h>
@@ -123,16 +122,12 @@ struct World {
   Overlaps overlaps;
   JPH::ObjectVsBroadPhaseLayerFilterTable broad_phase{layers, 2, overlaps, 2};
   JPH::TempAllocatorImplWithMallocFallback memory{4 << 20};
-  std::unique_ptr<JPH::JobSystem> jobs;
+  JPH::JobSystemSingleThreaded jobs{JPH::cMaxPhysicsJobs};
   JPH::PhysicsSystem system;
   JPH::Body* cloth = nullptr;
   std::vector<std::vector<JPH::BodyID>> bodies;  ///< of each collider
 
-  explicit World(int threads) {
-    if (threads > 1)
-      jobs = std::make_unique<JPH::JobSystemThreadPool>(JPH::cMaxPhysicsJobs, JPH::cMaxPhysicsBarriers, threads - 1);
-    else
-      jobs = std::make_unique<JPH::JobSystemSingleThreaded>(JPH::cMaxPhysicsJobs);
+  World() {
     system.Init(1024, 0, 1024, 1024, layers, broad_phase, overlaps);
     system.SetCombineFriction(pair_friction);
   }
@@ -158,16 +153,11 @@ CapsulePose pose_of(const double* capsule, const Point& origin) {
 struct Settings {
   int iterations, collision_steps;
   double collision_margin_m;
-  int threads;
   explicit Settings(const double* v)
-      : iterations(static_cast<int>(v[0])),
-        collision_steps(static_cast<int>(v[1])),
-        collision_margin_m(v[2]),
-        threads(static_cast<int>(v[3])) {}
+      : iterations(static_cast<int>(v[0])), collision_steps(static_cast<int>(v[1])), collision_margin_m(v[2]) {}
 };
 
 std::string obstacle(const Settings& s, const ClothbenchScene&) {
-  if (s.threads < 1 || s.threads > 256) return "Jolt needs 1 to 256 threads";
   return s.iterations < 1 || s.collision_steps < 1 ? "Jolt needs at least one iteration and one collision step" : "";
 }
 
@@ -189,7 +179,7 @@ class Solver : public peer::Adapter {
     move_grips(frame);
     move_colliders(frame);
     const JPH::EPhysicsUpdateError error = world_->system.Update(
-        static_cast<float>(frame.dt_s), settings_.collision_steps, &world_->memory, world_->jobs.get());
+        static_cast<float>(frame.dt_s), settings_.collision_steps, &world_->memory, &world_->jobs);
     if (error != JPH::EPhysicsUpdateError::None) return CLOTHBENCH_DIVERGED;
     for (const JPH::SoftBodyVertex& v : world_->vertices())
       if (!std::isfinite(v.mPosition.Dot(Vec3::sReplicate(1)))) return CLOTHBENCH_NOT_FINITE;
@@ -215,7 +205,7 @@ class Solver : public peer::Adapter {
 
   /// The constraints of the shared settings already have rest lengths, so the vertices can be moved to the start.
   void restart(const ClothbenchRestart& start) {
-    world_ = std::make_unique<World>(settings_.threads);
+    world_ = std::make_unique<World>();
     world_->system.SetGravity(vec3(scene.gravity_m_per_s2));
     world_->bodies.resize(scene.collider_count);
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) add_collider(k, start.poses[k]);
@@ -338,8 +328,7 @@ const ClothbenchSetting kSettings[] = {
     {"iterations",
      "iterations per collision step (mNumIterations): each is a time step with one pass over the constraints", 5, 1},
     {"substeps", "collision steps per frame (the second argument of PhysicsSystem::Update)", 1, 1},
-    {"collision_margin_m", "radius of vertices; 0: the largest margin of the scene", 0, 0},
-    {"threads", "threads of its job system; 1: none but the caller", 1, 1}};
+    {"collision_margin_m", "radius of vertices; 0: the largest margin of the scene", 0, 0}};
 
 }  // namespace
 }  // namespace clothbench::jolt

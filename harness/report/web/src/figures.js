@@ -190,8 +190,8 @@ function verdicts(doc) {
     rows: () => all.map(r => ({...r, criteria: why(r).join('; '), tone: tone_of(r)[0], sign: tone_of(r)[1], words: tone_of(r)[2]})),
     spec: (rows, s, look) => {
       const [solvers, scenes] = ['label', 'scene'].map(field => band(field, unique(rows.map(r => r[field])), look)), {width} = look;
-      const turned = width >= 740 && scenes.scale.domain.length >= 12;  // in wide windows many scenes become columns
-      const [x, y] = turned ? [scenes, solvers] : [solvers, scenes], [tones, words] = [0, 2].map(k => unique(Object.values(kVerdicts).map(v => v[k])));
+      const turned = width >= 740 && scenes.scale.domain.length >= 12;  // in wide windows many scenes become columns; elsewhere names of columns stand above the many rows
+      const [x, y] = turned ? [scenes, solvers] : [{...solvers, axis: {...solvers.axis, orient: 'top'}}, scenes], [tones, words] = [0, 2].map(k => unique(Object.values(kVerdicts).map(v => v[k])));
       return {
         width: Math.min(width, 180 + 110 * x.scale.domain.length),
         height: look.shrink * y.scale.domain.length * (turned ? 24 : 18),
