@@ -331,8 +331,12 @@ Heading heading_of(const RunTable& table, const std::vector<std::string>& studie
   h.facts.emplace_back("trials per run", trials.empty()       ? "none timed"
                                          : trials.size() == 1 ? trials.begin()->first
                                                               : joined(trials, ", ", text));
-  if (several) h.facts.emplace(h.facts.begin(), "measured on", joined(devices, ", ", text));
-  if (studies.size() > 1) h.facts.emplace_back("studies", joined(studies));
+  if (several) {  // names devices and studies; the table of machines has the rest
+    std::erase_if(h.facts, [](const auto& f) { return f.first == "GPU" || f.first == "CPU" || f.first == "driver"; });
+    h.facts.emplace(h.facts.begin(), "measured on", joined(devices, ", ", text));
+  } else if (studies.size() > 1) {
+    h.facts.emplace_back("studies", joined(studies));
+  }
   const Texts first(studies.begin(), studies.begin() + static_cast<std::ptrdiff_t>(std::min(studies.size(), kNamed)));
   h.title = fmt::format("Cloth solvers on {}{}{}{}", device.empty() ? "an unknown machine" : device,
                         studies.size() > 1 ? fmt::format(": {} studies", studies.size()) : "",
