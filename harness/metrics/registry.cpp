@@ -101,9 +101,11 @@ std::map<std::string, double> scalars_of(const RunView& run, const std::string& 
   std::map<std::string, double> out;
   const std::map<std::string, double> none;
   const auto& known = run.run == nullptr ? none : run.run->summary;
+  const RunView untimed(run.scene, run.pass, run.outcome);
   for (const Scalar& s : scalars()) {
     if (!s.name.starts_with(start) || !s.from.value || (s.present != nullptr && !s.present(run))) continue;
-    const auto at = s.of_trials ? known.end() : known.find(s.name);
+    const bool of_trials = s.present != nullptr && !s.present(untimed);
+    const auto at = of_trials ? known.end() : known.find(s.name);
     out[s.name] = at != known.end() ? at->second : s.from.value(run);
   }
   return out;

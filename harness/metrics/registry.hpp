@@ -88,7 +88,6 @@ struct Scalar {
   std::string units = "", doc = "";                       ///< a plain phrase; both set by the registry
   Better better = Better::Less;
   bool of_machine = false;  ///< a time, or a value that depends on times
-  bool of_trials = false;   ///< needs the trials; all others need only the untimed pass and its outcome
 };
 
 /// The metrics and scalars that one file of measures/ defines.
@@ -113,8 +112,8 @@ bool is_of_machine(const std::string& summary_name);
 /// Names of the series in series.csv, in column order.
 std::vector<std::string> series_columns();
 
-/// All scalars present in the run's summary whose names begin with `start`. The record's summary may hold those that
-/// need no trials; these are copied.
+/// All scalars present in the run's summary whose names begin with `start`. Those that need no timed run are copied
+/// from the record's summary if it has them.
 std::map<std::string, double> scalars_of(const RunView&, const std::string& start = "");
 
 /// Prefix of the results of bounds in a summary: 1 pass, 0 fail, NaN not measured.

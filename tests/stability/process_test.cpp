@@ -99,7 +99,7 @@ TEST_F(Process, UntimedPassesSideBySideChangeNoRow) {
     EXPECT_EQ(a.outcome.status, b.outcome.status);
     EXPECT_EQ(a.outcome.failed_frame, b.outcome.failed_frame);
     EXPECT_EQ(a.outcome.trajectory_sha256, b.outcome.trajectory_sha256);
-    EXPECT_EQ(a.trials.size(), b.trials.size());
+    EXPECT_EQ(a.summary.at("trials"), b.summary.at("trials")) << "not taken from the untimed pass";
   }
 }
 

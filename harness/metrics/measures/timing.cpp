@@ -107,15 +107,13 @@ Scalar reported(Better better, const char* name, const char* units, const char* 
           .from = own({}, doc, std::move(value), units),
           .present = timed,
           .better = better,
-          .of_machine = true,
-          .of_trials = true};
+          .of_machine = true};
 }
 
 /// A value that follows from the solver's buffers and kernels, whatever the machine.
 Scalar of_solver(const char* name, const char* units, const char* doc, std::function<double(const RunView&)> value,
                  const Gate* gate = nullptr) {
-  return {
-      .name = name, .from = own({}, doc, std::move(value), units), .gate = gate, .present = timed, .of_trials = true};
+  return {.name = name, .from = own({}, doc, std::move(value), units), .gate = gate, .present = timed};
 }
 
 /// A value stored by the code that runs a study or reads the device.
