@@ -1,27 +1,25 @@
 #!/usr/bin/env bash
 # Installs those Debian 12 or 13 packages that clothbench needs and this machine lacks. Called by run.sh and test.sh.
 #   scripts/bootstrap.sh [--build | --short | --tests] [--ci] [--arm64]
-# --build: only packages for compiling; otherwise also packages that the program needs at run time, and npm
+# --build: only packages for compiling; otherwise also packages that the program needs at run time
 # further packages: --short: for test.sh --short; --tests: for all tests of test.sh; --ci: for CI's tests and slow tests;
 # --arm64: for the cross build and the packaging of the APK
 set -euo pipefail
 
 packages=(clang lld cmake ninja-build ccache git python3
           glslc spirv-tools spirv-headers libvulkan-dev
-          libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libvalijson-dev libhdf5-dev zlib1g-dev libcli11-dev libgtest-dev
+          libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libhdf5-dev zlib1g-dev libcli11-dev libgtest-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libpng-dev)
-used=(mesa-vulkan-drivers libopenxr-loader1 fonts-dejavu-core python3-h5py python3-matplotlib librsvg2-bin)
-# The report's page is bundled with Node 18 or later. Debian's npm conflicts with other installations, so an existing npm is used.
-command -v npm >/dev/null || used+=(npm)
+used=(mesa-vulkan-drivers libopenxr-loader1 fonts-dejavu-core librsvg2-bin)
+# The report's page is bundled with Node 18 or later; Debian's conflicts with other installations, so an existing one is used.
 command -v node >/dev/null || packages+=(nodejs)
 [ "${1:-}" = --build ] || packages+=("${used[@]}")
 for argument in "$@"; do
   case $argument in
     --build) ;;
     --short) packages+=(g++ make vulkan-validationlayers) ;;
-    --tests) packages+=(g++ make xz-utils vulkan-validationlayers hdf5-tools python3-yaml python3-xarray python3-h5netcdf
-                        libbenchmark-tools clang-format pmccabe) ;;
-    --ci) packages+=(python3-paraview chromium libclang-rt-dev slurm-wlm munge) ;;
+    --tests) packages+=(g++ make xz-utils vulkan-validationlayers python3-h5py clang-format pmccabe) ;;
+    --ci) packages+=(python3-paraview python3-xarray python3-h5netcdf python3-matplotlib chromium libclang-rt-dev slurm-wlm munge) ;;
     --arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static aapt zipalign apksigner android-framework-res
                         default-jre-headless android-platform-frameworks-native-headers android-liblog-dev
                         android-libnativehelper-dev) ;;
@@ -36,6 +34,9 @@ missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
 done
+# Only unpacked, where CMake finds it, because it requires the development packages of every library that it can be used with, such as Qt.
+valijson=$(dirname "$0")/../build/valijson
+[ -d /usr/include/valijson ] || [ -d "$valijson/usr" ] || missing+=(libvalijson-dev)
 if [ ${#missing[@]} -eq 0 ]; then
   echo "set-up: all packages are installed"
   exit 0
@@ -46,8 +47,12 @@ if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "set-up: run as root or install sudo (needed: apt-get install ${missing[*]})" >&2; exit 1; }
   sudo=(sudo)
 fi
+unpack_valijson() {
+  mkdir -p "$valijson" && cd "$valijson" && apt-get download libvalijson-dev && dpkg-deb -x libvalijson-dev_*.deb unpacked && mv unpacked/usr .
+}
 log=$(mktemp)
 if ! { "${sudo[@]}" apt-get update &&
+    { [ "${missing[-1]}" != libvalijson-dev ] || { (unpack_valijson) && unset 'missing[-1]'; }; } &&
     "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 9>&-; then
   tail -20 "$log" >&2
   echo "set-up: apt-get failed (whole output: $log)" >&2
