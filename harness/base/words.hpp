@@ -22,6 +22,13 @@ bool contains(const Items& items, const Item& item) {
   return std::find(std::begin(items), std::end(items), item) != std::end(items);
 }
 
+/// A name with spaces in place of its underscores.
+inline std::string spaced(std::string_view name) {
+  std::string out(name);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
 /// Shortens a text of unknown length for a message: at most `most` bytes and "…", control characters as "?".
 std::string shortened(const std::string& text, std::size_t most);
 

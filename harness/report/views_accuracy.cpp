@@ -210,12 +210,6 @@ View violated() {
   return v;
 }
 
-std::string words(std::string_view text) {
-  std::string name(text);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 constexpr const char* kStated[] = {"gpu",         "gpu_is_software", "device_profile", "driver",        "cpu",
                                    "cpu_threads", "shader_compiler", "clock_policy",   "power_limit_W", "ecc",
                                    "protocol",    "git_commit",      "git_dirty",      "source_sha256", "build_type",
@@ -238,7 +232,7 @@ View environment() {
                   return joined(runs, ", ", [](const auto& n) { return fmt::format("{} ({})", n.first, n.second); });
                 }}};
   for (const char* name : kStated)
-    v.columns.push_back(column(words(name), [=](const Row& r) { return stated(r, name); }));
+    v.columns.push_back(column(spaced(name), [=](const Row& r) { return stated(r, name); }));
   v.in_full = true;
   return v;
 }
@@ -252,14 +246,14 @@ Cell declared(const Group& g, const Keys& keys) {
   const auto has = [&](const char* list) {
     const json& names = features.at(list);
     return std::any_of(names.begin(), names.end(),
-                       [&](const json& name) { return words(name.get<std::string>()) == keys.front().text; });
+                       [&](const json& name) { return spaced(name.get<std::string>()) == keys.front().text; });
   };
   if (has("ignores")) return "ignored";
   if (!has("supports")) return "no";
   std::string text = "yes";
   for (const json& pair : features.at("only_with"))
-    if (words(pair.at(0).get<std::string>()) == keys.front().text)
-      text += " (only with " + words(pair.at(1).get<std::string>()) + ")";
+    if (spaced(pair.at(0).get<std::string>()) == keys.front().text)
+      text += " (only with " + spaced(pair.at(1).get<std::string>()) + ")";
   return text;
 }
 
@@ -307,7 +301,7 @@ View feature_view() {
          [](const Row& r) { return r.published < 0 && r.status() != "missing"; }};
   v.keys = {{"feature", [](const Row&) {
                Keys out;
-               for (const FeatureRow& f : kFeatures) out.emplace_back(words(f.name), true);
+               for (const FeatureRow& f : kFeatures) out.emplace_back(spaced(f.name), true);
                return out;
              }}};
   v.across = {key("", &Row::solver, true), declared};

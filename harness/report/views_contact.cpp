@@ -9,8 +9,6 @@
 namespace clothbench {
 namespace {
 
-constexpr const char* kAllRuns = "all";
-
 /// Summary values in one column, separated by " / ".
 ViewColumn values(const char* head, std::vector<const char*> names, double per_si = 1) {
   return column(head, [=](const Row& r) {
@@ -31,14 +29,31 @@ Cell pass_rate(const Group& g, const Keys& /*keys*/) {
   return share_cell(n.passed, n.runs);
 }
 
+bool is_judged(const Row& r) { return r.part == Part::Contact && r.repeat == 1 && !r.scaled; }
+
 View verdicts() {
-  View v{"contact", "Verdict on the acceptance criteria of each scene", note("verdicts"),
-         [](const Row& r) { return r.part == Part::Contact && r.repeat == 1 && !r.scaled; }};
-  v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {kAllRuns, true}}; }}};
+  View v{"contact", "Verdict on the acceptance criteria of each scene", note("verdicts"), is_judged};
+  v.keys = {{"scene", [](const Row& r) { return Keys{r.scene, {"all", true}}; }}};
   v.by_key = true;
   v.across = {solver_key(), [](const Group& g, const Keys& keys) {
                 return g.size() > 1 ? pass_rate(g, keys) : verdict_cell(*g.front());
               }};
+  return v;
+}
+
+/// "hand-push (contact length max, motion)" for a failed run.
+std::string failure_of(const Row* r) {
+  return fmt::format("{} ({})", r->scene, joined(violated_bounds(*r->run), ", ", [](std::string_view name) {
+                       return spaced(name.substr(0, name.size() - (name.ends_with("_m") ? 2 : 0)));
+                     }));
+}
+
+View failed_scenes() {
+  View v{"contact", "Failed scenes of each solver", "",
+         [](const Row& r) { return is_judged(r) && verdict(*r.run) == "fail"; }};
+  v.keys = {solver_key()};
+  v.columns = {
+      {"scenes (violated criteria)", [](const Group& g, const Keys&) { return Cell(joined(g, "; ", failure_of)); }}};
   return v;
 }
 
@@ -82,7 +97,7 @@ View pass_rates() {
              },
              true},
             {"kind", [](const Row& r) {
-               return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets(kAllRuns, r), true}};
+               return Keys{with_assets(r.drawn().value("kind", ""), r), {with_assets("all", r), true}};
              }}};
   const auto speed = [](const Row& r) { return r.drawn().value("speed_m_per_s", 0.0); };
   const auto band = [=](const Row& r) -> Keys {
@@ -91,7 +106,7 @@ View pass_rates() {
     return {};
   };
   v.across = Across{{"", band}, pass_rate, speed, 0};
-  v.columns = {{kAllRuns, pass_rate},
+  v.columns = {{"all", pass_rate},
                column(
                    "device", [](const Row& r) { return short_name(environment_text(*r.run, "gpu")); }, true),
                offset_column()};
@@ -132,6 +147,6 @@ ViewColumn offset_column() {
   return {"contact offset [mm]", [](const Group& g, const Keys&) { return offset_of(g); }};
 }
 
-std::vector<View> contact_views() { return {verdicts(), contact(), pass_rates()}; }
+std::vector<View> contact_views() { return {verdicts(), failed_scenes(), contact(), pass_rates()}; }
 
 }  // namespace clothbench

@@ -135,6 +135,7 @@ CELLS = {  # column: the wanted cell of a line, numbers or a text, with the valu
     "ranked": lambda x: "no" if x.refused else "no: ~" if " ~" in x.keys["frame p50 [ms]"] else "yes", "ranks": lambda x: f"REFUSED: {x.refused}" if x.refused else "yes",
     **{name: lambda x, name=name: stated(x.first.environment.get(name.replace(" ", "_"))) for name in STATED}, "runs": lambda x: ", ".join(f"{s} ({n})" for s, n in sorted(collections.Counter(r.row["solver"] for r in x.runs).items())),
     "scenes": lambda x: f"{len(x.runs)} runs: " * (len(x.runs) > 1) + ", ".join(r.row["scene"] + f" (frame {r.outcome['failed_frame']})" * (r.outcome["failed_frame"] >= 0) for r in x.runs),
+    "scenes (violated criteria)": lambda x: "; ".join(f"{r.row['scene']} ({', '.join(re.sub('_m$', '', v).replace('_', ' ') for v in r.violated)})" for r in x.runs),
     "precision": lambda x: x.run.environment.get("precision", "–"), "device": lambda x: x.run.environment.get("gpu", "–").split(" (")[0]}
 KEYS = {"scene": lambda r, x: r.row["scene"] + " (refused)" * bool(x.refused and "best error" in x.keys), "sides": lambda r, x: r.scenario["cloth"].get("sides", ""), "message": lambda r, x: r.outcome["message"], "status": lambda r, x: status(r),
         "solver": lambda r, x: r.row["solver"] if "best error" in x.keys else r.row["label"] + (f", {r.row['sides']}" if RATES in x.keys and r.row["sides"] != "single" else ""), "kind": lambda r, x: r.scenario["drawn"]["kind"] + " (procedural)" * (r.scenario["drawn"]["assets"] == "procedural"),
@@ -185,7 +186,7 @@ def compare_tables(doc, runs):
     rows = {  # by title; None: not counted
         "Contact": part("contact"), "Time per frame [ms]": [t for r in plain for t in r.time], "Bytes and device memory per frame": [r for r in plain if finite(r.value("device_memory_B")) and r.row["part"] in ("rates", "contact")],
         "Acceptance criteria that are violated": [v for r in plain for v in r.violated or [""] * r.outcome["expect"].startswith("fail") if r.row["part"] != "stability"], "Table 4: features": None, "Leading scenes with contact": None,
-        "Verdict on the acceptance criteria of each scene": {"all"} | {r.row["scene"] for r in part("contact")}, "Robustness": {"all"} | {r.row["case"] for r in part("stability")}, "Table 3: speed and error": None, "Runs that failed": None,
+        "Verdict on the acceptance criteria of each scene": {"all"} | {r.row["scene"] for r in part("contact")}, "Robustness": {"all"} | {r.row["case"] for r in part("stability")}, "Table 3: speed and error": None, "Runs that failed": None, "Failed scenes of each solver": {r.row["label"] for r in part("contact") if r.verdict() == "fail"},
         "Error against run time": {(r.row["scene"], r.row["solver"]) for r in part("accuracy")}, "Reference cases and their reference solutions": {r.row["scene"] for r in part("accuracy")}, "Frame rates: conformance-sheet": None,
         "Random scenes of contact: pass rate": None, "Machines of the runs": {tuple(stated(r.environment.get(n.replace(" ", "_"))) for n in STATED) for r in runs if r.environment}}
     tables = {t["title"]: t["rows"] for s in doc["sections"] for t in s["tables"]}
