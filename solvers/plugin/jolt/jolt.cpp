@@ -9,8 +9,6 @@
 #include <Jolt/Core/TempAllocator.h>
 #include <Jolt/Physics/Body/BodyCreationSettings.h>
 #include <Jolt/Physics/Collision/BroadPhase/BroadPhaseLayerInterfaceTable.h>
-#include <Jolt/Physics/Collision/BroadPhase/ObjectVsBroadPhaseLayerFilterTable.h>
-#include <Jolt/Physics/Collision/ObjectLayerPairFilterTable.h>
 #include <Jolt/Physics/Collision/Shape/BoxShape.h>
 #include <Jolt/Physics/Collision/Shape/CapsuleShape.h>
 #include <Jolt/Physics/Collision/Shape/MeshShape.h>
@@ -19,7 +17,6 @@
 #include <Jolt/Physics/PhysicsSystem.h>
 #include <Jolt/Physics/SoftBody/SoftBodyCreationSettings.h>
 #include <Jolt/Physics/SoftBody/SoftBodyMotionProperties.h>
-#include <Jolt/Physics/SoftBody/SoftBodySharedSettings.h>
 #include <Jolt/RegisterTypes.h>
 
 #include "peer.hpp"
@@ -27,211 +24,155 @@
 namespace clothbench::jolt {
 namespace {
 
-using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::kSupports, peer::Point;
+using JPH::EMotionType, JPH::Quat, JPH::Vec3, peer::Point;
 using Shared = JPH::SoftBodySharedSettings;
+using ShapeRef = JPH::RefConst<JPH::Shape>;
 
-constexpr JPH::ObjectLayer kCloth = 0, kObstacle = 1;
 /// Compliance of bend constraints [m/N]. With 1e-5, as in the engine's samples, an inextensible 64 x 64 sheet tears.
 constexpr float kBendCompliance = 1e-2F;
 
+struct Settings {
+  double iterations, collision_steps, margin_m;
+  int steps(double) const { return static_cast<int>(iterations * collision_steps); }
+};
+
+const ClothbenchSetting kSettings[] = {
+    {"iterations", "time steps per collision step, each with one pass over the constraints (mNumIterations)", 5, 1},
+    {"substeps", "collision steps per frame (the second argument of PhysicsSystem::Update)", 1, 1},
+    {"collision_margin_m", "radius of vertices; 0: the largest margin of the scene", 0, 0}};
+
 Vec3 vec3(const double* x) { return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])}; }
+JPH::Float3 float3(Vec3 x) { return {x.GetX(), x.GetY(), x.GetZ()}; }
 
-/// Converts a point [m] to the engine's float32 coordinates relative to `origin`.
-Vec3 to_engine(const Point& x, const Point& origin) { return vec3((x - origin).data()); }
-
-JPH::Ref<JPH::Shape> made(const JPH::ShapeSettings& settings) {
-  const JPH::ShapeSettings::ShapeResult result = settings.Create();
-  if (result.HasError()) throw std::runtime_error("Jolt: " + std::string(result.GetError().c_str()));
-  return result.Get();
-}
-
-/// A copy of vertices and faces with the constraints that the engine makes from the faces.
-Shared created(const Shared& from, const Shared::VertexAttributes& attributes, Shared::EBendType bend) {
-  Shared copy;
-  copy.mVertices = from.mVertices;
-  copy.mFaces = from.mFaces;
-  copy.CreateConstraints(&attributes, 1, bend);
-  return copy;
-}
-
-/// Adds the engine's edge constraints in the engine's order, which affects convergence. An edge with a spring of the
-/// scene gets the spring's compliance, and a diagonal without a spring is removed.
-void add_edges(const ClothbenchScene& s, Shared& to) {
-  constexpr float kDiagonal = 2;  // marks the engine's diagonals
-  std::map<peer::Pair, Shared::Edge> springs;
-  for (const peer::Spring& p : peer::springs(s)) {
-    if (p.kind == peer::Kind::Bend || !(p.stiffness_N_per_m > 0)) continue;
-    const double k = p.stiffness_N_per_m;
-    Shared::Edge e(p.a, p.b, std::isinf(k) ? 0.0F : static_cast<float>(1 / k));
-    e.mRestLength = static_cast<float>(p.rest_m);
-    springs[peer::pair(p.a, p.b)] = e;
-  }
-  for (const Shared::Edge& e :
-       created(to, {0.0F, kDiagonal, kBendCompliance}, Shared::EBendType::Distance).mEdgeConstraints) {
-    const auto at = springs.find(peer::pair(e.mVertex[0], e.mVertex[1]));
-    if (at != springs.end()) {
-      to.mEdgeConstraints.push_back(at->second);
-      springs.erase(at);
-    } else if (e.mCompliance == kBendCompliance) {
-      to.mEdgeConstraints.push_back(e);
-    }
-  }
-  for (const auto& [vertices, e] : springs) to.mEdgeConstraints.push_back(e);
-}
-
-/// The sheet at rest. Long-range attachments lead only to pins, because attached vertices can be released.
+/// The sheet at rest, with the engine's edge constraints in the engine's order, which affects convergence. An edge with
+/// a spring of the scene gets the spring's compliance, and a diagonal without a spring is removed. Long-range
+/// attachments lead only to pins, because attached vertices can be released.
 JPH::Ref<Shared> shared_settings(const ClothbenchScene& s) {
+  constexpr float kDiagonal = 2;  // marks the engine's diagonals
   JPH::Ref<Shared> out = new Shared;
   const std::vector<double> inverse_mass = peer::inverse_masses(s);
-  for (std::uint32_t v = 0; v < s.vertex_count; ++v) {
-    JPH::Float3 at;
-    vec3(s.rest_position_m + 3 * v).StoreFloat3(&at);
-    out->mVertices.emplace_back(at, JPH::Float3(0, 0, 0), static_cast<float>(inverse_mass[v]));
+  for (std::uint32_t v = 0; v < s.vertex_count; ++v)
+    out->mVertices.emplace_back(float3(vec3(s.rest_position_m + 3 * v)), JPH::Float3(0, 0, 0),
+                                static_cast<float>(inverse_mass[v]));
+  for (const std::uint32_t* t = s.triangles; t < s.triangles + 3 * s.triangle_count; t += 3)
+    out->AddFace({t[0], t[1], t[2]});
+  const JPH::Ref<Shared> edges = out->Clone(), tethers = out->Clone();
+  const Shared::VertexAttributes edge(0.0F, kDiagonal, kBendCompliance),
+      tether(0.0F, 0.0F, FLT_MAX, Shared::ELRAType::EuclideanDistance);
+  edges->CreateConstraints(&edge, 1, Shared::EBendType::Distance);
+  tethers->CreateConstraints(&tether, 1, Shared::EBendType::None);
+  out->mLRAConstraints = tethers->mLRAConstraints;
+  std::map<peer::Pair, ClothbenchEdge> springs = peer::springs(s, false);
+  const auto add = [&](const ClothbenchEdge& e) {
+    out->mEdgeConstraints.emplace_back(e.a, e.b, static_cast<float>(1 / e.spring_N_per_m));
+    out->mEdgeConstraints.back().mRestLength = static_cast<float>(e.rest_m);
+  };
+  for (const Shared::Edge& e : edges->mEdgeConstraints) {
+    const auto at = springs.find(peer::pair(e.mVertex[0], e.mVertex[1]));
+    if (at != springs.end()) {
+      add(at->second);
+      springs.erase(at);
+    } else if (e.mCompliance == kBendCompliance) {
+      out->mEdgeConstraints.push_back(e);
+    }
   }
-  for (std::uint32_t t = 0; t < s.triangle_count; ++t)
-    out->AddFace({s.triangles[3 * t], s.triangles[3 * t + 1], s.triangles[3 * t + 2]});
-  add_edges(s, *out);
-  out->CalculateBendConstraintConstants();
-  if (s.pin_count > 0)
-    out->mLRAConstraints =
-        created(*out, {0.0F, 0.0F, FLT_MAX, Shared::ELRAType::EuclideanDistance}, Shared::EBendType::None)
-            .mLRAConstraints;
+  for (const auto& [vertices, e] : springs) add(e);
   out->Optimize();
   return out;
 }
 
-struct Layers : JPH::BroadPhaseLayerInterfaceTable {
-  Layers() : JPH::BroadPhaseLayerInterfaceTable(2, 2) {
-    for (const JPH::ObjectLayer layer : {kCloth, kObstacle})
-      MapObjectToBroadPhaseLayer(layer, JPH::BroadPhaseLayer(static_cast<JPH::uint8>(layer)));
-  }
-};
-
-struct Overlaps : JPH::ObjectLayerPairFilterTable {
-  Overlaps() : JPH::ObjectLayerPairFilterTable(2) { EnableCollision(kCloth, kObstacle); }
-};
-
-/// The engine's default is the geometric mean of two bodies' coefficients; a scene has one coefficient per pair.
-float pair_friction(const JPH::Body& a, const JPH::SubShapeID&, const JPH::Body& b, const JPH::SubShapeID&) {
-  return a.IsSoftBody() ? b.GetFriction() : a.GetFriction();
-}
-
 /// One simulation; members in the order of construction.
 struct World {
-  Layers layers;
-  Overlaps overlaps;
-  JPH::ObjectVsBroadPhaseLayerFilterTable broad_phase{layers, 2, overlaps, 2};
+  JPH::BroadPhaseLayerInterfaceTable layers{1, 1};
+  JPH::ObjectVsBroadPhaseLayerFilter broad_phase;
+  JPH::ObjectLayerPairFilter pairs;
   JPH::TempAllocatorImplWithMallocFallback memory{4 << 20};
   JPH::JobSystemSingleThreaded jobs{JPH::cMaxPhysicsJobs};
   JPH::PhysicsSystem system;
   JPH::Body* cloth = nullptr;
   std::vector<std::vector<JPH::BodyID>> bodies;  ///< of each collider
-
-  World() {
-    system.Init(1024, 0, 1024, 1024, layers, broad_phase, overlaps);
-    system.SetCombineFriction(pair_friction);
-  }
+  JPH::BodyInterface& interface() { return system.GetBodyInterfaceNoLock(); }
   JPH::Array<JPH::SoftBodyVertex>& vertices() const {
     return static_cast<JPH::SoftBodyMotionProperties*>(cloth->GetMotionProperties())->GetVertices();
   }
 };
 
-/// Middle of a capsule, and the rotation from y to its axis.
-struct CapsulePose {
-  Vec3 middle;
-  Quat turn;
-  float half_length;
-};
-
-CapsulePose pose_of(const double* capsule, const Point& origin) {
-  const Vec3 a = to_engine(peer::point(capsule, 0), origin), b = to_engine(peer::point(capsule, 1), origin);
-  const Vec3 half = 0.5F * (b - a);
-  const float l = half.Length();
-  return {0.5F * (a + b), l > 0 ? Quat::sFromTo(Vec3::sAxisY(), half / l) : Quat::sIdentity(), l};
-}
-
-struct Settings {
-  int iterations, collision_steps;
-  double collision_margin_m;
-  explicit Settings(const double* v)
-      : iterations(static_cast<int>(v[0])), collision_steps(static_cast<int>(v[1])), collision_margin_m(v[2]) {}
-};
-
-std::string obstacle(const Settings& s, const ClothbenchScene&) {
-  return s.iterations < 1 || s.collision_steps < 1 ? "Jolt needs at least one iteration and one collision step" : "";
-}
-
-class Solver : public peer::Adapter {
+class Solver : public peer::Adapter<Settings> {
  public:
-  Solver(const Settings& settings, const ClothbenchScene& s) : Adapter("update", s), settings_(settings) {
-    static const bool once = [] {
+  Solver(const Settings& given, const ClothbenchScene& s)
+      : Adapter("update", given, s), origin_(peer::centre(peer::points(s.position_m, s.vertex_count))) {
+    if (JPH::Factory::sInstance == nullptr) {
       JPH::RegisterDefaultAllocator();
       JPH::Factory::sInstance = new JPH::Factory;
       JPH::RegisterTypes();
-      return true;
-    }();
-    (void)once;
+    }
     shared_ = shared_settings(s);
     restart(peer::start_of(s));
   }
 
   std::int32_t step(const ClothbenchFrame& frame) {
-    move_grips(frame);
-    move_colliders(frame);
+    move(frame);
     const JPH::EPhysicsUpdateError error = world_->system.Update(
-        static_cast<float>(frame.dt_s), settings_.collision_steps, &world_->memory, &world_->jobs);
-    if (error != JPH::EPhysicsUpdateError::None) return CLOTHBENCH_DIVERGED;
-    for (const JPH::SoftBodyVertex& v : world_->vertices())
-      if (!std::isfinite(v.mPosition.Dot(Vec3::sReplicate(1)))) return CLOTHBENCH_NOT_FINITE;
-    return CLOTHBENCH_OK;
+        static_cast<float>(frame.dt_s), static_cast<int>(settings.collision_steps), &world_->memory, &world_->jobs);
+    return error == JPH::EPhysicsUpdateError::None ? CLOTHBENCH_OK : CLOTHBENCH_DIVERGED;
   }
 
   void read(double* position_m, double* velocity_m_per_s) const {
     const JPH::Array<JPH::SoftBodyVertex>& vertices = world_->vertices();
-    for (std::uint32_t v = 0; v < scene.vertex_count; ++v)
-      for (unsigned k = 0; k < 3; ++k) {
-        position_m[3 * v + k] = origin[k] + static_cast<double>(vertices[v].mPosition[k]);
-        velocity_m_per_s[3 * v + k] = static_cast<double>(vertices[v].mVelocity[k]);
-      }
+    for (std::uint32_t k = 0; k < 3 * scene.vertex_count; ++k) {
+      position_m[k] = origin_[k % 3] + static_cast<double>(vertices[k / 3].mPosition[k % 3]);
+      velocity_m_per_s[k] = static_cast<double>(vertices[k / 3].mVelocity[k % 3]);
+    }
   }
 
   /// Contact offset [m]: the engine has one radius for all vertices, so it is the scene's largest margin.
-  double margin_m(std::uint32_t = 0) const {
-    double largest = 0;
-    for (std::uint32_t k = 0; k < scene.collider_count; ++k)
-      largest = std::max(largest, peer::margin(settings_.collision_margin_m, scene.colliders[k]));
-    return largest;
-  }
+  double margin_m(std::uint32_t = 0) const { return peer::largest_margin(settings.margin_m, scene); }
 
   /// The constraints of the shared settings already have rest lengths, so the vertices can be moved to the start.
   void restart(const ClothbenchRestart& start) {
     world_ = std::make_unique<World>();
+    world_->system.Init(1024, 0, 1024, 1024, world_->layers, world_->broad_phase, world_->pairs);
+    // The engine's default is the geometric mean of two bodies' coefficients; a scene has one coefficient per pair.
+    world_->system.SetCombineFriction([](const JPH::Body& a, const JPH::SubShapeID&, const JPH::Body& b,
+                                         const JPH::SubShapeID&) { return (a.IsSoftBody() ? b : a).GetFriction(); });
     world_->system.SetGravity(vec3(scene.gravity_m_per_s2));
     world_->bodies.resize(scene.collider_count);
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) add_collider(k, start.poses[k]);
     for (std::uint32_t v = 0; v < scene.vertex_count; ++v) {
       Shared::Vertex& vertex = shared_->mVertices[v];
-      to_engine(peer::point(start.position_m, v), origin).StoreFloat3(&vertex.mPosition);
-      if (vertex.mInvMass > 0) vec3(start.velocity_m_per_s + 3 * v).StoreFloat3(&vertex.mVelocity);
+      vertex.mPosition = float3(to_engine(start.position_m + 3 * v));
+      if (vertex.mInvMass > 0) vertex.mVelocity = float3(vec3(start.velocity_m_per_s + 3 * v));
     }
-    JPH::SoftBodyCreationSettings body(shared_, JPH::RVec3::sZero(), Quat::sIdentity(), kCloth);
-    body.mNumIterations = static_cast<JPH::uint32>(settings_.iterations);
+    JPH::SoftBodyCreationSettings body(shared_, JPH::RVec3::sZero(), Quat::sIdentity(), 0);
+    body.mNumIterations = static_cast<JPH::uint32>(settings.iterations);
     body.mLinearDamping = static_cast<float>(scene.damping_per_s);
     body.mVertexRadius = static_cast<float>(margin_m());
-    body.mUpdatePosition = false;
-    body.mAllowSleeping = false;
-    JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
-    world_->cloth = bodies.CreateSoftBody(body);
+    body.mUpdatePosition = body.mAllowSleeping = false;
+    world_->cloth = world_->interface().CreateSoftBody(body);
     if (world_->cloth == nullptr) throw std::runtime_error("Jolt: CreateSoftBody failed");
-    bodies.AddBody(world_->cloth->GetID(), JPH::EActivation::Activate);
+    world_->interface().AddBody(world_->cloth->GetID(), JPH::EActivation::Activate);
+  }
+
+  /// The engine's integrator.
+  static double next_velocity(double velocity, double h, double gravity, double damping) {
+    return std::max(0.0, 1 - damping * h) * (velocity + h * gravity);
   }
 
  private:
-  void add_body(std::uint32_t collider, const JPH::Shape* shape, Vec3 at, Quat turn, EMotionType motion) {
-    JPH::BodyCreationSettings settings(shape, at, turn, motion, kObstacle);
-    settings.mFriction = static_cast<float>(scene.colliders[collider].friction);
-    const JPH::BodyID id = world_->system.GetBodyInterfaceNoLock().CreateAndAddBody(
-        settings, motion == EMotionType::Static ? JPH::EActivation::DontActivate : JPH::EActivation::Activate);
+  /// Converts a point [m] to the engine's float32 coordinates.
+  Vec3 to_engine(const double* x) const { return vec3((peer::point(x, 0) - origin_).data()); }
+
+  /// Middle of a capsule, the rotation from y to its axis, and half its length.
+  std::tuple<Vec3, Quat, float> pose_of(const double* capsule) const {
+    const Vec3 a = to_engine(capsule), b = to_engine(capsule + 3), half = 0.5F * (b - a);
+    return {0.5F * (a + b), Quat::sFromTo(Vec3::sAxisY(), half.NormalizedOr(Vec3::sZero())), half.Length()};
+  }
+
+  void add_body(std::uint32_t collider, const ShapeRef& shape, Vec3 at, Quat turn = Quat::sIdentity(),
+                EMotionType motion = EMotionType::Static) {
+    JPH::BodyCreationSettings body(shape, at, turn, motion, 0);
+    body.mFriction = static_cast<float>(scene.colliders[collider].friction);
+    const JPH::BodyID id = world_->interface().CreateAndAddBody(body, JPH::EActivation::Activate);
     if (id.IsInvalid()) throw std::runtime_error("Jolt: no room for another body");
     world_->bodies[collider].push_back(id);
   }
@@ -239,96 +180,69 @@ class Solver : public peer::Adapter {
   /// Spheres, boxes, planes and meshes are static bodies, and each capsule a kinematic one.
   void add_collider(std::uint32_t k, const ClothbenchPose& pose) {
     const ClothbenchCollider& c = scene.colliders[k];
-    const Vec3 middle = to_engine(peer::point(c.center_m, 0), origin);
-    const auto fixed = [&](const JPH::ShapeSettings& settings, Vec3 at, Quat turn) {
-      add_body(k, made(settings), at, turn, EMotionType::Static);
-    };
-    if (c.shape == CLOTHBENCH_SHAPE_SPHERE)
-      fixed(JPH::SphereShapeSettings(static_cast<float>(c.radius_m)), middle, Quat::sIdentity());
-    if (c.shape == CLOTHBENCH_SHAPE_PLANE)
-      fixed(JPH::PlaneShapeSettings(JPH::Plane(vec3(c.normal), 0.0F)), middle, Quat::sIdentity());
+    const Vec3 middle = to_engine(c.center_m);
+    if (c.shape == CLOTHBENCH_SHAPE_SPHERE) add_body(k, new JPH::SphereShape(static_cast<float>(c.radius_m)), middle);
+    if (c.shape == CLOTHBENCH_SHAPE_PLANE) add_body(k, new JPH::PlaneShape(JPH::Plane(vec3(c.normal), 0)), middle);
     if (c.shape == CLOTHBENCH_SHAPE_BOX) {
-      const JPH::Mat44 axes(JPH::Vec4(vec3(c.axes), 0), JPH::Vec4(vec3(c.axes + 3), 0), JPH::Vec4(vec3(c.axes + 6), 0),
-                            JPH::Vec4(0, 0, 0, 1));
-      fixed(JPH::BoxShapeSettings(vec3(c.half_extent_m), 0.0F), middle, axes.GetQuaternion().Normalized());
+      const JPH::Vec4 x(vec3(c.axes), 0), y(vec3(c.axes + 3), 0), z(vec3(c.axes + 6), 0);
+      const Quat turn = JPH::Mat44(x, y, z, JPH::Vec4(0, 0, 0, 1)).GetQuaternion().Normalized();
+      add_body(k, new JPH::BoxShape(vec3(c.half_extent_m), 0), middle, turn);
     }
-    if (c.shape == CLOTHBENCH_SHAPE_MESH)
-      add_body(k, mesh(c, pose.vertices_m), Vec3::sZero(), Quat::sIdentity(), EMotionType::Static);
-    for (std::uint32_t n = 0; c.shape == CLOTHBENCH_SHAPE_CAPSULES && n < c.capsule_count; ++n) {
-      const CapsulePose at = pose_of(pose.capsules + 7 * n, origin);
-      const auto radius = static_cast<float>(pose.capsules[7 * n + 6]);
-      add_body(k,
-               at.half_length > 0 ? made(JPH::CapsuleShapeSettings(at.half_length, radius))
-                                  : made(JPH::SphereShapeSettings(radius)),
-               at.middle, at.turn, EMotionType::Kinematic);
+    if (c.shape == CLOTHBENCH_SHAPE_MESH) add_body(k, mesh(c, pose.vertices_m), Vec3::sZero());
+    for (const double* n = pose.capsules; n < pose.capsules + 7 * c.capsule_count; n += 7) {
+      const auto [at, turn, half_length] = pose_of(n);
+      const auto* shape = new JPH::CapsuleShape(std::max(half_length, 1e-9F), static_cast<float>(n[6]));
+      add_body(k, shape, at, turn, EMotionType::Kinematic);
     }
   }
 
-  JPH::Ref<JPH::Shape> mesh(const ClothbenchCollider& c, const double* vertices_m) const {
-    JPH::VertexList vertices(c.vertex_count);
+  ShapeRef mesh(const ClothbenchCollider& c, const double* vertices_m) const {
+    JPH::VertexList vertices;
     JPH::IndexedTriangleList triangles;
-    for (std::uint32_t v = 0; v < c.vertex_count; ++v)
-      to_engine(peer::point(vertices_m, v), origin).StoreFloat3(&vertices[v]);
-    for (std::uint32_t t = 0; t < c.triangle_count; ++t)
-      triangles.emplace_back(c.triangles[3 * t], c.triangles[3 * t + 1], c.triangles[3 * t + 2], 0);
-    JPH::MeshShapeSettings settings(std::move(vertices), std::move(triangles));
-    if (c.moves != 0) settings.mBuildQuality = JPH::MeshShapeSettings::EBuildQuality::FavorBuildSpeed;
-    return made(settings);
+    for (std::uint32_t v = 0; v < c.vertex_count; ++v) vertices.push_back(float3(to_engine(vertices_m + 3 * v)));
+    for (const std::uint32_t* t = c.triangles; t < c.triangles + 3 * c.triangle_count; t += 3)
+      triangles.emplace_back(t[0], t[1], t[2], 0);
+    JPH::MeshShapeSettings mesh(std::move(vertices), std::move(triangles));
+    if (c.moves != 0) mesh.mBuildQuality = JPH::MeshShapeSettings::EBuildQuality::FavorBuildSpeed;
+    const JPH::ShapeSettings::ShapeResult made = mesh.Create();
+    if (made.HasError()) throw std::runtime_error("Jolt: " + std::string(made.GetError().c_str()));
+    return made.Get();
   }
 
-  /// Moves kinematic colliders to their poses at the end of the frame. Meshes get a new shape: the engine's are rigid.
-  void move_colliders(const ClothbenchFrame& frame) {
-    JPH::BodyInterface& bodies = world_->system.GetBodyInterfaceNoLock();
+  /// Moves kinematic colliders to their poses at the end of the frame; a mesh gets a new shape, because the engine's
+  /// are rigid. Attached vertices are kinematic: inverse mass 0, and the velocity that brings them to their end
+  /// position.
+  void move(const ClothbenchFrame& frame) {
+    const auto dt_s = static_cast<float>(frame.dt_s);
     for (std::uint32_t k = 0; k < scene.collider_count; ++k) {
       const ClothbenchCollider& c = scene.colliders[k];
       const std::vector<JPH::BodyID>& ids = world_->bodies[k];
-      if (c.moves == 0) continue;
-      if (c.shape == CLOTHBENCH_SHAPE_MESH)
-        bodies.SetShape(ids.front(), mesh(c, frame.poses[k].vertices_m), false, JPH::EActivation::DontActivate);
+      if (c.moves != 0 && c.shape == CLOTHBENCH_SHAPE_MESH)
+        world_->interface().SetShape(ids.front(), mesh(c, frame.poses[k].vertices_m), false,
+                                     JPH::EActivation::DontActivate);
       for (std::uint32_t n = 0; n < c.capsule_count; ++n) {
-        const CapsulePose at = pose_of(frame.poses[k].capsules + 7 * n, origin);
-        if (frame.collider_teleports != nullptr && frame.collider_teleports[k] != 0)
-          bodies.SetPositionRotationAndVelocity(ids[n], at.middle, at.turn, Vec3::sZero(), Vec3::sZero());
+        const auto [at, turn, half_length] = pose_of(frame.poses[k].capsules + 7 * n);
+        if (peer::teleports(frame.collider_teleports, k))
+          world_->interface().SetPositionRotationAndVelocity(ids[n], at, turn, Vec3::sZero(), Vec3::sZero());
         else
-          bodies.MoveKinematic(ids[n], at.middle, at.turn, static_cast<float>(frame.dt_s));
+          world_->interface().MoveKinematic(ids[n], at, turn, dt_s);
       }
     }
-  }
-
-  /// Attached vertices are kinematic: inverse mass 0, and the velocity that brings them to their end position.
-  void move_grips(const ClothbenchFrame& frame) {
     for (std::uint32_t k = 0; k < scene.grip_count; ++k) {
-      const std::uint32_t v = scene.grips[k];
-      JPH::SoftBodyVertex& vertex = world_->vertices()[v];
-      const bool attached = frame.grip_held == nullptr || frame.grip_held[k] != 0;
-      vertex.mInvMass = attached ? 0.0F : static_cast<float>(1 / scene.mass_kg[v]);
+      JPH::SoftBodyVertex& vertex = world_->vertices()[scene.grips[k]];
+      const bool attached = frame.grip_held[k] != 0;
+      vertex.mInvMass = attached ? 0.0F : static_cast<float>(1 / scene.mass_kg[scene.grips[k]]);
       if (!attached) continue;
-      const double* end = frame.grip_position_m == nullptr ? scene.position_m + 3 * v : frame.grip_position_m + 3 * k;
-      const Vec3 target = to_engine(peer::point(end, 0), origin);
-      if (frame.grip_teleports != nullptr && frame.grip_teleports[k] != 0) vertex.mPosition = target;
-      vertex.mVelocity = (target - vertex.mPosition) / static_cast<float>(frame.dt_s);
+      const Vec3 target = to_engine(frame.grip_position_m + 3 * k);
+      if (peer::teleports(frame.grip_teleports, k)) vertex.mPosition = target;
+      vertex.mVelocity = (target - vertex.mPosition) / dt_s;
     }
   }
 
-  Settings settings_;
+  Point origin_;  ///< origin of the engine's coordinates [m]
   JPH::Ref<Shared> shared_;
   std::unique_ptr<World> world_;
 };
-
-/// The engine's integrator: v = (v + g h) (1 - c h), x += h v.
-double free_fall_m(const double* values, double dt_s, double gravity, double velocity, double damping,
-                   std::int32_t frames) {
-  const Settings settings(values);
-  const int n = settings.iterations * settings.collision_steps;
-  const double h = dt_s / n, kept = std::max(0.0, 1 - damping * h);
-  return peer::fallen_m(std::int64_t{frames} * n, h, velocity, [=](double v) { return kept * (v + h * gravity); });
-}
-
-const ClothbenchSetting kSettings[] = {
-    {"iterations",
-     "iterations per collision step (mNumIterations): each is a time step with one pass over the constraints", 5, 1},
-    {"substeps", "collision steps per frame (the second argument of PhysicsSystem::Update)", 1, 1},
-    {"collision_margin_m", "radius of vertices; 0: the largest margin of the scene", 0, 0}};
 
 }  // namespace
 }  // namespace clothbench::jolt

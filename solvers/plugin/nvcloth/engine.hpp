@@ -3,6 +3,7 @@
 
 #include <NvCloth/Callbacks.h>
 #include <NvCloth/Factory.h>
+#include <NvCloth/Solver.h>
 #include <foundation/PxAllocatorCallback.h>
 #include <foundation/PxErrorCallback.h>
 #ifdef NVCLOTH_CUDA
@@ -15,6 +16,7 @@ namespace clothbench::nvcloth {
 
 /// The engine's allocator, error callback and assertion handler in one object.
 struct Callbacks : physx::PxAllocatorCallback, physx::PxErrorCallback, nv::cloth::PxAssertHandler {
+  Callbacks() { nv::cloth::InitializeNvCloth(this, this, this, nullptr); }
   std::string message;
   void* allocate(std::size_t size, const char*, const char*, int) override {
     return std::aligned_alloc(16, (size + 15) / 16 * 16);
@@ -25,10 +27,8 @@ struct Callbacks : physx::PxAllocatorCallback, physx::PxErrorCallback, nv::cloth
 };
 
 inline Callbacks& engine() {
-  static Callbacks all;
-  static const bool once = (nv::cloth::InitializeNvCloth(&all, &all, &all, nullptr), true);
-  (void)once;
-  return all;
+  static Callbacks only;
+  return only;
 }
 
 template <typename Made>
@@ -37,34 +37,28 @@ Made* require(Made* made, const char* what) {
   return made;
 }
 
+/// A CPU core, or the first CUDA device, in the primary context, which other users of CUDA in the process share.
+struct Device {
+  std::string obstacle, name, api;  ///< obstacle: why there is no device, or empty
+  nv::cloth::Factory* factory = nullptr;
+  double frame_s = std::nan("");  ///< GPU time of the last frame
 #ifndef NVCLOTH_CUDA
-constexpr bool kOnGpu = false;
-constexpr char kName[] = "nvcloth", kSummary[] = "NvCloth 1.1.6 on one CPU core (SSE2), lengths in cm";
-
-struct Device {
-  std::string obstacle;
-  nv::cloth::Factory* factory = (engine(), NvClothCreateFactoryCPU());
-  double frame_s = 0;  // a GPU has this and the next member
-  ClothbenchDevice info{};
-  template <typename Work>
-  void time(Work work) {
-    work();
-  }
+  static constexpr bool kOnGpu = false;
+  Device() : factory((engine(), NvClothCreateFactoryCPU())) {}
+  void start() {}
+  void stop() {}
   bool finish() { return true; }
-};
 #else
-constexpr bool kOnGpu = true;
-constexpr char kName[] = "nvcloth-cuda", kSummary[] = "NvCloth 1.1.6 on a GPU (CUDA), lengths in cm";
-
-/// The first CUDA device, in the primary context, which other users of CUDA in the process share.
-struct Device {
+  static constexpr bool kOnGpu = true;
+  CUcontext context = nullptr;
+  CUevent begin = nullptr, end = nullptr;
   Device() {
     CUdevice gpu = 0;
-    CUcontext context = nullptr;
     char text[256] = "";
+    int version = 0;
     for (const CUresult result : {cuInit(0), cuDeviceGet(&gpu, 0), cuDeviceGetName(text, sizeof text, gpu),
                                   cuDriverGetVersion(&version), cuDevicePrimaryCtxRetain(&context, gpu),
-                                  cuCtxSetCurrent(context), cuEventCreate(&start, 0), cuEventCreate(&end, 0)})
+                                  cuCtxSetCurrent(context), cuEventCreate(&begin, 0), cuEventCreate(&end, 0)})
       if (result != CUDA_SUCCESS) {
         const char* why = "the CUDA driver (libcuda.so.1) is not installed";
         cuGetErrorString(result, &why);
@@ -73,38 +67,26 @@ struct Device {
       }
     name = text;
     api = "CUDA " + std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
-    info = {name.c_str(), api.c_str(), api.c_str(), 0, nullptr};
     engine().message.clear();
     factory = NvClothCreateFactoryCUDA(context);
     // A kernel that does not fit the GPU is only reported to the callback.
     if (!engine().message.empty()) obstacle = "NvCloth cannot use " + name + ": " + engine().message;
-    primary = context;
   }
-  /// Times what `work` gives to the GPU. The engine's stream and the legacy stream wait for each other.
-  template <typename Work>
-  void time(Work work) {
-    cuCtxSetCurrent(primary);
-    cuEventRecord(start, nullptr);
-    work();
-    cuEventRecord(end, nullptr);
+  /// Times the work that the GPU gets before stop(). The engine's stream and the legacy stream wait for each other.
+  void start() {
+    cuCtxSetCurrent(context);
+    cuEventRecord(begin, nullptr);
   }
+  void stop() { cuEventRecord(end, nullptr); }
   /// Waits for the GPU; false: it failed.
   bool finish() {
     float ms = 0;
-    const bool done = cuEventSynchronize(end) == CUDA_SUCCESS && cuEventElapsedTime(&ms, start, end) == CUDA_SUCCESS;
+    const bool done = cuEventSynchronize(end) == CUDA_SUCCESS && cuEventElapsedTime(&ms, begin, end) == CUDA_SUCCESS;
     frame_s = done ? static_cast<double>(ms) / 1000 : std::nan("");
     return done;
   }
-
-  std::string obstacle, name, api;  ///< obstacle: why there is no device, or empty
-  nv::cloth::Factory* factory = nullptr;
-  double frame_s = std::nan("");  ///< GPU time of the last frame
-  ClothbenchDevice info{};
-  int version = 0;
-  CUcontext primary = nullptr;
-  CUevent start = nullptr, end = nullptr;
-};
 #endif
+};
 
 /// Never freed: the engine allows one CUDA factory per process, and the driver ends before static objects do.
 inline Device& device() {
