@@ -18,6 +18,7 @@ studies() {
 gpu       table3            study table3 --jobs JOBS --solver paper --solver xpbd --solver bullet-soft --solver ballistic PEERS
 gpu       hang              study hang --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
 gpu       work-precision    study work-precision --solver paper --solver xpbd --solver bullet-soft --solver bullet-deformable --solver reference PEERS --jobs JOBS
+gpu       convergence       study convergence --solver paper --solver xpbd --solver bullet-soft PEERS --jobs JOBS
 gpu       penetration       study penetration --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS

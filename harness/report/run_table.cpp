@@ -31,7 +31,7 @@ Part part_of(const RunRecord& c, const json& scenario) {
   if (c.header.scenario_json.empty() && c.outcome.status == "missing") return Part::None;
   if (scenario.contains("stability")) return Part::Stability;
   if (scenario.contains("drawn")) return scenario["drawn"].contains("settings") ? Part::Claims : Part::Generated;
-  if (!text_at(scenario, "/truth/case").empty()) return Part::Truth;
+  if (scenario.contains("truth")) return Part::Truth;
   return touches(scenario) ? Part::Contact : Part::Rates;
 }
 
@@ -74,7 +74,8 @@ std::string common_words(std::string a, std::string b) {
 
 /// Adds what a run states about its scene's exact solution.
 void add_facts(TruthFacts& t, const Row& r) {
-  t.ranking = truth::tolerance_of(text_at(r.scenario, "/truth/case")).ranking;
+  const std::string known = text_at(r.scenario, "/truth/case");
+  t.ranking = known.empty() ? "RMS distance from the converged mean / L" : truth::tolerance_of(known).ranking;
   if (!std::isfinite(t.space_error)) t.space_error = r.value("truth_space_error");
   if (!std::isfinite(t.uncertainty)) t.uncertainty = r.value("reference_uncertainty");
   if (r.counts() && r.not_ranked().empty() && !is_baseline(r.solver) && !(t.best_error <= r.error()))

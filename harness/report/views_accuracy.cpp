@@ -120,6 +120,7 @@ View reference_cases() {
   v.keys = {scene_key(), key("error", [](const Row& r) { return r.truth->ranking; })};
   v.columns = {fact("space", "truth_space_error"),
                fact("U_ref", "reference_uncertainty"),
+               fact("spread", "reference_spread"),
                fact("reference − exact", "reference_truth_distance"),
                fact("order BDF2", "reference_order_bdf2", "{:.2f}"),
                fact("order conservative", "reference_order_conservative", "{:.2f}"),

@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "clothbench/error.hpp"
@@ -206,14 +207,16 @@ void execute_untimed(const RunPlan& plan, const RunOptions& given) {
   auto groups = plan.groups;
   std::stable_sort(groups.begin(), groups.end(), [](auto& a, auto& b) { return work_of(a[0]) > work_of(b[0]); });
   std::vector<Task> tasks;
+  std::set<std::string> solved;  // scenes whose solution one task computes, beside the passes of the other scenes
   for (const auto& group : groups) {
     std::map<std::pair<std::string, std::string>, std::vector<RunSpec>> sweeps;
     for (const RunSpec& spec : group)
       sweeps[{spec.entry->info.name, spec.work > 0 ? "" : spec.setting}].push_back(spec);
     for (auto& [unused, specs] : sweeps)
-      tasks.push_back([&, specs = std::move(specs)](Worker& worker) {
+      tasks.push_back([&, first = solved.insert(specs[0].scene->sha256).second, specs = specs](Worker& worker) {
         stop_if_interrupted(kTrialsKept);
         RunPlan part;
+        part.references = plan.references && first;
         part.groups = {specs};
         part.rules = plan.rules;
         part.protocol = plan.protocol;

@@ -15,7 +15,6 @@
 
 #include "base/files.hpp"
 #include "clothbench/error.hpp"
-#include "clothbench/record.hpp"
 #include "clothbench/solver.hpp"
 #include "metrics/truth_errors.hpp"
 #include "runner/frame_loop.hpp"
@@ -96,14 +95,19 @@ Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
   return {f1 + rest, (as_declared ? 1.25 : 3) * std::abs(rest), order};
 }
 
-bool has_reference_solver() {
-  return std::any_of(solvers().begin(), solvers().end(),
-                     [](const SolverEntry& e) { return e.info.name == "reference"; });
+/// Null if the scene asks for no solution, or the build lacks the solver.
+const SolverEntry* solver_for(const Scene& s) {
+  const bool converges = s.converged.substeps > 0;
+  const auto at = std::find_if(solvers().begin(), solvers().end(),
+                               [&](const SolverEntry& e) { return e.info.name == (converges ? "xpbd" : "reference"); });
+  return at == solvers().end() || (!converges && s.reference_case.empty()) ? nullptr : &*at;
 }
 
-}  // namespace
-
-namespace {
+/// Name: the scene (for people), then a short form of the rest of the key. The file contains the complete key.
+fs::path cache_file(const fs::path& folder, const json& key) {
+  return folder /
+         fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(dump(key)).substr(0, 16));
+}
 
 constexpr std::pair<const char*, double ReferenceResult::*> kScalars[] = {
     {"truth_value", &ReferenceResult::truth},
@@ -112,7 +116,8 @@ constexpr std::pair<const char*, double ReferenceResult::*> kScalars[] = {
     {"reference_uncertainty", &ReferenceResult::uncertainty},
     {"reference_order_bdf2", &ReferenceResult::order_bdf2},
     {"reference_order_conservative", &ReferenceResult::order_conservative},
-    {"reference_truth_distance", &ReferenceResult::truth_distance}};
+    {"reference_truth_distance", &ReferenceResult::truth_distance},
+    {"reference_spread", &ReferenceResult::spread}};
 
 }  // namespace
 
@@ -128,7 +133,6 @@ ReferenceResult closed_form(const Scene& scene) {
   const truth::ReferenceCase& known = judge.reference_case();
   ReferenceResult r;
   r.truth = known.quantity(known.columns(scene.time.frames()));
-  r.value = r.order_bdf2 = r.order_conservative = r.truth_distance = kMissing;
   r.space_error = judge.space_error();
   return r;
 }
@@ -166,17 +170,38 @@ ReferenceResult compute_reference(const Scene& whole, const ReferenceRules& rule
   return r;
 }
 
+ReferenceResult converge(const Scene& scene, const DeviceOptions& device) {
+  static std::mutex gpu;  // solvers of one process share its queue
+  const std::scoped_lock one(gpu);
+  const SolverEntry& entry = *solver_for(scene);
+  const auto ensemble = [&](const Scene& of, int substeps) {
+    return ensemble_of(of, entry, complete_settings(entry.info, {{"substeps", substeps}}), device);
+  };
+  const int substeps = scene.converged.substeps;
+  Ensemble found = ensemble(scene, substeps);
+  ReferenceResult r;
+  r.spread = found.spread;
+  r.uncertainty = std::max(r.spread, motion_distance(scene, found.mean, ensemble(scene, substeps / 2).mean));
+  if (const auto& grid = scene.converged.fine_grid) {
+    const std::string set = fmt::format("cloth.grid=[{},{}]", (*grid)[0], (*grid)[1]);
+    const Scene fine = scene_from_json(json_from(scene.json), scene.source, {set});
+    r.space_error = motion_distance(scene, found.mean, ensemble(fine, substeps).mean);
+  }
+  r.mean = std::make_shared<std::vector<double>>(std::move(found.mean));
+  return r;
+}
+
 std::map<std::string, ReferenceResult> references(const std::vector<const Scene*>& scenes, const fs::path& cache,
                                                   const std::function<void(const std::string&)>& note,
-                                                  const ReferenceRules& rules) {
+                                                  const ReferenceRules& rules, const DeviceOptions& device) {
   std::map<std::string, ReferenceResult> out;
-  if (!has_reference_solver()) return out;
   std::vector<const Scene*> lacking;
   std::set<std::string> seen;
   for (const Scene* s : scenes) {
-    if (s->reference_case.empty() || !seen.insert(s->sha256).second) continue;
-    if (!unsupported(find_solver("reference").info, s->needs).empty()) {
-      out[s->sha256] = closed_form(*s);
+    const SolverEntry* solver = solver_for(*s);
+    if (solver == nullptr || !seen.insert(s->sha256).second) continue;
+    if (!unsupported(solver->info, s->needs).empty()) {
+      if (!s->reference_case.empty()) out[s->sha256] = closed_form(*s);
       continue;
     }
     if (const auto known = read_reference(cache, reference_key(*s, rules)))
@@ -192,7 +217,8 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   const auto work = [&] {
     for (std::size_t k = next++; k < lacking.size(); k = next++) {
       try {
-        const ReferenceResult r = compute_reference(*lacking[k], rules);
+        const bool converges = lacking[k]->converged.substeps > 0;
+        const ReferenceResult r = converges ? converge(*lacking[k], device) : compute_reference(*lacking[k], rules);
         write_reference(cache, reference_key(*lacking[k], rules), r);
         const std::scoped_lock lock(guard);
         out[lacking[k]->sha256] = r;
@@ -213,22 +239,15 @@ std::map<std::string, ReferenceResult> references(const std::vector<const Scene*
   return out;
 }
 
-namespace {
-
-/// Name: the scene (for people), then a short form of the rest of the key. The file contains the complete key.
-fs::path cache_file(const fs::path& folder, const json& key) {
-  return folder /
-         fmt::format("{}-{}.json", key.at("scenario_sha256").get<std::string>(), sha256(dump(key)).substr(0, 16));
-}
-
-}  // namespace
-
 json reference_key(const Scene& scene, const ReferenceRules& rules) {
   static const std::string program = sha256(content_of(own_program()));
-  const SolverInfo& info = find_solver("reference").info;
+  const SolverInfo& info = solver_for(scene)->info;
   json settings = json::array();
-  for (const char* integrator : {"bdf2", "conservative"})
-    settings.push_back(complete_settings(info, {{"integrator", integrator}, {"tolerance", rules.tolerance}}));
+  if (scene.converged.substeps > 0)
+    settings.push_back(complete_settings(info, json::object()));
+  else
+    for (const char* integrator : {"bdf2", "conservative"})
+      settings.push_back(complete_settings(info, {{"integrator", integrator}, {"tolerance", rules.tolerance}}));
   // The substeps of the runs follow from the rules and the scene, so they are not part of the key.
   for (json& s : settings) s.erase("substeps");
   return {{"scenario_sha256", scene.sha256},
@@ -246,6 +265,7 @@ std::optional<ReferenceResult> read_reference(const fs::path& folder, const json
   try {
     const std::map<std::string, double> values = numbers_from_json(j.at("values"));
     for (const auto& [name, member] : kScalars) r.*member = values.at(name);
+    if (j.contains("mean")) r.mean = std::make_shared<std::vector<double>>(j["mean"].get<std::vector<double>>());
   } catch (const std::exception&) {  // unreadable or incomplete: it is computed again
     return std::nullopt;
   }
@@ -253,8 +273,10 @@ std::optional<ReferenceResult> read_reference(const fs::path& folder, const json
 }
 
 void write_reference(const fs::path& folder, const json& key, const ReferenceResult& r) {
-  write_file_atomically(cache_file(folder, key),
-                        dump(json{{"key", key}, {"values", numbers_to_json(r.scalars())}}, 2) + "\n");
+  json j = {{"key", key}, {"values", numbers_to_json(r.scalars())}};
+  if (r.mean)
+    for (const double x : *r.mean) j["mean"].push_back(std::round(1e8 * x) / 1e8);  // in few digits
+  write_file_atomically(cache_file(folder, key), dump(j) + "\n");
 }
 
 }  // namespace clothbench

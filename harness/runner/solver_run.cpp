@@ -11,6 +11,7 @@
 #include "runner/environment.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/reference.hpp"
 
 namespace clothbench {
 namespace {
@@ -361,6 +362,7 @@ std::map<std::string, double> summarise(const RunSpec& spec, const Plan& plan, c
   const RunView run(*spec.scene, record, plan, spec.entry->info.on_gpu);
   std::map<std::string, double> s = scalars_of(run);
   for (const auto& [name, value] : spec.scene_values) s[name] = value;
+  if (spec.converged) s["truth_error"] = converged_error(*spec.scene, record.accuracy, *spec.converged);
   return s;
 }
 

@@ -34,6 +34,7 @@ struct RunSpec {
   int work = 0;                                     ///< in a settings sweep: work relative to its first setting
   std::string over_budget = {};                     ///< reason why it is not run, if any; stored unchanged
   std::map<std::string, double> scene_values = {};  ///< known scalars of the scene, added to every run's summary
+  std::shared_ptr<const std::vector<double>> converged = {};  ///< positions with which the run is compared, if any
 };
 
 /// Durations and repetitions; see results/README.md, "protocols".

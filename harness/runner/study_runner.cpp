@@ -292,15 +292,17 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
     const auto note = [&](const std::string& what) {
       if (options.progress) options.progress(what, 0, plan.size());
     };
-    const auto found = references(scenes, options.reference_cache, note);
-    for (auto& group : plan.groups)
-      for (RunSpec& c : group)
-        if (const auto r = found.find(c.scene->sha256); r != found.end()) c.scene_values = r->second.scalars();
+    const auto found = references(scenes, options.reference_cache, note, {}, options.device);
     std::map<std::string, std::map<std::string, double>> dependence;
     for (auto& group : plan.groups)
       for (RunSpec& c : group) {
-        if (!dependence.contains(c.scene->sha256)) dependence[c.scene->sha256] = truth_dependence(*c.scene);
-        for (const auto& [name, value] : dependence[c.scene->sha256]) c.scene_values[name] = value;
+        const std::string& id = c.scene->sha256;
+        if (const auto r = found.find(id); r != found.end()) {
+          c.scene_values = r->second.scalars();
+          c.converged = r->second.mean;
+        }
+        if (!dependence.contains(id)) dependence[id] = truth_dependence(*c.scene);
+        c.scene_values.insert(dependence[id].begin(), dependence[id].end());
       }
   }
   for (const auto& group : plan.groups) GroupRun(plan, options, result, done).run(group);

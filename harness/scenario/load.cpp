@@ -126,6 +126,15 @@ void read_expect(const json& j, Scene& s, const std::string& source) {
   }
 }
 
+void read_truth(const json& truth, Scene& s, const std::string& source) {
+  s.reference_case = truth.value("case", "");
+  if (!truth.contains("converged")) return;
+  if (s.cloth.mesh) refuse(source, "/truth/converged", "expected a cloth that is a grid, not a mesh");
+  const json& c = truth["converged"];
+  s.converged = {c["substeps"].get<int>(), c["starts"].get<int>(), c["nudge_m"].get<double>()};
+  if (c.contains("fine_grid")) s.converged.fine_grid = c["fine_grid"].get<std::array<int, 2>>();
+}
+
 void check_assumed(const json& scenario, const std::string& source) {
   for (std::size_t k = 0; k < scenario["assumed"].size(); ++k) {
     const auto entry = scenario["assumed"][k].get<std::string>();
@@ -289,7 +298,7 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
   parts.colliders(scenario, s);
   read_stability(scenario, s);
   if (scenario.contains("seed")) s.seed = scenario["seed"].get<std::uint64_t>();
-  if (scenario.contains("truth")) s.reference_case = scenario["truth"]["case"].get<std::string>();
+  if (scenario.contains("truth")) read_truth(scenario["truth"], s, source);
   s.needs = derive_needs(s);
   if (scenario.contains("expect")) {
     complete_expect(scenario["expect"], s, source);

@@ -150,6 +150,15 @@ struct StabilityRules {
   double settle_s = 0;        ///< a shape at rest is evaluated from this time [s] on
 };
 
+/// How a scene without an exact solution gets a converged one (runner/reference.hpp).
+struct Converged {
+  int substeps = 0;    ///< per frame; 0: the scene asks for none
+  int starts = 0;      ///< runs whose mean is the solution
+  double nudge_m = 0;  ///< maximum displacement of a start along each axis
+  std::optional<std::array<int, 2>> fine_grid =
+      {};  ///< vertices along u and v; the error of the mesh is measured there
+};
+
 /// A criterion for a correct result: bounds on a scalar of the summary.
 struct Expectation {
   std::string name;
@@ -180,6 +189,7 @@ struct Scene {
   StabilityRules stability;
   std::optional<std::uint64_t> seed;  ///< the random seed from which its parameters were sampled
   std::string reference_case;         ///< name of the exact solution, "" = none; see harness/truth/reference_case.hpp
+  Converged converged;
 
   /// Initial position [m] of vertex (i, j).
   Vec3 rest_position(int i, int j) const;

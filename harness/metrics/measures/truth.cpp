@@ -137,7 +137,7 @@ MetricGroup truth_metrics() {
                     &kErrorGate),
        of_the_study("truth_dependence_*", "change of truth_error with the logarithm of a modulus"),
        of_the_study("reference_*",
-                    "quantity of the analytic test case as computed by the reference solver, and its uncertainty")}};
+                    "quantity of the test case as computed by the reference solver; uncertainty of the solution")}};
 }
 
 }  // namespace clothbench
