@@ -124,6 +124,7 @@ View reference_cases() {
                fact("reference − exact", "reference_truth_distance"),
                fact("order BDF2", "reference_order_bdf2", "{:.2f}"),
                fact("order conservative", "reference_order_conservative", "{:.2f}"),
+               fact("order xpbd", "reference_order_xpbd", "{:.2f}"),
                column("ranks", [](const Row& r) {
                  const std::string refused = r.truth->refused();
                  return refused.empty() ? std::string("yes") : "REFUSED: " + refused;

@@ -19,6 +19,7 @@
 #include "metrics/truth_errors.hpp"
 #include "runner/frame_loop.hpp"
 #include "runner/interrupt.hpp"
+#include "runner/study_plan.hpp"
 #include "runner/worker.hpp"
 #include "scenario/load.hpp"
 #include "truth/reference_case.hpp"
@@ -97,10 +98,8 @@ Extrapolated extrapolate(double f1, double f2, double f3, double scale) {
 
 /// Null if the scene asks for no solution, or the build lacks the solver.
 const SolverEntry* solver_for(const Scene& s) {
-  const bool converges = s.converged.substeps > 0;
-  const auto at = std::find_if(solvers().begin(), solvers().end(),
-                               [&](const SolverEntry& e) { return e.info.name == (converges ? "xpbd" : "reference"); });
-  return at == solvers().end() || (!converges && s.reference_case.empty()) ? nullptr : &*at;
+  if (s.converged.substeps > 0) return known_solver("xpbd");
+  return s.reference_case.empty() ? nullptr : known_solver("reference");
 }
 
 /// Name: the scene (for people), then a short form of the rest of the key. The file contains the complete key.
@@ -116,6 +115,7 @@ constexpr std::pair<const char*, double ReferenceResult::*> kScalars[] = {
     {"reference_uncertainty", &ReferenceResult::uncertainty},
     {"reference_order_bdf2", &ReferenceResult::order_bdf2},
     {"reference_order_conservative", &ReferenceResult::order_conservative},
+    {"reference_order_xpbd", &ReferenceResult::order_xpbd},
     {"reference_truth_distance", &ReferenceResult::truth_distance},
     {"reference_spread", &ReferenceResult::spread}};
 
@@ -181,7 +181,10 @@ ReferenceResult converge(const Scene& scene, const DeviceOptions& device) {
   Ensemble found = ensemble(scene, substeps);
   ReferenceResult r;
   r.spread = found.spread;
-  r.uncertainty = std::max(r.spread, motion_distance(scene, found.mean, ensemble(scene, substeps / 2).mean));
+  const std::vector<double> half = ensemble(scene, substeps / 2).mean, quarter = ensemble(scene, substeps / 4).mean;
+  const double near = motion_distance(scene, found.mean, half);
+  r.order_xpbd = std::log2(motion_distance(scene, half, quarter) / near);
+  r.uncertainty = std::max(r.spread, near);
   if (const auto& grid = scene.converged.fine_grid) {
     const std::string set = fmt::format("cloth.grid=[{},{}]", (*grid)[0], (*grid)[1]);
     const Scene fine = scene_from_json(json_from(scene.json), scene.source, {set});

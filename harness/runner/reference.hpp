@@ -20,8 +20,8 @@ struct ReferenceResult {
   double truth = kMissing;  ///< exact value, on the same grid; for a mesh, the continuum's
   double value = kMissing;  ///< extrapolated, mean over both integrators
   double uncertainty = 0;   ///< U, divided by the scale of the quantity
-  double order_bdf2 = kMissing, order_conservative = kMissing;  ///< observed order; NaN if none
-  double truth_distance = kMissing;                             ///< |value - truth| / scale
+  double order_bdf2 = kMissing, order_conservative = kMissing, order_xpbd = kMissing;  ///< observed order; NaN if none
+  double truth_distance = kMissing;                                                    ///< |value - truth| / scale
   /// Ranking error of this grid's exact solution, or of this mesh's finest run, against the continuum.
   double space_error = kMissing;
   double spread = kMissing;  ///< only of converge(): standard deviation of the starts' motions, over the longer side
@@ -54,8 +54,8 @@ ReferenceResult compute_reference(const Scene&, const ReferenceRules& = {});
 
 /// The converged solution of a scene that asks for one (Scene::converged): the mean of solver `xpbd` over nudged
 /// starts. The uncertainty is the larger of the starts' spread, which is the error that chaos gives to any single run,
-/// and the distance of the mean from the one with half the substeps. The space error is the distance of the mean from
-/// the one on the fine grid, if the scene names a grid. Everything else is NaN.
+/// and the distance of the mean from the one with half the substeps; a quarter of them gives the order. The space error
+/// is the distance of the mean from the one on the fine grid, if the scene names a grid. Everything else is NaN.
 ReferenceResult converge(const Scene&, const DeviceOptions&);
 
 /// Motions of a scene from starts that differ by a nudge.

@@ -297,7 +297,12 @@ RunResult execute_runs(const RunPlan& given, const RunOptions& options) {
     for (auto& group : plan.groups)
       for (RunSpec& c : group) {
         const std::string& id = c.scene->sha256;
-        if (const auto r = found.find(id); r != found.end()) {
+        auto r = found.find(id);
+        // A duplicated layer, which only some solvers have, does not change the solution of the group's scene.
+        if (c.scene->converged.substeps > 0)
+          for (auto other = group.begin(); r == found.end() && other != group.end(); ++other)
+            r = found.find(other->scene->sha256);
+        if (r != found.end()) {
           c.scene_values = r->second.scalars();
           c.converged = r->second.mean;
         }

@@ -15,7 +15,7 @@ SUMMARY = {  # column: scale, and the stored values
     "strain, max / end [%]": (100, "stretch_max", "stretch_max_end"), "stretch [%]": (100, "stretch_max_last_second"), "stretch, mean / maximum [%]": (100, "stretch_mean_last_second", "stretch_max_last_second"),
     "free-fall error [g T²/2]": (1, "free_fall_error"), "pipelined [ms]": (1e3, "frame_pipelined_median_s"), "load [ms]": (1e3, "load_s"), "trials": (1, "trials"), "dispatches": (1, "dispatches"),
     "MB per frame, read / written": (1e-6, "read_B_per_frame", "write_B_per_frame"), "peak bandwidth, read / written [GB/s]": (1e-9, "bandwidth_read_peak_B_per_s", "bandwidth_write_peak_B_per_s"),
-    "window [s]": (1, "bandwidth_window_s"), "memory [MB]": (1e-6, "device_memory_B"), "space": (1, "truth_space_error"), "U_ref": (1, "reference_uncertainty"), "spread": (1, "reference_spread"), "reference − exact": (1, "reference_truth_distance"),
+    "window [s]": (1, "bandwidth_window_s"), "memory [MB]": (1e-6, "device_memory_B"), "space": (1, "truth_space_error"), "U_ref": (1, "reference_uncertainty"), "spread": (1, "reference_spread"), "order xpbd": (1, "reference_order_xpbd"), "reference − exact": (1, "reference_truth_distance"),
     "order BDF2": (1, "reference_order_bdf2")}
 QUANTILES = {  # column: clock (empty: the row's), and quantiles by nearest rank
     "frame p50 [ms]": ("", 0.5), "p95 / p99 / worst [ms]": ("", 0.95, 0.99, 1), "GPU: p50 / p95 / p99 / worst [ms]": ("GPU", 0.5, 0.95, 0.99, 1), "GPU, with contact [ms]": ("GPU, with contact", 0.5, 0.95, 0.99, 1),

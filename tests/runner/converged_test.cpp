@@ -23,7 +23,7 @@ class Ensembles : public WithFolder {
 
 /// A free fall has no chaos: its spread is the nudge's, uniform within 1 mm along three axes.
 TEST_F(Ensembles, MeasuresAPlantedErrorAndTheNudge) {
-  const Scene s = scene("paper/gravity", R"({"substeps":2,"starts":200,"nudge_m":0.001})");
+  const Scene s = scene("paper/gravity", R"({"substeps":4,"starts":200,"nudge_m":0.001})");
   const SolverEntry& ballistic = find_solver("ballistic");
   const Ensemble e = ensemble_of(s, ballistic, json::object(), {});
   const double longer_m = std::max(s.cloth.width_m, s.cloth.height_m);
@@ -46,13 +46,17 @@ TEST_F(Ensembles, IsStoredWithEveryRunAndComputedOnce) {
   RunPlan plan;
   plan.references = true;
   plan.rules.trials = 0;
-  plan.groups = {{spec(8), spec(1)}};
+  Scene layered = s;
+  layered.needs.add(Feature::DuplicatedLayer);  // xpbd has none, but another solver's run is compared all the same
+  layered.sha256 = "another";
+  plan.groups = {{spec(8), spec(1), {&layered, &find_solver("ballistic"), json::object()}}};
   std::vector<std::map<std::string, double>> found;
   RunOptions options;
   options.out = dir_ / "out";
   options.reference_cache = dir_ / "cache";
   for (const auto& file : execute_runs(plan, options).files) found.push_back(read_run_summary(file).summary);
-  ASSERT_EQ(found.size(), 2u);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_GT(found[2].at("truth_error"), 0.001) << "a free fall, not a hanging cloth";
   const double nudge = 1e-5 / s.cloth.width_m;
   EXPECT_LT(found[0].at("truth_error"), 2 * nudge) << "against itself, up to the nudge";
   EXPECT_GT(found[1].at("truth_error"), 10 * found[0].at("truth_error"));
@@ -60,6 +64,7 @@ TEST_F(Ensembles, IsStoredWithEveryRunAndComputedOnce) {
   for (const auto& summary : found) {
     EXPECT_LE(summary.at("reference_spread"), 3 * nudge);
     EXPECT_GE(summary.at("reference_uncertainty"), summary.at("reference_spread"));
+    EXPECT_GT(summary.at("reference_order_xpbd"), 0.5);
   }
   const auto again = references({&s}, dir_ / "cache", [](const std::string& what) { ADD_FAILURE() << what; });
   EXPECT_EQ(again.at(s.sha256).uncertainty, found[0].at("reference_uncertainty"));
