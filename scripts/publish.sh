@@ -22,6 +22,7 @@ gpu       convergence       study convergence --solver paper --solver xpbd --sol
 gpu       penetration       study penetration --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
+gpu       energy            study energy --seed SEED --count 200 --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
 gpu       scale             study scale --jobs JOBS
 gpu       many-cloths       study many-cloths --solver xpbd --solver bullet-soft PEERS --jobs JOBS

@@ -192,14 +192,15 @@ std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool pr
     }
   for (const char* sides : {"single", "double-duplicated", "double"})
     out.push_back({scene, sides, "[9,7]", "", false, true});
-  for (const std::string& relation : relations_of(scene)) out.push_back({scene, "", "", "", false, false, relation});
+  for (const std::string& relation : relations_of(scene, profiles))
+    out.push_back({scene, "", "", "", false, false, relation});
   out.push_back({scene, "", "", "", true});
   return out;
 }
 
 Scene conformance_scene(const ConformanceCase& c, const std::string& solver) {
   if (c.whole) return load_scene(c.scene);
-  if (!c.relation.empty()) return load_scene(c.scene, relation_overrides(c.relation));
+  if (!c.relation.empty()) return related_scene(c.scene, c.relation);
   std::vector<std::string> overrides = {"cloth.sides=" + c.sides, "cloth.grid=" + c.grid};
   const auto is = [&](const char* word) { return c.scene.find(word) != std::string::npos; };
   // On a grid of four vertices, no vertex is near a hand.

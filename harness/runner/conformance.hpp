@@ -27,11 +27,13 @@ struct ConformanceCase {
   ///   "renumber"  vertices numbered column by column: the bound of "restart", because the order of solving may
   ///               change the result within the solver's own error
   ///   "no-op"     a sphere and a box with friction 100 m away: 1e-6
+  ///   "small", "large"  all lengths and gravity divided by 64 or multiplied by 256, times unchanged: 1e-2
   std::string relation = {};
 };
 
-/// Cases of one scene; for GPU solvers, `profiles` adds cases on device classes that emulate small devices. The
-/// relation cases come before the case of the whole scene; only scenes of the folder "conformance" have them.
+/// Cases of one scene; for GPU solvers, `profiles` adds cases on device classes that emulate small devices, and of
+/// scaled scenes, because contact of other engines has lengths in metres.
+/// Relation cases come before the case of the whole scene; only scenes of the folder "conformance" have them.
 std::vector<ConformanceCase> conformance_cases(const std::string& scene, bool profiles);
 
 /// The scene of a case. Scenes for which two or three grid lines are too few get the smallest grid that works. A mesh
@@ -55,9 +57,10 @@ struct ConformanceResult {
 ConformanceResult run_conformance(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                   const Scene&, const ConformanceCase&, double limit_s = 0);
 
-/// Names of the relations that apply to a scene; relations.cpp has the changes to the scene and the checks.
-std::vector<std::string> relations_of(const std::string& scene);
-std::vector<std::string> relation_overrides(const std::string& relation);
+/// Names of the relations that apply to a scene; relations.cpp has the changes to the scene and the checks. `scaled`:
+/// also relations to scaled scenes.
+std::vector<std::string> relations_of(const std::string& scene, bool scaled);
+Scene related_scene(const std::string& scene, const std::string& relation);
 ConformanceResult run_relation(const SolverEntry&, const nlohmann::json& settings, const DeviceOptions&,
                                const Scene& related, const ConformanceCase&);
 

@@ -15,6 +15,7 @@ namespace clothbench {
 namespace {
 
 using nlohmann::json;
+using namespace std::string_literals;
 
 /// States before the first frame and after every frame.
 using Motion = std::vector<ClothState>;
@@ -31,10 +32,11 @@ Motion motion_of(ClothSolver& solver, const Scene& scene, Motion so_far = {}) {
 /// Overrides of scenarios/conformance/sheet.json, and how they change the motion of its sheet, which is pinned at both
 /// ends of one side.
 struct Relation {
-  const char* name;
-  std::vector<std::string> overrides;
-  double at_most;
+  const char* name = "";
+  std::vector<std::string> overrides = {};
+  double at_most = 0;
   bool own_error = false, mirrored = false, transposed = false;
+  double lengths = 1;  ///< factor of all lengths and of gravity; times stay
 };
 const Relation kRelations[] = {{"repeat", {}, 0},
                                {"restart", {}, 1e-4, true},
@@ -49,7 +51,9 @@ const Relation kRelations[] = {{"repeat", {}, 0},
                                {"no-op",
                                 {R"(colliders=[{"type":"sphere","center_m":[0,100,0],"radius_m":0.5,"friction":0.5},
                     {"type":"box","center_m":[0,100,0],"size_m":[1,1,1],"friction":0.5}])"},
-                                1e-6}};
+                                1e-6},
+                               {.name = "small", .at_most = 0.01, .lengths = 0x1p-6},
+                               {.name = "large", .at_most = 0.01, .lengths = 0x1p8}};
 
 const Relation& relation_of(const std::string& name) {
   return *std::find_if(std::begin(kRelations), std::end(kRelations), [&](auto& r) { return name == r.name; });
@@ -95,7 +99,7 @@ class RelationCheck {
   void expect(const Motion& base, const Motion& found, const Scene& scene, ConformanceResult& out) const {
     double at_most = by_.at_most;
     if (case_.relation == "repeat" && entry_.info.name == "paper") at_most = 1e-6;
-    const double distance = distance_of(base, found, scene, by_.mirrored, by_.transposed);
+    const double distance = distance_of(base, found, scene, by_);
     const bool bits = at_most > 0 || std::equal(base.begin(), base.end(), found.begin(), found.end(),
                                                 [](const ClothState& a, const ClothState& b) {
                                                   return a.position == b.position && a.velocity == b.velocity;
@@ -108,18 +112,17 @@ class RelationCheck {
   }
 
   /// Largest distance over vertices and frames, divided by the longer side of the cloth; NaN if any position is NaN.
-  static double distance_of(const Motion& base, const Motion& found, const Scene& scene, bool mirrored = false,
-                            bool transposed = false) {
+  static double distance_of(const Motion& base, const Motion& found, const Scene& scene, const Relation& by = {}) {
     const std::size_t columns = static_cast<std::size_t>(scene.cloth.columns);
     const std::size_t rows = static_cast<std::size_t>(scene.cloth.rows);
     double worst = 0;
     for (std::size_t f = 0; f < base.size(); ++f)
       for (std::size_t v = 0; 3 * v < base[f].position.size(); ++v) {
         Vec3 expected = vertex_at(base[f].position, static_cast<std::uint32_t>(v));
-        if (mirrored) expected[0] = -expected[0];
-        const std::size_t at = transposed ? v % columns * rows + v / columns : v;
+        if (by.mirrored) expected[0] = -expected[0];
+        const std::size_t at = by.transposed ? v % columns * rows + v / columns : v;
         const Vec3 x = vertex_at(found[f].position, static_cast<std::uint32_t>(at));
-        worst = max_or_nan(worst, length(minus(x, expected)));
+        worst = max_or_nan(worst, length(minus(x, scaled(by.lengths, expected))) / by.lengths);
       }
     return worst / std::max(scene.cloth.width_m, scene.cloth.height_m);
   }
@@ -143,15 +146,24 @@ class RelationCheck {
 
 }  // namespace
 
-std::vector<std::string> relations_of(const std::string& scene) {
-  if (scene == "conformance/drop") return {"repeat", "restart"};
+std::vector<std::string> relations_of(const std::string& scene, bool scaled) {
+  const bool drop = scene == "conformance/drop", sheet = scene == "conformance/sheet";
   std::vector<std::string> all;
-  if (scene == "conformance/sheet")
-    for (const Relation& r : kRelations) all.emplace_back(r.name);
+  for (const Relation& r : kRelations)
+    if ((sheet || (drop && (r.name == "repeat"s || r.name == "restart"s || r.lengths != 1))) &&
+        (scaled || r.lengths == 1))
+      all.emplace_back(r.name);
   return all;
 }
 
-std::vector<std::string> relation_overrides(const std::string& relation) { return relation_of(relation).overrides; }
+Scene related_scene(const std::string& scene, const std::string& relation) {
+  const Relation& by = relation_of(relation);
+  Scene related = load_scene(scene, by.overrides);
+  if (by.lengths == 1) return related;
+  json copy = json_from(related.json);
+  scale_units(copy, by.lengths, 1);
+  return scene_from_json(copy, related.source);
+}
 
 ConformanceResult run_relation(const SolverEntry& entry, const json& settings, const DeviceOptions& device,
                                const Scene& related, const ConformanceCase& c) {

@@ -19,7 +19,6 @@ using nlohmann::json;
 using std::numbers::pi;
 
 constexpr double kFloorBelow_m = 1, kFloorSide_m = 100, kFloorDepth_m = 1;
-constexpr double kGravity_m_per_s2 = 9.81;
 
 double scaled_unit(double x) { return std::round(x * 1e12) / 1e12; }
 
@@ -116,20 +115,6 @@ double draw_fold(json& scene, DrawnValues& draw) {
   pose["center_m"] = {0, rounded(radius + height), 0};
   draw_start(scene, draw);
   return after_fall(0, height);
-}
-
-/// A range of positive numbers that spans at least a decade is sampled logarithmically, because stiffness, density and
-/// size have no natural scale.
-bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
-
-/// Samples each range; the range's name is a dotted key of the scene.
-double draw_keys(json& scene, DrawnValues& draw) {
-  for (const auto& [key, unused] : draw.ranges().items()) {
-    const auto [low, high] = draw.bounds(key);
-    const double x = is_wide(low, high) ? draw.log_between(key) : draw.between(key);
-    apply_override(scene, key + "=" + dump(json(x)), draw.at());
-  }
-  return 0;
 }
 
 /// Point `index` of a sequence that fills the unit cube evenly in kBoxSides coordinates; further ones are random. A
@@ -281,7 +266,7 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
   DrawnValues draw(Dice(seed, kind.name), kind.ranges, kind.at + "/ranges");
   json scene = kind.base;
   scene.erase("drawn");
-  if (kind.how != "keys" && kind.how != "box") {
+  if (kind.ranges.contains("grid")) {
     const int grid = draw.whole("grid");
     scene["cloth"]["grid"] = {grid, grid};
   }
@@ -296,8 +281,9 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
     draw_box(scene, draw, kind, seed);
   } else {
     static constexpr std::pair<const char*, double (*)(json&, DrawnValues&)> kHow[] = {
-        {"shape", draw_shape}, {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
-        {"fold", draw_fold},   {"crumple", draw_crumple}, {"keys", draw_keys}};
+        {"shape", draw_shape},     {"sweep", draw_sweep},     {"push", draw_push}, {"stretch", draw_stretch},
+        {"fold", draw_fold},       {"crumple", draw_crumple}, {"keys", draw_keys}, {"incline", draw_incline},
+        {"capstan", draw_capstan}, {"held", draw_held}};
     const auto how = std::find_if(std::begin(kHow), std::end(kHow), [&](const auto& h) { return kind.how == h.first; });
     if (how == std::end(kHow)) throw Error(kind.at + "/how: \"" + kind.how + "\": no generator has this name");
     speed = how->second(scene, draw);
@@ -314,6 +300,8 @@ json ContactDrawer::draw(const ContactKind& kind, const std::string& study, std:
   for (const char* key : {"paper", "assumed"}) scene.erase(key);
   return scene;
 }
+
+bool is_wide(double low, double high) { return low > 0 && high >= 10 * low; }
 
 double rounded(double x) { return std::round(x * 1e6) / 1e6; }
 
@@ -349,6 +337,11 @@ double DrawnValues::log_between(const std::string& name) {
   const double x = rounded(dice_.log_between(low, high));
   note(name, x);
   return x;
+}
+
+double DrawnValues::natural(const std::string& name) {
+  const auto [low, high] = bounds(name);
+  return is_wide(low, high) ? log_between(name) : between(name);
 }
 
 int DrawnValues::whole(const std::string& name) {

@@ -46,7 +46,11 @@ class ContactDrawer {
   ///   push     a hand's pose, orientation, direction, depth and the durations of push and hold
   ///   stretch  speed and displacement of two hands, and the vertices that they grip
   ///   fold     radius, height, thickness and noise of a folded cloth
-  ///   keys     any numbers of the scene, each range named by its dotted key; the grid stays
+  ///   keys     any numbers of the scene, each range named by its dotted key; `cells` along the cloth; `damping_ratio`
+  ///            of cloth that comes to rest; `size_m` of the scaled scene, `time_factor` of its times
+  ///   incline  as keys, and angle and initial speed of a sheet on a box
+  ///   capstan  as keys, and the lengths of a strip on a cylinder and of its ends
+  ///   held     as keys, and the tilt of a sheet and what holds it: 1 to 4 vertices or bars
   ///   box      as keys, and settings of solvers, from points that fill the box of all ranges evenly
   ///   crumple  height, initial velocity, thickness and noise of a cloth that stands on edge
   /// Hands approach, leave and stay away for 1 s. Dropped cloth has a floor 1 m below. Hands and grips faster than 5
@@ -70,6 +74,8 @@ class DrawnValues {
   /// A random value of a range, recorded under another name.
   double between(const std::string& range, const std::string& name);
   double log_between(const std::string& range);
+  /// log_between() if the range is wide, otherwise between().
+  double natural(const std::string& range);
   int whole(const std::string& range);
 
   /// Lower and upper bound of a range. Throws Error if it is missing or empty.
@@ -91,6 +97,12 @@ class DrawnValues {
   std::set<std::string> used_;
 };
 
+inline constexpr double kGravity_m_per_s2 = 9.81;
+
+/// True if a range of positive numbers spans at least a decade. It is sampled logarithmically, because stiffness,
+/// density and size have no natural scale.
+bool is_wide(double low, double high);
+
 /// Rounds to 1e-6.
 double rounded(double);
 Vec3 rounded(const Vec3&);
@@ -101,6 +113,11 @@ Vec3 euler_deg(const std::array<Vec3, 3>&);
 /// Adds the hand of a sweep or a push as colliders[0]. Returns its speed [m/s].
 double draw_sweep(nlohmann::json& scene, DrawnValues&);
 double draw_push(nlohmann::json& scene, DrawnValues&);
+/// draw_physics.cpp: "how": "keys", "incline", "capstan" and "held". Each returns the initial speed [m/s] or 0.
+double draw_keys(nlohmann::json& scene, DrawnValues&);
+double draw_incline(nlohmann::json& scene, DrawnValues&);
+double draw_capstan(nlohmann::json& scene, DrawnValues&);
+double draw_held(nlohmann::json& scene, DrawnValues&);
 /// Adds the two hands of a stretch to grips. Returns their speed [m/s].
 double draw_stretch(nlohmann::json& scene, DrawnValues&);
 

@@ -309,6 +309,27 @@ Scene scene_from_parts(json scenario, const std::string& source, const ScenePart
   return s;
 }
 
+void scale_units(json& scenario, double length, double time) {
+  static constexpr struct {
+    const char* unit;
+    int length, time;
+  } kUnits[] = {{"_N_per_m", 2, -2}, {"_m_per_s2", 1, -2}, {"_m_per_s", 1, -1}, {"_per_s", 0, -1},
+                {"_N_m", 4, -2},     {"_hz", 0, -1},       {"_m", 1, 0},        {"_s", 0, 1}};
+  const std::function<void(json&, double)> multiply = [&](json& value, double by) {
+    if (value.is_number()) value = by * value.get<double>();
+    if (value.is_array())
+      for (json& item : value) multiply(item, by);
+  };
+  if (!scenario.is_structured()) return;
+  for (auto& [key, value] : scenario.items()) {
+    scale_units(value, length, time);
+    const auto unit = std::find_if(std::begin(kUnits), std::end(kUnits),
+                                   [&name = key](const auto& u) { return name.ends_with(u.unit); });
+    if (scenario.is_object() && unit != std::end(kUnits))
+      multiply(value, std::pow(length, unit->length) * std::pow(time, unit->time));
+  }
+}
+
 Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides, Assets assets) {
   const std::filesystem::path file = find_scenario(name_or_path);
   return scene_from_json(parse_json(read_text(file), file.string()), file.string(), overrides, assets);

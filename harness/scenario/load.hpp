@@ -37,6 +37,10 @@ Scene scene_from_json(nlohmann::json scenario, const std::string& source,
 /// the scene format. A number is an index into a list (colliders.0.friction). The caller validates the result.
 void apply_override(nlohmann::json& scenario, const std::string& assignment, const std::string& source);
 
+/// Multiplies all lengths of a scene by `length` and all times by `time`: each number by the powers that the unit at
+/// the end of its key has. Masses per area stay.
+void scale_units(nlohmann::json& scenario, double length, double time);
+
 /// Converts a JSON array of three numbers, already validated by the schema.
 inline Vec3 vec3(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
 

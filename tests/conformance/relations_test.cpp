@@ -73,16 +73,14 @@ std::string found(Fault fault, const std::string& relation) {
 }
 
 TEST(Relations, FreeFallKeepsAll) {
-  for (const char* relation : {"repeat", "restart", "mirror", "renumber", "no-op"})
+  for (const char* relation : {"repeat", "restart", "mirror", "renumber", "no-op", "small", "large"})
     EXPECT_EQ(found(Fault::None, relation), "pass") << relation;
 }
 
 TEST(Relations, EachFaultBreaksItsRelation) {
-  const std::pair<Fault, const char*> kFaults[] = {{Fault::LiesAlongX, "mirror"},
-                                                   {Fault::Numbering, "renumber"},
-                                                   {Fault::Counts, "repeat"},
-                                                   {Fault::SeesColliders, "no-op"},
-                                                   {Fault::Remembers, "restart"}};
+  const std::pair<Fault, const char*> kFaults[] = {{Fault::LiesAlongX, "mirror"}, {Fault::Numbering, "renumber"},
+                                                   {Fault::Counts, "repeat"},     {Fault::SeesColliders, "no-op"},
+                                                   {Fault::Remembers, "restart"}, {Fault::Remembers, "small"}};
   for (const auto& [fault, relation] : kFaults)
     EXPECT_NE(found(fault, relation).find("a vertex is"), std::string::npos) << relation;
   EXPECT_EQ(found(Fault::Numbering, "mirror"), "pass");

@@ -19,6 +19,10 @@ constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActi
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 /// Maximum lanes per vertex: kPartialSums of contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
+/// Lengths of the displacement filter, relative to the scene's, so that scaled copies of a scene move alike: distance
+/// of planes from shapes and layers, and rounding error of positions in float32.
+constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
+                 kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
 /// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
@@ -41,8 +45,7 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
   constants_.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;
   constants_.LANES_PER_VERTEX = std::bit_floor(std::clamp(frame_.device()->shuffled_lanes(), 1u, kMaxLanesPerVertex));
   constants_.VERTICES = static_cast<uint>(scene_.cloth.vertex_count());
-  const double layers_m = with_itself_ ? 0.5 * scene_.cloth.self_collision.thickness_m : 0;
-  constants_.MARGIN_BITS = std::bit_cast<uint>(static_cast<float>(std::max(all.max_margin_m, layers_m)));
+  set_lengths(all);
   pass_constants_.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   pass_constants_.SECOND_SOLVE = second_solve ? 1 : 0;
   add_primitives(particle);
@@ -50,6 +53,16 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
   if (kinematic_points_ == 0) return;
   stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * constants_.GROUPS)};
+}
+
+void XpbdContact::set_lengths(const ConvexShapes& all) {
+  const auto bits = [](double x_m) { return std::bit_cast<uint>(static_cast<float>(x_m)); };
+  const double thickness_m = with_itself_ ? scene_.cloth.self_collision.thickness_m : kInfinity,
+               margin_m = all.margins_m.empty() ? thickness_m : *std::ranges::min_element(all.margins_m),
+               longer_m = std::max(scene_.cloth.width_m, scene_.cloth.height_m);
+  constants_.MARGIN_BITS = bits(std::max(all.max_margin_m, with_itself_ ? 0.5 * thickness_m : 0));
+  constants_.MIN_SEPARATION_BITS = bits(std::min(kSeparationOfMargin * margin_m, kSeparationOfThickness * thickness_m));
+  constants_.ROUNDING_BITS = bits(std::max(kRoundingOfMargin * margin_m, kRoundingOfSide * longer_m));
 }
 
 void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {

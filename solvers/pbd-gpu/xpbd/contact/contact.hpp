@@ -74,6 +74,7 @@ class XpbdContact {
   };
   using Phase = std::vector<Pass>;
   Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize);
+  void set_lengths(const ConvexShapes&);
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle);
   void run(const Phase&, const ContactConstants&);

@@ -7,6 +7,8 @@ CONTACT_PASS_CONSTANTS(SPECIALIZE)
 #endif
 CONTACT_CONSTANTS(SPECIALIZE)
 #define MARGIN_M uintBitsToFloat(MARGIN_BITS)
+#define MIN_SEPARATION_M uintBitsToFloat(MIN_SEPARATION_BITS)
+#define ROUNDING_M uintBitsToFloat(ROUNDING_BITS)
 
 layout(std430, binding = BIND_SHAPES) readonly buffer ConvexShapeBuffer { ConvexShape shapes[]; };
 layout(std430, binding = BIND_POINTS) readonly buffer Points { ShapePoint points[]; };
@@ -52,11 +54,9 @@ layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active
 // Fractions of the motion bounds, tried in turn until all pairs fit into the list. Powers of two multiply exactly. A
 // vertex that keeps its speed stays within the second fraction of its bound.
 const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
-const float kMinSeparation_m = 2e-4;    // distance of planes from convex shapes
 const float kRecovered = 0.1;   // maximum depenetration per substep, as a fraction of the margin
 const float kStaticMarginFactor = 0.75;  // fraction of the margin that edges and faces keep from static shapes
 const float kImpactMassFactor = 0.25;  // [margins] a correction of this length in round 0 halves the inverse mass
-const float kRounding_m = 2e-7;  // rounding error of positions
 const float kTiny = 1e-6;       // smaller weights count as 0
 
 /// Index of the first fraction whose pairs fit, or of the last fraction; then pairs beyond the capacity are counted.

@@ -100,10 +100,25 @@ bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
          tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
 }
 
+/// True if a few pinned vertices hold a sheet taut along no grid line and no diagonal. No colour solves such a line as
+/// a whole, and what the colours leave would gain energy in BDF2 (study `energy`).
+bool is_taut_askew(const Scene& s) {
+  const auto columns = static_cast<std::uint32_t>(s.cloth.columns);
+  const std::vector<std::uint32_t>& pins = s.pins.vertices;
+  if (s.cloth.mesh || pins.size() >= static_cast<std::size_t>(std::min(s.cloth.columns, s.cloth.rows))) return false;
+  const auto apart = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b) - std::min(a, b); };
+  for (const std::uint32_t a : pins)
+    for (const std::uint32_t b : pins)
+      if (const auto u = apart(a % columns, b % columns), v = apart(a / columns, b / columns); u * v > 0 && u != v)
+        return true;
+  return false;
+}
+
 /// Whether held cloth may be second order in time with its number of substeps. A strip always may: each line is solved
 /// exactly as one system. A sheet's colours are solved one after another, which leaves an error.
 FeatureDecision second_order_decision(const Scene& scene, const nlohmann::json& settings) {
   if (is_strip(scene)) return {true, ""};
+  if (is_taut_askew(scene)) return {false, "pins hold the sheet taut along no line of links, which would gain energy"};
   if (!scene.grips.vertices.empty() && !(grip_strain(scene) <= rules::kMaxGripStrain))
     return {false, "hands pull the sheet by more than half of their distance: its links would overshoot"};
   if (!resolves_waves(scene, xpbd_substeps(scene, settings)))

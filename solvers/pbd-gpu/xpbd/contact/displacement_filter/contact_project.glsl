@@ -3,13 +3,13 @@
 // carried along by a kinematic shape) towards the result until it reaches the first plane. If even the start violates
 // a plane, the point with the smallest violation is used and counted in diagnostics.infeasible_vertices.
 const uint kSweeps = 30u;
-const float kFeasibilityTolerance_m = 2e-6;  // a smaller violation is rounding and not counted
+const float kFeasibilityTolerance = 10.0;  // [rounding errors] a smaller violation is rounding and not counted
 uint first_vertex_triangle, end_vertex_triangle, vertex_triangle_step = 1u;
 vec3 start;
 
-/// Offset of a `plane` collider for this vertex: kMinSeparation_m above the plane or, if lower, the vertex's start.
+/// Offset of a `plane` collider for this vertex: MIN_SEPARATION_M above the plane or, if lower, the vertex's start.
 float half_space(PlaneShape s) {
-  return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, kMinSeparation_m);
+  return s.normal.w + min(dot(start, s.normal.xyz) - s.normal.w, MIN_SEPARATION_M);
 }
 
 // Runs BODY for each plane of the vertex with a convex shape: normal `n`, offset `s`, pair `k`.
@@ -67,14 +67,14 @@ vec3 project_on_planes(vec3 at) {
     float largest = 0.0;
     for (uint h = 0u; h < PLANES; ++h) {
       vec3 n = half_spaces[h].normal.xyz;
-      float by = max(-of_half_spaces[h], half_space(half_spaces[h]) + kRounding_m - dot(n, at));
+      float by = max(-of_half_spaces[h], half_space(half_spaces[h]) + ROUNDING_M - dot(n, at));
       of_half_spaces[h] += by;
       at += by * n;
       largest = max(largest, abs(by));
     }
     FOR_EACH_PLANE(
       float old = states[k].correction[corner];
-      float by = max(-old, s + kRounding_m - dot(n, at));
+      float by = max(-old, s + ROUNDING_M - dot(n, at));
       if (by != 0.0) {
         states[k].correction[corner] = old + by;
         at += by * n;
@@ -83,14 +83,14 @@ vec3 project_on_planes(vec3 at) {
     )
     FOR_EACH_SELF_PLANE(
       float old = self_active[k].multipliers[corner];
-      float by = max(-old, s + kRounding_m - dot(n, at));
+      float by = max(-old, s + ROUNDING_M - dot(n, at));
       if (by != 0.0) {
         self_active[k].multipliers[corner] = old + by;
         at += by * n;
         largest = max(largest, abs(by));
       }
     )
-    if (largest < 0.5 * kRounding_m) break;
+    if (largest < 0.5 * ROUNDING_M) break;
   }
   return at;
 }
@@ -111,7 +111,7 @@ vec3 back_from(vec3 to, float room) {
   vec3 free = start;
   float best = min_plane_distance(start);
   FOR_EACH_PLANE(
-    if (best < -kRounding_m && shapes[pairs[k].y].is_kinematic != 0u && s == s) {
+    if (best < -ROUNDING_M && shapes[pairs[k].y].is_kinematic != 0u && s == s) {
       vec3 there = start + shape_mean_displacement(pairs[k].y);
       float is = min_plane_distance(there);
       if (is > best) {
@@ -120,13 +120,13 @@ vec3 back_from(vec3 to, float room) {
       }
     }
   )
-  if (best < -kRounding_m) {
+  if (best < -ROUNDING_M) {
     float at_end = min_plane_distance(to);
     if (at_end > best && distance(to, start) <= room) {
       best = at_end;
       free = to;
     }
-    if (best < -kFeasibilityTolerance_m) atomicAdd(diagnostics.infeasible_vertices, 1u);
+    if (best < -kFeasibilityTolerance * ROUNDING_M) atomicAdd(diagnostics.infeasible_vertices, 1u);
     return free;
   }
   float part = 1.0;
@@ -148,7 +148,7 @@ vec3 back_from(vec3 to, float room) {
 /// The feasible position nearest to `at` and at most `room` [m] from the start; from back_from() if none is found.
 vec3 project_to_feasible(vec3 at, float room) {
   at = project_on_planes(at);
-  if (min_plane_distance(at) >= -kRounding_m && distance(at, start) <= room) return at;
+  if (min_plane_distance(at) >= -ROUNDING_M && distance(at, start) <= room) return at;
   return back_from(at, room);
 }
 

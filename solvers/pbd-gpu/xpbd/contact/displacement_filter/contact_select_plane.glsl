@@ -1,7 +1,7 @@
 // Selects a pair's plane: with the normal at the start if that also separates the proposed positions, otherwise with a
 // normal that separates both start and end, if one is found. Vertices move on straight lines, so a plane that separates
 // a pair at start and end separates it in between.
-const float kUnsure_m = 1e-6;  // a vertex at most this far in front of a plane may be behind it, by rounding
+const float kUnsure = 5.0;  // [rounding errors] a vertex at most this far in front of a plane may be behind it
 vec3 starting[3], proposed[3];
 
 float highest_of_shape(vec3 n) { return highest_point(n, t_end) + shape.radius; }
@@ -37,7 +37,7 @@ void select_plane(uint k) {
     proposed[c] = y[e[c]].xyz - around;
   }
   vec3 n = normal.xyz, other;
-  float smallest = min(normal.w, kMinSeparation_m);  // below 0: the pair starts inside the radius, and goes no deeper
+  float smallest = min(normal.w, MIN_SEPARATION_M);  // below 0: the pair starts inside the radius, and goes no deeper
   if (gap_at_end(n) < smallest && find_alternative_normal(n, smallest, other)) {
     n = other;
     if (writes_pair()) states[k].normal.xyz = n;
@@ -47,5 +47,5 @@ void select_plane(uint k) {
   states[k].displacement_or_plane = plane;
   states[k].correction = vec4(0.0);  // multipliers of contact_project
   [[unroll]] for (uint c = 0u; c < 3u; ++c)
-    if (!(dot(n, y[e[c]].xyz) - plane.w > kUnsure_m)) touched[NEEDS_PROJECTION(e[c])] = 1u;
+    if (!(dot(n, y[e[c]].xyz) - plane.w > kUnsure * ROUNDING_M)) touched[NEEDS_PROJECTION(e[c])] = 1u;
 }

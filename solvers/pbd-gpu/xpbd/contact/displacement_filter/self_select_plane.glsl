@@ -16,7 +16,7 @@ void select_self_plane(uint k) {
     if (at_a.w == 0.0) held_a = min(held_a, to_a);
     if (at_b.w == 0.0) held_b = max(held_b, to_b);
   }
-  float half_m = 0.5 * min(kMinSeparation_m, start_a - start_b);
+  float half_m = 0.5 * min(MIN_SEPARATION_M, start_a - start_b);
   float middle = clamp(0.5 * (end_a + end_b), start_b + half_m, start_a - half_m);
   // Attached vertices keep their prescribed positions, so the plane moves until they are on their side of it.
   middle = max(min(middle, held_a - half_m), held_b + half_m);

@@ -19,8 +19,8 @@ bool separated_by_face(uvec4 e, inout PairState s) {
     end = -end;
   }
   float gap = min(start.x, min(start.y, start.z));
-  if (!(gap >= max(kMinSeparation_m, kStaticMarginFactor * shape.margin) &&
-        min(end.x, min(end.y, end.z)) >= kMinSeparation_m))
+  if (!(gap >= max(MIN_SEPARATION_M, kStaticMarginFactor * shape.margin) &&
+        min(end.x, min(end.y, end.z)) >= MIN_SEPARATION_M))
     return false;
   s.normal = vec4(n, gap);
   return true;

@@ -149,14 +149,14 @@ Corner support(vec3 v, float t) {
 /// Tries the normal of the plane of three simplex corners: the difference of nearest points has lost digits, and a
 /// tilt of 0.001 acts as friction.
 void across_features(inout Nearest r, vec3 v, float t) {
-  const float kSame_m = 1e-6;  // gaps that rounding cannot tell apart
+  const float kSame = 5.0;  // [rounding errors] gaps that rounding cannot tell apart
   if (simplex_size != 3u) return;
   vec3 n = cross(simplex[1].at - simplex[0].at, simplex[2].at - simplex[0].at);
   float l = length(n);
   if (!(l > 0.0)) return;
   n *= (dot(n, v) < 0.0 ? -1.0 : 1.0) / l;
   float gap = gap_now(n, t);
-  if (!(gap > r.gap - kSame_m)) return;
+  if (!(gap > r.gap - kSame * ROUNDING_M)) return;
   r.n = n;
   r.gap = gap;
 }
@@ -185,7 +185,7 @@ Nearest nearest_of_hull(float begin, float end, vec3 guess) {
     [[unroll]] for (uint m = 0u; m < 4u; ++m)
       if (m < simplex_size) to += weight_of[m] * simplex[m].at;
     // No progress: rounding would make the iteration cycle.
-    if (!(dot(to, to) > 1e-14 && (k == 0u || dot(to, to) < square))) break;
+    if (!(dot(to, to) > 0.25 * ROUNDING_M * ROUNDING_M && (k == 0u || dot(to, to) < square))) break;
     v = to;
     if (simplex_size == 4u) break;
   }

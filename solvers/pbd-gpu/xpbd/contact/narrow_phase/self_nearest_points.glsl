@@ -30,7 +30,7 @@ vec4 best_normal(Feature f) {
   if (l > 0.0) best = vec4(f.apart / l, feature_gap(f.apart / l));
   // If triangles nearly touch, the difference of their nearest points has lost digits; the features' normal has not.
   float across = length(f.normal);
-  if (f.square < 1e-6 && across > 0.0) {
+  if (f.square < 25.0 * MIN_SEPARATION_M * MIN_SEPARATION_M && across > 0.0) {
     vec3 n = (dot(f.normal, f.apart) < 0.0 ? -1.0 : 1.0) / across * f.normal;
     float gap = feature_gap(n);
     if (gap > best.w) best = vec4(n, gap);
