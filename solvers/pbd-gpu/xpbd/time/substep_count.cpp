@@ -81,7 +81,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   if (needs_chain_solver(scene)) per_frame *= substeps_for_short_links(scene);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m),
                swing = scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer_m);
-  if (swing > rules::kMaxSwing && is_held(scene) && is_contact_free(scene)) per_frame *= swing / rules::kMaxSwing;
+  if (swing > rules::kMaxSwing && ((is_held(scene) && is_contact_free(scene)) || (laid && !driven && shears)))
+    per_frame *= swing / rules::kMaxSwing;
   if (laid && !driven && !shears && !tethered)
     per_frame = std::max(per_frame, std::ceil(swing / rules::kMaxSlidingStep[k] - 1e-9));
   if (scene.needs.has(Feature::SelfCollision) && laid) per_frame *= rules::kLayersFactor;
