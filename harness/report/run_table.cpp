@@ -94,8 +94,7 @@ void choose_leading(std::vector<Row>& rows) {
     for (const auto& [unused, scene] : leading) r.leads = r.leads || (r.scene == scene && r.is_main());
 }
 
-/// A run's rank is one more than the number of main runs whose whole interval lies below its own interval. Only
-/// main runs count, so tables that omit other runs have no gap in their ranks. A solver is not ranked against itself.
+/// A run's rank is one more than the number of other solvers' main runs whose whole interval lies below its own.
 void compare_times(std::vector<Row>& all) {
   std::map<std::string, std::vector<Row*>> scenes;
   for (Row& r : all)
@@ -206,8 +205,7 @@ std::string Resolution::label() const {
 
 std::string TruthFacts::refused() const {
   if (!std::isfinite(uncertainty)) return "no reference solution";
-  // The reference solution confirms the exact solution only to within its uncertainty. Errors below the mesh's error
-  // are not ranked, so 3 U_ref need only be below the larger of the best error and the mesh's error.
+  // The solution is known only to within its uncertainty; errors below the mesh's error are not ranked.
   if (!std::isfinite(best_error)) return "no run can be ranked";
   const double least = std::fmax(best_error, space_error);
   if (!(floor() < least)) return fmt::format("3 U_ref {:.1e} is not below {:.1e} (best or mesh error)", floor(), least);

@@ -11,8 +11,7 @@ namespace clothbench {
 using Group = std::vector<const Row*>;
 using Texts = std::vector<std::string>;
 
-/// A value of a table: its text, a number by which the page sorts, and a tone by which it tints. A missing value has no
-/// text and is shown as "–".
+/// A value of a table, the number by which the page sorts, and its tint. A missing value has no text; "–" is shown.
 struct Cell {
   std::string text;
   double value = kMissing;   ///< NaN: the text is not a number

@@ -100,8 +100,7 @@ bool may_leave_tension_to_tethers(const Scene& scene, int substeps) {
          tension_number(scene) <= rules::kMaxExplicitTension * substeps * substeps;
 }
 
-/// True if a few pinned vertices hold a sheet taut along no grid line and no diagonal. No colour solves such a line as
-/// a whole, and what the colours leave would gain energy in BDF2 (study `energy`).
+/// True if pinned vertices hold a sheet taut along no line of links. No colour solves this line as a whole (`energy`).
 bool is_taut_askew(const Scene& s) {
   const auto columns = static_cast<std::uint32_t>(s.cloth.columns);
   const std::vector<std::uint32_t>& pins = s.pins.vertices;

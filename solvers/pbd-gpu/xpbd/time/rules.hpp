@@ -63,8 +63,7 @@ inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
 // With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
-// [dt sqrt(g / L)] Above, held or resting cloth uses proportionally more substeps: at 100 g a strip would gain
-// energy, and small sheets would slide too far in the first order (study `physics`)
+// [dt sqrt(g / L)] Above, more substeps: at 100 g a strip would gain energy, and small sheets would slide too far
 inline constexpr double kMaxSwing = 0.15;
 // [h sqrt(g / L)] A sliding strip is first order in time: error within 3 % at `fast` (Atwood's rope on a cylinder)
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
