@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs those Debian 12 or 13 packages that clothbench needs and this machine lacks. Called by run.sh and test.sh.
 #   scripts/bootstrap.sh [--build | --short | --tests] [--ci] [--arm64]
-# --build: only packages for compiling; otherwise also packages that the program needs at run time
+# --build: only packages for compiling; otherwise also packages that the program needs at run time, and npm
 # further packages: --short: for test.sh --short; --tests: for all tests of test.sh; --ci: for CI's tests and slow tests;
 # --arm64: for the cross build and the packaging of the APK
 set -euo pipefail
@@ -11,7 +11,8 @@ packages=(clang lld cmake ninja-build ccache git python3
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libhdf5-dev zlib1g-dev libcli11-dev libgtest-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libpng-dev)
 used=(mesa-vulkan-drivers libopenxr-loader1 fonts-dejavu-core librsvg2-bin)
-# The report's page is bundled with Node 18 or later; Debian's conflicts with other installations, so an existing one is used.
+# The report's page is bundled with Node 18 or later. Debian's npm conflicts with other installations, so an existing npm is used.
+command -v npm >/dev/null || used+=(npm)
 command -v node >/dev/null || packages+=(nodejs)
 [ "${1:-}" = --build ] || packages+=("${used[@]}")
 for argument in "$@"; do

@@ -83,7 +83,7 @@ in_chroot() {
     DEBIAN_FRONTEND=noninteractive "JOBS=$JOBS")
   local name
   for name in http_proxy https_proxy no_proxy; do [ -z "${!name:-}" ] || variables+=("$name=${!name}"); done
-  [ ! -f "$root/etc/ssl/machine.crt" ] || variables+=({NODE_EXTRA_CA_CERTS,npm_config_cafile,SSL_CERT_FILE}=/etc/ssl/machine.crt)
+  [ ! -f "$root/etc/ssl/machine.crt" ] || variables+=(NODE_EXTRA_CA_CERTS=/etc/ssl/machine.crt npm_config_cafile=/etc/ssl/machine.crt)
   unshare --mount bash -euc '
     root=$1 folder=$2
     mount -t proc proc "$root/proc"

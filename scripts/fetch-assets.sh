@@ -31,17 +31,24 @@ if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "
   exit 0
 fi
 
-npm=$here/npm.sh
-if [ "$installed" = 1 ]; then
-  npm=npm
-  command -v npm >/dev/null || give_up "no npm (Debian: apt-get install npm)"
+# Debian's npm conflicts with other installations of npm, so it is installed only if there is none.
+if ! command -v npm >/dev/null; then
+  [ "$installed" = 0 ] || give_up "no npm (Debian: apt-get install npm)"
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || give_up "no npm, and neither root nor sudo to install it"
+    as_root=(sudo -n)
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends npm >/dev/null 2>&1 ||
+    give_up "no npm, and apt-get install npm failed"
 fi
+
 mkdir -p "$target"
 rm -f "$target/fetched-lock.json"
 cp "$here/assets-package.json" "$target/package.json"
 cp "$here/assets-package-lock.json" "$target/package-lock.json"
 log=$target/npm.log
-(cd "$target" && timeout 420 "$npm" ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=60000) >"$log" 2>&1 ||
+(cd "$target" && timeout 420 npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=60000) >"$log" 2>&1 ||
   give_up "npm ci failed (see $log)"
 cp "$here/assets-package-lock.json" "$target/fetched-lock.json"
 echo "assets: fetched into $target"
