@@ -127,6 +127,19 @@ double strain(const Scene& s, const ClothState& state) {
   return most;
 }
 
+TEST_F(Bdf2, IsOffInSheetsTautAlongNoLineOfLinks) {
+  const nlohmann::json settings = complete_settings(find_solver("xpbd").info, nlohmann::json::object());
+  Scene s = swing(sheet(9, 9));
+  for (const auto& [pins, is_on] : {std::pair<std::vector<std::uint32_t>, bool>{{4}, true},
+                                    {{0, 8}, true},    // a row
+                                    {{0, 80}, true},   // a diagonal
+                                    {{0, 28}, false},  // one column and three rows apart
+                                    {{0, 8, 75}, false}}) {
+    s.pins.vertices = pins;
+    EXPECT_EQ(bdf2_decision(s, settings).enabled, is_on) << pins.size() << " pins, the last " << pins.back();
+  }
+}
+
 TEST_F(Bdf2, TensionHoldsLoadsAndWhatIsPulledTooFar) {
   Scene loaded = swing(sheet(33, 2, 1, 1.0 / 32));
   loaded.needs = loaded.needs - FeatureSet{Feature::Shear};
