@@ -90,10 +90,10 @@ class Xpbd final : public GpuSolver {
     if (touches && lines_) fused_frame_ = FusedFrame::make(frame(), *lines_, *contact_);
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
-    // Strips on edges need all substeps for friction even if they hardly move; crumpled starts need them to come to
-    // rest. Cloth that attachments have released would snap if the number of substeps changed.
-    const bool adapts = touches && !contact_->has_kinematic_shapes() && grips() == nullptr &&
-                        scene().needs.has(Feature::Shear) && !crumpled_ && settings()["substeps"] == 0;
+    // Crumpled starts need all substeps to come to rest. Cloth that attachments have released would snap if the number
+    // of substeps changed.
+    const bool adapts =
+        touches && !contact_->has_kinematic_shapes() && grips() == nullptr && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
     if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());

@@ -55,9 +55,10 @@ layout(std430, binding = BIND_ACTIVE_BITS) STATE buffer ActiveBits { uint active
 // vertex that keeps its speed stays within the second fraction of its bound.
 const float kFractions[PAIR_LEVELS] = {1.0, 0.25, 0.125, 0.03125};
 const float kRecovered = 0.1;   // maximum depenetration per substep, as a fraction of the margin
-const float kStaticMarginFactor = 0.75;  // fraction of the margin that edges and faces keep from static shapes
+const float kStaticMarginFactor = 0.5;   // fraction of the margin that edges and faces keep from static shapes
 const float kImpactMassFactor = 0.25;  // [margins] a correction of this length in round 0 halves the inverse mass
 const float kTiny = 1e-6;       // smaller weights count as 0
+const float kSameNormal = 1.0 - 1e-6;  // cosine: two normals within 1.4 mrad are one
 
 /// Index of the first fraction whose pairs fit, or of the last fraction; then pairs beyond the capacity are counted.
 uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {

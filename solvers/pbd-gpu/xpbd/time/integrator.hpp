@@ -82,7 +82,7 @@ class SubstepController {
 
   double max_travel_m_ = 0;  ///< per substep; infinity without colliders and self-contact
   int base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
-  bool adapts_ = false;
+  bool adapts_ = false, is_strip_ = false;
   double cell_m_ = 0;
   int halvings_ = 0;          ///< how often base_ is halved now
   int quiescent_frames_ = 0;  ///< since the last halving

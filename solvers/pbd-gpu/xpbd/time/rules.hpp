@@ -44,8 +44,10 @@ inline constexpr PerQuality kMaxSplittingSubsteps = {6, 32, 64};
 // Substeps by what acts on the cloth: the first row that applies (substep_count.cpp). They are counted per frame,
 // whatever its duration: a constant in seconds would differ between scaled copies of a scene. Source unless stated: the
 // error as a function of the substeps in hanging sheets and strips without contact, and the strain in contact.
-inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};         // Tethers bound the stretch
-inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};            // A line is solved exactly
+inline constexpr LinkRule kTethered = {{2, 6, 20}, {24, 12, 6}};  // Tethers bound the stretch
+inline constexpr LinkRule kStrip = {{5, 10, 20}, {12, 6, 3}};     // A line is solved exactly
+// Below, waves that attachments send along a strip lose their crests (pull at random parameters)
+inline constexpr LinkRule kPulledStrip = {{10, 28, 40}, {12, 6, 3}};
 inline constexpr LinkRule kPinnedSheet = {{5, 10, 20}, {6, 3, 1.5}};     // Each colour disturbs the others
 inline constexpr LinkRule kAttachedSheet = {{10, 20, 40}, {6, 3, 1.5}};  // Attachments stretch a sheet
 // Attachments pull a sheet apart by more than kMaxGripStrain. With a fifth of these substeps, long links turn so far in
@@ -64,21 +66,24 @@ inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothin
 // With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
 // [dt sqrt(g / L)] Above, more substeps: at 100 g a strip would gain energy, and small sheets would slide too far
-inline constexpr double kMaxSwing = 0.15;
+inline constexpr double kMaxSwing = 0.08;
 // [h sqrt(g / L)] A sliding strip is first order in time: error within 3 % at `fast` (Atwood's rope on a cylinder)
 inline constexpr PerQuality kMaxSlidingStep = {0.005, 0.0025, 0.00125};
+// [substeps of the first frame / of later ones] A strip laid on a collider starts without tension, and slides freely
+// for the few substeps in which tension builds up (capstan-slip at random parameters)
+inline constexpr int kStartFactor = 4;
 
 // Substeps by speed in contact (substep_count.cpp). Separating planes do not need them, so the maxima only limit cost.
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 // (strain of random contact scenes)
-inline constexpr PerQuality kTravelMargins = {1.33, 0.7, 0.5};
+inline constexpr PerQuality kTravelMargins = {0.9, 0.7, 0.5};
 inline constexpr double kMinMarginOfCell = 0.125;  // [cells] Smaller contact offsets count as this
 // [thicknesses per substep] Above, responses cannot separate layers, and planes cut off their motion
 inline constexpr double kMaxLayerApproach = 2.0 / 3;
 // [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
-inline constexpr PerQuality kMaxForSpeed = {24, 48, 64};   // [substeps] Maximum cost of a frame
-inline constexpr PerQuality kMaxForImpact = {48, 96, 96};  // [substeps] For free cloth on static colliders
+inline constexpr PerQuality kMaxForSpeed = {32, 48, 64};   // [substeps] Maximum cost of a frame
+inline constexpr PerQuality kMaxForImpact = {64, 96, 96};  // [substeps] For free cloth on static colliders
 
 // Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
 inline constexpr double kMinOfLast = 0.75;  // [of the last number] The strain of an impact relaxes over several frames

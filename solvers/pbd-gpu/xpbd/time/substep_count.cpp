@@ -73,7 +73,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
                                                                       : rules::kReleased)
                          : tethered      ? rules::kTethered
                          : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
-                         : !shears       ? rules::kStrip
+                         : !shears       ? (grips.empty() ? rules::kStrip : rules::kPulledStrip)
                          : grips.empty() ? rules::kPinnedSheet
                          : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
                                                                       : rules::kAttachedSheet;
@@ -117,16 +117,21 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
   max_ = xpbd_substeps(scene, settings);
   base_ = std::min(max_, substeps_by_rules(scene, settings, !is_contact_free(scene), false));
   cell_m_ = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
+  is_strip_ = adapts && !scene.needs.has(Feature::Shear);
   reset();
 }
 
 void SubstepController::reset() {
-  now_ = max_;
+  now_ = is_strip_ ? rules::kStartFactor * max_ : max_;
   lists_ = 1;
   halvings_ = quiescent_frames_ = 0;
 }
 
 void SubstepController::next(double cloth_m) {
+  if (is_strip_) {
+    now_ = std::isinf(cloth_m) ? rules::kStartFactor * max_ : max_;
+    return;
+  }
   const int before = now_;
   halve_if_quiescent(cloth_m);
   const int smallest = std::max(1, (base_ + (1 << halvings_) - 1) >> halvings_);
