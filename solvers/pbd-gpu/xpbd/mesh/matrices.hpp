@@ -42,6 +42,8 @@ TriangleStiffness triangle_stiffness(const ClothMesh&, std::size_t triangle, dou
 /// exceeds that room.
 double membrane_bound(const Scene&);
 
+/// `substeps`, or up to twice as many where that allows a solve with triangles.
+int substeps_for_membrane(const Scene&, int substeps);
 /// Whether an elastic mesh is solved with triangles, all of them together; otherwise with springs along edge paths.
 FeatureDecision membrane_decision(const Scene&, const nlohmann::json& settings);
 

@@ -15,8 +15,10 @@ namespace {
 /// bound of eigenvalues at rest covers such a triangle with the transverse stiffness of its tension (up to kMaxTurn).
 constexpr double kMaxTrace = 1.25, kRoom = 1.75;
 
-/// Maximum iterations per substep. A mesh that needs more is solved by chains.
+/// Maximum iterations per substep, and how many times as many substeps may reduce them to that. A mesh that needs more
+/// is solved by chains.
 constexpr std::uint32_t kMaxIterations = 600;
+constexpr int kMaxMoreSubsteps = 2;
 
 /// Unit vectors along the edges of a triangle at rest, in its plane.
 std::array<std::array<double, 2>, 3> directions(const std::array<Vec3, 3>& p) {
@@ -95,19 +97,38 @@ double membrane_bound(const Scene& scene) {
          });
 }
 
-FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& settings) {
+namespace {
+
+/// Whether a scene may be solved with triangles, whatever the number of substeps.
+FeatureDecision may_use_membrane(const Scene& scene) {
   if (!scene.cloth.mesh) return {false, "the cloth is a grid"};
   if (!scene.material.membrane_stiffness_N_per_m) return {false, "the cloth is inextensible"};
+  if (!is_contact_free(scene)) return {false, "the scene has contact"};
   if (std::any_of(scene.material.regions.begin(), scene.material.regions.end(),
                   [](const StiffnessRegion& r) { return !r.membrane_stiffness_N_per_m; }))
     return {false, "a region of the cloth is inextensible"};
   if (!chain_cloth(scene).welded.empty()) return {false, "edges are so short that they are welded"};
-  const int substeps = xpbd_substeps(scene, settings);
+  return {true, ""};
+}
+
+std::uint32_t iterations(const Scene& scene, double bound, int substeps) {
   const double h = scene.time.dt() / substeps;
-  const std::uint32_t wants = bending_iterations(h * h * membrane_bound(scene));
-  if (!is_contact_free(scene))
-    return {false, "the scene has contact, and a frame would take " +
-                       std::to_string(wants * static_cast<std::uint32_t>(substeps)) + " iterations"};
+  return bending_iterations(h * h * bound);
+}
+
+}  // namespace
+
+int substeps_for_membrane(const Scene& scene, int substeps) {
+  if (!may_use_membrane(scene).enabled) return substeps;
+  const double bound = membrane_bound(scene);
+  for (int more = substeps; more <= kMaxMoreSubsteps * substeps; ++more)
+    if (iterations(scene, bound, more) <= kMaxIterations) return more;
+  return substeps;
+}
+
+FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& settings) {
+  if (FeatureDecision may = may_use_membrane(scene); !may.enabled) return may;
+  const std::uint32_t wants = iterations(scene, membrane_bound(scene), xpbd_substeps(scene, settings));
   if (wants > kMaxIterations)
     return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +
                        std::to_string(kMaxIterations) + " are taken"};

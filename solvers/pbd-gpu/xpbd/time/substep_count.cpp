@@ -5,6 +5,7 @@
 
 #include "clothbench/solver.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
 #include "xpbd/time/rules.hpp"
 
@@ -93,7 +94,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
       per_frame = std::max(per_frame, needed);
   const auto& most = impact_speed_m_per_s(scene) > 0 ? rules::kMaxForImpact : rules::kMaxForSpeed;
   const double for_speed = fast ? std::min(most[k], wanted_for_speed(scene, k)) : 1;
-  return static_cast<int>(std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L));
+  const auto n = std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L);
+  return touches ? static_cast<int>(n) : substeps_for_membrane(scene, static_cast<int>(n));
 }
 
 }  // namespace
