@@ -11,8 +11,7 @@ packages=(clang lld cmake ninja-build ccache git python3
           libbullet-dev libeigen3-dev libbenchmark-dev nlohmann-json3-dev libhdf5-dev zlib1g-dev libcli11-dev libgtest-dev
           libfmt-dev libboost-dev libcgal-dev libgmp-dev libmpfr-dev libtinygltf-dev libtinyobjloader-dev libopenxr-dev libpng-dev)
 used=(mesa-vulkan-drivers libopenxr-loader1 fonts-dejavu-core librsvg2-bin)
-# The report's page is bundled with Node 18 or later. Debian's npm conflicts with other installations, so an existing npm is used.
-command -v npm >/dev/null || used+=(npm)
+# The report's page is bundled with Node 18 or later.
 command -v node >/dev/null || packages+=(nodejs)
 [ "${1:-}" = --build ] || packages+=("${used[@]}")
 for argument in "$@"; do
@@ -36,8 +35,11 @@ for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
 done
 # Only unpacked, where CMake finds it, because it requires the development packages of every library that it can be used with, such as Qt.
-valijson=$(dirname "$0")/../build/valijson
+valijson=$(cd "$(dirname "$0")/.." && pwd)/build/valijson
 [ -d /usr/include/valijson ] || [ -d "$valijson/usr" ] || missing+=(libvalijson-dev)
+# Only unpacked, because Debian's npm conflicts with other installations, and its 350 packages would take a minute to install.
+npm=${valijson%/*}/npm
+[ "${1:-}" = --build ] || [ -x "$npm/npm" ] || command -v npm >/dev/null || missing+=(npm)
 if [ ${#missing[@]} -eq 0 ]; then
   echo "set-up: all packages are installed"
   exit 0
@@ -48,13 +50,30 @@ if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "set-up: run as root or install sudo (needed: apt-get install ${missing[*]})" >&2; exit 1; }
   sudo=(sudo)
 fi
+install=("${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends)
 unpack_valijson() {
   mkdir -p "$valijson" && cd "$valijson" && apt-get download libvalijson-dev && dpkg-deb -x libvalijson-dev_*.deb unpacked && mv unpacked/usr .
 }
+unpack_npm() {
+  mkdir -p "$npm/debs/partial" && "${install[@]}" --download-only -o Dir::Cache::archives="$npm/debs" npm || return
+  local package
+  for package in "$npm"/debs/{node-*,npm_*}.deb; do dpkg-deb -x "$package" "$npm" || return; done
+  # shellcheck disable=SC2016  # for the script that is written
+  printf '#!/bin/sh\nmodules=$(dirname "$0")/usr/share/nodejs\nNODE_PATH=$modules exec node "$modules/npm/bin/npm-cli.js" "$@"\n' >"$npm/npm"
+  chmod +x "$npm/npm" && "${sudo[@]}" rm -r "$npm/debs"
+}
+install_missing() {
+  local package installed=()
+  "${sudo[@]}" apt-get update || return
+  for package in "${missing[@]}"; do
+    case $package in libvalijson-dev | npm) ;; *) installed+=("$package") ;; esac
+  done
+  [ ${#installed[@]} -eq 0 ] || "${install[@]}" "${installed[@]}" || return
+  [[ " ${missing[*]} " != *' libvalijson-dev '* ]] || (unpack_valijson) || return
+  [[ " ${missing[*]} " != *' npm '* ]] || unpack_npm
+}
 log=$(mktemp)
-if ! { "${sudo[@]}" apt-get update &&
-    { [ "${missing[-1]}" != libvalijson-dev ] || { (unpack_valijson) && unset 'missing[-1]'; }; } &&
-    "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 9>&-; then
+if ! install_missing >"$log" 2>&1 9>&-; then
   tail -20 "$log" >&2
   echo "set-up: apt-get failed (whole output: $log)" >&2
   exit 1

@@ -15,9 +15,9 @@ esac
 here=$(cd "$(dirname "$0")" && pwd)
 tree=$(dirname "$here")
 if [ -f "$tree/CMakeLists.txt" ]; then
-  installed=0 target=$tree/build/assets
+  target=$tree/build/assets
 else
-  installed=1 target=${XDG_DATA_HOME:-${HOME:?}/.local/share}/clothbench/assets
+  target=${XDG_DATA_HOME:-${HOME:?}/.local/share}/clothbench/assets
 fi
 
 give_up() {
@@ -31,17 +31,8 @@ if cmp -s "$here/assets-package-lock.json" "$target/fetched-lock.json" && [ -d "
   exit 0
 fi
 
-# Debian's npm conflicts with other installations of npm, so it is installed only if there is none.
-if ! command -v npm >/dev/null; then
-  [ "$installed" = 0 ] || give_up "no npm (Debian: apt-get install npm)"
-  as_root=()
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || give_up "no npm, and neither root nor sudo to install it"
-    as_root=(sudo -n)
-  fi
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends npm >/dev/null 2>&1 ||
-    give_up "no npm, and apt-get install npm failed"
-fi
+PATH=$PATH:$tree/build/npm  # where scripts/bootstrap.sh unpacks it
+command -v npm >/dev/null || give_up "no npm (Debian: apt-get install npm)"
 
 mkdir -p "$target"
 rm -f "$target/fetched-lock.json"

@@ -18,12 +18,12 @@ function install() {
   mkdirSync(out, {recursive: true});
   for (const file of ['package.json', 'package-lock.json']) copyFileSync(join(web, file), join(out, file));
   const options = ['--engine-strict', '--ignore-scripts', '--no-audit', '--no-fund', '--fetch-retries=1', '--fetch-timeout=60000'];
+  process.env.PATH += `:${join(web, '../../../build/npm')}`;  // where scripts/bootstrap.sh unpacks npm
   execFileSync(npm, ['ci', ...options], {cwd: out, timeout: 420000});
   copyFileSync(lock, fetched);
 }
 
 const write = (html, missing, figures) => writeFileSync(join(out, 'page.json'), JSON.stringify({html, missing, figures}));
-
 try {
   install();
 } catch (error) {
