@@ -68,13 +68,15 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const auto& grips = scene.grips.vertices;
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
+  const bool waves = !grips.empty() && scene.material.membrane_stiffness_N_per_m.has_value() &&
+                     grip_strain(scene) <= rules::kMaxGripStrain;
   const LinkRule& rule = !touched        ? rules::kNoContact
                          : driven        ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
                                             : touches                 ? rules::kKinematicContact
                                                                       : rules::kReleased)
                          : tethered      ? rules::kTethered
                          : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
-                         : !shears       ? (grips.empty() ? rules::kStrip : rules::kPulledStrip)
+                         : !shears       ? (waves ? rules::kPulledStrip : rules::kStrip)
                          : grips.empty() ? rules::kPinnedSheet
                          : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
                                                                       : rules::kAttachedSheet;
