@@ -119,6 +119,21 @@ TEST_F(MembraneOf, DrawnMeshesIsTheStatedOne) {
   }
 }
 
+TEST_F(MembraneOf, StiffMeshesHasMoreSubstepsBeforeSpringsReplaceIt) {
+  Scene s = hanging(12, 0, 0.3, 1);
+  const int n = xpbd_substeps(s, nlohmann::json::object());
+  bool had_more = false, had_springs = false;
+  for (double Y = 1e3; Y < 1e9; Y *= 1.5) {
+    s.material.membrane_stiffness_N_per_m = Y;
+    const int substeps = xpbd_substeps(s, nlohmann::json::object());
+    const bool is_membrane = membrane_decision(s, nlohmann::json::object()).enabled;
+    had_more |= substeps > n;
+    had_springs |= !is_membrane;
+    EXPECT_LE(substeps, is_membrane ? 2 * n : n) << Y;
+  }
+  EXPECT_TRUE(had_more && had_springs);
+}
+
 /// Free sheets of triangles, with and without bending, that rotate and fall: bit-identical repeats, momentum conserved.
 TEST_F(MembraneOf, FreeSheetsRepeatAndFallFreely) {
   constexpr int kFrames = 10;

@@ -82,6 +82,25 @@ TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
     }
 }
 
+/// A strip over a cylinder: the contact normal at a substep's start would brake it by 22 % of its path, and
+/// depenetration of chords would make the strip of few rows creep.
+TEST_F(XpbdContacts, NeitherBrakeNorPushAStripOverACylinder) {
+  const double radius = 0.1;
+  for (const auto& [rows, light, heavy, friction, bound] :
+       {std::tuple{22, 11, 32, 0.001, 0.02}, {10, 4, 13, 0.3, 0.001}}) {
+    const double cell = 2 * radius * std::sin(std::numbers::pi / (2 * rows));
+    const int links = rows - 1 + light + heavy;
+    const Scene s = load_scene(
+        "validation/capstan-slip",
+        {fmt::format("cloth.grid=[{},3]", links + 1), fmt::format("cloth.size_m=[{},{}]", links * cell, 2 * cell),
+         fmt::format("cloth.pose.drape.offset_m={}", (heavy - light) * cell / 2),
+         fmt::format("colliders.0.friction={}", friction), "time.duration_s=0.25"});
+    SolverRun run({&s, &find_solver("xpbd"), complete_settings(xpbd_info(), {{"substeps", 14}})}, {}, "test");
+    const AccuracyPass pass = whole_pass(run, s);
+    EXPECT_LT(scalars_of({s, pass}).at("truth_quantity_error"), bound) << rows << " rows";
+  }
+}
+
 /// If a pair list is too short, the motion bound is reduced; pairs that still do not fit make the run an error.
 TEST_F(XpbdContacts, DropNoPairInSilence) {
   Scene s = falling_in_steps(sphere({0.02, 0.2, 0.03}, 0.09, kContactFriction), 100);

@@ -97,7 +97,7 @@ class Xpbd final : public GpuSolver {
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
     if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());
-    plan_.substeps = substeps_in(scene().time.dt());
+    plan_.substeps = in_frames(xpbd_substeps(scene(), settings()), scene().time.dt());
     if (adapts) reads_back_ = true;
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
       move_grips_ = grips()->add_kernel(position_buffer());

@@ -7,6 +7,7 @@
 #include "xpbd/mesh/edge_paths.hpp"
 #include "xpbd/mesh/matrices.hpp"
 #include "xpbd/time/integrator.hpp"
+#include "xpbd/time/rules.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -14,11 +15,6 @@ namespace {
 /// The kernel limits the trace of a deformed triangle's matrix to kMaxTrace times the trace at rest. kRoom times the
 /// bound of eigenvalues at rest covers such a triangle with the transverse stiffness of its tension (up to kMaxTurn).
 constexpr double kMaxTrace = 1.25, kRoom = 1.75;
-
-/// Maximum iterations per substep, and how many times as many substeps may reduce them to that. A mesh that needs more
-/// is solved by chains.
-constexpr std::uint32_t kMaxIterations = 600;
-constexpr int kMaxMoreSubsteps = 2;
 
 /// Unit vectors along the edges of a triangle at rest, in its plane.
 std::array<std::array<double, 2>, 3> directions(const std::array<Vec3, 3>& p) {
@@ -121,17 +117,17 @@ std::uint32_t iterations(const Scene& scene, double bound, int substeps) {
 int substeps_for_membrane(const Scene& scene, int substeps) {
   if (!may_use_membrane(scene).enabled) return substeps;
   const double bound = membrane_bound(scene);
-  for (int more = substeps; more <= kMaxMoreSubsteps * substeps; ++more)
-    if (iterations(scene, bound, more) <= kMaxIterations) return more;
+  for (int more = substeps; more <= rules::kMaxForMembrane * substeps; ++more)
+    if (iterations(scene, bound, more) <= rules::kMaxMembraneIterations) return more;
   return substeps;
 }
 
 FeatureDecision membrane_decision(const Scene& scene, const nlohmann::json& settings) {
   if (FeatureDecision may = may_use_membrane(scene); !may.enabled) return may;
   const std::uint32_t wants = iterations(scene, membrane_bound(scene), xpbd_substeps(scene, settings));
-  if (wants > kMaxIterations)
+  if (wants > rules::kMaxMembraneIterations)
     return {false, "a substep would take " + std::to_string(wants) + " iterations; at most " +
-                       std::to_string(kMaxIterations) + " are taken"};
+                       std::to_string(rules::kMaxMembraneIterations) + " are taken"};
   return {true, ""};
 }
 

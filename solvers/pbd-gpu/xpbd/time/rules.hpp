@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 
 // All thresholds that decide a scene's integration and number of substeps, each with [unit], reason and (source). A
 // value without source is a choice. xpbd/time/README.md describes how they act together.
@@ -63,6 +64,10 @@ inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};  // Much of t
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
+// [iterations per substep] A mesh that needs more is solved by chains, whose stretch under its weight can be 15 times
+// the exact one, unless [factor] so many times as many substeps reduce them to that (heavy-strip-mesh in `physics`)
+inline constexpr std::uint32_t kMaxMembraneIterations = 600;
+inline constexpr int kMaxForMembrane = 2;
 // With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
 // [dt sqrt(g / L)] Above, more substeps: at 100 g a strip would gain energy, and small sheets would slide too far

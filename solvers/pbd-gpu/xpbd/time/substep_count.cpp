@@ -133,7 +133,7 @@ void SubstepController::reset() {
 
 void SubstepController::next(double cloth_m) {
   if (is_strip_) {
-    now_ = std::isinf(cloth_m) ? rules::kStartFactor * max_ : max_;
+    if (!std::isinf(cloth_m)) now_ = max_;
     return;
   }
   const int before = now_;
