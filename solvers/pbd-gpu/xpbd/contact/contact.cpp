@@ -12,10 +12,10 @@ namespace clothbench::pbd_gpu {
 /// third of it. If the list overflows, the motion bounds of the vertices are reduced.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
 constexpr std::uint64_t kAllPairs = 1u << 18;
-/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Crumpled cloths have about 200
-/// candidate pairs per triangle, of which 10 are active.
-constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
-                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
+/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Maxima found per triangle: 75 active
+/// pairs, 15 with contacts (ten layers on a ball).
+constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 128,
+                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 20, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 /// Maximum lanes per vertex: kPartialSums of contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
@@ -23,6 +23,9 @@ constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// of planes from shapes and layers, and rounding error of positions in float32.
 constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
                  kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
+/// [cells per frame] With self-contact, the speed-independent part of a vertex's motion bound grows by this, at most to
+/// half a cell.
+constexpr double kCellsPerFrame = 2;
 /// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
@@ -125,10 +128,11 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
       std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * constants_.TRIANGLES, kMinContactPairs));
   c.THICKNESS_BITS = std::bit_cast<uint>(static_cast<float>(self.thickness_m));
   c.SELF_FRICTION_BITS = std::bit_cast<uint>(static_cast<float>(self.friction));
-  const std::uint32_t groups = (constants_.TRIANGLES + SHAPES_PER_GROUP - 1) / SHAPES_PER_GROUP;
+  const auto parts = [&](std::uint32_t size) { return (constants_.TRIANGLES + size - 1) / size; };
+  const std::uint64_t boxes = constants_.TRIANGLES + parts(SHAPES_PER_GROUP) + parts(BLOCK_TRIANGLES);
   const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
-  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (constants_.TRIANGLES + groups) * sizeof(SelfAabb));
+  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", boxes * sizeof(SelfAabb));
   frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
   frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact displacements", constants_.TRIANGLES * sizeof(vec4));
@@ -153,7 +157,7 @@ void XpbdContact::add_kernels() {
   const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   bounds_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   if (with_itself_) {
-    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES));
+    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES, BLOCK_TRIANGLES));
     broad_phase_.push_back(
         pass(stage_pairs_, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
   }
@@ -201,7 +205,9 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   c.per_h = f(1 / h);
   c.damping_fraction = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
   c.frame_s = f(dt_s);
-  c.bound_m = f(0.5 * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
+  // Layers have many lists per frame, and each pair of neighbours within the bounds costs time.
+  const double cells = with_itself_ ? std::min(0.5, kCellsPerFrame * dt_s / scene_.time.dt()) : 0.5;
+  c.bound_m = f(cells * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
   return c;
 }
 

@@ -116,6 +116,7 @@ struct ContactConstants {
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)
   float frame_s;
-  float bound_m;  // maximum of bound_at_rest(): half a cell and the fall in a frame
+  float bound_m;  // maximum of bound_at_rest(): at most half a cell, and the fall in a frame
 };
 #define SHAPES_PER_GROUP 16u
+#define BLOCK_TRIANGLES 128u  // per block of groups, in self-contact

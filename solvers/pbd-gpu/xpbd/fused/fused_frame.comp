@@ -12,7 +12,7 @@
 #include "common/grip.glsl"
 // Chains and self-contact use one kernel per pass instead.
 const bool SECOND_SOLVE = false;
-const uint SELF = 0u;
+const uint SELF = 0u, THICKNESS_BITS = 0u;
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
 // Whether a substep's end predicts the next substep. Not with attached vertices, which move in between.
 const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;

@@ -4,9 +4,14 @@
 const float kick_scale = 1.0;
 #endif
 
-/// Limit of a vertex's displacement in the substep [m]: the distance to `to`, plus room for contact corrections.
+/// Limit of a vertex's displacement in the substep [m]: the distance to `to`, plus room for contact corrections. Pairs
+/// of layers within both of their limits are active, so layers have less room: contact may stop or turn the
+/// displacement, and push a vertex out of the contact offset by kRoomBesideLayers of it.
 float max_displacement(uint i, vec3 to) {
-  return distance(to, starts[i].xyz) + p.substep_part * frame_state.max_shape_displacement + MARGIN_M;
+  const float kRoomBesideLayers = 0.25;
+  float travel = distance(to, starts[i].xyz), room = MARGIN_M;
+  if (SELF != 0u) room = travel + max(0.5 * THICKNESS_M, kRoomBesideLayers * MARGIN_M);
+  return travel + p.substep_part * frame_state.max_shape_displacement + room;
 }
 
 /// Clears all bits of pairs, before active pairs are found. Thread `first` of `at_once` threads clears its part.

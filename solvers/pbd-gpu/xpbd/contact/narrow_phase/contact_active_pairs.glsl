@@ -12,8 +12,10 @@ float max_of(uvec4 e, bool of_ways) {
   return largest;
 }
 
-/// Maximum approach of a pair in this substep [m].
-float approach_of(uvec4 e, uint k) { return max_of(e, false) + shape_displacement(k); }
+/// Maximum approach of a pair in this substep, plus the contact offset [m].
+float approach_of(uvec4 e, uint k) {
+  return max_of(e, false) + shape_displacement(k) + (SELF != 0u ? MARGIN_M : 0.0);
+}
 
 /// Whether the lower bound of a pair's distance allows contact in this substep, or round 0 has processed the pair. In
 /// the substep's first round, the bound is reduced by the last substep's displacements.
