@@ -128,11 +128,10 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
       std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * constants_.TRIANGLES, kMinContactPairs));
   c.THICKNESS_BITS = std::bit_cast<uint>(static_cast<float>(self.thickness_m));
   c.SELF_FRICTION_BITS = std::bit_cast<uint>(static_cast<float>(self.friction));
-  const auto parts = [&](std::uint32_t size) { return (constants_.TRIANGLES + size - 1) / size; };
-  const std::uint64_t boxes = constants_.TRIANGLES + parts(SHAPES_PER_GROUP) + parts(BLOCK_TRIANGLES);
+  const std::uint32_t groups = (constants_.TRIANGLES + TRIANGLES_PER_GROUP - 1) / TRIANGLES_PER_GROUP;
   const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
-  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", boxes * sizeof(SelfAabb));
+  frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (constants_.TRIANGLES + groups) * sizeof(SelfAabb));
   frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
   frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact displacements", constants_.TRIANGLES * sizeof(vec4));
@@ -157,7 +156,7 @@ void XpbdContact::add_kernels() {
   const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
   bounds_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   if (with_itself_) {
-    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES, BLOCK_TRIANGLES));
+    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES, TRIANGLES_PER_GROUP));
     broad_phase_.push_back(
         pass(stage_pairs_, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
   }

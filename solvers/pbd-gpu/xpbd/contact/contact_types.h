@@ -119,4 +119,4 @@ struct ContactConstants {
   float bound_m;  // maximum of bound_at_rest(): at most half a cell, and the fall in a frame
 };
 #define SHAPES_PER_GROUP 16u
-#define BLOCK_TRIANGLES 128u  // per block of groups, in self-contact
+#define TRIANGLES_PER_GROUP 128u  // in self-contact

@@ -89,7 +89,7 @@ inline constexpr double kUsersHand_m_per_s = 2;
 inline constexpr PerQuality kMaxForSpeed = {32, 48, 64};  // [substeps] Maximum cost of a frame
 
 // Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
-inline constexpr int kSubstepGrain = 4;  // [substeps] Rounding up to multiples avoids recording each frame again
+inline constexpr int kSubstepGrain = 4;         // [substeps] Rounding up to multiples avoids recording each frame again
 inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below this for kQuiescentFrames, cloth is at rest
 // [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;

@@ -1,10 +1,10 @@
 // Once per frame, one thread per triangle. A triangle has two boxes: at the frame's start (fraction 0), and inflated by
 // its vertices' motion bounds (fraction 1). Both are also inflated by the drift plus half of the thickness. A group is
-// SHAPES_PER_GROUP successive triangles of self_order, which keeps neighbours together; a block is a workgroup's
-// BLOCK_TRIANGLES triangles. The boxes of groups, then of blocks, contain their triangles' boxes at fraction 1.
+// TRIANGLES_PER_GROUP successive triangles of self_order, which keeps neighbours together. The group's box contains its
+// triangles' boxes at fraction 1.
 #include "xpbd/contact/broad_phase/self_aabb.glsl"
 #include "xpbd/contact/broad_phase/atomic_aabb.glsl"
-const uint kGroups = BLOCK_TRIANGLES / SHAPES_PER_GROUP;
+const uint kGroups = gl_WorkGroupSize.x / TRIANGLES_PER_GROUP;
 shared uint group_low[3u * kGroups], group_high[3u * kGroups];
 
 SelfAabb box_of(uvec4 e) {
@@ -20,22 +20,9 @@ SelfAabb box_of(uvec4 e) {
   return box;
 }
 
-/// Box of `count` groups of the workgroup from `first` on.
-SelfAabb box_of_groups(uint first, uint count) {
-  SelfAabb box = SelfAabb(vec4(1e30), vec4(-1e30), vec4(0.0), vec4(0.0));
-  for (uint n = 3u * first; n < 3u * (first + count); ++n) {
-    if (group_low[n] == kLowNone) continue;
-    box.low_0[n % 3u] = min(box.low_0[n % 3u], of_ordered(group_low[n]));
-    box.high_0[n % 3u] = max(box.high_0[n % 3u], of_ordered(group_high[n]));
-  }
-  box.low_1 = box.low_0;  // low_at() then adds 0: rounding cannot shrink the box below its triangles'
-  box.high_1 = box.high_0;
-  return box;
-}
-
 /// Control flow is workgroup-uniform.
 void make_self_aabbs() {
-  uint q = item(), thread = gl_LocalInvocationIndex, group = thread / SHAPES_PER_GROUP;
+  uint q = item(), thread = gl_LocalInvocationIndex, group = thread / TRIANGLES_PER_GROUP;
   for (uint n = thread; n < 3u * kGroups; n += gl_WorkGroupSize.x) {
     group_low[n] = kLowNone;
     group_high[n] = kHighNone;
@@ -51,9 +38,15 @@ void make_self_aabbs() {
     }
   }
   barrier();  // wait for the groups' boxes before threads store them
-  uint first = (q - thread) / SHAPES_PER_GROUP;
-  if (thread < kGroups && first + thread < kSelfGroups)
-    self_aabbs[TRIANGLES + first + thread] = box_of_groups(thread, 1u);
-  if (thread == 0u && q < TRIANGLES)
-    self_aabbs[TRIANGLES + kSelfGroups + q / BLOCK_TRIANGLES] = box_of_groups(0u, kGroups);
+  if (q >= TRIANGLES || q % TRIANGLES_PER_GROUP != 0u) return;
+  SelfAabb of_group;
+  for (uint c = 0u; c < 3u; ++c) {
+    of_group.low_0[c] = of_ordered(group_low[3u * group + c]);
+    of_group.high_0[c] = of_ordered(group_high[3u * group + c]);
+  }
+  of_group.low_0.w = 1e30;
+  of_group.high_0.w = -1e30;
+  of_group.low_1 = of_group.low_0;  // low_at() then adds 0: rounding cannot shrink a group's box below its triangles'
+  of_group.high_1 = of_group.high_0;
+  self_aabbs[TRIANGLES + q / TRIANGLES_PER_GROUP] = of_group;
 }

@@ -15,37 +15,21 @@ bool aabbs_overlap(SelfAabb a, SelfAabb b, float fraction) {
 }
 
 #include "xpbd/contact/lanes_per_triangle.glsl"
-/// Bit mask of the lanes whose box of self_aabbs, from `first` on and before `end`, overlaps `box` at fraction 1.
-uint overlapping(SelfAabb box, uint first, uint end) {
-  uint n = first + triangle_lane();
-  bool overlaps = triangle_lane() < lanes_per_triangle() && n < end;
-  if (overlaps) overlaps = aabbs_overlap(box, self_aabbs[n], 1.0);
-  return ballot_bits(overlaps);
-}
-const uint kGroupsPerBlock = BLOCK_TRIANGLES / SHAPES_PER_GROUP, kFirstBlock = TRIANGLES + kSelfGroups,
-           kBlocks = (TRIANGLES + BLOCK_TRIANGLES - 1u) / BLOCK_TRIANGLES;
-
-// Runs BODY for the triangles of all groups that overlap BOX, in all blocks that do, one per lane at a time. `q` is the
-// index of this lane's triangle in self_order, `mine` whether its box overlaps BOX at fraction SHARE. Control flow is
-// subgroup-uniform.
+// Runs BODY for the triangles of all groups that overlap BOX, one per lane at a time. `q` is the index of this lane's
+// triangle in self_order, `mine` whether its box overlaps BOX at fraction SHARE. Control flow is subgroup-uniform.
 #define FOR_EACH_NEIGHBOUR(BOX, SHARE, BODY) \
-  for (uint block = 0u; block < kBlocks; block += lanes_per_triangle()) { \
-    uint blocks = overlapping(BOX, kFirstBlock + block, kFirstBlock + kBlocks); \
-    for (; blocks != 0u; blocks &= blocks - 1u) { \
-      uint begin = kGroupsPerBlock * (block + uint(findLSB(blocks))); \
-      uint last = min(begin + kGroupsPerBlock, kSelfGroups); \
-      for (; begin < last; begin += lanes_per_triangle()) { \
-        uint groups = overlapping(BOX, TRIANGLES + begin, TRIANGLES + last); \
-        for (; groups != 0u; groups &= groups - 1u) { \
-          uint first = SHAPES_PER_GROUP * (begin + uint(findLSB(groups))); \
-          uint end = min(first + SHAPES_PER_GROUP, TRIANGLES); \
-          for (; first < end; first += lanes_per_triangle()) { \
-            uint q = first + triangle_lane(); \
-            bool mine = triangle_lane() < lanes_per_triangle() && q < end; \
-            if (mine) mine = aabbs_overlap(BOX, self_aabbs[q], SHARE); \
-            BODY \
-          } \
-        } \
+  for (uint begin = 0u; begin * TRIANGLES_PER_GROUP < TRIANGLES; begin += lanes_per_triangle()) { \
+    uint g = begin + triangle_lane(); \
+    bool overlaps_group = triangle_lane() < lanes_per_triangle() && g * TRIANGLES_PER_GROUP < TRIANGLES; \
+    if (overlaps_group) overlaps_group = aabbs_overlap(BOX, self_aabbs[TRIANGLES + g], 1.0); \
+    for (uint groups = ballot_bits(overlaps_group); groups != 0u; groups &= groups - 1u) { \
+      uint first = TRIANGLES_PER_GROUP * (begin + uint(findLSB(groups))); \
+      uint last = min(first + TRIANGLES_PER_GROUP, TRIANGLES); \
+      for (uint part = first; part < last; part += lanes_per_triangle()) { \
+        uint q = part + triangle_lane(); \
+        bool mine = triangle_lane() < lanes_per_triangle() && q < last; \
+        if (mine) mine = aabbs_overlap(BOX, self_aabbs[q], SHARE); \
+        BODY \
       } \
     } \
   }
@@ -67,14 +51,14 @@ void list_self_pairs_of(uint slot) {
   uint at = 0u;
   if (triangle_lane() == 0u) at = min(atomicAdd(frame_state.self_counted[p.level], n), SELF_CAPACITY);
   at = from_first_lane(at);
-  uint limit = at + min(n, SELF_CAPACITY - at);
-  if (triangle_lane() == 0u) self_ranges[own] = uvec4(at, limit - at, 0u, 0u);
+  uint end = at + min(n, SELF_CAPACITY - at);
+  if (triangle_lane() == 0u) self_ranges[own] = uvec4(at, end - at, 0u, 0u);
   FOR_EACH_NEIGHBOUR(box, kFractions[p.level],
     uint other = mine ? self_order[q] : 0u;
     mine = mine && !share_a_vertex(e, primitives[other]);
     uint bits = ballot_bits(mine);
     uint to = at + uint(bitCount(bits & ((1u << triangle_lane()) - 1u)));
-    if (mine && to < limit) self_pairs[to] = SelfPair(other, min_distance(box, self_aabbs[q]));
+    if (mine && to < end) self_pairs[to] = SelfPair(other, min_distance(box, self_aabbs[q]));
     at += uint(bitCount(bits));
   )
 }
