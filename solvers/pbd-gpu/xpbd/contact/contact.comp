@@ -46,7 +46,7 @@ void run() {
 #include "xpbd/contact/displacement_filter/contact_vertex_step.glsl"
 void run() {
   if (item() < VERTICES) predict(item());
-  if (SHAPES > 0u) clear_active_bits(item(), stride());
+  if (SHAPES > 0u) clear_bits(item(), stride(), true);
 }
 
 #elif defined(CLAMP)  // after the constraint solve, one thread per vertex
@@ -55,7 +55,7 @@ void run() {
   uint i = item();
   if (i < VERTICES) clamp_to_motion_bound(i, x[i]);
   if (i == 0u && response_round == 1u && p.first_substep == 0u) frame_state.max_displacement = 0u;  // for this frame
-  if (SHAPES > 0u && (!SECOND_SOLVE || response_round < 2u)) clear_active_bits(i, stride());
+  if (SHAPES > 0u && (!SECOND_SOLVE || response_round < 2u)) clear_bits(i, stride(), true);
 }
 
 #elif defined(ACTIVE_PAIRS)  // once per substep, twice with kinematic shapes; one thread per candidate pair

@@ -14,8 +14,8 @@ constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs
 constexpr std::uint64_t kAllPairs = 1u << 18;
 /// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Maxima found per triangle: 75 active
 /// pairs, 15 with contacts (ten layers on a ball).
-constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 128,
-                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 20, kMinContactPairs = 1u << 15;
+constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
+                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 /// Maximum lanes per vertex: kPartialSums of contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
@@ -23,9 +23,7 @@ constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// of planes from shapes and layers, and rounding error of positions in float32.
 constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
                  kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
-/// [cells per frame] With self-contact, the speed-independent part of a vertex's motion bound grows by this, at most to
-/// half a cell.
-constexpr double kCellsPerFrame = 2;
+constexpr double kCellsPerFrame = 2;  ///< by which bound_m may grow with self-contact, which has many lists per frame
 /// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
@@ -204,7 +202,6 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   c.per_h = f(1 / h);
   c.damping_fraction = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
   c.frame_s = f(dt_s);
-  // Layers have many lists per frame, and each pair of neighbours within the bounds costs time.
   const double cells = with_itself_ ? std::min(0.5, kCellsPerFrame * dt_s / scene_.time.dt()) : 0.5;
   c.bound_m = f(cells * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
   return c;

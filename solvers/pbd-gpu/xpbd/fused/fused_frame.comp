@@ -98,7 +98,7 @@ void end_lines(uint i, vec4 at) { clamp_to_motion_bound(i, at); }
 bool solve_lines(uint substep) {
   const uint colours = kShears ? 4u : 2u;
 #ifndef CONTACT_FREE
-  clear_active_bits(global_thread, grid_stride);
+  clear_bits(global_thread, grid_stride, true);
 #endif
   for (uint n = 0u; n < colours; ++n) {
     colour = colours - 1u - n;
@@ -160,7 +160,7 @@ bool respond_to_contact(out uint active_count) {
   active_count = 0u;
   if (response_round == 0u && (substep_now == 0u || !kPredictsNextSubstep)) {
     FOR_EACH_STRIDED(i, VERTICES) predict(i);
-    clear_active_bits(global_thread, grid_stride);
+    clear_bits(global_thread, grid_stride, true);
     GRID_BARRIER_OR_FAIL;  // wait for predicted positions before pairs read them
   }
   if (response_round < 2u) {
@@ -194,7 +194,7 @@ bool substep_with(uint s) {
     GRID_BARRIER_OR_FAIL;  // wait for planes before vertices are projected onto them
   }
   project_all(global_thread, grid_stride);
-  clear_correction_bits(global_thread, grid_stride);
+  clear_bits(global_thread, grid_stride, false);
   if (global_thread == 0u) frame_state.active_pair_count[1] = 0u;
   GRID_BARRIER_OR_FAIL;  // wait for the end of this substep before the next one begins
   return true;

@@ -60,11 +60,7 @@ inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {6, 6, 1.5}};
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 // Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
-// Much of the cloth hits the collider at once. With a quarter of the links at `default`, strains of up to 11 % remain
-// where cloth hangs over the corner of a box (box-drop, random boxes)
-inline constexpr LinkRule kResting = {{8, 10, 32}, {4, 3, 1}};
-// Layers: with a quarter of the links, strain at 64 x 64 vertices on a ball triples
-inline constexpr LinkRule kRestingLayers = {{12, 16, 48}, {2.67, 2, 0.67}};
+inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};  // Much of the cloth hits the collider at once
 // A strip has no diagonals to strain (capstan, incline)
 inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
@@ -72,6 +68,8 @@ inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothin
 // the exact one, unless [factor] so many times as many substeps reduce them to that (heavy-strip-mesh in `physics`)
 inline constexpr std::uint32_t kMaxMembraneIterations = 600;
 inline constexpr int kMaxForMembrane = 2;
+// With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
+inline constexpr double kLayersFactor = 1.5;
 // [dt sqrt(g / L)] Above, more substeps: at 100 g a strip would gain energy, and small sheets would slide too far
 inline constexpr double kMaxSwing = 0.08;
 // [h sqrt(g / L)] A sliding strip is first order in time: error within 3 % at `fast` (Atwood's rope on a cylinder)
@@ -84,6 +82,8 @@ inline constexpr int kStartFactor = 4;
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 // (strain of random contact scenes)
 inline constexpr PerQuality kTravelMargins = {0.9, 0.7, 0.5};
+// [thicknesses per substep] Layers may approach by this. Without a limit the pairs of fast layers overflow their list
+inline constexpr double kMaxLayerApproach = 2;
 // [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
 inline constexpr PerQuality kMaxForSpeed = {32, 48, 64};  // [substeps] Maximum cost of a frame
@@ -94,7 +94,7 @@ inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below this 
 // [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;
 inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer frames, cloth may only pass a turning point
-inline constexpr int kMaxHalvings = 1;      // [halvings] Fewer substeps leave more strain
+inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
 // [substeps] A list of self-contact pairs for a longer time would overflow with fast cloth, and the reduced motion
 // bounds would slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)

@@ -22,11 +22,13 @@ std::size_t quality_of(const nlohmann::json& settings) {
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
 }
 
-/// Maximum travel per substep [m] of a kinematic collider or falling cloth.
-double max_travel_m(const Scene& scene, std::size_t quality) {
-  double margin = std::numeric_limits<double>::infinity();
-  for (const Collider& c : scene.colliders) margin = std::min(margin, c.margin_m);
-  return rules::kTravelMargins[quality] * margin;
+/// Maximum travel per substep [m] of a kinematic collider or falling cloth; with `layers` also of each of two layers.
+double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
+  double travel = std::numeric_limits<double>::infinity();
+  for (const Collider& c : scene.colliders) travel = std::min(travel, rules::kTravelMargins[quality] * c.margin_m);
+  if (layers && scene.needs.has(Feature::SelfCollision))
+    travel = std::min(travel, rules::kMaxLayerApproach / 2 * scene.cloth.self_collision.thickness_m);
+  return travel;
 }
 
 /// Maximum speed of colliders; for a user's hand, at least an assumed speed.
@@ -40,7 +42,18 @@ double speed_m_per_s(const Scene& scene) {
 double wanted_for_speed(const Scene& scene, std::size_t quality) {
   const double speed =
       std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
-  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality) - 1e-9));
+  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality, false) - 1e-9));
+}
+
+/// Substeps that limit the approach of two layers. Assumed speed: the sum of the initial speed, the speed of a fall by
+/// the cloth's length and the speed of the fastest attachment or collider.
+double substeps_for_layers(const Scene& scene) {
+  const Cloth& c = scene.cloth;
+  const double longer = std::max(c.width_m, c.height_m);
+  const double speed = norm(c.initial_velocity_m_per_s) + norm(c.spin_rad_per_s) * longer +
+                       std::sqrt(2 * norm(scene.gravity_m_per_s2) * longer) +
+                       std::max(grip_speed_m_per_s(scene), speed_m_per_s(scene));
+  return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
 /// Substeps by the rules of xpbd/time/README.md. `touches`: with contact in this frame; `fast`: with fast motion.
@@ -52,8 +65,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool tethered = is_tethered(scene, settings);
   const auto& grips = scene.grips.vertices;
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty(),
-             layers = scene.needs.has(Feature::SelfCollision);
+  const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
   const bool waves = !grips.empty() && scene.material.membrane_stiffness_N_per_m.has_value() &&
                      grip_strain(scene) <= rules::kMaxGripStrain;
   const LinkRule& rule = !touched        ? rules::kNoContact
@@ -61,9 +73,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
                                             : touches                 ? rules::kKinematicContact
                                                                       : rules::kReleased)
                          : tethered      ? rules::kTethered
-                         : laid          ? (!shears  ? rules::kRestingStrip
-                                            : layers ? rules::kRestingLayers
-                                                     : rules::kResting)
+                         : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
                          : !shears       ? (waves ? rules::kPulledStrip : rules::kStrip)
                          : grips.empty() ? rules::kPinnedSheet
                          : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
@@ -76,6 +86,8 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
     per_frame *= swing / rules::kMaxSwing;
   if (laid && !driven && !shears && !tethered)
     per_frame = std::max(per_frame, std::ceil(swing / rules::kMaxSlidingStep[k] - 1e-9));
+  if (scene.needs.has(Feature::SelfCollision) && laid) per_frame *= rules::kLayersFactor;
+  if (scene.needs.has(Feature::SelfCollision) && fast) per_frame = std::max(per_frame, substeps_for_layers(scene));
   if (may_correct_splitting(scene, settings).enabled)
     if (const double needed = std::ceil(substeps_for_splitting(scene));
         needed <= std::max(rules::kMaxSplittingSubsteps[k], links / 6))
@@ -102,7 +114,7 @@ int contact_free_substeps(const Scene& scene, const nlohmann::json& settings) {
 }
 
 SubstepController::SubstepController(const Scene& scene, const nlohmann::json& settings, bool adapts)
-    : max_travel_m_(max_travel_m(scene, quality_of(settings))), adapts_(adapts) {
+    : max_travel_m_(max_travel_m(scene, quality_of(settings), true)), adapts_(adapts) {
   max_ = xpbd_substeps(scene, settings);
   base_ = std::min(max_, substeps_by_rules(scene, settings, !is_contact_free(scene), false));
   cell_m_ = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
@@ -132,7 +144,7 @@ void SubstepController::next(double cloth_m) {
   lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also if cloth_m is NaN
 }
 
-/// Cloth at rest uses half of base_ until it moves.
+/// Cloth at rest uses half of base_, and later a quarter, until it moves.
 void SubstepController::halve_if_quiescent(double cloth_m) {
   const double cells = cloth_m / cell_m_;
   quiescent_frames_ = cells <= rules::kQuiescent ? quiescent_frames_ + 1 : 0;

@@ -14,16 +14,13 @@ float max_displacement(uint i, vec3 to) {
   return travel + p.substep_part * frame_state.max_shape_displacement + room;
 }
 
-/// Clears all bits of pairs, before active pairs are found. Thread `first` of `at_once` threads clears its part.
-void clear_active_bits(uint first, uint at_once) {
-  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
-    active_bits[ACTIVE_BITS + k] = active_bits[CORRECTION_BITS + k] = 0u;
-}
-
-/// Clears only the bits of proposed corrections, after the vertices have applied them.
-void clear_correction_bits(uint first, uint at_once) {
-  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once)
+/// Clears the bits of proposed corrections and, with `all`, of active pairs. Thread `first` of `at_once` threads
+/// clears its part.
+void clear_bits(uint first, uint at_once, bool all) {
+  for (uint k = first, words = (frame_state.pairs + 31u) / 32u; k < words; k += at_once) {
     active_bits[CORRECTION_BITS + k] = 0u;
+    if (all) active_bits[ACTIVE_BITS + k] = 0u;
+  }
 }
 
 /// Unscaled inverse mass of vertex i: from y, or `in_lines` (from x) if it is attached or was just released.
