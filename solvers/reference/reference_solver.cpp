@@ -66,20 +66,17 @@ class Reference final : public ClothSolver {
     grip_held_.assign(s.grips.vertices.size(), 1);
   }
 
+  /// A frame in which Newton's method finds no solution is repeated with twice as many steps.
   StepStatus step(const FrameInput& frame) override {
     std::vector<Vec3> to = grips_from_;
     if (frame.motion != nullptr && !to.empty()) to = frame.motion->grip_position_m;
-    const double h = frame.dt_s / substeps_;
-    for (int k = 0; k < substeps_; ++k) {
-      Vector held_x = state_.x;
-      const double t = static_cast<double>(k + 1) / substeps_;
-      for (std::size_t i = 0; i < to.size(); ++i)
-        if (grip_held_[i] != 0)
-          for (std::size_t c = 0; c < 3; ++c)
-            held_x[static_cast<Eigen::Index>(3 * scene_->grips.vertices[i] + c)] =
-                (1 - t) * grips_from_[i][c] + t * to[i][c];
-      if (const StepStatus s = integrator_->step(state_, held_x, h); s != StepStatus::Ok) return s;
+    const State start = state_;
+    StepStatus status = StepStatus::Diverged;
+    for (int factor = 1; status == StepStatus::Diverged && factor <= kMaxFactor; factor *= 2) {
+      state_ = start;
+      status = steps(frame.dt_s, factor * substeps_, to);
     }
+    if (status != StepStatus::Ok) return status;
     grips_from_ = to;
     if (frame.motion != nullptr) let_go(frame.motion->grip_held);
     return StepStatus::Ok;
@@ -110,6 +107,23 @@ class Reference final : public ClothSolver {
   }
 
  private:
+  static constexpr int kMaxFactor = 16;
+
+  /// `count` equal steps of a frame; attachments move on straight lines to `to`.
+  StepStatus steps(double dt_s, int count, const std::vector<Vec3>& to) {
+    for (int k = 0; k < count; ++k) {
+      Vector held_x = state_.x;
+      const double t = static_cast<double>(k + 1) / count;
+      for (std::size_t i = 0; i < to.size(); ++i)
+        if (grip_held_[i] != 0)
+          for (std::size_t c = 0; c < 3; ++c)
+            held_x[static_cast<Eigen::Index>(3 * scene_->grips.vertices[i] + c)] =
+                (1 - t) * grips_from_[i][c] + t * to[i][c];
+      if (const StepStatus s = integrator_->step(state_, held_x, dt_s / count); s != StepStatus::Ok) return s;
+    }
+    return StepStatus::Ok;
+  }
+
   void let_go(const std::vector<std::uint8_t>& held) {
     if (held == grip_held_ || held.empty()) return;
     std::vector<std::uint8_t> all(model_->vertices(), 0);

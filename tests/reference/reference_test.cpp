@@ -68,6 +68,11 @@ TEST_P(Integrators, FreeFallIsItsOwnRecurrence) {
   EXPECT_NEAR(x, 1, 1e-10);
 }
 
+TEST(Reference, RepeatsAFrameWithoutSolutionWithShorterSteps) {
+  const Scene s = load_scene("paper/two-hand-stretch-10mps", {"cloth.grid=[5,5]", "time.duration_s=1.1"});
+  EXPECT_LT(std::abs(tip(s, run(s, "bdf2", 1)).first), 0.5) << "the hands let go in frame 77, which has no solution";
+}
+
 TEST_P(Integrators, HeldVerticesFollowTheHandAndLetGo) {
   const Scene s = load_scene("paper/two-hand-stretch-0p5mps", {"cloth.grid=[5,5]", "time.duration_s=1.4"});
   const SolverEntry& e = find_solver("reference");

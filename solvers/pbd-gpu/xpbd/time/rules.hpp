@@ -60,9 +60,7 @@ inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {6, 6, 1.5}};
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 // Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
-inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};  // Much of the cloth hits the collider at once
-// A strip has no diagonals to strain (capstan, incline)
-inline constexpr LinkRule kRestingStrip = {{8, 14, 28}, {12, 6, 3}};
+inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};     // Much of the cloth hits the collider at once
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
 // [iterations per substep] A mesh that needs more is solved by chains, whose stretch under its weight can be 15 times
 // the exact one, unless [factor] so many times as many substeps reduce them to that (heavy-strip-mesh in `physics`)

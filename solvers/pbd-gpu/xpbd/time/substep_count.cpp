@@ -68,14 +68,14 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
   const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
   const bool waves = !grips.empty() && scene.material.membrane_stiffness_N_per_m.has_value() &&
                      grip_strain(scene) <= rules::kMaxGripStrain;
-  const LinkRule& rule = !touched        ? rules::kNoContact
-                         : driven        ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
-                                            : touches                 ? rules::kKinematicContact
-                                                                      : rules::kReleased)
-                         : tethered      ? rules::kTethered
-                         : laid          ? (shears ? rules::kResting : rules::kRestingStrip)
-                         : !shears       ? (waves ? rules::kPulledStrip : rules::kStrip)
-                         : grips.empty() ? rules::kPinnedSheet
+  const LinkRule& rule = !touched         ? rules::kNoContact
+                         : driven         ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
+                                             : touches                 ? rules::kKinematicContact
+                                                                       : rules::kReleased)
+                         : tethered       ? rules::kTethered
+                         : laid && shears ? rules::kResting
+                         : !shears        ? (waves ? rules::kPulledStrip : rules::kStrip)
+                         : grips.empty()  ? rules::kPinnedSheet
                          : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
                                                                       : rules::kAttachedSheet;
   double per_frame = std::max(rule.smallest[k], links / rule.links_a_substep[k]);
