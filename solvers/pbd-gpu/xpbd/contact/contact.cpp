@@ -23,7 +23,7 @@ constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// of planes from shapes and layers, and rounding error of positions in float32.
 constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
                  kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kCellsPerFrame = 2;  ///< by which bound_m may grow with self-contact, which has many lists per frame
+constexpr double kCellsPerFrame = 2;  ///< growth of bound_m with self-contact, which has many lists per frame
 /// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
