@@ -82,8 +82,8 @@ TEST_F(XpbdContacts, HoldOnAnInclineUpToTheAngleOfFrictionAndSlideBeyond) {
     }
 }
 
-/// A strip over a cylinder: the contact normal at a substep's start would brake it by 22 % of its path, and
-/// depenetration of chords would make the strip of few rows creep.
+/// A strip over a cylinder: the contact normal at a substep's start would brake it, and depenetration of chords would
+/// make the strip of few rows creep.
 TEST_F(XpbdContacts, NeitherBrakeNorPushAStripOverACylinder) {
   const double radius = 0.1;
   for (const auto& [rows, light, heavy, friction, bound] :

@@ -70,7 +70,7 @@ TEST_P(Integrators, FreeFallIsItsOwnRecurrence) {
 
 TEST(Reference, RepeatsAFrameWithoutSolutionWithShorterSteps) {
   const Scene s = load_scene("paper/two-hand-stretch-10mps", {"cloth.grid=[5,5]", "time.duration_s=1.1"});
-  EXPECT_LT(std::abs(tip(s, run(s, "bdf2", 1)).first), 0.5) << "the hands let go in frame 77, which has no solution";
+  EXPECT_LT(std::abs(tip(s, run(s, "bdf2", 1)).first), 0.5) << "frame 77, in which the hands let go, has no solution";
 }
 
 TEST_P(Integrators, HeldVerticesFollowTheHandAndLetGo) {

@@ -12,8 +12,8 @@ namespace clothbench::pbd_gpu {
 /// third of it. If the list overflows, the motion bounds of the vertices are reduced.
 constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
 constexpr std::uint64_t kAllPairs = 1u << 18;
-/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Maxima found per triangle: 75 active
-/// pairs, 15 with contacts (ten layers on a ball).
+/// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Ten layers on a ball
+/// (contact/layers) need less than half of the last two.
 constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
                         kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;

@@ -62,9 +62,9 @@ inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
 inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};     // Much of the cloth hits the collider at once
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
-// [iterations per substep] A mesh that needs more is solved by chains, whose stretch under its weight can be 15 times
-// the exact one, unless [factor] so many times as many substeps reduce them to that (heavy-strip-mesh in `physics`)
+// [iterations per substep] A mesh that needs more is solved by chains, which can stretch far too much under its weight
 inline constexpr std::uint32_t kMaxMembraneIterations = 600;
+// [factor] Maximum increase of the substeps so that fewer iterations suffice (heavy-strip-mesh in `physics`)
 inline constexpr int kMaxForMembrane = 2;
 // With fewer substeps a heap of layers keeps sliding: with 32 x 32 vertices, for a second at 16 substeps, not at 24
 inline constexpr double kLayersFactor = 1.5;
