@@ -22,13 +22,13 @@ gpu       convergence       study convergence --solver paper --solver xpbd --sol
 gpu       penetration       study penetration --require-assets --solver xpbd --solver paper --solver bullet-soft --solver ballistic PEERS --jobs JOBS
 gpu       reproduction      study reproduction --jobs JOBS
 gpu       physics           study physics --seed SEED --count 300 --solver xpbd --jobs JOBS
-gpu       energy            study energy --seed SEED --count 200 --jobs JOBS
 gpu       contact           study contact --seed SEED --count 200 --solver xpbd --jobs JOBS
 gpu       scale             study scale --jobs JOBS
 gpu       many-cloths       study many-cloths --solver xpbd --solver bullet-soft PEERS --jobs JOBS
 gpu       meshes            run garments/sleeve garments/t-shirt garments/skirt garments/tablecloth --solver xpbd --trials 5
 software  friction          study friction --trials 1 --solver xpbd --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  moduli            study moduli --trials 1 --solver xpbd --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
+software  energy            study energy --seed SEED --count 200 --jobs JOBS
 software  physics+others    study physics --seed SEED --count 80 --solver paper --solver bullet-soft --solver bullet-deformable PEERS --jobs JOBS
 software  contact+others    study contact --seed SEED --count 200 --solver paper --solver bullet-soft PEERS --jobs JOBS
 software  reproduction+software study reproduction --seed 7 --count 6

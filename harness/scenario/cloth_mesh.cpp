@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "base/files.hpp"
@@ -275,15 +276,30 @@ std::vector<std::uint32_t> selected_vertices(const Cloth& c, const nlohmann::jso
 }
 
 std::pair<double, double> longest_sides(const ClothMesh& m) {
-  Vec3 low = m.vertices.front(), high = low;
-  for (const Vec3& x : m.vertices)
+  std::vector<std::uint32_t> first(m.vertices.size());  // a vertex of the same piece
+  std::iota(first.begin(), first.end(), 0u);
+  const auto piece = [&](std::uint32_t v) {
+    while (first[v] != v) v = first[v] = first[first[v]];
+    return v;
+  };
+  for (const Edge& e : m.edges) first[piece(e.b)] = piece(e.a);
+  struct Box {
+    Vec3 low, high;
+  };
+  std::vector<Box> boxes;
+  for (const Vec3& x : m.vertices) boxes.push_back({x, x});
+  std::pair<double, double> out{0, 0};
+  for (std::uint32_t v = 0; v < m.vertices.size(); ++v) {
+    Box& all = boxes[piece(v)];
     for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
+      all.low[k] = std::min(all.low[k], m.vertices[v][k]);
+      all.high[k] = std::max(all.high[k], m.vertices[v][k]);
     }
-  Vec3 sides = minus(high, low);
-  std::sort(sides.begin(), sides.end());
-  return {sides[2], sides[1]};
+    Vec3 sides = minus(all.high, all.low);
+    std::sort(sides.begin(), sides.end());
+    out = std::max(out, std::pair{sides[2], sides[1]});
+  }
+  return out;
 }
 
 Scene as_mesh(Scene s, bool bends) {

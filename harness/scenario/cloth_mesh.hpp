@@ -47,7 +47,7 @@ std::vector<std::uint32_t> listed_vertices(const Cloth&, const nlohmann::json& l
 std::vector<std::uint32_t> selected_vertices(const Cloth&, const nlohmann::json&, const std::string& source,
                                              const std::string& pointer);
 
-/// Longest and second longest side [m] of the mesh's bounding box.
+/// Longest and second longest side [m] of the bounding box of a mesh; in several unconnected pieces, of the largest.
 std::pair<double, double> longest_sides(const ClothMesh&);
 
 /// A flat sheet of irregular triangles, generated from these numbers.
@@ -68,7 +68,7 @@ struct DrawnSheet {
 ClothMesh drawn_mesh(const DrawnSheet&);
 
 /// Reads `cloth.mesh.drawn`: a DrawnSheet with its centre at the origin. Throws Error with the JSON pointer if the
-/// sheet would have more than 20 000 vertices, or all copies more than 2 000 000.
+/// sheet would have more than 20 000 vertices, or all copies more than 11 000 000.
 ClothMesh read_drawn_mesh(const nlohmann::json& drawn, const std::string& source);
 
 /// Maximum number of corners of a polygon.

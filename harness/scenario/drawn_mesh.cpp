@@ -133,7 +133,7 @@ ClothMesh drawn_mesh(const DrawnSheet& d) {
 }
 
 ClothMesh read_drawn_mesh(const nlohmann::json& j, const std::string& source) {
-  constexpr double kMost = 20000, kMostOfAll = 2e6;
+  constexpr double kMost = 20000, kMostOfAll = 1.1e7;
   DrawnSheet d;
   d.width_m = j["size_m"][0].get<double>();
   d.height_m = j["size_m"][1].get<double>();

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostVertices = std::size_t{1} << 22;
+constexpr std::size_t kMostVertices = 12'000'000;
 constexpr double kMostFrames = 1e7;
 constexpr std::size_t kMostName = 100;
 constexpr std::size_t kShown = 200;  // bytes of an argument that a message shows

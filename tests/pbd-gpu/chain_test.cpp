@@ -7,8 +7,10 @@
 
 #include "gpu_fixture.hpp"
 #include "mesh_scene.hpp"
+#include "scenario/load.hpp"
 #include "xpbd/constraints.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
+#include "xpbd/time/integrator.hpp"
 
 namespace clothbench::pbd_gpu {
 namespace {
@@ -127,6 +129,25 @@ TEST_F(Chained, RepeatBitForBitAndFallFreely) {
   const double fall = xpbd_free_fall_m(s, complete_settings(xpbd_info(), {}), s.time.frames());
   for (std::size_t k = 0; k < start.size(); ++k)
     EXPECT_NEAR(fallen.position[k], start[k] + (k % 3 == 1 ? fall : 0), 2e-6 * std::abs(fall)) << k;
+}
+
+/// Many sheets in one mesh cost what one costs, and do not disturb one another.
+TEST_F(Chained, CopiesOfASheetMoveAsItDoes) {
+  const auto sheets = [](const char* stiffness, const char* copies) {
+    return load_scene("validation/hang-mesh",
+                      {std::string("material.membrane_stiffness_N_per_m=") + stiffness,
+                       R"(cloth.mesh={"drawn":{"size_m":[1,1],"cells":15,"share":0.2)" + std::string(copies) + "}}",
+                       R"(pins=[{"group":"v1"}])", "time.duration_s=0.25"});
+  };
+  for (const char* stiffness : {"inextensible", "100"}) {
+    const Scene one = sheets(stiffness, ""), all = sheets(stiffness, R"(,"copies":[3,2],"apart_m":[1.5,0.25])");
+    const nlohmann::json settings = nlohmann::json::object();
+    EXPECT_EQ(xpbd_substeps(all, settings), xpbd_substeps(one, settings)) << stiffness;
+    const ClothState a = end_of(one, "xpbd", {}), b = end_of(all, "xpbd", {});
+    const std::vector<double> from = initial_positions(one), to = initial_positions(all);
+    for (std::size_t k = 0; k < b.position.size(); ++k)
+      ASSERT_NEAR(b.position[k] - to[k], a.position[k % from.size()] - from[k % from.size()], 5e-3) << stiffness;
+  }
 }
 
 TEST_F(Chained, SliversDoNotThrowWhatHangsOnThem) {

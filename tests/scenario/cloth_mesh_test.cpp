@@ -340,6 +340,8 @@ TEST(DrawnMesh, CopiesAreTheSameSheetElsewhere) {
   EXPECT_EQ(all.triangles.size(), 6 * one.triangles.size());
   EXPECT_EQ(all.edges.size(), 6 * one.edges.size());
   EXPECT_EQ(all.groups.at("v1").size(), 6 * one.groups.at("v1").size());
+  EXPECT_NEAR(longest_sides(all).first, 1, 1e-12) << "of one sheet";
+  EXPECT_NEAR(longest_sides(all).second, 0.5, 1e-12);
   for (std::size_t copy = 0; copy < 6; ++copy)
     for (std::size_t v = 0; v < n; ++v) {
       const Vec3 &a = one.vertices[v], &b = all.vertices[copy * n + v];

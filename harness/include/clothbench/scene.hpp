@@ -70,7 +70,7 @@ struct SelfCollision {
 /// (i*du, j*dv). The sheet lies in the plane through `center_m` along `axis_u` and `axis_v` (orthonormal).
 struct Cloth {
   int columns = 0, rows = 0;         ///< vertices along u and v, each >= 2; for a mesh: vertex count and 1
-  double width_m = 0, height_m = 0;  ///< rest lengths along u and v; for a mesh: two longest sides of its bounding box
+  double width_m = 0, height_m = 0;  ///< rest lengths along u and v; mesh: longest sides of its largest piece's box
   std::shared_ptr<const ClothMesh> mesh = nullptr;  ///< null for a grid
   double areal_density_kg_per_m2 = 0;
   Sides sides = Sides::Single;

@@ -60,7 +60,7 @@ struct Device {
                                   cuDriverGetVersion(&version), cuDevicePrimaryCtxRetain(&context, gpu),
                                   cuCtxSetCurrent(context), cuEventCreate(&begin, 0), cuEventCreate(&end, 0)})
       if (result != CUDA_SUCCESS) {
-        const char* why = "the CUDA driver (libcuda.so.1) is not installed";
+        const char* why = "unknown error";
         cuGetErrorString(result, &why);
         obstacle = std::string("there is no CUDA device: ") + why;
         return;

@@ -18,9 +18,8 @@ namespace {
 constexpr double kSliver = 0.02;
 
 double mean_length(const std::vector<Edge>& all) {
-  double sum = 0;
-  for (const Edge& e : all) sum += e.rest_m;
-  return sum / static_cast<double>(all.size());
+  return std::accumulate(all.begin(), all.end(), 0.0, [](double sum, const Edge& e) { return sum + e.rest_m; }) /
+         static_cast<double>(all.size());
 }
 
 std::vector<EdgePath> grid_edge_paths(const Scene& s) {
@@ -246,8 +245,7 @@ std::uint32_t ChainColour::longest() const {
 
 std::vector<ChainColour> colours_of(std::vector<EdgePath> all, std::size_t vertices, std::uint32_t block) {
   // A compromise: each colour costs a pass, but an edge path overstretches where it is cut into chains.
-  constexpr std::size_t kEnough = 6;
-  constexpr std::size_t kShort = 4;
+  constexpr std::size_t kEnough = 6, kShort = 4;
   int wanted = 0;
   for (const EdgePath& s : all) wanted = std::max(wanted, s.colour + 1);
   std::stable_sort(all.begin(), all.end(),
@@ -296,6 +294,8 @@ std::vector<ChainColour> colours_of(std::vector<EdgePath> all, std::size_t verti
     }
   // Colours that were opened later have shorter chains. They are solved first and the long ones last, so that the long
   // ones are satisfied best.
+  for (ChainColour& colour : colours)  // by place in memory, no longer by length
+    std::ranges::stable_sort(colour.chains, {}, [](const EdgePath& path) { return path.vertices[0]; });
   if (wanted == 0)
     std::reverse(colours.begin(), colours.end());
   else
