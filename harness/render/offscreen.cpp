@@ -113,18 +113,17 @@ class StereoDrawer : public FrameDrawer {
     cameras_ = eyes(middle, size, 0.05 * size, 100 * size);
     renderer_.set_cloth(scene.cloth, middle);
     if (solver.info().on_gpu) {
-      const auto* gpu = dynamic_cast<const pbd_gpu::GpuSolver*>(&solver);
-      if (gpu == nullptr) throw Error("solver " + solver.info().name + ": rendering has no access to its positions");
-      renderer_.use_positions(gpu->position_buffer(), gpu->origin_m());
-    } else {
-      upload_ = true;
+      gpu_ = dynamic_cast<const pbd_gpu::GpuSolver*>(&solver);
+      if (gpu_ == nullptr) throw Error("solver " + solver.info().name + ": rendering has no access to its positions");
     }
     falls_ = scene.pins.vertices.empty() && scene.grips.vertices.empty() && scene.colliders.empty();
     renderer_.set_surfaces(surfaces(scene, 0, near_));
   }
 
   void draw(int frame) override {
-    if (upload_) {
+    if (gpu_ != nullptr) {
+      renderer_.use_positions(gpu_->position_buffer(), gpu_->origin_m());
+    } else {
       solver_.read_state(state_);
       renderer_.write_positions(state_.position);
     }
@@ -145,7 +144,8 @@ class StereoDrawer : public FrameDrawer {
   ClothState state_;
   Bounds near_;
   std::array<Camera, 2> cameras_;
-  bool upload_ = false, falls_ = false;
+  const pbd_gpu::GpuSolver* gpu_ = nullptr;  ///< null: a solver on the CPU
+  bool falls_ = false;
   SceneRenderer renderer_;
   Offscreen images_;
 };

@@ -203,7 +203,6 @@ class Loop {
     const Scene& s = live_.scene();
     painter_.renderer().set_cloth(s.cloth, {0, 0, 0});
     gpu_ = dynamic_cast<const pbd_gpu::GpuSolver*>(run_->solver());
-    if (gpu_ != nullptr) painter_.renderer().use_positions(gpu_->position_buffer(), gpu_->origin_m());
     shown_ = {};
     shown_.cloth = s.cloth;
     shown_.colliders = s.colliders;
@@ -246,6 +245,8 @@ class Loop {
       if (gpu_ == nullptr) {
         run_->solver()->read_state(state_);
         painter_.renderer().write_positions(state_.position);
+      } else {
+        painter_.renderer().use_positions(gpu_->position_buffer(), gpu_->origin_m());
       }
       if (stale_) painter_.renderer().set_surfaces(render::surfaces(shown_, 0, near_));
       stale_ = false;

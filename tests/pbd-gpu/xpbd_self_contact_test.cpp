@@ -104,6 +104,38 @@ TEST_F(SelfContacts, WithAShortListWhatTheBallStopsStaysThere) {
   }
 }
 
+/// A frame whose pairs do not fit is repeated with longer lists, in every run alike.
+TEST_F(SelfContacts, ListsThatAreTooShortGrow) {
+  Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.03, 0.3);
+  s.time.duration_s = 0.15;
+  const auto size_of_lists = [](const ClothSolver& solver) {
+    for (const BufferPlan& b : solver.plan().buffers)
+      if (b.name == "self-contact pairs") return b.bytes;
+    return std::uint64_t{0};
+  };
+  const auto ample = make("xpbd"), tight = make("xpbd", {{kTuning, {{"contact_pairs", 1000}}}});
+  std::vector<double> ends[3];
+  for (int run = 0; run < 3; ++run) {
+    ClothSolver& solver = run == 0 ? *ample : *tight;
+    if (run < 2)
+      solver.load(s);
+    else
+      solver.reset();
+    const std::uint64_t before = size_of_lists(solver);
+    ClothState state;
+    for (int f = 0; f < s.time.frames(); ++f) state = after_frame(solver, s, f);
+    EXPECT_EQ(crossings(s, state), 0);
+    for (const SolverCount& c : solver.counts())
+      if (c.name == "contact_overflow") {
+        EXPECT_EQ(c.count, 0);
+      }
+    EXPECT_EQ(size_of_lists(solver) > before, run > 0);
+    ends[run] = state.position;
+  }
+  EXPECT_EQ(ends[1], ends[2]);
+  for (std::size_t k = 0; k < ends[0].size(); ++k) ASSERT_NEAR(ends[0][k], ends[1][k], 0.02) << k;
+}
+
 /// A folded sheet: the leg with its last column and half of the bend are attached; the other leg approaches at `speed`.
 Scene closing(double speed, double friction = 0) {
   Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);

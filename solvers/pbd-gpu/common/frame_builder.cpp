@@ -48,6 +48,11 @@ FrameBuilder::FrameBuilder(const nlohmann::json& settings, const DeviceOptions& 
 void FrameBuilder::begin(const Scene& scene) {
   scene_ = &scene;
   for (auto* program : {&frame_, &upload_, &download_}) *program = std::make_unique<vulkan::Program>(device_);
+  kernels_.clear();
+  bound_.clear();
+  buffers_.clear();
+  plan_ = {};
+  timed_out_ = nullptr;
   constexpr std::uint64_t kBytes = 64 * 4 * sizeof(std::uint32_t);  // no scene has 64 stages
   if (!settings_.value("count_bytes", false)) return;
   counters_ = &add_buffer(BIND_COUNTER, "byte counters", kBytes);

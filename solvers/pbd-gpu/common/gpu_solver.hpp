@@ -29,7 +29,7 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   int validation_messages() const override { return *messages_; }
 
   /// The buffer that read_state reads positions from, for rendering without read-back: the scene's vertices first, a
-  /// vec4 each, relative to `origin_m()`. The solver must be loaded.
+  /// vec4 each, relative to `origin_m()`. The solver must be loaded. A frame may replace it.
   const vulkan::Buffer& position_buffer() const { return *position_; }
   const Vec3& origin_m() const { return origin_m_; }
   /// The programs of set-up, a frame and reading back, for the test of the barriers.
@@ -57,13 +57,13 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   void add_colliders(Vec3 origin_m, bool as_convex_shapes);
   void add_grips(Vec3 origin_m, std::uint32_t layers);
   const vulkan::Buffer& velocity_buffer() const { return *velocity_; }
+  StepStatus run(vulkan::Program& program) const;
   ColliderBuffers* colliders() { return colliders_.get(); }  ///< null if the scene has none
   GripBuffer* grips() { return grips_.get(); }               ///< null if the scene has none
 
  private:
   void record(double dt_s, double last_dt_s);
   void prepare(double dt_s);
-  StepStatus run(vulkan::Program& program) const;
   StepStatus unless_timed_out(StepStatus status) const;
   /// Counts messages of the validation layer for this solver until another solver uses the device.
   void take_messages() const { device_->count_messages_in(messages_); }

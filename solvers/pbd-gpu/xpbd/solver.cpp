@@ -31,9 +31,26 @@ class Xpbd final : public GpuSolver {
              "contact: candidate pairs beyond the list's capacity, which solver.tuning.contact_pairs sets"}};
   }
 
+  /// A frame whose pairs do not fit their lists is repeated with longer ones.
+  StepStatus step(const FrameInput& frame) override {
+    const ContactDiagnostics before = contact_ ? contact_->diagnostics() : ContactDiagnostics{};
+    StepStatus status = GpuSolver::step(frame);
+    while (status == StepStatus::Ok && start_x_ != nullptr && growth_ < kMaxGrowth &&
+           contact_->diagnostics().overflow > before.overflow) {
+      status = return_to_start(before);
+      if (status == StepStatus::Ok) status = GpuSolver::step(frame);
+    }
+    return status;
+  }
+
   void reset() override {
+    if (growth_ > 1 && !grows_) {  // so that every run after a reset takes the same course
+      growth_ = 1;
+      load(scene());
+      return;
+    }
     GpuSolver::reset();
-    if (contact_) contact_->clear_diagnostics();
+    if (contact_) contact_->set_diagnostics({});
     last_dt_s_ = last_h_s_ = 0;
     controller_.reset();
   }
@@ -82,7 +99,8 @@ class Xpbd final : public GpuSolver {
       disable("splitting correction", splitting_correction.reason, soft ? "sheet_Y" : "");
     second_solve_ = touches && chained;
     if (touches)
-      contact_ = std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_);
+      contact_ =
+          std::make_unique<XpbdContact>(frame(), scene(), origin, colliders(), cloth.particle, second_solve_, growth_);
     if (chained)
       chains_ = std::make_unique<Chains>(frame(), scene(), cloth, uses_bdf2_, tension.enabled, membrane.enabled);
     else
@@ -96,15 +114,41 @@ class Xpbd final : public GpuSolver {
         touches && !contact_->has_kinematic_shapes() && grips() == nullptr && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
     recorded_substeps_ = controller_.substeps();
+    recorded_lists_ = 1;
+    recorded_last_h_s_ = 0;
     if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());
     plan_.substeps = in_frames(xpbd_substeps(scene(), settings()), scene().time.dt());
-    if (adapts) reads_back_ = true;
+    start_x_ = start_v_ = nullptr;
+    if (contact_ && contact_->with_itself() && scene().motion.empty()) {
+      start_x_ = &add_buffer(kUnbound, "positions at the start", position_buffer().bytes());
+      start_v_ = &add_buffer(kUnbound, "velocities at the start", position_buffer().bytes());
+    }
+    reads_back_ = adapts || start_x_ != nullptr;
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
       move_grips_ = grips()->add_kernel(position_buffer());
     if (const FeatureSet near = scene().needs & kColliderFeatures; !touches && !near.empty()) {
       add_stage("ContactSubstep", near | (scene().needs & FeatureSet{Feature::Friction, Feature::DoubleSided}));
       disable("contact", "no collider is in reach of the cloth");
     }
+  }
+
+  /// Doubles the lists of pairs, and sets the state and diagnostics to those at the frame's start. Throws Error if the
+  /// device has no room.
+  StepStatus return_to_start(const ContactDiagnostics& diagnostics) {
+    vulkan::Program back(device_);
+    back.copy(0, *start_x_, position_buffer());
+    back.copy(0, *start_v_, velocity_buffer());
+    back.record(false);
+    if (const StepStatus status = run(back); status != StepStatus::Ok) return status;
+    ClothState start;
+    read_state(start);
+    growth_ *= 2;
+    grows_ = true;
+    load(scene());
+    const bool restarted = restart(start);
+    grows_ = false;
+    contact_->set_diagnostics(diagnostics);
+    return restarted ? StepStatus::Ok : StepStatus::DeviceLost;
   }
 
   /// History of BDF2: the state before the last substep.
@@ -180,6 +224,10 @@ class Xpbd final : public GpuSolver {
     // The first substep differs if the last frame's substeps had a different length, or if there was no last frame.
     const TimeStep start = time_step_after(uses_bdf2_ ? length_of(last_dt_s) : recorded_last_h_s_, dt_s),
                    step = time_step_after(length_of(dt_s), dt_s);
+    if (start_x_ != nullptr) {
+      copy(0, position_buffer(), *start_x_);
+      copy(0, velocity_buffer(), *start_v_);
+    }
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_shapes(dt_s, substeps);
@@ -239,6 +287,12 @@ class Xpbd final : public GpuSolver {
   std::unique_ptr<XpbdContact> contact_;
   std::unique_ptr<FusedFrame> fused_frame_;  ///< null: one kernel per pass
   const FrameKernel* move_grips_ = nullptr;
+  static constexpr std::uint32_t kMaxGrowth = 64;  ///< of lists with 32-bit capacities
+  std::uint32_t growth_ = 1;                       ///< of the lists of self-contact, since loading or a reset
+  bool grows_ = false;
+  /// The state at the frame's start, in scenes whose lists grow: with self-contact and without motion given from
+  /// outside.
+  const vulkan::Buffer *start_x_ = nullptr, *start_v_ = nullptr;
 };
 
 /// A member of the setting `tuning`: its values, the default first, and what it decides.

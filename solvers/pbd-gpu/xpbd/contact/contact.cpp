@@ -28,7 +28,7 @@ constexpr double kCellsPerFrame = 2;  ///< growth of bound_m with self-contact, 
 constexpr std::uint32_t kRoundsAfter = 2;
 
 XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-                         const std::vector<std::uint32_t>& particle, bool second_solve)
+                         const std::vector<std::uint32_t>& particle, bool second_solve, std::uint32_t growth)
     : frame_(frame), scene_(scene), with_itself_(scene.needs.has(Feature::SelfCollision)) {
   const ConvexShapes all = convex_shapes(scene, origin_m, colliders);
   frame_.set_contact_margins(all.margins_m);
@@ -50,7 +50,7 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
   pass_constants_.GRIPS = static_cast<uint>(scene_.grips.vertices.size());
   pass_constants_.SECOND_SOLVE = second_solve ? 1 : 0;
   add_primitives(particle);
-  if (with_itself_) add_self_pairs(particle);
+  if (with_itself_) add_self_pairs(particle, growth);
   if (kinematic_points_ == 0) return;
   stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   update_shapes_ = {pass(stage_pairs_, "contact_update_shapes", std::uint64_t{kGroupSize} * constants_.GROUPS)};
@@ -111,7 +111,7 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
 }
 
 /// Adds the buffers of self-contact.
-void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
+void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle, std::uint32_t growth) {
   const auto& self = scene_.cloth.self_collision;
   auto all = triangles(scene_.cloth);
   for (auto& t : all)
@@ -120,10 +120,10 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle) {
   const std::uint32_t wanted = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   ContactPassSpecialization& c = pass_constants_;
   c.SELF = 1;
-  c.SELF_CAPACITY = wanted != 0 ? wanted : std::min(kPairsPerTriangle * constants_.TRIANGLES, kMaxSelfPairs);
-  c.ACTIVE_CAPACITY = wanted != 0 ? wanted : std::min(kActivePerTriangle * constants_.TRIANGLES, kMaxActive);
+  c.SELF_CAPACITY = growth * (wanted != 0 ? wanted : std::min(kPairsPerTriangle * constants_.TRIANGLES, kMaxSelfPairs));
+  c.ACTIVE_CAPACITY = growth * (wanted != 0 ? wanted : std::min(kActivePerTriangle * constants_.TRIANGLES, kMaxActive));
   c.CONTACT_CAPACITY =
-      std::min(c.ACTIVE_CAPACITY, std::max(kContactPairsPerTriangle * constants_.TRIANGLES, kMinContactPairs));
+      std::min(c.ACTIVE_CAPACITY, growth * std::max(kContactPairsPerTriangle * constants_.TRIANGLES, kMinContactPairs));
   c.THICKNESS_BITS = std::bit_cast<uint>(static_cast<float>(self.thickness_m));
   c.SELF_FRICTION_BITS = std::bit_cast<uint>(static_cast<float>(self.friction));
   const std::uint32_t groups = (constants_.TRIANGLES + TRIANGLES_PER_GROUP - 1) / TRIANGLES_PER_GROUP;
@@ -246,6 +246,6 @@ double XpbdContact::read_max_displacement_m(bool is_single_dispatch) {
   return max_displacement;
 }
 
-void XpbdContact::clear_diagnostics() { std::memset(diagnostics_->mapped(), 0, sizeof(ContactDiagnostics)); }
+void XpbdContact::set_diagnostics(const ContactDiagnostics& to) { std::memcpy(diagnostics_->mapped(), &to, sizeof to); }
 
 }  // namespace clothbench::pbd_gpu

@@ -38,9 +38,9 @@ class XpbdContact {
  public:
   /// Adds buffers, and the kernel that updates kinematic shapes. `particle[v]`: the vertex that vertex v is welded to,
   /// or v; empty: no welds. `colliders`: null if the scene has none. `second_solve`: constraints are also solved
-  /// between the response rounds.
+  /// between the response rounds. `growth`: factor on the capacities of the lists of self-contact.
   XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
-              const std::vector<std::uint32_t>& particle, bool second_solve);
+              const std::vector<std::uint32_t>& particle, bool second_solve, std::uint32_t growth);
   /// Adds one kernel per pass, for record_list, record_before and record_after.
   void add_kernels();
 
@@ -59,9 +59,9 @@ class XpbdContact {
   const ContactSpecialization& specialization() const { return constants_; }
   ContactConstants constants(int s, int substeps, double dt_s) const;
 
-  /// Diagnostics since loading or clear_diagnostics(); xpbd/contact/README.md says what each count means.
+  /// Diagnostics since loading or set_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
-  void clear_diagnostics();
+  void set_diagnostics(const ContactDiagnostics&);
   /// Reads and resets the largest displacement of a vertex during a list of pairs [m]; infinity: none was stored.
   double read_max_displacement_m(bool is_single_dispatch);
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
@@ -76,7 +76,7 @@ class XpbdContact {
   Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize);
   void set_lengths(const ConvexShapes&);
   void add_primitives(const std::vector<std::uint32_t>& particle);
-  void add_self_pairs(const std::vector<std::uint32_t>& particle);
+  void add_self_pairs(const std::vector<std::uint32_t>& particle, std::uint32_t growth);
   void run(const Phase&, const ContactConstants&);
 
   FrameBuilder& frame_;
