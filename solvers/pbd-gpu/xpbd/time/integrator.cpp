@@ -113,6 +113,14 @@ bool is_taut_askew(const Scene& s) {
   return false;
 }
 
+/// True if one vertex inside a grid holds it.
+bool hangs_in_folds(const Scene& s) {
+  if (s.pins.vertices.size() != 1 || !s.grips.vertices.empty()) return false;
+  const int i = static_cast<int>(s.pins.vertices[0]) % s.cloth.columns,
+            j = static_cast<int>(s.pins.vertices[0]) / s.cloth.columns;
+  return std::min(i, j) > 0 && i + 1 < s.cloth.columns && j + 1 < s.cloth.rows;
+}
+
 /// Whether held cloth may be second order in time with its number of substeps. A strip always may: each line is solved
 /// exactly as one system. A sheet's colours are solved one after another, which leaves an error.
 FeatureDecision second_order_decision(const Scene& scene, const nlohmann::json& settings) {
@@ -184,10 +192,10 @@ double substeps_for_splitting(const Scene& scene) {
   const double way = 2.0 / 3 * scene.time.dt() *
                      std::sqrt(scene.material.membrane_stiffness_N_per_m.value_or(0) / c.areal_density_kg_per_m2);
   // by_tension: stiffness times tension at one substep per frame. Both factors are proportional to the squared step.
-  const double cell = std::min(c.du(), c.dv()), by_tension = way * way / (cell * cell) * tension_number(scene);
-  return std::max(
-      way / std::min(rules::kMaxSplittingCells * cell, rules::kMaxSplittingOfSide * std::min(c.width_m, c.height_m)),
-      std::pow(by_tension / rules::kMaxStiffnessTimesTension, 0.25));
+  const double cell = std::min(c.du(), c.dv()), by_tension = way * way / (cell * cell) * tension_number(scene),
+               cells = hangs_in_folds(scene) ? rules::kMaxSplittingCellsOfFolds : rules::kMaxSplittingCells;
+  return std::max(way / std::min(cells * cell, rules::kMaxSplittingOfSide * std::min(c.width_m, c.height_m)),
+                  std::pow(by_tension / rules::kMaxStiffnessTimesTension, 0.25));
 }
 
 FeatureDecision may_correct_splitting(const Scene& scene, const nlohmann::json& settings) {
