@@ -113,13 +113,8 @@ bool is_taut_askew(const Scene& s) {
   return false;
 }
 
-/// True if one vertex inside a grid holds it.
-bool hangs_in_folds(const Scene& s) {
-  if (s.pins.vertices.size() != 1 || !s.grips.vertices.empty()) return false;
-  const int i = static_cast<int>(s.pins.vertices[0]) % s.cloth.columns,
-            j = static_cast<int>(s.pins.vertices[0]) / s.cloth.columns;
-  return std::min(i, j) > 0 && i + 1 < s.cloth.columns && j + 1 < s.cloth.rows;
-}
+/// True if a single vertex holds the sheet.
+bool hangs_in_folds(const Scene& s) { return s.pins.vertices.size() == 1 && s.grips.vertices.empty(); }
 
 /// Whether held cloth may be second order in time with its number of substeps. A strip always may: each line is solved
 /// exactly as one system. A sheet's colours are solved one after another, which leaves an error.

@@ -31,8 +31,8 @@ inline constexpr double kMaxGripStrain = 0.5;
 // [cells a wave crosses in h'] Above, a sheet's modulus drifts: within seconds if the square of this number is 100,
 // within a minute if it is 52, never if it is 47 (modulus of a patch of 65 x 17 vertices)
 inline constexpr double kMaxSplittingCells = 6.9;
-// [the same] Above, a sheet that hangs in folds from one inner vertex gains energy (sheets of `energy`)
-inline constexpr double kMaxSplittingCellsOfFolds = 2.4;
+// [the same] Above, a sheet that hangs in folds from one vertex gains energy (sheets of `energy`)
+inline constexpr double kMaxSplittingCellsOfFolds = 1.5;
 // [shorter sides a wave crosses in h'] Above, the delayed correction excites oscillations (energy of small sheets)
 inline constexpr double kMaxSplittingOfSide = 1.15;
 // [h'^2 Y / m times h'^2 T / (m l)] Above, a sheet under tension gains energy: 39 is stable over 20 s, 81 grows (33 x
