@@ -136,6 +136,18 @@ TEST_F(SelfContacts, ListsThatAreTooShortGrow) {
   for (std::size_t k = 0; k < ends[0].size(); ++k) ASSERT_NEAR(ends[0][k], ends[1][k], 0.02) << k;
 }
 
+/// At 100 m/s nearly all triangles are pairs, for which no device grows the lists enough.
+TEST_F(SelfContacts, PairsThatFitNoListAreCounted) {
+  const Scene s = load_scene("contact/sphere", {"cloth.grid=[64,64]", "cloth.initial_velocity_m_per_s=[0,0,100]",
+                                                R"(cloth.self_collision={"thickness_m":0.0015,"friction":0.3})"});
+  const auto solver = make("xpbd", {{"substeps", 4}, {kTuning, {{"contact_pairs", 260000}}}});
+  solver->load(s);
+  after_frame(*solver, s, 0);
+  const std::vector<SolverCount> counts = solver->counts();
+  EXPECT_TRUE(std::any_of(counts.begin(), counts.end(),
+                          [](const SolverCount& c) { return c.name == "contact_overflow" && c.count > 0; }));
+}
+
 /// A folded sheet: the leg with its last column and half of the bend are attached; the other leg approaches at `speed`.
 Scene closing(double speed, double friction = 0) {
   Scene s = folded(sheet(17, 9, 0.5, 0.25), 0.06, friction);

@@ -31,13 +31,15 @@ class Xpbd final : public GpuSolver {
              "contact: candidate pairs beyond the list's capacity, which solver.tuning.contact_pairs sets"}};
   }
 
-  /// A frame whose pairs do not fit their lists is repeated with longer ones.
+  /// A frame whose pairs do not fit their lists is repeated with longer ones, if the device has room for them.
   StepStatus step(const FrameInput& frame) override {
     const ContactDiagnostics before = contact_ ? contact_->diagnostics() : ContactDiagnostics{};
     StepStatus status = GpuSolver::step(frame);
     while (status == StepStatus::Ok && start_x_ != nullptr && growth_ < kMaxGrowth &&
            contact_->diagnostics().overflow > before.overflow) {
-      status = return_to_start(before);
+      const std::uint32_t growth = 2 * growth_;
+      status = return_to_start(growth, before);
+      if (growth_ < growth) break;
       if (status == StepStatus::Ok) status = GpuSolver::step(frame);
     }
     return status;
@@ -132,9 +134,9 @@ class Xpbd final : public GpuSolver {
     }
   }
 
-  /// Doubles the lists of pairs, and sets the state and diagnostics to those at the frame's start. Throws Error if the
-  /// device has no room.
-  StepStatus return_to_start(const ContactDiagnostics& diagnostics) {
+  /// Sets the state to the frame's start, lists of pairs to `growth` times their first size, and the diagnostics. If
+  /// the device has no room, lists and diagnostics stay: the frame is lost, and its overflow ends the run.
+  StepStatus return_to_start(std::uint32_t growth, ContactDiagnostics diagnostics) {
     vulkan::Program back(device_);
     back.copy(0, *start_x_, position_buffer());
     back.copy(0, *start_v_, velocity_buffer());
@@ -142,9 +144,16 @@ class Xpbd final : public GpuSolver {
     if (const StepStatus status = run(back); status != StepStatus::Ok) return status;
     ClothState start;
     read_state(start);
-    growth_ *= 2;
     grows_ = true;
-    load(scene());
+    const ContactDiagnostics overflowed = contact_->diagnostics();
+    const std::uint32_t last = std::exchange(growth_, growth);
+    try {
+      load(scene());
+    } catch (const Error&) {
+      growth_ = last;
+      diagnostics = overflowed;
+      load(scene());
+    }
     const bool restarted = restart(start);
     grows_ = false;
     contact_->set_diagnostics(diagnostics);

@@ -18,8 +18,9 @@ namespace {
 constexpr double kSliver = 0.02;
 
 double mean_length(const std::vector<Edge>& all) {
-  return std::accumulate(all.begin(), all.end(), 0.0, [](double sum, const Edge& e) { return sum + e.rest_m; }) /
-         static_cast<double>(all.size());
+  double sum = 0;
+  for (const Edge& e : all) sum += e.rest_m;
+  return sum / static_cast<double>(all.size());
 }
 
 std::vector<EdgePath> grid_edge_paths(const Scene& s) {
@@ -292,10 +293,10 @@ std::vector<ChainColour> colours_of(std::vector<EdgePath> all, std::size_t verti
       for (std::size_t k = from; k <= from + largest; ++k) used[best][s.vertices[k]] = 1;
       from += largest;
     }
-  // Colours that were opened later have shorter chains. They are solved first and the long ones last, so that the long
-  // ones are satisfied best.
   for (ChainColour& colour : colours)  // by place in memory, no longer by length
     std::ranges::stable_sort(colour.chains, {}, [](const EdgePath& path) { return path.vertices[0]; });
+  // Colours that were opened later have shorter chains. They are solved first and the long ones last, so that the long
+  // ones are satisfied best.
   if (wanted == 0)
     std::reverse(colours.begin(), colours.end());
   else
