@@ -273,8 +273,7 @@ class Xpbd final : public GpuSolver {
   /// whose displacements are known only for the whole frame.
   int lists_in(double dt_s) const {
     if (!contact_ || contact_->has_kinematic_shapes() || !scene().grips.vertices.empty()) return 1;
-    return contact_->with_itself() ? (substeps_in(dt_s) + rules::kSubstepsPerList - 1) / rules::kSubstepsPerList
-                                   : controller_.lists() * frames_in(dt_s);
+    return controller_.lists() * frames_in(dt_s);
   }
 
   /// Number of the scene's frames that a frame of dt_s counts as: a hitch has the substeps of several frames.

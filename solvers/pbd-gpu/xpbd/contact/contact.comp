@@ -13,10 +13,9 @@ void run() {
   motion_bound_of_vertex(i, max_shape_displacement);
   if (i != 0u) return;
   frame_state.max_shape_displacement = max_shape_displacement;
-  vec3 along = mean_velocity();
-  for (uint c = 0u; c < 3u; ++c) frame_state.drift[c] = 0.5 * along[c];
   frame_state.touched_vertices = 0u;
-  for (uint l = 0u; l < PAIR_LEVELS; ++l) frame_state.counted[l] = frame_state.self_counted[l] = 0u;
+  for (uint l = 0u; l < PAIR_LEVELS; ++l) frame_state.counted[l] = 0u;
+  frame_state.self_list_expired = 1u;
   frame_state.active_pair_count[0] = frame_state.active_pair_count[1] = 0u;
 }
 
@@ -39,7 +38,6 @@ void run() {
   if (SHAPES > 0u && i < VERTICES) list_touched_vertices(i);
   if (i != 0u) return;
   finish_broad_phase();
-  if (SELF != 0u) frame_state.self_bound_fraction = kFractions[fitting_level(frame_state.self_counted, SELF_CAPACITY)];
 }
 
 #elif defined(PREDICT)  // at a substep's start, one thread per vertex
@@ -101,29 +99,39 @@ void run() {
 void run() {
   project_all(item(), stride());
   // For the next substep.
-  if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = frame_state.self_contact_pairs = 0u;
+  if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = 0u;
+  if (item() == 0u) frame_state.self_contact_pairs = frame_state.self_contacts = 0u;
 }
 
 // Self-contact.
-#elif defined(SELF_AABBS)  // once per frame, one thread per triangle
+#elif defined(SELF_AABBS)  // once per substep, one thread per triangle
 #include "xpbd/contact/broad_phase/self_aabbs.glsl"
-void run() { make_self_aabbs(); }
+void run() {
+  if (frame_state.self_list_expired != 0u) make_self_aabbs();
+}
 
-#elif defined(SELF_BROAD_PHASE)  // once per frame for each of kFractions, one subgroup per triangle
+#elif defined(SELF_BROAD_PHASE)  // twice per substep, one subgroup per triangle
 #include "xpbd/contact/broad_phase/self_broad_phase.glsl"
 void run() {
-  if (p.level > 0u && frame_state.self_counted[p.level - 1u] <= SELF_CAPACITY) return;
+  if (frame_state.self_list_expired == 0u || (p.level > 0u && frame_state.self_listed[0] <= SELF_CAPACITY)) return;
   FOR_EACH_TRIANGLE(q, TRIANGLES, list_self_pairs_of(q);)
 }
 
 #elif defined(SELF_MAX_DISPLACEMENT)  // once per substep, one thread per triangle
-// Per triangle: maximum displacement of its vertices in the last substep, and their largest limit in this one.
+// Per triangle: maximum displacement of its vertices in the last substep, and their largest limit in this one. A new
+// list's bounds hold for this substep's start.
 void run() {
+  bool is_new = frame_state.self_list_expired != 0u;
+  if (is_new && item() == 0u) {
+    uint level = frame_state.self_listed[0] <= SELF_CAPACITY ? 0u : 1u, listed = frame_state.self_listed[level];
+    frame_state.self_list_one_substep = level;
+    if (listed > SELF_CAPACITY) diagnostics.overflow += listed - SELF_CAPACITY;
+  }
   for (uint t = item(); t < TRIANGLES; t += stride()) {
     uvec4 e = primitives[t];
     vec2 largest = vec2(0.0);
     for (uint c = 0u; c < 3u; ++c) largest = max(largest, vec2(vertex_displacement[e[c]], starts[e[c]].w));
-    triangle_max_displacement[t] = vec4(largest, 0.0, 0.0);
+    triangle_max_displacement[t] = vec4(is_new ? 0.0 : largest.x, largest.y, 0.0, 0.0);
   }
 }
 
@@ -150,8 +158,17 @@ void run() {
 
 #elif defined(SELF_SELECT_PLANE)  // before the projection, one thread per active pair
 #include "xpbd/contact/displacement_filter/self_select_plane.glsl"
+#include "xpbd/contact/broad_phase/atomic_aabb.glsl"
 void run() {
   for (uint k = item(); k < SELF_ACTIVE_COUNT; k += stride()) select_self_plane(k);
+  for (uint n = item(); n < self_supergroups.length(); n += stride())
+    for (uint c = 0u; c < 3u; ++c) {
+      self_supergroups[n].low[c] = kLowNone;
+      self_supergroups[n].high[c] = kHighNone;
+    }
+  if (item() != 0u) return;
+  frame_state.self_list_expired = frame_state.self_list_one_substep;  // for the next substep
+  frame_state.self_listed[0] = frame_state.self_listed[1] = 0u;
 }
 #endif
 

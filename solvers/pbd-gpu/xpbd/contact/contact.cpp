@@ -14,8 +14,8 @@ constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs
 constexpr std::uint64_t kAllPairs = 1u << 18;
 /// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Ten layers on a ball
 /// (contact/layers) need less than half of the last two.
-constexpr std::uint32_t kPairsPerTriangle = 512, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 256,
-                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 32, kMinContactPairs = 1u << 15;
+constexpr std::uint32_t kPairsPerTriangle = 96, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 80,
+                        kMaxActive = 1u << 22, kContactPairsPerTriangle = 16, kMinContactPairs = 1u << 15;
 constexpr std::uint32_t kPairThreads = 1u << 14, kSoftwareThreads = 1u << 9;
 /// Maximum lanes per vertex: kPartialSums of contact_accumulate.glsl.
 constexpr std::uint32_t kMaxLanesPerVertex = 8;
@@ -23,7 +23,6 @@ constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// of planes from shapes and layers, and rounding error of positions in float32.
 constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
                  kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kCellsPerFrame = 2;  ///< growth of bound_m with self-contact, which has many lists per frame
 /// Response rounds after the constraint solve.
 constexpr std::uint32_t kRoundsAfter = 2;
 
@@ -130,11 +129,15 @@ void XpbdContact::add_self_pairs(const std::vector<std::uint32_t>& particle, std
   const std::uint64_t active = c.ACTIVE_CAPACITY, touching = c.CONTACT_CAPACITY;
   frame_.add_buffer(BIND_SELF_ORDER, "self-contact order", cluster(initial_positions(scene_), all).triangles);
   frame_.add_buffer(BIND_SELF_AABBS, "self-contact boxes", (constants_.TRIANGLES + groups) * sizeof(SelfAabb));
+  const SelfSupergroup none{{~0u, ~0u, ~0u}, {0, 0, 0}};
+  frame_.add_buffer(BIND_SELF_SUPERGROUPS, "self-contact supergroups",
+                    std::vector((groups + GROUPS_PER_SUPERGROUP - 1) / GROUPS_PER_SUPERGROUP, none));
+  frame_.add_buffer(BIND_SELF_BOUNDS, "self-contact bounds", constants_.VERTICES * sizeof(SelfBounds));
   frame_.add_buffer(BIND_SELF_RANGES, "self-contact ranges", constants_.TRIANGLES * sizeof(uvec4));
   frame_.add_buffer(BIND_SELF_PAIRS, "self-contact pairs", std::uint64_t{c.SELF_CAPACITY} * sizeof(SelfPair));
   frame_.add_buffer(BIND_TRIANGLE_MAX_DISPLACEMENTS, "self-contact displacements", constants_.TRIANGLES * sizeof(vec4));
   frame_.add_buffer(BIND_SELF_ACTIVE, "self-contact active pairs", active * sizeof(SelfActivePair));
-  frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts", touching * SELF_CONTACTS * sizeof(SelfContact));
+  frame_.add_buffer(BIND_SELF_CONTACTS, "self-contact contacts", touching * CONTACTS_PER_PAIR * sizeof(SelfContact));
   frame_.add_buffer(BIND_SELF_CORRECTIONS, "self-contact corrections", touching * 3 * sizeof(SelfCorrection));
 }
 
@@ -152,15 +155,14 @@ void XpbdContact::add_kernels() {
   if (stage_pairs_ < 0) stage_pairs_ = frame_.add_stage("ContactBroadPhase", serves());
   const std::uint32_t n = constants_.VERTICES;
   const std::uint32_t lanes = frame_.device()->shuffled_lanes(), threads = std::max(kGroupSize, lanes);
-  bounds_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
-  if (with_itself_) {
-    bounds_.push_back(pass(stage_pairs_, "self_aabbs", constants_.TRIANGLES, TRIANGLES_PER_GROUP));
-    broad_phase_.push_back(
-        pass(stage_pairs_, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
-  }
+  const auto at_levels = [](Phase& phase, Pass one, std::uint32_t levels) {
+    for (; one.level < levels; ++one.level) phase.push_back(one);
+  };
+  list_ = {pass(stage_pairs_, "contact_motion_bounds", n)};
   if (constants_.SHAPES > 0)
-    broad_phase_.push_back(pass(stage_pairs_, "contact_broad_phase", std::min(constants_.TRIANGLES + n, kPairThreads)));
-  finish_ = {pass(stage_pairs_, "contact_finish_broad_phase", n)};
+    at_levels(list_, pass(stage_pairs_, "contact_broad_phase", std::min(constants_.TRIANGLES + n, kPairThreads)),
+              PAIR_LEVELS);
+  list_.push_back(pass(stage_pairs_, "contact_finish_broad_phase", n));
   const int stage = frame_.add_stage("ContactSubstep", serves());
   const std::uint32_t at_once = frame_.device()->is_software() ? kSoftwareThreads : kPairThreads;
   const std::uint64_t shared = std::uint64_t{constants_.LANES_PER_VERTEX} * n;
@@ -178,6 +180,8 @@ void XpbdContact::add_kernels() {
     add({&end_}, pass(stage, "contact_select_plane", at_once));
   }
   if (with_itself_) {
+    add({&first_round_}, pass(stage, "self_aabbs", constants_.TRIANGLES, TRIANGLES_PER_GROUP));
+    at_levels(first_round_, pass(stage, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads), 2);
     add({&first_round_}, pass(stage, "self_max_displacement", constants_.TRIANGLES));
     add({&first_round_}, pass(stage, "self_active_pairs", std::uint64_t{lanes} * constants_.TRIANGLES, threads));
     add({&first_round_}, pass(stage, "self_nearest_points", at_once));
@@ -202,23 +206,20 @@ ContactConstants XpbdContact::constants(int s, int substeps, double dt_s) const 
   c.per_h = f(1 / h);
   c.damping_fraction = scene_.needs.has(Feature::Damping) ? f(-std::expm1(-scene_.material.damping_per_s * h)) : 0;
   c.frame_s = f(dt_s);
-  const double cells = with_itself_ ? std::min(0.5, kCellsPerFrame * dt_s / scene_.time.dt()) : 0.5;
-  c.bound_m = f(cells * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
+  c.bound_m = f(0.5 * std::max(cloth.du(), cloth.dv()) + std::hypot(g[0], g[1], g[2]) * dt_s * dt_s);
   return c;
 }
 
-void XpbdContact::run(const Phase& phase, const ContactConstants& c) {
-  for (const Pass& p : phase) frame_.dispatch_groups(*p.kernel, p.groups, c);
+void XpbdContact::run(const Phase& phase, ContactConstants c) {
+  for (const Pass& p : phase) {
+    c.level = p.level;
+    frame_.dispatch_groups(*p.kernel, p.groups, c);
+  }
 }
 
 void XpbdContact::record_shapes(double dt_s, int substeps) { run(update_shapes_, constants(0, substeps, dt_s)); }
 
-void XpbdContact::record_list(double dt_s, int substeps) {
-  ContactConstants c = constants(0, substeps, dt_s);
-  run(bounds_, c);
-  for (; c.level < PAIR_LEVELS; ++c.level) run(broad_phase_, c);
-  run(finish_, c);
-}
+void XpbdContact::record_list(double dt_s, int substeps) { run(list_, constants(0, substeps, dt_s)); }
 
 void XpbdContact::record_before(int s, int substeps, double dt_s) {
   if (kinematic_points_ > 0) run(before_, constants(s, substeps, dt_s));

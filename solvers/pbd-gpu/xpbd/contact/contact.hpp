@@ -67,17 +67,18 @@ class XpbdContact {
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 
  private:
-  /// A kernel and its number of workgroups. A Phase is a sequence of passes.
+  /// A kernel, its number of workgroups, and ContactConstants::level. A Phase is a sequence of passes.
   struct Pass {
     const FrameKernel* kernel;
     vulkan::Groups groups;
+    std::uint32_t level = 0;
   };
   using Phase = std::vector<Pass>;
   Pass pass(int stage, const char* name, std::uint64_t items, std::uint32_t threads = kGroupSize);
   void set_lengths(const ConvexShapes&);
   void add_primitives(const std::vector<std::uint32_t>& particle);
   void add_self_pairs(const std::vector<std::uint32_t>& particle, std::uint32_t growth);
-  void run(const Phase&, const ContactConstants&);
+  void run(const Phase&, ContactConstants);
 
   FrameBuilder& frame_;
   const Scene& scene_;
@@ -87,7 +88,7 @@ class XpbdContact {
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
   const vulkan::Buffer* diagnostics_ = nullptr;
-  Phase update_shapes_, bounds_, broad_phase_, finish_, before_, first_round_, later_round_, end_;
+  Phase update_shapes_, list_, before_, first_round_, later_round_, end_;
 };
 
 }  // namespace clothbench::pbd_gpu

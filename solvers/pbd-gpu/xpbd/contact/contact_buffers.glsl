@@ -40,6 +40,8 @@ layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFram
 layout(std430, binding = BIND_DIAGNOSTICS) STATE buffer Diagnostics { ContactDiagnostics diagnostics; };
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };
 layout(std430, binding = BIND_SELF_AABBS) STATE buffer SelfAabbs { SelfAabb self_aabbs[]; };
+layout(std430, binding = BIND_SELF_BOUNDS) STATE buffer SelfBoundsOfVertices { SelfBounds self_bounds[]; };
+layout(std430, binding = BIND_SELF_SUPERGROUPS) STATE buffer SelfSupergroups { SelfSupergroup self_supergroups[]; };
 layout(std430, binding = BIND_SELF_RANGES) STATE buffer SelfRanges { uvec4 self_ranges[]; };  // zw: of active pairs
 layout(std430, binding = BIND_SELF_PAIRS) STATE buffer SelfPairs { SelfPair self_pairs[]; };
 layout(std430, binding = BIND_TRIANGLE_MAX_DISPLACEMENTS) STATE buffer TriangleMaxDisplacements {
@@ -59,14 +61,6 @@ const float kStaticMarginFactor = 0.5;   // fraction of the margin that edges an
 const float kImpactMassFactor = 0.25;  // [margins] a correction of this length in round 0 halves the inverse mass
 const float kTiny = 1e-6;       // smaller weights count as 0
 const float kSameNormal = 1.0 - 1e-6;  // cosine: two normals within 1.4 mrad are one
-
-/// Index of the first fraction whose pairs fit, or of the last fraction; then pairs beyond the capacity are counted.
-uint fitting_level(uint counted[PAIR_LEVELS], uint capacity) {
-  uint level = 0u;
-  while (level + 1u < PAIR_LEVELS && counted[level] > capacity) ++level;
-  if (counted[level] > capacity) diagnostics.overflow += counted[level] - capacity;
-  return level;
-}
 
 // Two bits per pair: it is active in this substep; its contact proposes a correction in this round.
 #define ACTIVE_BITS 0u
@@ -107,9 +101,8 @@ void begin_substep(uint substep) {
   t_end = time_of(substep + 1u);
 }
 
-/// The centres of self-contact's motion bounds move with half of the cloth's mean velocity: drift_m() [m] per frame.
-/// The radii grow by as much, so a bound contains both a vertex that keeps the velocity and one that an impact stops.
-#define drift_velocity() vec3(frame_state.drift[0], frame_state.drift[1], frame_state.drift[2])
-#define drift_m() (SELF != 0u ? p.frame_s * length(drift_velocity()) : 0.0)
+/// Room for contact corrections of layers in a substep [m]: contact may stop or turn a displacement, and push a vertex
+/// out of the contact offset by a quarter of it.
+#define ROOM_BESIDE_LAYERS max(0.5 * THICKNESS_M, 0.25 * MARGIN_M)
 
 uint stride() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x; }

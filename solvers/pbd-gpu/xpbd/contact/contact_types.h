@@ -48,24 +48,37 @@ struct ContactFrameState {
   float max_shape_displacement;      // maximum displacement of a point of any convex shape in the frame [m]
   uint active_pair_count[2];         // pairs active in this substep, before and after the constraint solve
   uint cloth_low[3], cloth_high[3];  // box of all positions that the cloth can reach, as integers of ordered()
-  float self_bound_fraction;         // bound_fraction of the list of self-contact pairs
+  uint self_list_expired;            // 1: this substep makes a new list of self-contact pairs
+  uint self_listed[2];               // pairs of a new list by SelfAabb: _1; _0 if those do not fit
+  uint self_list_one_substep;        // 1: the list is of the second kind, for one substep
   uint self_active;                  // self-contact pairs active in this substep
   uint self_contact_pairs;           // active self-contact pairs that have contacts
+  uint self_contacts;                // their contacts
   uint touched_vertices;             // vertices with pairs of their own or of their triangles
-  uint contact_free;      // 1: the frame was simulated without contact (contact_free_frame.glsl, fused_frame.comp)
-  uint contact_possible;  // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
-  uint max_displacement;  // max over vertices [m], bits of a float; before its reset, of the last frame
-  uint counted[PAIR_LEVELS], self_counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
-  float last_h;                                          // length of the last substep in a fused frame [s]; 0: none
-  float drift[3];  // velocity of the centres of self-contact's motion bounds [m/s]: half of the cloth's mean velocity
+  uint contact_free;          // 1: the frame was simulated without contact (contact_free_frame.glsl, fused_frame.comp)
+  uint contact_possible;      // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
+  uint max_displacement;      // max over vertices [m], bits of a float; before its reset, of the last frame
+  uint counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
+  float last_h;               // length of the last substep in a fused frame [s]; 0: none
 };
 
 #define BROAD_PHASE_DONE 1u  // LineConstants::first_pass if an earlier dispatch has made the frame's list; otherwise 0
 
-/// Boxes of a cloth triangle (or of a group of them), inflated by half of the thickness and the drift: at the frame's
-/// start (_0), and inflated also by the vertices' motion bounds (_1).
+/// Boxes of a cloth triangle, or of a group of them: of the positions at the start of the substep that makes the list
+/// (_0), and of all positions while the list is valid, with room for contact corrections (_1).
 struct SelfAabb {
-  vec4 low_0, high_0, low_1, high_1;  // w unused
+  vec4 low_0;                  // w: largest limit of the vertices' displacements in that substep [m]
+  vec4 high_0, low_1, high_1;  // w unused
+};
+
+/// Box of GROUPS_PER_SUPERGROUP successive groups of triangles, as integers of ordered().
+struct SelfSupergroup {
+  uint low[3], high[3];
+};
+
+/// Box within which a vertex may begin and propose to end a substep while the list of self-contact pairs is valid.
+struct SelfBounds {
+  vec4 low, high;  // w unused
 };
 
 /// A candidate pair of cloth triangles. Each of the two triangles has an entry, which names the other one.
@@ -77,19 +90,22 @@ struct SelfPair {
 /// A pair of triangles that is active in this substep. Like a SelfPair, it is stored with each of the two.
 struct SelfActivePair {
   uint own, other;
-  uint link;         // index of its SelfPair; after the narrow phase, of its contacts
-  uint marks;        // bit mask of its contacts, and SELF_PLANE if it has a plane
-  vec4 plane;        // normal, towards the own triangle; w: offset
-  vec4 multipliers;  // of the own triangle's vertices
+  uint link;             // index of its SelfPair; after the narrow phase, of its corrections
+  uint marks;            // bit mask of its contacts, and SELF_PLANE if it has a plane
+  vec4 plane;            // normal, towards the own triangle; w: offset
+  float multipliers[3];  // of the own triangle's vertices
+  uint first_contact;
 };
 
-/// One of an active pair's SELF_CONTACTS contacts. 0: nearest points of the two triangles; 1 to 3: the first triangle's
-/// vertices with the second; 4 to 6: the second's vertices with the first. The first triangle has the lower index.
+/// One of an active pair's up to SELF_CONTACTS contacts, stored one after another. 0: nearest points of the two
+/// triangles; 1 to 3: the first triangle's vertices with the second; 4 to 6: the second's vertices with the first. The
+/// first triangle has the lower index.
 struct SelfContact {
-  vec4 normal;         // towards the first triangle; w: distance to keep [m]
-  vec4 first, second;  // weights of the vertices at the nearest points; w unused
+  vec4 normal;   // towards the first triangle; w: distance to keep [m]
+  vec4 weights;  // of the first triangle's first two vertices at the nearest point, then of the second's; sums are 1
 };
 #define SELF_CONTACTS 7u
+#define CONTACTS_PER_PAIR 2u  // in the list; on average a pair has fewer
 #define SELF_PLANE 128u
 
 /// Corrections that the contacts of an active pair propose for a vertex, as a sum weighted by length.
@@ -111,7 +127,7 @@ struct ContactConstants {
   vec4 gravity_h;                // g h [m/s]
   uint response_round;           // 0: before the constraint solve, at predicted positions; from 1 on: after it
   uint first_substep, substeps;  // index of this substep; substeps per frame
-  uint level;                    // index into kFractions
+  uint level;                    // index into kFractions; of self_listed
   float substep_part;            // 1 / substeps
   float h, per_h;                // of the substep [s], [1/s]
   float damping_fraction;        // 1 - exp(-c h)
@@ -120,3 +136,4 @@ struct ContactConstants {
 };
 #define SHAPES_PER_GROUP 16u
 #define TRIANGLES_PER_GROUP 128u  // in self-contact
+#define GROUPS_PER_SUPERGROUP 32u

@@ -96,9 +96,6 @@ inline constexpr double kMoves = 1.0 / 6;
 inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer frames, cloth may only pass a turning point
 inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
 
-// [substeps] A list of self-contact pairs for a longer time would overflow with fast cloth, and the reduced motion
-// bounds would slow down cloth in the air: from 6 to 2 m/s in a frame (contact-165200-self-drape)
-inline constexpr int kSubstepsPerList = 8;
 // [cells] Maximum motion per list of pairs with static colliders: above, a desk holds back cloth beside it
 // (contact-11204631-desk)
 inline constexpr double kCellsPerList = 2;

@@ -4,11 +4,10 @@ vec3 low, high;
 void box_for(uvec4 e, float fraction) {
   low = vec3(1e30);
   high = vec3(-1e30);
-  float drifts = 2.0 * drift_m();
   for (uint c = 0u; c < e.w; ++c) {
     vec4 r = motion_bounds[e[c]];
-    low = min(low, r.xyz - fraction * (r.w + drifts));
-    high = max(high, r.xyz + fraction * (r.w + drifts));
+    low = min(low, r.xyz - fraction * r.w);
+    high = max(high, r.xyz + fraction * r.w);
   }
 }
 #ifdef FUSED_FRAME
@@ -117,9 +116,12 @@ void fill_pairs(uint k, float fraction, uint at, uint count) {
   )
 }
 
-/// Selects the largest fraction of the motion bounds at which all pairs fit into the list. Called by one thread.
+/// Selects the largest fraction of the motion bounds at which all pairs fit into the list, or the smallest; then pairs
+/// beyond the capacity are counted. Called by one thread.
 void finish_broad_phase() {
-  uint level = fitting_level(frame_state.counted, CAPACITY);
+  uint level = 0u;
+  while (level + 1u < PAIR_LEVELS && frame_state.counted[level] > CAPACITY) ++level;
+  if (frame_state.counted[level] > CAPACITY) diagnostics.overflow += frame_state.counted[level] - CAPACITY;
   frame_state.pairs = min(frame_state.counted[level], CAPACITY);
   frame_state.bound_fraction = kFractions[level];
 }

@@ -35,16 +35,7 @@ float pulled() {
   return largest;
 }
 
-/// Mean velocity of a few scattered vertices of cloth with self-contact: motion that is common to all triangles brings
-/// no two of them together. Any value is valid, because vertices are clamped to bounds that move with it.
-vec3 mean_velocity() {
-  const uint kSamples = 8u, kSpread = 2654435769u;  // 2^32 / golden ratio (Knuth, TAOCP 3, 6.4)
-  vec3 all = vec3(0.0);
-  for (uint k = 1u; SELF != 0u && k <= kSamples; ++k) all += v[kSpread * k % VERTICES].xyz / float(kSamples);
-  return all;
-}
-
-/// Motion bound of a vertex in a frame with contact [m]; `speed` is relative to mean_velocity().
+/// Motion bound of a vertex in a frame with contact [m].
 float motion_bound(float speed, float rest, float max_shape_displacement, float by_hands) {
   return BOUND_FACTOR * (rest + 1.5 * speed * p.frame_s) + max_shape_displacement + by_hands;
 }
@@ -54,11 +45,10 @@ float contact_free_bound(float speed, float rest, float by_hands) {
 }
 
 #if !defined(CONTACT_FREE) || defined(FUSED_FRAME)
-/// Stores vertex i's start and motion bound of the frame. Returns its position; w: bound including the mean motion [m].
+/// Stores vertex i's start and motion bound of the frame. Returns its position; w: bound [m].
 vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
   vec4 at = x[i];
-  vec3 along = mean_velocity();
-  float speed = length(v[i].xyz - along), rest = bound_at_rest(), by_hands = pulled();
+  float speed = length(v[i].xyz), rest = bound_at_rest(), by_hands = pulled();
   float bound = motion_bound(speed, rest, max_shape_displacement, by_hands);
 #ifdef FUSED_FRAME
   starts[i] = vec4(at.xyz, contact_free_bound(speed, rest, by_hands));
@@ -68,6 +58,6 @@ vec4 motion_bound_of_vertex(uint i, float max_shape_displacement) {
   y[i] = at;
   motion_bounds[i] = vec4(at.xyz, bound);
   vertex_displacement[i] = 0.0;
-  return vec4(at.xyz, bound + length(along) * p.frame_s);
+  return vec4(at.xyz, bound);
 }
 #endif

@@ -145,17 +145,21 @@ vec3 back_from(vec3 to, float room) {
   return free + (l > left ? left / l : 1.0) * displacement;
 }
 
-/// The feasible position nearest to `at` and at most `room` [m] from the start; from back_from() if none is found.
-vec3 project_to_feasible(vec3 at, float room) {
-  at = project_on_planes(at);
-  if (min_plane_distance(at) >= -ROUNDING_M && distance(at, start) <= room) return at;
-  return back_from(at, room);
-}
-
-vec3 within(vec3 to, float room) {
+/// `to`, moved to at most `room` [m] from the start and to where the list of self-contact pairs is valid.
+vec3 within(uint i, vec3 to, float room) {
   vec3 displacement = to - start;
   float l = length(displacement);
-  return l > room ? start + (room / l) * displacement : to;
+  if (l > room) to = start + (room / l) * displacement;
+  if (SELF == 0u || frame_state.self_list_one_substep != 0u) return to;
+  return clamp(to, self_bounds[i].low.xyz - ROOM_BESIDE_LAYERS, self_bounds[i].high.xyz + ROOM_BESIDE_LAYERS);
+}
+
+/// The feasible position nearest to `at` and within its limits; from back_from() if none is found.
+vec3 project_to_feasible(uint i, vec3 at, float room) {
+  at = project_on_planes(at);
+  vec3 allowed = within(i, at, room);
+  if (min_plane_distance(at) >= -ROUNDING_M && allowed == at) return at;
+  return back_from(allowed, room);
 }
 
 #include "xpbd/contact/displacement_filter/max_displacement.glsl"
@@ -177,7 +181,7 @@ void end_substep(uint i, vec4 proposed, vec3 at) {
 void project_free(uint i) {
   vec4 proposed = y[i], from = starts[i];
   start = from.xyz;
-  end_substep(i, proposed, proposed.w > 0.0 ? within(proposed.xyz, from.w) : proposed.xyz);
+  end_substep(i, proposed, proposed.w > 0.0 ? within(i, proposed.xyz, from.w) : proposed.xyz);
 }
 
 /// All lanes of a cluster test the vertex's planes together. If it is behind a plane, the first lane projects it.
@@ -191,7 +195,7 @@ void project(uint i, bool valid) {
   start = from.xyz;
   vec3 at = proposed.xyz;
   if (proposed.w > 0.0) {
-    at = within(at, from.w);
+    at = within(i, at, from.w);
   }
   bool behind = PLANES > 0u || SELF != 0u || (SHAPES > 0u && valid && touched[NEEDS_PROJECTION(i)] != 0u);
   if (proposed.w > 0.0 && (behind || at != proposed.xyz)) {
@@ -206,7 +210,7 @@ void project(uint i, bool valid) {
   smallest = cluster_min(smallest);
   if (!valid || cluster_lane() != 0u) return;
   if (behind && SHAPES > 0u) touched[NEEDS_PROJECTION(i)] = 0u;
-  if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(at, from.w);
+  if (proposed.w > 0.0 && !(smallest >= 0.0)) at = project_to_feasible(i, at, from.w);
   end_substep(i, proposed, at);
 }
 

@@ -5,12 +5,10 @@ const float kick_scale = 1.0;
 #endif
 
 /// Limit of a vertex's displacement in the substep [m]: the distance to `to`, plus room for contact corrections. Pairs
-/// of layers within both of their limits are active, so layers have less room: contact may stop or turn the
-/// displacement, and push a vertex out of the contact offset by kRoomBesideLayers of it.
+/// of layers within both of their limits are active, so layers have less room.
 float max_displacement(uint i, vec3 to) {
-  const float kRoomBesideLayers = 0.25;
   float travel = distance(to, starts[i].xyz), room = MARGIN_M;
-  if (SELF != 0u) room = travel + max(0.5 * THICKNESS_M, kRoomBesideLayers * MARGIN_M);
+  if (SELF != 0u) room = travel + ROOM_BESIDE_LAYERS;
   return travel + p.substep_part * frame_state.max_shape_displacement + room;
 }
 
@@ -51,16 +49,18 @@ vec3 clamp_to(uint i, vec3 to, float w, vec3 from, float largest) {
 /// `to`, clamped to vertex i's motion bounds of the frame.
 vec3 clamp_to_bounds(uint i, vec3 to, float w) {
   vec4 bound = motion_bounds[i];
-  if (SELF != 0u) {
-    vec3 drift = (t_end * p.frame_s) * drift_velocity();
-    to = clamp_to(i, to, w, bound.xyz + drift, drift_m() + bound.w * frame_state.self_bound_fraction);
-  }
-  return clamp_to(i, to, w, bound.xyz, (bound.w + 2.0 * drift_m()) * frame_state.bound_fraction);
+  return SHAPES > 0u ? clamp_to(i, to, w, bound.xyz, bound.w * frame_state.bound_fraction) : to;
 }
 
 void clamp_to_motion_bound(uint i, vec4 at) {
   float w = mass_of(i, at.w);
   vec3 to = clamp_to_bounds(i, at.xyz, w);
   y[i] = vec4(to, w);
-  if (!SECOND_SOLVE || response_round < 2u) starts[i].w = max_displacement(i, to);
+  if (SECOND_SOLVE && response_round > 1u) return;
+  starts[i].w = max_displacement(i, to);
+  if (SELF == 0u) return;
+  SelfBounds of_list = self_bounds[i];
+  vec3 low = min(starts[i].xyz, to), high = max(starts[i].xyz, to);
+  if (!(all(greaterThanEqual(low, of_list.low.xyz)) && all(lessThanEqual(high, of_list.high.xyz))))
+    frame_state.self_list_expired = 1u;
 }

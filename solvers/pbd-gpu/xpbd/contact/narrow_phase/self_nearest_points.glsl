@@ -45,7 +45,7 @@ uint contacts;
 void keep_contact(uint c, vec4 normal, vec3 first, vec3 second) {
   if (!(normal.w > 0.0)) return;
   contacts |= 1u << c;
-  found[c] = SelfContact(vec4(normal.xyz, min(THICKNESS_M, normal.w)), vec4(first, 0.0), vec4(second, 0.0));
+  found[c] = SelfContact(vec4(normal.xyz, min(THICKNESS_M, normal.w)), vec4(first.xy, second.xy));
 }
 
 void vertex_contacts(uint own, uvec4 e, uvec4 other, float bound, bool is_first) {
@@ -86,15 +86,17 @@ float approach(uvec4 a, uvec4 b, vec3 origin) {
 
 /// Stores the contacts found. Their order in the buffer is not fixed, and nothing depends on it.
 void store_contacts(uint k) {
-  uint at = atomicAdd(frame_state.self_contact_pairs, 1u);
-  if (at >= CONTACT_CAPACITY) {
+  uint at = atomicAdd(frame_state.self_contact_pairs, 1u), count = uint(bitCount(contacts));
+  uint to = atomicAdd(frame_state.self_contacts, count);
+  if (at >= CONTACT_CAPACITY || to + count > CONTACTS_PER_PAIR * CONTACT_CAPACITY) {
     atomicAdd(diagnostics.overflow, 1u);
     contacts = 0u;
     return;
   }
   self_active[k].link = at;
+  self_active[k].first_contact = to;
   for (uint c = 0u; c < SELF_CONTACTS; ++c)
-    if ((contacts & (1u << c)) != 0u) self_contacts[SELF_CONTACTS * at + c] = found[c];
+    if ((contacts & (1u << c)) != 0u) self_contacts[to++] = found[c];
 }
 
 void query_self(uint k) {
@@ -113,7 +115,7 @@ void query_self(uint k) {
   shape.count = 3u;
   Feature f = nearest_feature();
   vec4 normal = best_normal(f);
-  self_active[k].multipliers = vec4(0.0);
+  for (uint c = 0u; c < 3u; ++c) self_active[k].multipliers[c] = 0.0;
   self_active[k].plane = normal;
   self_pairs[self_active[k].link].bound = max(normal.w, 0.0);
   contacts = 0u;
