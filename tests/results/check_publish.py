@@ -78,7 +78,7 @@ with tempfile.TemporaryDirectory() as scratch:
     (to / "hang/report.md").write_text("changed")
     assert subprocess.run(["sha256sum", "--status", "-c", "SHA256SUMS"], cwd=to, capture_output=True, check=False).returncode == 1
 
-for name in ("h200", "h200-later", "h200-reproduction", "peers"):
+for name in ("h200", "h200-later", "h200-contact", "h200-reproduction", "peers"):
     published = root / "results/reference" / name
     verified(published, "SHA256SUMS")
     listed = {line.split(maxsplit=1)[1] for line in (published / "SHA256SUMS").read_text().splitlines()}
