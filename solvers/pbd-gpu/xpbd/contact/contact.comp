@@ -98,9 +98,9 @@ void run() {
 #include "xpbd/contact/displacement_filter/contact_project.glsl"
 void run() {
   project_all(item(), stride());
-  // For the next substep.
-  if (item() == 0u) frame_state.active_pair_count[1] = frame_state.self_active = 0u;
-  if (item() == 0u) frame_state.self_contact_pairs = frame_state.self_contacts = 0u;
+  if (item() != 0u) return;  // for the next substep
+  frame_state.active_pair_count[1] = frame_state.self_active = 0u;
+  frame_state.self_contact_pairs = frame_state.self_contacts = 0u;
 }
 
 // Self-contact.
