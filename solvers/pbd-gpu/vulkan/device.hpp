@@ -64,7 +64,7 @@ class Device {
   /// Limits of the device, reduced to the profile's if there is one.
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   bool is_software() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-  /// Subgroup size if compute shaders can shuffle values between the lanes; otherwise 0.
+  /// Subgroup size if compute shaders can shuffle values between the lanes, vote and ballot; otherwise 0.
   std::uint32_t shuffled_lanes() const { return shuffled_lanes_; }
   bool is_discrete() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU; }
   DeviceInfo info() const;

@@ -60,7 +60,9 @@ class Xpbd final : public GpuSolver {
  private:
   void build() override {
     if (device_->shuffled_lanes() == 0)
-      throw Error("solver xpbd: this device has no subgroup shuffles in compute shaders (optional in Vulkan 1.1)");
+      throw Error(
+          "solver xpbd: this device lacks subgroup shuffle, vote or ballot in compute shaders (optional in Vulkan "
+          "1.1)");
     const bool chained = needs_chain_solver(scene());
     if (chained && scene().needs.has(Feature::Bend) && !scene().cloth.mesh)
       throw Error(

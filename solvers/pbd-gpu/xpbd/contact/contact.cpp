@@ -5,13 +5,14 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace clothbench::pbd_gpu {
 
-/// Default capacity of the list of candidate pairs: per primitive, minimum and maximum. Crumpled cloths and desks use a
-/// third of it. If the list overflows, the motion bounds of the vertices are reduced.
-constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 16, kMaxPairs = 1u << 20;
-constexpr std::uint64_t kAllPairs = 1u << 18;
+/// Default capacity of the list of candidate pairs: per primitive, minimum and maximum; at most all pairs. Crumpled
+/// cloths and desks use a third of it. The minimum is all pairs of a small scene, where boxes of long oblique triangles
+/// overlap much of the cloth. If the list overflows, the motion bounds of the vertices are reduced.
+constexpr std::uint32_t kPairsPerPrimitive = 64, kMinPairs = 1u << 18, kMaxPairs = 1u << 20;
 /// Capacities of self-contact: candidate pairs, active pairs, pairs with contacts. Ten layers on a ball
 /// (contact/layers) need less than half of the last two.
 constexpr std::uint32_t kPairsPerTriangle = 96, kMaxSelfPairs = 1u << 24, kActivePerTriangle = 80,
@@ -88,9 +89,9 @@ void XpbdContact::add_primitives(const std::vector<std::uint32_t>& particle) {
   const auto count = static_cast<std::uint32_t>(primitives.size());
   std::uint32_t& capacity = constants_.CAPACITY = frame_.tuning()["contact_pairs"].get<std::uint32_t>();
   if (capacity == 0) {
-    // The AABB of a long oblique triangle overlaps much of the cloth, so small scenes get a list of all their pairs.
-    const auto all_pairs = static_cast<std::uint32_t>(std::min(std::uint64_t{count} * constants_.SHAPES, kAllPairs));
-    capacity = std::max(std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs), all_pairs);
+    const std::uint64_t all_pairs = std::uint64_t{count} * std::max(1U, constants_.SHAPES),
+                        wanted = std::clamp(kPairsPerPrimitive * count, kMinPairs, kMaxPairs);
+    capacity = static_cast<std::uint32_t>(std::min(wanted, all_pairs));
   }
   frame_.add_buffer(BIND_PRIMITIVES, "contact primitives", primitives);
   frame_.add_buffer(BIND_VERTEX_TRIANGLES, "contact vertex triangles", all);
@@ -180,7 +181,7 @@ void XpbdContact::add_kernels() {
     add({&end_}, pass(stage, "contact_select_plane", at_once));
   }
   if (with_itself_) {
-    add({&first_round_}, pass(stage, "self_aabbs", constants_.TRIANGLES, TRIANGLES_PER_GROUP));
+    add({&first_round_}, pass(stage, "self_aabbs", constants_.TRIANGLES));
     at_levels(first_round_, pass(stage, "self_broad_phase", std::uint64_t{lanes} * constants_.TRIANGLES, threads), 2);
     add({&first_round_}, pass(stage, "self_max_displacement", constants_.TRIANGLES));
     add({&first_round_}, pass(stage, "self_active_pairs", std::uint64_t{lanes} * constants_.TRIANGLES, threads));

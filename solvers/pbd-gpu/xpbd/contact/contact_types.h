@@ -135,5 +135,5 @@ struct ContactConstants {
   float bound_m;  // maximum of bound_at_rest(): at most half a cell, and the fall in a frame
 };
 #define SHAPES_PER_GROUP 16u
-#define TRIANGLES_PER_GROUP 128u  // in self-contact
+#define TRIANGLES_PER_GROUP 32u  // in self-contact
 #define GROUPS_PER_SUPERGROUP 32u

@@ -3,16 +3,8 @@
 uint lanes_per_triangle() { return min(gl_SubgroupSize, 32u); }
 uint triangle_lane() { return gl_SubgroupInvocationID; }
 /// Bit mask of the lanes with `mine`.
-uint ballot_bits(bool mine) {
-  uint bits = mine ? 1u << triangle_lane() : 0u;
-  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
-  return bits;
-}
-uint from_first_lane(uint value) { return subgroupShuffle(value, 0u); }
-uint sum_over_lanes(uint value) {
-  for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) value += subgroupShuffleXor(value, n);
-  return value;
-}
+uint ballot_bits(bool mine) { return subgroupBallot(mine).x; }
+uint from_first_lane(uint value) { return subgroupBroadcastFirst(value); }
 
 /// Runs BODY once per triangle `t`, in all lanes of the triangle's subgroup.
 #define FOR_EACH_TRIANGLE(t, COUNT, BODY) \

@@ -38,7 +38,7 @@ uint cluster_or(uint bits) {
   for (uint n = LANES_PER_VERTEX >> 1u; n > 0u; n >>= 1u) bits |= subgroupShuffleXor(bits, n);
   return bits;
 }
-#define ANY_IN_SUBGROUP(bits) (LANES_PER_VERTEX > 1u ? subgroup_max(bits) != 0u : (bits) != 0u)
+#define ANY_IN_SUBGROUP(bits) (LANES_PER_VERTEX > 1u ? subgroupAny((bits) != 0u) : (bits) != 0u)
 #else
 #define LANES_PER_PRIMITIVE 1u
 #define PRIMITIVE_LANE 0u

@@ -220,7 +220,7 @@ void project_all(uint first, uint at_once) {
   for (uint i = first; !all_of_them && i < VERTICES; i += at_once)
     if (SHAPES == 0u || touched[PAIR_COUNT(i)] == 0u) project_free(i);
   uint count = all_of_them ? VERTICES : SHAPES == 0u ? 0u : frame_state.touched_vertices;
-  for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
+  for (uint n = first / LANES_PER_VERTEX; subgroupAny(n < count); n += at_once / LANES_PER_VERTEX) {
     bool valid = n < count;
     uint i = n;
     if (valid && !all_of_them) i = touched[n];

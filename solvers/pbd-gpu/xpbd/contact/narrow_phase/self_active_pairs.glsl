@@ -36,9 +36,8 @@ void collect_active_pairs(uint t) {
   uint count = 0u, end = range.x + range.y;
   for (uint first = range.x; first < end; first += kPairUnroll * lanes_per_triangle()) {
     test_pairs(first, end, own, true);
-    [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) count += is_active_pair[n] ? 1u : 0u;
+    [[unroll]] for (uint n = 0u; n < kPairUnroll; ++n) count += uint(bitCount(ballot_bits(is_active_pair[n])));
   }
-  count = sum_over_lanes(count);
   uvec2 slot = uvec2(0u);
   if (triangle_lane() == 0u) {
     slot = reserve(count);

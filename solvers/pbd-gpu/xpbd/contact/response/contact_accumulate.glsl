@@ -115,7 +115,7 @@ void accumulate(uint i, bool valid) {
 void accumulate_all(uint first, uint at_once) {
   bool all_of_them = PLANES > 0u || SELF != 0u;
   uint count = all_of_them ? VERTICES : frame_state.touched_vertices;
-  for (uint n = first / LANES_PER_VERTEX; subgroup_max(n < count ? 1u : 0u) != 0u; n += at_once / LANES_PER_VERTEX) {
+  for (uint n = first / LANES_PER_VERTEX; subgroupAny(n < count); n += at_once / LANES_PER_VERTEX) {
     bool valid = n < count;
     uint i = n;
     if (valid && !all_of_them) i = touched[n];
