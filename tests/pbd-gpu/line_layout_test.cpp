@@ -76,9 +76,9 @@ TEST(Substeps, OfAStripOnAColliderAreMoreInTheFirstFrame) {
   SubstepController pace(strip, nlohmann::json::object(), true);
   for (int run = 0; run < 2; ++run, pace.reset()) {
     EXPECT_EQ(pace.substeps(), 4 * later);
-    pace.next(std::numeric_limits<double>::infinity());
+    pace.next(std::numeric_limits<double>::infinity(), 0);
     EXPECT_EQ(pace.substeps(), 4 * later);
-    pace.next(0);
+    pace.next(0, 0);
     EXPECT_EQ(pace.substeps(), later) << "even if it rests";
   }
 }
@@ -90,29 +90,52 @@ TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
   const double cell_m = fold.cloth.du();
   SubstepController pace(fold, settings, true);
   EXPECT_EQ(pace.substeps(), most) << "no displacement is known before the first frame";
-  pace.next(std::numeric_limits<double>::infinity());
+  pace.next(std::numeric_limits<double>::infinity(), 0);
   EXPECT_EQ(pace.substeps(), most);
-  pace.next(std::numeric_limits<double>::quiet_NaN());
+  pace.next(std::numeric_limits<double>::quiet_NaN(), 0);
   EXPECT_EQ(pace.substeps(), most) << "nor if the displacement is NaN";
   std::vector<int> calm;
   for (int f = 0; f < 24; ++f) {
-    pace.next(cell_m / 25);
+    pace.next(cell_m / 25, 0);
     calm.push_back(pace.substeps());
   }
   EXPECT_TRUE(std::is_sorted(calm.rbegin(), calm.rend()));
   EXPECT_GE(calm.front(), std::lround(0.75 * most));
   EXPECT_EQ(calm.back(), 6) << "a quarter of 24";
-  pace.next(cell_m / 7);
+  pace.next(cell_m / 7, 0);
   EXPECT_EQ(pace.substeps(), 6) << "not quiescent, and not yet fast";
-  pace.next(cell_m / 5);
-  EXPECT_EQ(pace.substeps(), 24);
-  pace.next(100 * cell_m);
+  pace.next(cell_m / 5, 0);
+  EXPECT_EQ(pace.substeps(), 18);
+  pace.next(100 * cell_m, 0);
   EXPECT_EQ(pace.substeps(), most);
-  pace.next(0);
+  pace.next(0, 0);
   pace.reset();
   EXPECT_EQ(pace.substeps(), most);
   EXPECT_FALSE(SubstepController(fold, settings, false).adapts());
   EXPECT_EQ(SubstepController(fold, {{"substeps", 7}}, false).substeps(), 7);
+}
+
+TEST(Substeps, OfASheetOnAColliderGoByItsDisplacementInCellsAndItsStrain) {
+  Scene ball = load_scene("contact/sphere");
+  ball.cloth.columns = ball.cloth.rows = 65;
+  SubstepController pace(ball, nlohmann::json::object(), true);
+  EXPECT_EQ(pace.substeps(), 32) << "half of 64 links";
+  for (const auto& [quarters, strain, substeps] : {std::tuple{1, 0.0, 16},
+                                                   {16, 0.0, 16},
+                                                   {19, 0.0, 20},
+                                                   {30, 0.0, 32},
+                                                   {400, 0.0, 32},
+                                                   {1, 0.07, 32},
+                                                   {1, 0.05, 32},
+                                                   {1, 0.02, 24},
+                                                   {1, 0.02, 18},
+                                                   {1, 0.02, 16}}) {
+    pace.next(0.2499 * quarters * ball.cloth.du(), strain);
+    EXPECT_EQ(pace.substeps(), substeps) << quarters << " quarters of a cell and strain " << strain
+                                         << " in the last frame";
+  }
+  ball.cloth.initial_velocity_m_per_s = {0, -8, 0};
+  EXPECT_EQ(xpbd_substeps(ball, nlohmann::json::object()), 58) << "9.7 m/s on impact";
 }
 
 TEST(Substeps, GrowWithTheSpeedOfWhatComes) {

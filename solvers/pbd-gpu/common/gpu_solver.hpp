@@ -45,8 +45,10 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   /// Records the dispatches and copies of a frame of `dt_s` after one of `last_dt_s`. 0: no frame came before, or the
   /// state was set or a vertex attached or released after it. Without BDF2, `last_dt_s` is always `dt_s`.
   virtual void record_frame(double dt_s, double last_dt_s) = 0;
-  /// Updates the number of substeps; true if the frame must then be recorded again. Called once before each frame.
-  virtual bool update_substep_count(double /*dt_s*/) { return false; }
+  /// Updates the number of substeps. Called once before each frame.
+  virtual void update_substep_count(double /*dt_s*/) {}
+  /// What else the recorded frame depends on. Frames with equal numbers are recorded once.
+  virtual std::vector<double> frame_key() const { return {}; }
   bool reads_back_ = false;  ///< the host reads each frame's result before it submits the next: one frame in flight
   bool uses_bdf2_ = false;   ///< a frame's first substep depends on the last frame's
 
@@ -73,7 +75,14 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
 
   const SolverInfo info_;
   const std::shared_ptr<std::atomic<int>> messages_ = std::make_shared<std::atomic<int>>(0);
-  double dt_s_ = 0, last_dt_s_ = 0;    ///< durations of the recorded frame and of the one before it
+  /// Recorded frames that are not the current one. Recording can take longer than the frame itself.
+  struct KeptFrame {
+    std::unique_ptr<vulkan::Program> program;
+    std::vector<double> copied_B;
+  };
+  std::map<std::vector<double>, KeptFrame> kept_;
+  std::vector<double> key_;            ///< of the current frame: both durations and frame_key()
+  double dt_s_ = 0;                    ///< duration of the recorded frame
   double done_dt_s_ = 0;               ///< duration of the last frame; 0: BDF2 has no frame to continue from
   StepStatus ready_ = StepStatus::Ok;  ///< status of the last reset
   StepStatus last_ = StepStatus::Ok;   ///< status of the last reset or step

@@ -117,9 +117,9 @@ class Xpbd final : public GpuSolver {
     const bool adapts =
         touches && !contact_->has_kinematic_shapes() && grips() == nullptr && !crumpled_ && settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);
-    recorded_substeps_ = controller_.substeps();
-    recorded_lists_ = 1;
-    recorded_last_h_s_ = 0;
+    if (adapts) contact_->add_measurement(cloth.particle);
+    lists_ = 1;
+    start_h_s_ = 0;
     if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());
     plan_.substeps = in_frames(xpbd_substeps(scene(), settings()), scene().time.dt());
     start_x_ = start_v_ = nullptr;
@@ -197,22 +197,22 @@ class Xpbd final : public GpuSolver {
     return {substeps, time_step(uses_bdf2_, dt_s / substeps, 0, scene().material.damping_per_s)};
   }
 
-  bool update_substep_count(double dt_s) override {
-    if (!controller_.adapts()) return false;
-    const double of_list_m = contact_->read_max_displacement_m(fused_frame_ != nullptr), frame_s = scene().time.dt();
-    const double max_displacement_m = of_list_m * recorded_lists_;
+  void update_substep_count(double dt_s) override {
+    if (!controller_.adapts()) return;
+    const XpbdContact::Measured last = contact_->read_measured();
+    const double frame_s = scene().time.dt(), max_displacement_m = last.displacement_m * lists_;
     // Before the first frame no displacement is known.
     const double cloth_m =
         last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
     last_dt_s_ = dt_s;
-    controller_.next(cloth_m);
-    // The recorded commands keep the last frame's numbers of substeps and lists, also after a reset.
-    const int lists = lists_in(dt_s), substeps = controller_.substeps();
-    const bool same_lists = std::exchange(recorded_lists_, lists) == lists;
-    const double last_h_s = std::exchange(last_h_s_, length_of(dt_s));
-    // Fused frames keep the last length on the device, because contact-free frames have another number of substeps.
-    const bool same_start = fused_frame_ || std::exchange(recorded_last_h_s_, last_h_s) == last_h_s;
-    return std::exchange(recorded_substeps_, substeps) != substeps || !same_lists || !same_start;
+    controller_.next(cloth_m, last.strain);
+    lists_ = lists_in(dt_s);
+    start_h_s_ = std::exchange(last_h_s_, length_of(dt_s));
+  }
+
+  /// Fused frames keep the last length on the device, because contact-free frames have another number of substeps.
+  std::vector<double> frame_key() const override {
+    return {static_cast<double>(controller_.substeps()), static_cast<double>(lists_), fused_frame_ ? 0 : start_h_s_};
   }
 
   TimeStep time_step_after(double last_h_s, double dt_s) const {
@@ -233,7 +233,7 @@ class Xpbd final : public GpuSolver {
   void record_frame(double dt_s, double last_dt_s) override {
     const int substeps = substeps_in(dt_s);
     // The first substep differs if the last frame's substeps had a different length, or if there was no last frame.
-    const TimeStep start = time_step_after(uses_bdf2_ ? length_of(last_dt_s) : recorded_last_h_s_, dt_s),
+    const TimeStep start = time_step_after(uses_bdf2_ ? length_of(last_dt_s) : start_h_s_, dt_s),
                    step = time_step_after(length_of(dt_s), dt_s);
     if (start_x_ != nullptr) {
       copy(0, position_buffer(), *start_x_);
@@ -254,6 +254,7 @@ class Xpbd final : public GpuSolver {
       const double list_s = dt_s * (static_cast<double>(count) / substeps);
       if (fused_frame_) {
         fused_frame_->record(list_s, {count, step}, contact_free_steps(list_s, count));
+        if (controller_.adapts()) contact_->record_measurement();
         continue;
       }
       if (contact_) contact_->record_list(list_s, count);
@@ -268,6 +269,7 @@ class Xpbd final : public GpuSolver {
           });
         if (contact_ && chains_) chains_->record_welds();
       }
+      if (controller_.adapts()) contact_->record_measurement();
     }
   }
 
@@ -286,9 +288,9 @@ class Xpbd final : public GpuSolver {
   }
 
   SubstepController controller_;
-  int recorded_substeps_ = 0, recorded_lists_ = 1, contact_free_substeps_ = 0;
-  double last_dt_s_ = 0;                         ///< duration of the last frame; 0: none
-  double last_h_s_ = 0, recorded_last_h_s_ = 0;  ///< of the last substep; of the last one before the recorded frame
+  int lists_ = 1, contact_free_substeps_ = 0;
+  double last_dt_s_ = 0;                 ///< duration of the last frame; 0: none
+  double last_h_s_ = 0, start_h_s_ = 0;  ///< of the last substep; of the last one before the frame
 
   bool crumpled_ = false;
   bool second_solve_ = false;       ///< chains are solved again between the response rounds

@@ -103,6 +103,23 @@ void run() {
   frame_state.self_contact_pairs = frame_state.self_contacts = 0u;
 }
 
+#elif defined(MEASURE)  // at a list's end, one thread per link: what sets the next frame's substeps
+#include "xpbd/contact/subgroup_cluster.glsl"
+void run() {
+  float strain = 0.0;
+  for (uint k = item(); k < links.length(); k += stride())
+    strain = max(strain, distance(x[links[k].a].xyz, x[links[k].b].xyz) / links[k].rest_m - 1.0);
+  uint bits = floatBitsToUint(subgroup_max(strain));
+  if (gl_SubgroupInvocationID == 0u && bits > frame_state.max_strain) atomicMax(frame_state.max_strain, bits);
+  memoryBarrierBuffer();
+  barrier();  // wait for the workgroup's strain before the last workgroup reads the maximum
+  if (gl_LocalInvocationIndex != 0u) return;
+  if (atomicAdd(frame_state.measured, 1u) + 1u < gl_NumWorkGroups.x * gl_NumWorkGroups.y) return;
+  diagnostics.max_strain = max(diagnostics.max_strain, atomicExchange(frame_state.max_strain, 0u));
+  diagnostics.max_displacement = max(diagnostics.max_displacement, frame_state.max_displacement);
+  frame_state.measured = 0u;
+}
+
 // Self-contact.
 #elif defined(SELF_AABBS)  // once per substep, one thread per triangle
 #include "xpbd/contact/broad_phase/self_aabbs.glsl"

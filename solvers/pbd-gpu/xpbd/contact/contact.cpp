@@ -241,11 +241,24 @@ ContactDiagnostics XpbdContact::diagnostics() const {
   return *static_cast<const ContactDiagnostics*>(diagnostics_->mapped());
 }
 
-double XpbdContact::read_max_displacement_m(bool is_single_dispatch) {
+void XpbdContact::add_measurement(const std::vector<std::uint32_t>& particle) {
+  std::vector<StructuralLink> links;
+  const auto of = [&](std::uint32_t v) { return particle.empty() ? v : particle[v]; };
+  for (const Edge& e : edges(scene_.cloth, EdgeKind::Structural))
+    links.push_back({of(e.a), of(e.b), static_cast<float>(e.rest_m)});
+  frame_.add_buffer(BIND_LINKS, "contact links", links);
+  const int stage = frame_.add_stage("ContactMeasure", serves());
+  measure_ = {pass(stage, "contact_measure", std::min<std::uint64_t>(links.size(), kPairThreads))};
+}
+
+void XpbdContact::record_measurement() { run(measure_, {}); }
+
+XpbdContact::Measured XpbdContact::read_measured() {
   auto* f = static_cast<ContactDiagnostics*>(diagnostics_->mapped());
-  const double max_displacement = static_cast<double>(std::bit_cast<float>(f->max_displacement));
-  f->max_displacement = is_single_dispatch ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) : 0;
-  return max_displacement;
+  const auto value = [](std::uint32_t& bits) {
+    return static_cast<double>(std::bit_cast<float>(std::exchange(bits, 0)));
+  };
+  return {value(f->max_displacement), value(f->max_strain)};
 }
 
 void XpbdContact::set_diagnostics(const ContactDiagnostics& to) { std::memcpy(diagnostics_->mapped(), &to, sizeof to); }

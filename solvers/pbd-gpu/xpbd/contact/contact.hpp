@@ -36,6 +36,11 @@ ConvexShapes convex_shapes(const Scene& scene, Vec3 origin_m, const ColliderBuff
 /// If a FusedFrame simulates the frame, only `record_shapes` is called.
 class XpbdContact {
  public:
+  /// The largest displacement of a vertex during a list of pairs [m], and the largest strain of a link at its end.
+  struct Measured {
+    double displacement_m, strain;
+  };
+
   /// Adds buffers, and the kernel that updates kinematic shapes. `particle[v]`: the vertex that vertex v is welded to,
   /// or v; empty: no welds. `colliders`: null if the scene has none. `second_solve`: constraints are also solved
   /// between the response rounds. `growth`: factor on the capacities of the lists of self-contact.
@@ -52,6 +57,10 @@ class XpbdContact {
   void record_before(int s, int substeps, double dt_s);
   /// Records the passes after the solve of substep s. Calls `constraints` between the response rounds.
   void record_after(int s, int substeps, double dt_s, const std::function<void()>& constraints);
+  /// Adds the kernel that measures the largest displacement and strain. `particle`: as in the constructor.
+  void add_measurement(const std::vector<std::uint32_t>& particle);
+  /// Records the measurement. Call after the last substep of a list.
+  void record_measurement();
 
   FeatureSet serves() const;
   bool with_itself() const { return with_itself_; }
@@ -62,8 +71,8 @@ class XpbdContact {
   /// Diagnostics since loading or set_diagnostics(); xpbd/contact/README.md says what each count means.
   ContactDiagnostics diagnostics() const;
   void set_diagnostics(const ContactDiagnostics&);
-  /// Reads and resets the largest displacement of a vertex during a list of pairs [m]; infinity: none was stored.
-  double read_max_displacement_m(bool is_single_dispatch);
+  /// Reads and resets what was measured since the last call.
+  Measured read_measured();
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
 
  private:
@@ -88,7 +97,7 @@ class XpbdContact {
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
   const vulkan::Buffer* diagnostics_ = nullptr;
-  Phase update_shapes_, list_, before_, first_round_, later_round_, end_;
+  Phase update_shapes_, list_, before_, first_round_, later_round_, end_, measure_;
 };
 
 }  // namespace clothbench::pbd_gpu

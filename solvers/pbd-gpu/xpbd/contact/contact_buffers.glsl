@@ -31,6 +31,7 @@ layout(std430, binding = BIND_MOTION_BOUNDS) STATE buffer MotionBounds { vec4 mo
 layout(std430, binding = BIND_VERTEX_DISPLACEMENTS) STATE buffer VertexDisplacements { float vertex_displacement[]; };
 layout(std430, binding = BIND_STARTS) STATE buffer Starts { vec4 starts[]; };  // of the substep; w: max displacement
 layout(std430, binding = BIND_PREDICTED) STATE buffer Proposed { vec4 y[]; };  // w: inverse mass
+layout(std430, binding = BIND_LINKS) readonly buffer StructuralLinks { StructuralLink links[]; };
 // Vertex-triangle adjacency: per vertex the index of its first entry, then entries 4 * triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: count

@@ -58,6 +58,8 @@ struct ContactFrameState {
   uint contact_free;          // 1: the frame was simulated without contact (contact_free_frame.glsl, fused_frame.comp)
   uint contact_possible;      // 1: a pair is active, or a shape is within reach of the cloth's contact-free motion
   uint max_displacement;      // max over vertices [m], bits of a float; before its reset, of the last frame
+  uint max_strain;            // max over links at the list's end, bits of a float
+  uint measured;              // workgroups of MEASURE that have finished
   uint counted[PAIR_LEVELS];  // pairs at each of kFractions of the motion bounds
   float last_h;               // length of the last substep in a fused frame [s]; 0: none
 };
@@ -114,12 +116,19 @@ struct SelfCorrection {
   vec4 velocity_part;  // part of the sum that also changes velocity
 };
 
-/// Counts since loading or reset (0 unless contact failed), and the displacement that sets the next frame's substeps.
+/// A link between two vertices, and its length at rest.
+struct StructuralLink {
+  uint a, b;
+  float rest_m;
+};
+
+/// Counts since loading or reset (0 unless contact failed), and what sets the next frame's substeps.
 struct ContactDiagnostics {
   uint infeasible_vertices;  // vertices without a feasible position at a substep's end
   uint inside;               // pairs that touch at a substep's start
   uint overflow;             // pairs beyond the list's capacity
   uint max_displacement;     // maximum displacement of a vertex in the last frame [m], the bits of a float
+  uint max_strain;           // maximum strain of a link in the last frame, the bits of a float
 };
 
 /// Push constants of the kernels of contact.

@@ -5,7 +5,7 @@ float cluster_min(float value) {
   for (uint n = LANES_PER_VERTEX >> 1u; n > 0u; n >>= 1u) value = min(value, subgroupShuffleXor(value, n));
   return value;
 }
-uint subgroup_max(uint value) {
+float subgroup_max(float value) {
   for (uint n = gl_SubgroupSize >> 1u; n > 0u; n >>= 1u) value = max(value, subgroupShuffleXor(value, n));
   return value;
 }

@@ -92,7 +92,5 @@ void record_max_displacement() {
     if (on_chain(i)) atomicMax(max_displacement, floatBitsToUint(distance(pos[k], x[index_of(vertex(i))].xyz)));
   }
   barrier();  // wait for all displacements before thread 0 reads the maximum
-  if (thread != 0u) return;
-  diagnostics.max_displacement = max_displacement;
-  frame_state.max_displacement = max_displacement;
+  if (thread == 0u) frame_state.max_displacement = max_displacement;
 }

@@ -121,11 +121,8 @@ bool move_grips(uint s) {
   return true;
 }
 
-/// Called by one thread: stores the step length for the next frame, and the displacement that sets its substeps.
-void end_frame() {
-  frame_state.last_h = p.h;
-  diagnostics.max_displacement = frame_state.max_displacement;
-}
+/// Called by one thread: stores the step length for the next frame.
+void end_frame() { frame_state.last_h = p.h; }
 
 #ifdef CONTACT_FREE
 bool substep_with(uint s) {

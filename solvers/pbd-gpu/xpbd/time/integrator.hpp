@@ -59,9 +59,9 @@ int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 /// have strained the cloth in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Chooses the next frame's numbers of substeps and pair lists from the last frame's largest displacement, for cloth in
-/// contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many substeps; most
-/// frames have none.
+/// Chooses the next frame's numbers of substeps and pair lists from the last frame's largest displacement and strain,
+/// for cloth in contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many
+/// substeps; most frames have none.
 class SubstepController {
  public:
   SubstepController() = default;
@@ -74,14 +74,16 @@ class SubstepController {
   /// Number of lists of candidate pairs that such a frame builds, one after another.
   int lists() const { return lists_; }
   /// Call before each frame. `cloth_m`: largest displacement of a vertex in the last frame, scaled to the scene's frame
-  /// duration; infinity: unknown.
-  void next(double cloth_m);
+  /// duration; infinity: unknown. `strain`: largest of a link at its end.
+  void next(double cloth_m, double strain);
 
  private:
   void halve_if_quiescent(double cloth_m);
 
   double max_travel_m_ = 0;  ///< per substep; infinity without colliders and self-contact
-  int base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
+  int slow_ = 1, base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
+  int strained_ = 1;  ///< substeps that the strain of the last frames asks for; from slow_ to base_
+  double max_strain_ = 0;
   bool adapts_ = false, is_strip_ = false;
   double cell_m_ = 0;
   int halvings_ = 0;          ///< how often base_ is halved now

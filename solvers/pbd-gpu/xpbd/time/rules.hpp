@@ -62,7 +62,9 @@ inline constexpr LinkRule kKinematicContact = {{4, 5, 20}, {6, 6, 1.5}};
 inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 // Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
-inline constexpr LinkRule kResting = {{12, 16, 32}, {2.67, 2, 1}};     // Much of the cloth hits the collider at once
+inline constexpr LinkRule kOnColliders = {{12, 16, 32}, {2.67, 2, 1}};  // Much of the cloth hits the collider at once
+// While no vertex of such a sheet travels farther than kTravelCells in a substep, and no link exceeds kMaxStrain
+inline constexpr LinkRule kSlowOnColliders = {{9, 12, 24}, {5.33, 4, 2}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
 // [iterations per substep] A mesh that needs more is solved by chains, which can stretch far too much under its weight
 inline constexpr std::uint32_t kMaxMembraneIterations = 600;
@@ -82,19 +84,28 @@ inline constexpr int kStartFactor = 4;
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 // (strain of random contact scenes)
 inline constexpr PerQuality kTravelMargins = {0.9, 0.7, 0.5};
+// [cells per substep] The same for sheets that hit static colliders. At all resolutions of a sheet on a ball, a quarter
+// of a cell strains links by at most a tenth, half a cell by a third or more (`scale`, with other substeps)
+inline constexpr PerQuality kTravelCells = {0.35, 0.25, 0.12};
 // [thicknesses per substep] Layers may approach by this. Without a limit the pairs of fast layers overflow their list
 inline constexpr double kMaxLayerApproach = 2;
 // [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
-inline constexpr PerQuality kMaxForSpeed = {32, 48, 64};  // [substeps] Maximum cost of a frame
+// [strain of a link at the end of a frame] Above, half as many substeps more in the next one, up to the table's number;
+// at half of it fewer again. Sheets that drape may strain links by a tenth (strict contact, scenarios/README.md)
+inline constexpr PerQuality kMaxStrain = {0.08, 0.06, 0.02};
+// Maximum cost of a frame. Links per substep: only for sheets that hit static colliders
+inline constexpr LinkRule kImpact = {{32, 48, 64}, {1.5, 1, 1}};
 
 // Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
-inline constexpr int kSubstepGrain = 4;         // [substeps] Rounding up to multiples avoids recording each frame again
+// [substeps] Rounding up to multiples of 4, or of an eighth of the table's number if that is more, avoids recording
+// each frame anew
+inline constexpr int kSubstepGrain = 4, kGrainsOfTable = 8;
 inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below this for kQuiescentFrames, cloth is at rest
 // [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;
 inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer frames, cloth may only pass a turning point
-inline constexpr int kMaxHalvings = 2;      // [halvings] Fewer substeps leave more strain
+inline constexpr int kMaxHalvings = 2;      // [halvings of the table's number] Fewer substeps leave more strain
 
 // [cells] Maximum motion per list of pairs with static colliders: above, a desk holds back cloth beside it
 // (contact-11204631-desk)

@@ -22,13 +22,51 @@ std::size_t quality_of(const nlohmann::json& settings) {
   return quality == "fast" ? 0 : quality == "default" ? 1 : 2;
 }
 
-/// Maximum travel per substep [m] of a kinematic collider or falling cloth; with `layers` also of each of two layers.
-double max_travel_m(const Scene& scene, std::size_t quality, bool layers) {
+/// The first row of xpbd/time/README.md that applies. `touches`: with contact in this frame.
+const LinkRule& link_rule(const Scene& scene, const nlohmann::json& settings, bool touches) {
+  const bool touched = touches || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
+  const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
+  const bool shears = scene.needs.has(Feature::Shear), grips = !scene.grips.vertices.empty();
+  const bool waves =
+      grips && scene.material.membrane_stiffness_N_per_m.has_value() && grip_strain(scene) <= rules::kMaxGripStrain;
+  if (!touched) return rules::kNoContact;
+  if (driven && needs_chain_solver(scene)) return rules::kKinematicContactChains;
+  if (driven) return touches ? rules::kKinematicContact : rules::kReleased;
+  if (is_tethered(scene, settings)) return rules::kTethered;
+  if (touches && !grips && shears) return rules::kOnColliders;
+  if (!shears) return waves ? rules::kPulledStrip : rules::kStrip;
+  if (!grips) return rules::kPinnedSheet;
+  return grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet : rules::kAttachedSheet;
+}
+
+/// True for a sheet that nothing but static colliders or itself touches or holds.
+bool is_on_colliders(const Scene& scene, const nlohmann::json& settings) {
+  return !is_contact_free(scene) && &link_rule(scene, settings, true) == &rules::kOnColliders;
+}
+
+double substeps_of(const LinkRule& rule, const Scene& scene, std::size_t quality) {
+  return std::max(rule.smallest[quality], links_of_longer_side(scene.cloth) / rule.links_a_substep[quality]);
+}
+
+/// Maximum travel per substep [m] of a kinematic collider or of cloth; with `layers` also of each of two layers.
+double max_travel_m(const Scene& scene, const nlohmann::json& settings, bool layers) {
+  const std::size_t quality = quality_of(settings);
+  const Cloth& c = scene.cloth;
   double travel = std::numeric_limits<double>::infinity();
-  for (const Collider& c : scene.colliders) travel = std::min(travel, rules::kTravelMargins[quality] * c.margin_m);
+  for (const Collider& shape : scene.colliders)
+    travel = std::min(travel, rules::kTravelMargins[quality] * shape.margin_m);
+  if (!scene.colliders.empty() && is_on_colliders(scene, settings))
+    travel = rules::kTravelCells[quality] * (c.mesh ? c.mesh->edge_m : std::max(c.du(), c.dv()));
   if (layers && scene.needs.has(Feature::SelfCollision))
-    travel = std::min(travel, rules::kMaxLayerApproach / 2 * scene.cloth.self_collision.thickness_m);
+    travel = std::min(travel, rules::kMaxLayerApproach / 2 * c.self_collision.thickness_m);
   return travel;
+}
+
+/// Maximum number of substeps that fast motion in contact may cause.
+double max_for_speed(const Scene& scene, const nlohmann::json& settings) {
+  const std::size_t quality = quality_of(settings);
+  return is_on_colliders(scene, settings) ? substeps_of(rules::kImpact, scene, quality)
+                                          : rules::kImpact.smallest[quality];
 }
 
 /// Maximum speed of colliders; for a user's hand, at least an assumed speed.
@@ -39,10 +77,10 @@ double speed_m_per_s(const Scene& scene) {
 }
 
 /// Substeps that fast motion in contact needs, without a maximum.
-double wanted_for_speed(const Scene& scene, std::size_t quality) {
+double wanted_for_speed(const Scene& scene, const nlohmann::json& settings) {
   const double speed =
       std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
-  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, quality, false) - 1e-9));
+  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, settings, false) - 1e-9));
 }
 
 /// Substeps that limit the approach of two layers. Assumed speed: the sum of the initial speed, the speed of a fall by
@@ -56,35 +94,26 @@ double substeps_for_layers(const Scene& scene) {
   return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
-/// Substeps by the rules of xpbd/time/README.md. `touches`: with contact in this frame; `fast`: with fast motion.
-int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, bool fast) {
+/// What a number of substeps is for: slow motion on colliders; any motion, by the table; also the scene's fastest
+/// motion.
+enum class Motion { Slow, Any, Fastest };
+
+/// Substeps by the rules of xpbd/time/README.md. `touches`: with contact in this frame.
+int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool touches, Motion motion) {
   if (const int given = settings.value("substeps", 0); given > 0) return given;
   const double links = links_of_longer_side(scene.cloth);
   const std::size_t k = quality_of(settings);
-  const bool touched = touches || !(scene.needs & FeatureSet{Feature::Pins, Feature::MovingPins}).empty();
-  const bool tethered = is_tethered(scene, settings);
-  const auto& grips = scene.grips.vertices;
+  const LinkRule& rule = link_rule(scene, settings, touches);
   const bool driven = !(scene.needs & FeatureSet{Feature::Capsules, Feature::MovingMesh}).empty();
-  const bool shears = scene.needs.has(Feature::Shear), laid = touches && grips.empty();
-  const bool waves = !grips.empty() && scene.material.membrane_stiffness_N_per_m.has_value() &&
-                     grip_strain(scene) <= rules::kMaxGripStrain;
-  const LinkRule& rule = !touched         ? rules::kNoContact
-                         : driven         ? (needs_chain_solver(scene) ? rules::kKinematicContactChains
-                                             : touches                 ? rules::kKinematicContact
-                                                                       : rules::kReleased)
-                         : tethered       ? rules::kTethered
-                         : laid && shears ? rules::kResting
-                         : !shears        ? (waves ? rules::kPulledStrip : rules::kStrip)
-                         : grips.empty()  ? rules::kPinnedSheet
-                         : grip_strain(scene) > rules::kMaxGripStrain ? rules::kPulledSheet
-                                                                      : rules::kAttachedSheet;
-  double per_frame = std::max(rule.smallest[k], links / rule.links_a_substep[k]);
+  const bool shears = scene.needs.has(Feature::Shear), laid = touches && scene.grips.vertices.empty();
+  const bool slow = motion == Motion::Slow && &rule == &rules::kOnColliders, fast = motion == Motion::Fastest;
+  double per_frame = substeps_of(slow ? rules::kSlowOnColliders : rule, scene, k);
   if (needs_chain_solver(scene)) per_frame *= substeps_for_short_links(scene);
   const double longer_m = std::max(scene.cloth.width_m, scene.cloth.height_m),
                swing = scene.time.dt() * std::sqrt(norm(scene.gravity_m_per_s2) / longer_m);
   if (swing > rules::kMaxSwing && ((is_held(scene) && is_contact_free(scene)) || (laid && !driven && shears)))
     per_frame *= swing / rules::kMaxSwing;
-  if (laid && !driven && !shears && !tethered)
+  if (laid && !driven && !shears && !is_tethered(scene, settings))
     per_frame = std::max(per_frame, std::ceil(swing / rules::kMaxSlidingStep[k] - 1e-9));
   if (scene.needs.has(Feature::SelfCollision) && laid) per_frame *= rules::kLayersFactor;
   if (scene.needs.has(Feature::SelfCollision) && fast) per_frame = std::max(per_frame, substeps_for_layers(scene));
@@ -92,7 +121,7 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
     if (const double needed = std::ceil(substeps_for_splitting(scene));
         needed <= std::max(rules::kMaxSplittingSubsteps[k], links / 6))
       per_frame = std::max(per_frame, needed);
-  const double for_speed = fast ? std::min(rules::kMaxForSpeed[k], wanted_for_speed(scene, k)) : 1;
+  const double for_speed = fast ? std::min(max_for_speed(scene, settings), wanted_for_speed(scene, settings)) : 1;
   const auto n = std::clamp(std::max(std::lround(per_frame), std::lround(for_speed)), 1L, 4096L);
   return touches ? static_cast<int>(n) : substeps_for_membrane(scene, static_cast<int>(n));
 }
@@ -100,23 +129,26 @@ int substeps_by_rules(const Scene& scene, const nlohmann::json& settings, bool t
 }  // namespace
 
 int xpbd_substeps(const Scene& scene, const nlohmann::json& settings) {
-  return substeps_by_rules(scene, settings, !is_contact_free(scene), true);
+  return substeps_by_rules(scene, settings, !is_contact_free(scene), Motion::Fastest);
 }
 
 int uncapped_substeps_if_capped(const Scene& scene, const nlohmann::json& settings) {
   if (settings.value("substeps", 0) > 0 || is_contact_free(scene)) return 0;
-  const double wanted = wanted_for_speed(scene, quality_of(settings));
+  const double wanted = wanted_for_speed(scene, settings);
   return wanted > xpbd_substeps(scene, settings) ? static_cast<int>(std::min(wanted, 1e6)) : 0;
 }
 
 int contact_free_substeps(const Scene& scene, const nlohmann::json& settings) {
-  return std::min(xpbd_substeps(scene, settings), substeps_by_rules(scene, settings, false, false));
+  return std::min(xpbd_substeps(scene, settings), substeps_by_rules(scene, settings, false, Motion::Any));
 }
 
 SubstepController::SubstepController(const Scene& scene, const nlohmann::json& settings, bool adapts)
-    : max_travel_m_(max_travel_m(scene, quality_of(settings), true)), adapts_(adapts) {
+    : max_travel_m_(max_travel_m(scene, settings, true)), adapts_(adapts) {
   max_ = xpbd_substeps(scene, settings);
-  base_ = std::min(max_, substeps_by_rules(scene, settings, !is_contact_free(scene), false));
+  const bool touches = !is_contact_free(scene);
+  base_ = std::min(max_, substeps_by_rules(scene, settings, touches, Motion::Any));
+  slow_ = std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow));
+  max_strain_ = rules::kMaxStrain[quality_of(settings)];
   cell_m_ = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
   is_strip_ = adapts && !scene.needs.has(Feature::Shear);
   reset();
@@ -125,26 +157,31 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
 void SubstepController::reset() {
   now_ = is_strip_ ? rules::kStartFactor * max_ : max_;
   lists_ = 1;
+  strained_ = slow_;
   halvings_ = quiescent_frames_ = 0;
 }
 
-void SubstepController::next(double cloth_m) {
+void SubstepController::next(double cloth_m, double strain) {
   if (is_strip_) {
     if (!std::isinf(cloth_m)) now_ = max_;
     return;
   }
   halve_if_quiescent(cloth_m);
-  const int smallest = std::max(1, (base_ + (1 << halvings_) - 1) >> halvings_);
+  if (!(strain <= max_strain_))
+    strained_ = std::min(base_, 3 * std::max(strained_, now_) / 2);
+  else if (strain <= 0.5 * max_strain_)
+    strained_ = std::max(slow_, 3 * strained_ / 4);
+  const int smallest = std::min(strained_, (base_ + (1 << halvings_) - 1) >> halvings_);
   const double wanted = std::ceil(cloth_m / max_travel_m_ - 1e-9);
-  constexpr double kGrain = rules::kSubstepGrain;
-  now_ = wanted < max_ ? std::clamp(static_cast<int>(kGrain * std::ceil(wanted / kGrain)), smallest, max_) : max_;
-  if (wanted <= base_) now_ = smallest;
+  const double grain = std::max(rules::kSubstepGrain, base_ / rules::kGrainsOfTable);
+  now_ = wanted < max_ ? std::clamp(static_cast<int>(grain * std::ceil(wanted / grain)), smallest, max_) : max_;
+  if (wanted <= smallest) now_ = smallest;
   const int most = std::max(1, now_ / rules::kMinSubstepsPerList);
   const double lists = std::ceil(cloth_m / cell_m_ / rules::kCellsPerList);
   lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also if cloth_m is NaN
 }
 
-/// Cloth at rest uses half of base_, and later a quarter, until it moves.
+/// Cloth at rest uses at most half of base_, and later a quarter, until it moves.
 void SubstepController::halve_if_quiescent(double cloth_m) {
   const double cells = cloth_m / cell_m_;
   quiescent_frames_ = cells <= rules::kQuiescent ? quiescent_frames_ + 1 : 0;
