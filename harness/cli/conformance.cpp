@@ -31,7 +31,7 @@ void run(const ConformanceArguments& a, Console& console) {
       if (!console.json) fmt::print("{}", conformance_text(entry->info.name, row));
       std::fflush(stdout);
     }
-  if (failed > 0) console.exit_code = ExitCode::CheckFailed;
+  if (failed > 0 || passed == 0) console.exit_code = ExitCode::CheckFailed;
   if (console.json) return Console::print(all);
   fmt::print("{} scenes pass, {} fail, {} skipped\n", passed, failed, skipped);
   if (passed + failed == 0) fmt::print("nothing was tested: the solver supports none of these scenes\n");
