@@ -1,5 +1,7 @@
 // Contact of `xpbd` by planes: nothing passes through in any step, by the harness's metrics; friction; short lists.
 
+#include <set>
+
 #include "contact_check.hpp"
 #include "contact_scenes.hpp"
 #include "mesh_scene.hpp"
@@ -132,11 +134,31 @@ TEST_F(XpbdContacts, TakeTheSameSubstepsAfterAReset) {
   const auto solver = make("xpbd");
   solver->load(s);
   ClothState ends[2];
-  for (ClothState& end : ends) {
-    for (int f = 0; f < s.time.frames(); ++f) end = after_frame(*solver, s, f);
+  std::set<const void*> recorded[2];
+  for (int run = 0; run < 2; ++run) {
+    for (int f = 0; f < s.time.frames(); ++f) {
+      ends[run] = after_frame(*solver, s, f);
+      recorded[run].insert(&dynamic_cast<GpuSolver&>(*solver).frame_program());
+    }
     solver->reset();
   }
   EXPECT_EQ(ends[0].position, ends[1].position) << "otherwise a frame recorded in the first run was submitted again";
+  EXPECT_GT(recorded[0].size(), 2u) << "the numbers of substeps differ";
+  EXPECT_EQ(recorded[0], recorded[1]) << "no frame is recorded twice";
+}
+
+TEST_F(XpbdContacts, TakeMoreSubstepsWhileALinkIsStrained) {
+  std::size_t commands[2];
+  for (const int strained : {0, 1}) {
+    Scene s = with_collider(sheet(12, 10), half_space({0, -0.02, 0}, {0, 1, 0}, kContactFriction));
+    s.cloth.axis_u = {strained != 0 ? 1.07 : 1, 0, 0};
+    s.material.membrane_stiffness_N_per_m = 1e-3;
+    const auto solver = make("xpbd");
+    solver->load(s);
+    for (int f = 0; f < 2; ++f) after_frame(*solver, s, f);
+    commands[strained] = dynamic_cast<GpuSolver&>(*solver).frame_program().recorded().size();
+  }
+  EXPECT_GT(commands[1], commands[0]);
 }
 
 /// Two triangles in the plane z = `at`, 4 m wide, moved along z by a single joint.

@@ -12,7 +12,7 @@ namespace clothbench::pbd_gpu {
 /// A frame that takes longer has timed out. Concurrent processes share a GPU; software devices are slow.
 constexpr double kTimeout_s = 30, kSoftwareTimeout_s = 300;
 
-/// Recorded frames with other durations or numbers of substeps that are kept.
+/// Recorded frames with other numbers of substeps that are kept.
 constexpr std::size_t kMaxKeptFrames = 64;
 
 /// An application shows one frame while the next is computed, so it has two.
@@ -82,16 +82,20 @@ void GpuSolver::record(double dt_s, double last_dt_s) {
   std::vector<double> key = frame_key();
   key.insert(key.end(), {dt_s, last_dt_s});
   if (key == key_) return;
+  // Other durations than the scene's seldom come twice.
+  if (!key_.empty() && dt_s_ == scene_->time.dt()) kept_[key_] = {std::move(frame_), copied_B_};
+  if (kept_.size() > kMaxKeptFrames) kept_.erase(kept_.begin());
   dt_s_ = dt_s;
-  if (kept_.size() >= kMaxKeptFrames) kept_.clear();
-  if (!key_.empty()) kept_[key_] = {std::move(frame_), copied_B_};
   key_ = key;
   if (const auto known = kept_.extract(key); known) {
     frame_ = std::move(known.mapped().program);
     copied_B_ = known.mapped().copied_B;
     return;
   }
-  frame_ = std::make_unique<vulkan::Program>(device_);
+  if (frame_)
+    frame_->clear();
+  else
+    frame_ = std::make_unique<vulkan::Program>(device_);
   copied_B_.assign(plan_.stages.size(), 0);
   if (counters_ != nullptr) frame_->copy(0, *zeros_, *counters_);
   record_frame(dt_s, last_dt_s);

@@ -24,6 +24,7 @@ class Program {
     steps_.push_back({stage, &kernel, groups, std::move(bytes), nullptr, nullptr});
   }
   void copy(int stage, const Buffer& from, const Buffer& to) { steps_.push_back({stage, nullptr, {}, {}, &from, &to}); }
+  void clear() { steps_.clear(); }
 
   /// Records once; `run` submits the same commands repeatedly. With `time_stages` a timestamp follows every step;
   /// otherwise there are only a first and a last one.
