@@ -84,8 +84,8 @@ inline constexpr int kStartFactor = 4;
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 // (strain of random contact scenes)
 inline constexpr PerQuality kTravelMargins = {0.9, 0.7, 0.5};
-// [cells per substep] The same for sheets that hit static colliders. At all resolutions of a sheet on a ball, a quarter
-// of a cell strains links by at most a tenth, half a cell by a third or more (`scale`, with other substeps)
+// [cells per substep] The same for sheets that hit static colliders. A quarter of a cell strains links by less than a
+// tenth, half a cell by a third or more (contact/sphere with 64 x 64 or 128 x 128 vertices and constant `substeps`)
 inline constexpr PerQuality kTravelCells = {0.35, 0.25, 0.12};
 // [thicknesses per substep] Layers may approach by this. Without a limit the pairs of fast layers overflow their list
 inline constexpr double kMaxLayerApproach = 2;

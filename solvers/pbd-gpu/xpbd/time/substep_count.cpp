@@ -94,8 +94,7 @@ double substeps_for_layers(const Scene& scene) {
   return std::ceil(speed * scene.time.dt() / (rules::kMaxLayerApproach * c.self_collision.thickness_m) - 1e-9);
 }
 
-/// What a number of substeps is for: slow motion on colliders; any motion, by the table; also the scene's fastest
-/// motion.
+/// The motion for which substeps must suffice: slow motion on colliders; any motion, by the table; the scene's fastest.
 enum class Motion { Slow, Any, Fastest };
 
 /// Substeps by the rules of xpbd/time/README.md. `touches`: with contact in this frame.
