@@ -83,59 +83,68 @@ TEST(Substeps, OfAStripOnAColliderAreMoreInTheFirstFrame) {
   }
 }
 
-TEST(Substeps, OfAFrameGoByWhatTheLastOneHad) {
+TEST(Substeps, OfAFrameAreFewerWhileTheClothRests) {
   const Scene fold = load_scene("contact/self-fold");
   const nlohmann::json settings = nlohmann::json::object();
-  const int most = xpbd_substeps(fold, settings);
   const double cell_m = fold.cloth.du();
   SubstepController pace(fold, settings, true);
-  EXPECT_EQ(pace.substeps(), most) << "no displacement is known before the first frame";
+  EXPECT_EQ(pace.substeps(), 18);
   pace.next(std::numeric_limits<double>::infinity(), 0);
-  EXPECT_EQ(pace.substeps(), most);
-  pace.next(std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_EQ(pace.substeps(), most) << "nor if the displacement is NaN";
+  EXPECT_EQ(pace.substeps(), 18);
   std::vector<int> calm;
   for (int f = 0; f < 24; ++f) {
     pace.next(cell_m / 25, 0);
     calm.push_back(pace.substeps());
   }
   EXPECT_TRUE(std::is_sorted(calm.rbegin(), calm.rend()));
-  EXPECT_GE(calm.front(), std::lround(0.75 * most));
+  EXPECT_EQ(calm.front(), 18);
   EXPECT_EQ(calm.back(), 6) << "a quarter of 24";
   pace.next(cell_m / 7, 0);
   EXPECT_EQ(pace.substeps(), 6) << "not quiescent, and not yet fast";
   pace.next(cell_m / 5, 0);
   EXPECT_EQ(pace.substeps(), 18);
-  pace.next(100 * cell_m, 0);
-  EXPECT_EQ(pace.substeps(), most);
-  pace.next(0, 0);
-  pace.reset();
-  EXPECT_EQ(pace.substeps(), most);
+  EXPECT_EQ(pace.lists(), 1);
+  pace.next(5 * cell_m, 0);
+  EXPECT_EQ(pace.lists(), 3) << "one for two cells";
+  for (const double unknown : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    pace.next(unknown, 0);
+    EXPECT_EQ(pace.lists(), 4) << "one for four substeps";
+  }
   EXPECT_FALSE(SubstepController(fold, settings, false).adapts());
   EXPECT_EQ(SubstepController(fold, {{"substeps", 7}}, false).substeps(), 7);
 }
 
-TEST(Substeps, OfASheetOnAColliderGoByItsDisplacementInCellsAndItsStrain) {
+TEST(Substeps, OfASheetOnAColliderGoByItsStrain) {
   Scene ball = load_scene("contact/sphere");
   ball.cloth.columns = ball.cloth.rows = 65;
   SubstepController pace(ball, nlohmann::json::object(), true);
-  EXPECT_EQ(pace.substeps(), 32) << "half of 64 links";
-  for (const auto& [quarters, strain, substeps] : {std::tuple{1, 0.0, 16},
-                                                   {16, 0.0, 16},
-                                                   {19, 0.0, 20},
-                                                   {30, 0.0, 32},
-                                                   {400, 0.0, 32},
-                                                   {1, 0.07, 32},
-                                                   {1, 0.05, 32},
-                                                   {1, 0.02, 24},
-                                                   {1, 0.02, 18},
-                                                   {1, 0.02, 16}}) {
-    pace.next(0.2499 * quarters * ball.cloth.du(), strain);
-    EXPECT_EQ(pace.substeps(), substeps) << quarters << " quarters of a cell and strain " << strain
-                                         << " in the last frame";
+  EXPECT_EQ(pace.substeps(), 16) << "a quarter of 64 links";
+  EXPECT_EQ(pace.max_substeps(), 64);
+  for (const auto& [strain, substeps] :
+       {std::pair{0.0, 16}, {0.09, 24}, {0.09, 32}, {0.2, 32}, {0.07, 32}, {0.05, 24}, {0.05, 18}, {0.05, 16}}) {
+    EXPECT_FALSE(pace.repeats(strain));
+    pace.next(ball.cloth.du(), strain);
+    EXPECT_EQ(pace.substeps(), substeps) << "after strain " << strain;
   }
-  ball.cloth.initial_velocity_m_per_s = {0, -8, 0};
-  EXPECT_EQ(xpbd_substeps(ball, nlohmann::json::object()), 58) << "9.7 m/s on impact";
+}
+
+TEST(Substeps, OfAFrameAreDoubledWhileThatReducesAStrainTooLarge) {
+  Scene ball = load_scene("contact/sphere");
+  ball.cloth.columns = ball.cloth.rows = 65;
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [strains, substeps] :
+       {std::pair{std::vector{0.24}, 16}, {{0.26, 0.1}, 32}, {{inf, 1.0, 0.3}, 64}, {{0.4, 0.31}, 32}, {{nan}, 16}}) {
+    SubstepController pace(ball, nlohmann::json::object(), true);
+    pace.next(0, 0);
+    for (std::size_t k = 0; k < strains.size(); ++k) EXPECT_EQ(pace.repeats(strains[k]), k + 1 < strains.size());
+    EXPECT_EQ(pace.substeps(), substeps);
+    const double last = strains.back();
+    pace.next(0, last);
+    EXPECT_EQ(pace.repeats(1.4 * last), 1.4 * last > 0.25 && last <= 0.25) << "tolerated where repeats do not help";
+    EXPECT_EQ(pace.repeats(0.1), false);
+    pace.next(0, 0);
+    EXPECT_TRUE(pace.repeats(0.26)) << "not tolerated any longer";
+  }
 }
 
 TEST(Substeps, GrowWithTheSpeedOfWhatComes) {

@@ -52,12 +52,12 @@ const int BIND_POSITIONS = 0, BIND_VELOCITIES = 1, BIND_POSITION_COMPENSATION = 
 // HAS_KINEMATIC: 1 if any convex shape is kinematic. CAPACITY: of the list of candidate pairs. GROUPS: groups of
 // SHAPES_PER_GROUP neighbouring convex shapes, each with a box. MARGIN_BITS: the maximum margin [m], as the bits of a
 // float; likewise MIN_SEPARATION_BITS: of planes from shapes and layers, and ROUNDING_BITS: error of positions.
-// LANES_PER_VERTEX: lanes that process a vertex together.
+// LANES_PER_VERTEX: lanes that process a vertex together. ROUNDS: of response after the constraint solve.
 #define CONTACT_CONSTANTS(C) \
   C(25, uint, PLANES, 0u) C(26, uint, MAX_POINTS, 3u) C(27, uint, HAS_KINEMATIC, 0u) C(28, uint, VERTICES, 4u) \
   C(29, uint, TRIANGLES, 2u) C(30, uint, CAPACITY, 0u) C(31, uint, SHAPES, 0u) C(32, uint, GROUPS, 0u) \
   C(20, uint, MIN_SEPARATION_BITS, 0u) C(21, uint, ROUNDING_BITS, 0u) C(33, uint, MARGIN_BITS, 0u) \
-  C(34, uint, LANES_PER_VERTEX, 1u)
+  C(34, uint, LANES_PER_VERTEX, 1u) C(22, uint, ROUNDS, 1u)
 // Only if each pass has its own kernel. SELF: 1 with self-contact; then SELF_CAPACITY, ACTIVE_CAPACITY,
 // CONTACT_CAPACITY: capacities of its lists of candidate pairs, active pairs and pairs with contacts; THICKNESS_BITS,
 // SELF_FRICTION_BITS: bits of floats. GRIPS: attachable vertices; the same constant as in LINE_CONSTANTS.

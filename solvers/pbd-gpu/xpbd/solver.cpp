@@ -31,18 +31,40 @@ class Xpbd final : public GpuSolver {
              "contact: candidate pairs beyond the list's capacity, which solver.tuning.contact_pairs sets"}};
   }
 
-  /// A frame whose pairs do not fit their lists is repeated with longer ones, if the device has room for them.
+  /// A frame is repeated if a link is strained too far, with more substeps, or if pairs do not fit their lists, with
+  /// longer ones, if the device has room for them.
   StepStatus step(const FrameInput& frame) override {
     const ContactDiagnostics before = contact_ ? contact_->diagnostics() : ContactDiagnostics{};
+    repeated_.clear();
     StepStatus status = GpuSolver::step(frame);
-    while (status == StepStatus::Ok && start_x_ != nullptr && growth_ < kMaxGrowth &&
-           contact_->diagnostics().overflow > before.overflow) {
-      const std::uint32_t growth = 2 * growth_;
-      status = return_to_start(growth, before);
+    while (status == StepStatus::Ok && !saved_.empty()) {
+      const bool grows = can_grow_ && growth_ < kMaxGrowth && contact_->diagnostics().overflow > before.overflow;
+      measured_ = contact_->read_measured();
+      if (!grows && !controller_.repeats(measured_.strain)) break;
+      repeated_.push_back(GpuSolver::last_cost());
+      const std::uint32_t growth = grows ? 2 * growth_ : growth_;
+      status = grows ? return_to_start(growth, before) : go_back(before);
       if (growth_ < growth) break;
+      repeats_ = !grows;
       if (status == StepStatus::Ok) status = GpuSolver::step(frame);
+      repeats_ = false;
     }
     return status;
+  }
+
+  /// All attempts of the last frame.
+  FrameCost last_cost() const override {
+    FrameCost all = GpuSolver::last_cost();
+    const auto add = [](std::vector<double>& to, const std::vector<double>& more) {
+      for (std::size_t k = 0; k < std::min(to.size(), more.size()); ++k) to[k] += more[k];
+    };
+    for (const FrameCost& one : repeated_) {
+      all.device_s += one.device_s;
+      add(all.stage_device_s, one.stage_device_s);
+      add(all.stage_read_B, one.stage_read_B);
+      add(all.stage_write_B, one.stage_write_B);
+    }
+    return all;
   }
 
   void reset() override {
@@ -53,6 +75,7 @@ class Xpbd final : public GpuSolver {
     }
     GpuSolver::reset();
     if (contact_) contact_->set_diagnostics({});
+    measured_ = {};
     last_dt_s_ = last_h_s_ = 0;
     controller_.reset();
   }
@@ -86,8 +109,10 @@ class Xpbd final : public GpuSolver {
     if (crumpled_) break_symmetry(scene(), w, start);
     const Vec3 origin = scene().cloth.center_m;
     add_state(start, w, origin, 1);
-    add_buffer(BIND_POSITION_COMPENSATION, "position compensation", position_buffer().bytes());
-    add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", position_buffer().bytes());
+    const vulkan::Buffer &rounding_x =
+                             add_buffer(BIND_POSITION_COMPENSATION, "position compensation", position_buffer().bytes()),
+                         &rounding_v =
+                             add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", position_buffer().bytes());
     if (touches) add_colliders(origin, true);
     add_grips(origin, 1);
     add_history();
@@ -121,13 +146,14 @@ class Xpbd final : public GpuSolver {
     lists_ = 1;
     start_h_s_ = 0;
     if (fused_frame_) contact_free_substeps_ = contact_free_substeps(scene(), settings());
-    plan_.substeps = in_frames(xpbd_substeps(scene(), settings()), scene().time.dt());
-    start_x_ = start_v_ = nullptr;
-    if (contact_ && contact_->with_itself() && scene().motion.empty()) {
-      start_x_ = &add_buffer(kUnbound, "positions at the start", position_buffer().bytes());
-      start_v_ = &add_buffer(kUnbound, "velocities at the start", position_buffer().bytes());
-    }
-    reads_back_ = adapts || start_x_ != nullptr;
+    plan_.substeps = in_frames(controller_.max_substeps(), scene().time.dt());
+    saved_.clear();
+    can_grow_ = contact_ && contact_->with_itself() && scene().motion.empty();
+    if (adapts || can_grow_)
+      for (const vulkan::Buffer* b :
+           {&position_buffer(), &velocity_buffer(), &rounding_x, &rounding_v, &contact_->frame_state()})
+        saved_.emplace_back(b, &add_buffer(kUnbound, b->name() + " at the start", b->bytes()));
+    reads_back_ = !saved_.empty();
     if (grips() != nullptr && !fused_frame_ && !(lines_ && lines_->moves_grips()))
       move_grips_ = grips()->add_kernel(position_buffer());
     if (const FeatureSet near = scene().needs & kColliderFeatures; !touches && !near.empty()) {
@@ -136,18 +162,23 @@ class Xpbd final : public GpuSolver {
     }
   }
 
+  /// Sets the state to the frame's start, and the diagnostics.
+  StepStatus go_back(const ContactDiagnostics& diagnostics) {
+    vulkan::Program back(device_);
+    for (const auto& [buffer, saved] : saved_) back.copy(0, *saved, *buffer);
+    back.record(false);
+    contact_->set_diagnostics(diagnostics);
+    return run(back);
+  }
+
   /// Sets the state to the frame's start, lists of pairs to `growth` times their first size, and the diagnostics. If
   /// the device has no room, lists and diagnostics stay: the frame is lost, and its overflow ends the run.
   StepStatus return_to_start(std::uint32_t growth, ContactDiagnostics diagnostics) {
-    vulkan::Program back(device_);
-    back.copy(0, *start_x_, position_buffer());
-    back.copy(0, *start_v_, velocity_buffer());
-    back.record(false);
-    if (const StepStatus status = run(back); status != StepStatus::Ok) return status;
+    const ContactDiagnostics overflowed = contact_->diagnostics();
+    if (const StepStatus status = go_back(diagnostics); status != StepStatus::Ok) return status;
     ClothState start;
     read_state(start);
     grows_ = true;
-    const ContactDiagnostics overflowed = contact_->diagnostics();
     const std::uint32_t last = std::exchange(growth_, growth);
     try {
       load(scene());
@@ -199,14 +230,17 @@ class Xpbd final : public GpuSolver {
 
   void update_substep_count(double dt_s) override {
     if (!controller_.adapts()) return;
-    const XpbdContact::Measured last = contact_->read_measured();
-    const double frame_s = scene().time.dt(), max_displacement_m = last.displacement_m * lists_;
-    // Before the first frame no displacement is known.
-    const double cloth_m =
-        last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
-    last_dt_s_ = dt_s;
-    controller_.next(cloth_m, last.strain);
-    lists_ = lists_in(dt_s);
+    if (repeats_) {
+      last_h_s_ = start_h_s_;
+    } else {
+      const double frame_s = scene().time.dt(), max_displacement_m = measured_.displacement_m * lists_;
+      // Before the first frame no displacement is known.
+      const double cloth_m =
+          last_dt_s_ > 0 ? max_displacement_m * frame_s / last_dt_s_ : std::numeric_limits<double>::infinity();
+      last_dt_s_ = dt_s;
+      controller_.next(cloth_m, measured_.strain);
+      lists_ = lists_in(dt_s);
+    }
     start_h_s_ = std::exchange(last_h_s_, length_of(dt_s));
   }
 
@@ -235,10 +269,7 @@ class Xpbd final : public GpuSolver {
     // The first substep differs if the last frame's substeps had a different length, or if there was no last frame.
     const TimeStep start = time_step_after(uses_bdf2_ ? length_of(last_dt_s) : start_h_s_, dt_s),
                    step = time_step_after(length_of(dt_s), dt_s);
-    if (start_x_ != nullptr) {
-      copy(0, position_buffer(), *start_x_);
-      copy(0, velocity_buffer(), *start_v_);
-    }
+    for (const auto& [buffer, saved] : saved_) copy(0, *buffer, *saved);
     if (colliders() != nullptr) colliders()->record();
     if (grips() != nullptr) grips()->record_upload();
     if (contact_) contact_->record_shapes(dt_s, substeps);
@@ -302,9 +333,12 @@ class Xpbd final : public GpuSolver {
   static constexpr std::uint32_t kMaxGrowth = 64;  ///< of lists with 32-bit capacities
   std::uint32_t growth_ = 1;                       ///< of the lists of self-contact, since loading or a reset
   bool grows_ = false;
-  /// The state at the frame's start, in scenes whose lists grow: with self-contact and without motion given from
-  /// outside.
-  const vulkan::Buffer *start_x_ = nullptr, *start_v_ = nullptr;
+  bool can_grow_ = false;             ///< with self-contact and without motion given from outside
+  bool repeats_ = false;              ///< the frame being recorded repeats the last one
+  std::vector<FrameCost> repeated_;   ///< attempts of the last frame before the one that counts
+  XpbdContact::Measured measured_{};  ///< of the last frame
+  /// Buffers of the state, and of the state at the frame's start, in scenes whose frames may be repeated.
+  std::vector<std::pair<const vulkan::Buffer*, const vulkan::Buffer*>> saved_;
 };
 
 /// A member of the setting `tuning`: its values, the default first, and what it decides.

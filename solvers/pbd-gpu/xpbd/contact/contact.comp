@@ -56,21 +56,15 @@ void run() {
   if (SHAPES > 0u && (!SECOND_SOLVE || response_round < 2u)) clear_bits(i, stride(), true);
 }
 
-#elif defined(ACTIVE_PAIRS)  // once per substep, twice with kinematic shapes; one thread per candidate pair
-#include "xpbd/contact/narrow_phase/contact_distance.glsl"
-#include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
-void run() {
-  if (item() == 0u && response_round > 0u) frame_state.active_pair_count[0] = 0u;
-  for (uint k = item(); k < frame_state.pairs; k += stride())
-    if (may_be_active(k) && is_active(k)) append_active(k, atomicAdd(ACTIVE_COUNT, 1u));
-}
-
-#elif defined(NEAREST_POINTS)  // after each ACTIVE_PAIRS, one thread per active pair
+#elif defined(FIND_PAIRS)  // once per substep, twice with kinematic shapes; one thread per candidate pair
 #include "xpbd/contact/narrow_phase/contact_distance.glsl"
 #include "xpbd/contact/response/contact_correction.glsl"
 #include "xpbd/contact/narrow_phase/contact_nearest_points.glsl"
+#include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
+#include "xpbd/contact/narrow_phase/contact_find_pairs.glsl"
 void run() {
-  for (uint n = item(); n < ACTIVE_COUNT; n += stride()) process_pair(pairs[n].w);
+  if (item() == 0u && response_round > 0u) frame_state.active_pair_count[0] = 0u;
+  find_active_pairs(item() - gl_LocalInvocationIndex, stride());
 }
 
 #elif defined(ACCUMULATE)  // at the end of a round of response, a cluster of lanes per vertex

@@ -74,6 +74,8 @@ class XpbdContact {
   /// Reads and resets what was measured since the last call.
   Measured read_measured();
   bool has_kinematic_shapes() const { return kinematic_points_ > 0; }
+  /// What one frame leaves for the next, apart from positions and velocities.
+  const vulkan::Buffer& frame_state() const { return *frame_state_; }
 
  private:
   /// A kernel, its number of workgroups, and ContactConstants::level. A Phase is a sequence of passes.
@@ -96,7 +98,8 @@ class XpbdContact {
   ContactPassSpecialization pass_constants_;  ///< if each pass has its own kernel
   std::uint32_t kinematic_points_ = 0;
   int stage_pairs_ = -1;
-  const vulkan::Buffer* diagnostics_ = nullptr;
+  bool holds_all_pairs_ = false;  ///< the list of candidate pairs cannot overflow
+  const vulkan::Buffer *diagnostics_ = nullptr, *frame_state_ = nullptr;
   Phase update_shapes_, list_, before_, first_round_, later_round_, end_, measure_;
 };
 

@@ -24,6 +24,12 @@ layout(std430, binding = BIND_PRIMITIVES) readonly buffer Primitives { uvec4 pri
 #else
 #define STATE
 #endif
+// Threads of a workgroup pass pairs to one another.
+#if defined(FUSED_FRAME) || defined(FIND_PAIRS)
+#define PAIR_STATE coherent
+#else
+#define PAIR_STATE
+#endif
 layout(std430, binding = BIND_POSITIONS) STATE buffer Positions { vec4 x[]; };  // w: inverse mass in the solve
 layout(std430, binding = BIND_VELOCITIES) STATE buffer Velocities { vec4 v[]; };
 layout(std430, binding = BIND_GRIPS) readonly buffer Grips { GripVertex grips[]; };
@@ -35,8 +41,8 @@ layout(std430, binding = BIND_LINKS) readonly buffer StructuralLinks { Structura
 // Vertex-triangle adjacency: per vertex the index of its first entry, then entries 4 * triangle + corner.
 layout(std430, binding = BIND_VERTEX_TRIANGLES) readonly buffer VertexTriangles { uint vertex_triangles[]; };
 layout(std430, binding = BIND_RANGES) STATE buffer Ranges { uvec4 ranges[]; };  // x: first pair, y: count
-layout(std430, binding = BIND_PAIRS) STATE buffer Pairs { uvec4 pairs[]; };  // pairs[n].w: n-th active pair
-layout(std430, binding = BIND_PAIR_STATES) STATE buffer States { PairState states[]; };
+layout(std430, binding = BIND_PAIRS) PAIR_STATE buffer Pairs { uvec4 pairs[]; };  // pairs[n].w: n-th active pair
+layout(std430, binding = BIND_PAIR_STATES) PAIR_STATE buffer States { PairState states[]; };
 layout(std430, binding = BIND_FRAME_STATE) STATE buffer FrameState { ContactFrameState frame_state; };
 layout(std430, binding = BIND_DIAGNOSTICS) STATE buffer Diagnostics { ContactDiagnostics diagnostics; };
 layout(std430, binding = BIND_SELF_ORDER) readonly buffer SelfOrder { uint self_order[]; };

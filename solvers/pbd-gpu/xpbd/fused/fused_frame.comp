@@ -1,6 +1,6 @@
 #version 450
 // Simulates one frame in a single dispatch (xpbd/fused/README.md). Calls the functions of the path that has one kernel
-// per pass. Grid barriers per substep: 9 with kinematic shapes, 8 otherwise. The variant CONTACT_FREE is dispatched
+// per pass. Grid barriers per substep: 8, with kinematic shapes 10. The variant CONTACT_FREE is dispatched
 // first. It runs the broad phase; if the cloth is slow and no collider is within its motion bound, it simulates the
 // frame with constraints only and sets frame_state.contact_free, so that the kernel with contact exits.
 #define SUBGROUPS
@@ -34,14 +34,12 @@ const bool kPredictsNextSubstep = HAS_KINEMATIC != 0u && GRIPS == 0u;
 #define GRID_BARRIER_OR_FAIL if (!grid_barrier()) return false
 #define CLOTH_LOW frame_state.cloth_low
 #define CLOTH_HIGH frame_state.cloth_high
-// Barrier within a workgroup that also makes buffer writes visible.
-#define WORKGROUP_BARRIER { groupMemoryBarrier(); barrier(); }
 #include "xpbd/contact/broad_phase/cloth_aabb.glsl"
 #ifndef CONTACT_FREE
 #include "xpbd/contact/narrow_phase/contact_active_pairs.glsl"
+#include "xpbd/contact/narrow_phase/contact_find_pairs.glsl"
 #endif
 
-const uint kResponseRounds = 3u;
 uint global_thread, grid_stride;  // this thread among the threads of all workgroups
 #define FOR_EACH_STRIDED(i, count) for (uint i = global_thread; i < (count); i += grid_stride)
 
@@ -54,33 +52,6 @@ uint global_thread, grid_stride;  // this thread among the threads of all workgr
   for (uint n = by_subgroup ? global_thread / THREADS * gl_NumSubgroups + gl_SubgroupID : global_thread, end = count; \
        n < end; \
        n += by_subgroup ? grid_stride / THREADS * gl_NumSubgroups : grid_stride)
-
-// Each workgroup tests its part of the candidate pairs, kRounds per thread at a time. After each test the remaining
-// pairs are distributed over the workgroup's threads again, so that no thread idles while its neighbour tests.
-const uint kRounds = THREADS < 512u ? 512u / THREADS : 1u;
-shared uint tested[kRounds * THREADS], active_found[kRounds * THREADS], tested_count, found_count, slot;
-void find_active_pairs() {
-  uint count = frame_state.pairs;  // read once, because a coherent read goes to the second-level cache
-  for (uint base = global_thread - thread; base < count; base += kRounds * grid_stride) {
-    if (thread == 0u) tested_count = found_count = 0u;
-    barrier();  // wait for counts of 0 before threads add to them
-    for (uint r = 0u; r < kRounds; ++r) {
-      uint k = base + r * grid_stride + thread;
-      if (k < count && may_be_active(k)) tested[atomicAdd(tested_count, 1u)] = k;
-    }
-    WORKGROUP_BARRIER;  // wait for tested pairs and their bounds before threads read them
-    for (uint n = thread; n < tested_count; n += THREADS)
-      if (is_active(tested[n])) active_found[atomicAdd(found_count, 1u)] = tested[n];
-    WORKGROUP_BARRIER;  // wait for active pairs and their normals before threads read them
-    if (thread == 0u && found_count > 0u) slot = atomicAdd(ACTIVE_COUNT, found_count);
-    barrier();  // wait for the slot before threads fill it
-    for (uint n = thread; n < found_count; n += THREADS) {
-      append_active(active_found[n], slot + n);
-      if (!kPairsOfSubgroups) process_pair(active_found[n]);
-    }
-    barrier();  // wait for all reads before thread 0 resets the counts
-  }
-}
 
 #endif
 #ifdef CONTACT_FREE
@@ -145,7 +116,7 @@ bool frame() {
 /// Finds the active pairs and the corrections that their contacts propose.
 bool narrow_phase() {
   by_subgroup = false;
-  find_active_pairs();
+  find_active_pairs(global_thread - thread, grid_stride);
   if (!kPairsOfSubgroups) return true;
   GRID_BARRIER_OR_FAIL;  // wait for all pairs before subgroups share them evenly (neighbours are active together)
   FOR_EACH_ACTIVE_PAIR(n, ACTIVE_COUNT) process_pair(pairs[n].w);
@@ -166,7 +137,7 @@ bool respond_to_contact(out uint active_count) {
   }
   active_count = ACTIVE_COUNT;
   if (global_thread == 0u && active_count > 0u) frame_state.contact_possible = 1u;
-  if (response_round == 2u && active_count > 0u) {
+  if (ROUNDS > 1u && response_round > 1u && active_count > 0u) {
     FOR_EACH_STRIDED(n, active_count) respond(pairs[n].w);
     GRID_BARRIER_OR_FAIL;  // wait for the contacts' corrections before vertices read them
   }
@@ -184,7 +155,7 @@ bool substep_with(uint s) {
   response_round = 0u;
   if (HAS_KINEMATIC != 0u && !respond_to_contact(active_count)) return false;
   if (!solve_lines(s)) return false;
-  for (response_round = 1u; response_round < kResponseRounds; ++response_round)
+  for (response_round = 1u; response_round <= ROUNDS; ++response_round)
     if (!respond_to_contact(active_count)) return false;
   if (active_count > 0u) {
     FOR_EACH_ACTIVE_PAIR(n, active_count) select_plane(pairs[n].w);

@@ -17,8 +17,11 @@ namespace clothbench::pbd_gpu {
 
 TimeStep time_step(bool uses_bdf2, double h_s, double last_h_s, double damping_per_s) {
   // A velocity is the mean of its step, so forces act from the middle of one step to the middle of the next.
-  if (!uses_bdf2)
-    return {h_s, 0, -std::expm1(-damping_per_s * h_s), 1, last_h_s > 0 ? 0.5 + 0.5 * (last_h_s / h_s) : 1};
+  if (!uses_bdf2) {
+    // In float32 as in the fused frame, so that both give bit-identical states.
+    const float lengths = static_cast<float>(last_h_s) / static_cast<float>(h_s);
+    return {h_s, 0, -std::expm1(-damping_per_s * h_s), 1, last_h_s > 0 ? 0.5 + 0.5 * static_cast<double>(lengths) : 1};
+  }
   const double ratio = last_h_s > 0 && h_s <= rules::kMaxStepRatio * last_h_s ? h_s / last_h_s : 0;
   const double h = ratio > 0 ? h_s * (1 + ratio) / (1 + 2 * ratio) : h_s;
   const double force_scale = 1 / (1 + damping_per_s * h);

@@ -59,9 +59,9 @@ int uncapped_substeps_if_capped(const Scene&, const nlohmann::json& settings);
 /// have strained the cloth in directions that tethers do not limit.
 int contact_free_substeps(const Scene&, const nlohmann::json& settings);
 
-/// Chooses the next frame's numbers of substeps and pair lists from the last frame's largest displacement and strain,
-/// for cloth in contact with static colliders or itself (xpbd/time/README.md, "By frame"). An impact needs many
-/// substeps; most frames have none.
+/// Chooses each frame's numbers of substeps and pair lists for cloth in contact with static colliders or itself
+/// (xpbd/time/README.md, "By frame"): by the last frame's largest displacement and strain, and more if a link is
+/// strained too far.
 class SubstepController {
  public:
   SubstepController() = default;
@@ -69,24 +69,28 @@ class SubstepController {
   SubstepController(const Scene&, const nlohmann::json& settings, bool adapts);
   void reset();
   bool adapts() const { return adapts_; }
-  /// Substeps of a frame of the scene's duration.
+  /// Substeps of a frame of the scene's duration, and their maximum.
   int substeps() const { return now_; }
+  int max_substeps() const { return max_; }
   /// Number of lists of candidate pairs that such a frame builds, one after another.
   int lists() const { return lists_; }
   /// Call before each frame. `cloth_m`: largest displacement of a vertex in the last frame, scaled to the scene's frame
   /// duration; infinity: unknown. `strain`: largest of a link at its end.
   void next(double cloth_m, double strain);
+  /// Call after each frame. True if the frame must be repeated with substeps(), which are now more.
+  bool repeats(double strain);
 
  private:
   void halve_if_quiescent(double cloth_m);
 
-  double max_travel_m_ = 0;  ///< per substep; infinity without colliders and self-contact
-  int slow_ = 1, base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
-  int strained_ = 1;  ///< substeps that the strain of the last frames asks for; from slow_ to base_
-  double max_strain_ = 0;
+  double max_strain_ = 0, repeat_strain_ = 0;
   bool adapts_ = false, is_strip_ = false;
   double cell_m_ = 0;
-  int halvings_ = 0;          ///< how often base_ is halved now
+  int slow_ = 1, base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
+  int strained_ = 1;           ///< substeps that the strain of the last frames asks for; from slow_ to base_
+  double attempt_strain_ = 0;  ///< of this frame's last attempt; infinity: none
+  double tolerated_ = 0;  ///< strain that does not repeat a frame; above repeat_strain_ where repeating did not help
+  int halvings_ = 0;      ///< how often base_ is halved now
   int quiescent_frames_ = 0;  ///< since the last halving
 };
 

@@ -63,7 +63,7 @@ inline constexpr LinkRule kKinematicContactChains = {{5, 8, 20}, {6, 4, 1.5}};
 // Contact-free frames after a collider has strained the cloth: with free cloth's rules 6 of 68 random runs fail
 inline constexpr LinkRule kReleased = {{4, 5, 20}, {8, 8, 6}};
 inline constexpr LinkRule kOnColliders = {{12, 16, 32}, {2.67, 2, 1}};  // Much of the cloth hits the collider at once
-// While no vertex of such a sheet travels farther than kTravelCells in a substep, and no link exceeds kMaxStrain
+// While no link of such a sheet exceeds kMaxStrain
 inline constexpr LinkRule kSlowOnColliders = {{9, 12, 24}, {5.33, 4, 2}};
 inline constexpr LinkRule kNoContact = {{3, 5, 20}, {1e9, 1e9, 1e9}};  // Nothing strains the cloth: any number will do
 // [iterations per substep] A mesh that needs more is solved by chains, which can stretch far too much under its weight
@@ -84,24 +84,25 @@ inline constexpr int kStartFactor = 4;
 // [contact offsets per substep] Up to this, a vertex that is hit pulls its neighbours along before links overstretch
 // (strain of random contact scenes)
 inline constexpr PerQuality kTravelMargins = {0.9, 0.7, 0.5};
-// [cells per substep] The same for sheets that hit static colliders. A quarter of a cell strains links by less than a
-// tenth, half a cell by a third or more (contact/sphere with 64 x 64 or 128 x 128 vertices and constant `substeps`)
-inline constexpr PerQuality kTravelCells = {0.35, 0.25, 0.12};
 // [thicknesses per substep] Layers may approach by this. Without a limit the pairs of fast layers overflow their list
 inline constexpr double kMaxLayerApproach = 2;
 // [m/s] Assumed, because a live session does not know its hand's speed, and a replay must use the same substeps
 inline constexpr double kUsersHand_m_per_s = 2;
-// [strain of a link at the end of a frame] Above, half as many substeps more in the next one, up to the table's number;
-// at half of it fewer again. Sheets that drape may strain links by a tenth (strict contact, scenarios/README.md)
-inline constexpr PerQuality kMaxStrain = {0.08, 0.06, 0.02};
 // Maximum cost of a frame. Links per substep: only for sheets that hit static colliders
 inline constexpr LinkRule kImpact = {{32, 48, 64}, {1.5, 1, 1}};
 
 // Substeps by the last frame (SubstepController). When their number changes, cloth at rest on a desk moves by 1 mm.
-// [substeps] Rounding up to multiples of 4, or of an eighth of the table's number if that is more, avoids recording
-// each frame anew
-inline constexpr int kSubstepGrain = 4, kGrainsOfTable = 8;
-inline constexpr double kQuiescent = 1.0 / 24;  // [cells per frame] Below this for kQuiescentFrames, cloth is at rest
+// [strain of a link at the end of a frame] Above, half as many substeps more in the next one, up to the table's number.
+// Sheets that drape may strain links by a tenth (strict contact, scenarios/README.md)
+inline constexpr PerQuality kMaxStrain = {0.1, 0.08, 0.03};
+inline constexpr double kFewerBelow = 0.75;  // [of kMaxStrain] Below, fewer again
+// [the same] Above, the frame is repeated with twice the substeps, as an adaptive integrator rejects a step
+// (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4). Impacts may strain links by half
+inline constexpr PerQuality kRepeatStrain = {0.4, 0.25, 0.1};
+// [strain over that of the attempt before] Above, more substeps do not help: the material is soft
+inline constexpr double kWorthRepeating = 0.75;
+inline constexpr double kToleratedGrowth = 1.5;  // [of the strain where they did not help] Up to this, no repeats
+inline constexpr double kQuiescent = 1.0 / 24;   // [cells per frame] Below this for kQuiescentFrames, cloth is at rest
 // [cells per frame] Above, halvings end; larger than kQuiescent, so that the number does not oscillate
 inline constexpr double kMoves = 1.0 / 6;
 inline constexpr int kQuiescentFrames = 4;  // [frames] In fewer frames, cloth may only pass a turning point

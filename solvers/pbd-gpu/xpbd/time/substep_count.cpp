@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "clothbench/solver.hpp"
 #include "xpbd/mesh/edge_paths.hpp"
@@ -48,17 +49,12 @@ double substeps_of(const LinkRule& rule, const Scene& scene, std::size_t quality
   return std::max(rule.smallest[quality], links_of_longer_side(scene.cloth) / rule.links_a_substep[quality]);
 }
 
-/// Maximum travel per substep [m] of a kinematic collider or of cloth; with `layers` also of each of two layers.
-double max_travel_m(const Scene& scene, const nlohmann::json& settings, bool layers) {
+/// Maximum travel per substep [m] of a kinematic collider or of cloth.
+double max_travel_m(const Scene& scene, const nlohmann::json& settings) {
   const std::size_t quality = quality_of(settings);
-  const Cloth& c = scene.cloth;
   double travel = std::numeric_limits<double>::infinity();
   for (const Collider& shape : scene.colliders)
     travel = std::min(travel, rules::kTravelMargins[quality] * shape.margin_m);
-  if (!scene.colliders.empty() && is_on_colliders(scene, settings))
-    travel = rules::kTravelCells[quality] * (c.mesh ? c.mesh->edge_m : std::max(c.du(), c.dv()));
-  if (layers && scene.needs.has(Feature::SelfCollision))
-    travel = std::min(travel, rules::kMaxLayerApproach / 2 * c.self_collision.thickness_m);
   return travel;
 }
 
@@ -80,7 +76,7 @@ double speed_m_per_s(const Scene& scene) {
 double wanted_for_speed(const Scene& scene, const nlohmann::json& settings) {
   const double speed =
       std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
-  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, settings, false) - 1e-9));
+  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, settings) - 1e-9));
 }
 
 /// Substeps that limit the approach of two layers. Assumed speed: the sum of the initial speed, the speed of a fall by
@@ -142,21 +138,25 @@ int contact_free_substeps(const Scene& scene, const nlohmann::json& settings) {
 }
 
 SubstepController::SubstepController(const Scene& scene, const nlohmann::json& settings, bool adapts)
-    : max_travel_m_(max_travel_m(scene, settings, true)), adapts_(adapts) {
+    : max_strain_(rules::kMaxStrain[quality_of(settings)]),
+      repeat_strain_(rules::kRepeatStrain[quality_of(settings)]),
+      adapts_(adapts),
+      is_strip_(adapts && !scene.needs.has(Feature::Shear)),
+      cell_m_(scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv())) {
+  const bool touches = !is_contact_free(scene), varies = adapts && !is_strip_;
   max_ = xpbd_substeps(scene, settings);
-  const bool touches = !is_contact_free(scene);
+  if (varies) max_ = std::max(max_, static_cast<int>(std::lround(max_for_speed(scene, settings))));
   base_ = std::min(max_, substeps_by_rules(scene, settings, touches, Motion::Any));
-  slow_ = std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow));
-  max_strain_ = rules::kMaxStrain[quality_of(settings)];
-  cell_m_ = scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv());
-  is_strip_ = adapts && !scene.needs.has(Feature::Shear);
+  slow_ = varies ? std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow)) : max_;
   reset();
 }
 
 void SubstepController::reset() {
-  now_ = is_strip_ ? rules::kStartFactor * max_ : max_;
+  now_ = is_strip_ ? rules::kStartFactor * max_ : slow_;
   lists_ = 1;
   strained_ = slow_;
+  tolerated_ = repeat_strain_;
+  attempt_strain_ = std::numeric_limits<double>::infinity();
   halvings_ = quiescent_frames_ = 0;
 }
 
@@ -168,16 +168,26 @@ void SubstepController::next(double cloth_m, double strain) {
   halve_if_quiescent(cloth_m);
   if (!(strain <= max_strain_))
     strained_ = std::min(base_, 3 * std::max(strained_, now_) / 2);
-  else if (strain <= 0.5 * max_strain_)
+  else if (strain <= rules::kFewerBelow * max_strain_)
     strained_ = std::max(slow_, 3 * strained_ / 4);
-  const int smallest = std::min(strained_, (base_ + (1 << halvings_) - 1) >> halvings_);
-  const double wanted = std::ceil(cloth_m / max_travel_m_ - 1e-9);
-  const double grain = std::max(rules::kSubstepGrain, base_ / rules::kGrainsOfTable);
-  now_ = wanted < max_ ? std::clamp(static_cast<int>(grain * std::ceil(wanted / grain)), smallest, max_) : max_;
-  if (wanted <= smallest) now_ = smallest;
+  now_ = std::min(strained_, (base_ + (1 << halvings_) - 1) >> halvings_);
+  attempt_strain_ = std::numeric_limits<double>::infinity();
   const int most = std::max(1, now_ / rules::kMinSubstepsPerList);
   const double lists = std::ceil(cloth_m / cell_m_ / rules::kCellsPerList);
   lists_ = lists < most ? std::max(1, static_cast<int>(lists)) : most;  // also if cloth_m is NaN
+}
+
+bool SubstepController::repeats(double strain) {
+  if (!adapts_ || is_strip_) return false;
+  if (strain <= repeat_strain_) tolerated_ = repeat_strain_;
+  const double before = std::exchange(attempt_strain_, strain);
+  if (!(strain > tolerated_)) return false;
+  if (now_ >= max_ || strain > rules::kWorthRepeating * before) {
+    tolerated_ = rules::kToleratedGrowth * strain;
+    return false;
+  }
+  now_ = std::min(2 * now_, max_);
+  return true;
 }
 
 /// Cloth at rest uses at most half of base_, and later a quarter, until it moves.
