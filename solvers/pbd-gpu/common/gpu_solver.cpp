@@ -151,8 +151,12 @@ StepStatus GpuSolver::step(const FrameInput& frame) {
   if (colliders_) colliders_->write(frame.motion);
   // A vertex that was just attached or released has no valid last substep, so BDF2 restarts.
   if (grips_ && grips_->write(frame.motion)) done_dt_s_ = 0;
-  prepare(frame.dt_s);
-  done_dt_s_ = frame.dt_s;
+  return run_frame(frame.dt_s);
+}
+
+StepStatus GpuSolver::run_frame(double dt_s) {
+  prepare(dt_s);
+  done_dt_s_ = dt_s;
   return last_ = unless_timed_out(run(*frame_));
 }
 

@@ -60,6 +60,8 @@ class GpuSolver : public ClothSolver, protected FrameBuilder {
   void add_grips(Vec3 origin_m, std::uint32_t layers);
   const vulkan::Buffer& velocity_buffer() const { return *velocity_; }
   StepStatus run(vulkan::Program& program) const;
+  /// The part of step() after the motion of colliders and attached vertices is written.
+  StepStatus run_frame(double dt_s);
   ColliderBuffers* colliders() { return colliders_.get(); }  ///< null if the scene has none
   GripBuffer* grips() { return grips_.get(); }               ///< null if the scene has none
 
@@ -101,6 +103,8 @@ std::unique_ptr<GpuSolver> make_paper(const nlohmann::json& settings, const Devi
 std::unique_ptr<GpuSolver> make_xpbd(const nlohmann::json& settings, const DeviceOptions&);
 SolverInfo paper_info();
 SolverInfo xpbd_info();
+/// Throws Error naming a setting that is not allowed.
+void check_xpbd_settings(const nlohmann::json& settings);
 double paper_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
 double xpbd_free_fall_m(const Scene&, const nlohmann::json& settings, int frames);
 

@@ -43,7 +43,7 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
     frame_.add_buffer(BIND_SHAPE_AABBS, "contact convex shape boxes", all.boxes);
   }
   if (kinematic_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
-  constants_.ROUNDS = with_itself_ || second_solve ? kRoundsOfLayers : kRounds;
+  constants_.ROUNDS = with_itself_ || second_solve || kinematic_points_ > 0 ? kRoundsOfLayers : kRounds;
   constants_.PLANES = colliders != nullptr ? colliders->planes.count : 0;
   constants_.MAX_POINTS = all.max_points;
   constants_.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;

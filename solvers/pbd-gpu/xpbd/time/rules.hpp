@@ -98,7 +98,7 @@ inline constexpr PerQuality kMaxStrain = {0.1, 0.08, 0.03};
 inline constexpr double kFewerBelow = 0.75;  // [of kMaxStrain] Below, fewer again
 // [the same] Above, the frame is repeated with twice the substeps, as an adaptive integrator rejects a step
 // (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4). Impacts may strain links by half
-inline constexpr PerQuality kRepeatStrain = {0.4, 0.25, 0.1};
+inline constexpr PerQuality kRepeatStrain = {0.3, 0.25, 0.1};
 // [strain over that of the attempt before] Above, more substeps do not help: the material is soft
 inline constexpr double kWorthRepeating = 0.75;
 inline constexpr double kToleratedGrowth = 1.5;  // [of the strain where they did not help] Up to this, no repeats

@@ -141,13 +141,17 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
     : max_strain_(rules::kMaxStrain[quality_of(settings)]),
       repeat_strain_(rules::kRepeatStrain[quality_of(settings)]),
       adapts_(adapts),
-      is_strip_(adapts && !scene.needs.has(Feature::Shear)),
+      is_driven_(scene.needs.has(Feature::MovingMesh)),
+      is_strip_(adapts && !is_driven_ && !scene.needs.has(Feature::Shear)),
       cell_m_(scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv())) {
   const bool touches = !is_contact_free(scene), varies = adapts && !is_strip_;
   max_ = xpbd_substeps(scene, settings);
   if (varies) max_ = std::max(max_, static_cast<int>(std::lround(max_for_speed(scene, settings))));
-  base_ = std::min(max_, substeps_by_rules(scene, settings, touches, Motion::Any));
-  slow_ = varies ? std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow)) : max_;
+  base_ = is_driven_ ? xpbd_substeps(scene, settings)
+                     : std::min(max_, substeps_by_rules(scene, settings, touches, Motion::Any));
+  slow_ = is_driven_ ? base_
+          : varies   ? std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow))
+                     : max_;
   reset();
 }
 
@@ -165,7 +169,7 @@ void SubstepController::next(double cloth_m, double strain) {
     if (!std::isinf(cloth_m)) now_ = max_;
     return;
   }
-  halve_if_quiescent(cloth_m);
+  if (!is_driven_) halve_if_quiescent(cloth_m);
   if (!(strain <= max_strain_))
     strained_ = std::min(base_, 3 * std::max(strained_, now_) / 2);
   else if (strain <= rules::kFewerBelow * max_strain_)
