@@ -78,6 +78,7 @@ class Authors(PluginTest):
         self.assertEqual(self.command("conformance", "plugin:" + EXAMPLE, "--scene", "paper/gravity", "--no-whole"), 0)
         self.assertRegex(self.text, r"pass +example-xpbd paper/gravity: \d+ cases")
         self.assertIn("1 scenes pass, 0 fail, 0 skipped", self.text)
+        self.assertEqual([r["status"] for r in self.conform("plugin:" + EXAMPLE, *scenes[4:], code=1)], ["skipped"])  # nothing was tested
 
     def test_conformance_finds_faults(self):
         scene = ["--scene", "paper/gravity"]
