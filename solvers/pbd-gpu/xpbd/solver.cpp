@@ -109,10 +109,9 @@ class Xpbd final : public GpuSolver {
     if (crumpled_) break_symmetry(scene(), w, start);
     const Vec3 origin = scene().cloth.center_m;
     add_state(start, w, origin, 1);
-    const vulkan::Buffer &rounding_x =
-                             add_buffer(BIND_POSITION_COMPENSATION, "position compensation", position_buffer().bytes()),
-                         &rounding_v =
-                             add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", position_buffer().bytes());
+    const std::uint64_t bytes = position_buffer().bytes();
+    const vulkan::Buffer& rounding_x = add_buffer(BIND_POSITION_COMPENSATION, "position compensation", bytes);
+    const vulkan::Buffer& rounding_v = add_buffer(BIND_VELOCITY_COMPENSATION, "velocity compensation", bytes);
     if (touches) add_colliders(origin, true);
     add_grips(origin, 1);
     add_history();
@@ -138,7 +137,8 @@ class Xpbd final : public GpuSolver {
     if (lines_ && !fused_frame_) lines_->add_kernels(touches);
     if (touches && !fused_frame_) contact_->add_kernels();
     // Crumpled starts need all substeps to come to rest. Cloth that attachments have released would snap if the number
-    // of substeps changed. Capsules strain cloth less than hands do, and their frames are short.
+    // of substeps changed. Capsules seldom strain links too far, and copying the state would lengthen their short
+    // frames.
     const bool adapts = touches && !scene().needs.has(Feature::Capsules) && grips() == nullptr && !crumpled_ &&
                         settings()["substeps"] == 0;
     controller_ = SubstepController(scene(), settings(), adapts);

@@ -26,8 +26,9 @@ constexpr std::uint32_t kMaxLanesPerVertex = 8;
 /// of planes from shapes and layers, and rounding error of positions in float32.
 constexpr double kSeparationOfMargin = 0.05, kSeparationOfThickness = 0.1, kRoundingOfMargin = 5e-5,
                  kRoundingOfSide = 1e-7, kInfinity = std::numeric_limits<double>::infinity();
-/// Response rounds after the constraint solve. With one round, layers that lie on one another stay strained, and slide.
-constexpr std::uint32_t kRounds = 1, kRoundsOfLayers = 2;
+/// Response rounds after the constraint solve: on static shapes only, and otherwise. With one round, layers that lie on
+/// one another stay strained, and slide.
+constexpr std::uint32_t kRoundsOnStatic = 1, kRounds = 2;
 
 XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m, const ColliderBuffers* colliders,
                          const std::vector<std::uint32_t>& particle, bool second_solve, std::uint32_t growth)
@@ -43,7 +44,7 @@ XpbdContact::XpbdContact(FrameBuilder& frame, const Scene& scene, Vec3 origin_m,
     frame_.add_buffer(BIND_SHAPE_AABBS, "contact convex shape boxes", all.boxes);
   }
   if (kinematic_points_ > 0) frame_.add_buffer(BIND_POINT_SOURCES, "contact point sources", all.sources);
-  constants_.ROUNDS = with_itself_ || second_solve || kinematic_points_ > 0 ? kRoundsOfLayers : kRounds;
+  constants_.ROUNDS = with_itself_ || second_solve || kinematic_points_ > 0 ? kRounds : kRoundsOnStatic;
   constants_.PLANES = colliders != nullptr ? colliders->planes.count : 0;
   constants_.MAX_POINTS = all.max_points;
   constants_.HAS_KINEMATIC = kinematic_points_ > 0 ? 1 : 0;

@@ -84,7 +84,9 @@ class SubstepController {
   void halve_if_quiescent(double cloth_m);
 
   double max_strain_ = 0, repeat_strain_ = 0;
-  bool adapts_ = false, is_driven_ = false, is_strip_ = false;
+  bool adapts_ = false;
+  bool is_driven_ = false;  ///< by a hand mesh
+  bool is_strip_ = false;
   double cell_m_ = 0;
   int slow_ = 1, base_ = 1, max_ = 1, now_ = 1, lists_ = 1;
   int strained_ = 1;           ///< substeps that the strain of the last frames asks for; from slow_ to base_

@@ -49,15 +49,6 @@ double substeps_of(const LinkRule& rule, const Scene& scene, std::size_t quality
   return std::max(rule.smallest[quality], links_of_longer_side(scene.cloth) / rule.links_a_substep[quality]);
 }
 
-/// Maximum travel per substep [m] of a kinematic collider or of cloth.
-double max_travel_m(const Scene& scene, const nlohmann::json& settings) {
-  const std::size_t quality = quality_of(settings);
-  double travel = std::numeric_limits<double>::infinity();
-  for (const Collider& shape : scene.colliders)
-    travel = std::min(travel, rules::kTravelMargins[quality] * shape.margin_m);
-  return travel;
-}
-
 /// Maximum number of substeps that fast motion in contact may cause.
 double max_for_speed(const Scene& scene, const nlohmann::json& settings) {
   const std::size_t quality = quality_of(settings);
@@ -76,7 +67,10 @@ double speed_m_per_s(const Scene& scene) {
 double wanted_for_speed(const Scene& scene, const nlohmann::json& settings) {
   const double speed =
       std::max(speed_m_per_s(scene) + norm(scene.cloth.initial_velocity_m_per_s), impact_speed_m_per_s(scene));
-  return std::max(1.0, std::ceil(speed * scene.time.dt() / max_travel_m(scene, settings) - 1e-9));
+  double travel_m = std::numeric_limits<double>::infinity();
+  for (const Collider& shape : scene.colliders)
+    travel_m = std::min(travel_m, rules::kTravelMargins[quality_of(settings)] * shape.margin_m);
+  return std::max(1.0, std::ceil(speed * scene.time.dt() / travel_m - 1e-9));
 }
 
 /// Substeps that limit the approach of two layers. Assumed speed: the sum of the initial speed, the speed of a fall by
@@ -144,14 +138,15 @@ SubstepController::SubstepController(const Scene& scene, const nlohmann::json& s
       is_driven_(scene.needs.has(Feature::MovingMesh)),
       is_strip_(adapts && !is_driven_ && !scene.needs.has(Feature::Shear)),
       cell_m_(scene.cloth.mesh ? scene.cloth.mesh->edge_m : std::max(scene.cloth.du(), scene.cloth.dv())) {
-  const bool touches = !is_contact_free(scene), varies = adapts && !is_strip_;
+  const bool varies = adapts && !is_strip_, touches = !is_contact_free(scene);
+  // A hand's speed is known beforehand, so all frames have the number for it.
+  const auto number = [&](Motion motion) {
+    return substeps_by_rules(scene, settings, touches, is_driven_ ? Motion::Fastest : motion);
+  };
   max_ = xpbd_substeps(scene, settings);
   if (varies) max_ = std::max(max_, static_cast<int>(std::lround(max_for_speed(scene, settings))));
-  base_ = is_driven_ ? xpbd_substeps(scene, settings)
-                     : std::min(max_, substeps_by_rules(scene, settings, touches, Motion::Any));
-  slow_ = is_driven_ ? base_
-          : varies   ? std::min(base_, substeps_by_rules(scene, settings, touches, Motion::Slow))
-                     : max_;
+  base_ = std::min(max_, number(Motion::Any));
+  slow_ = varies ? std::min(base_, number(Motion::Slow)) : max_;
   reset();
 }
 
@@ -185,9 +180,9 @@ bool SubstepController::repeats(double strain) {
   if (!adapts_ || is_strip_) return false;
   if (strain <= repeat_strain_) tolerated_ = repeat_strain_;
   const double before = std::exchange(attempt_strain_, strain);
-  if (!(strain > tolerated_)) return false;
+  if (strain <= tolerated_) return false;
   if (now_ >= max_ || strain > rules::kWorthRepeating * before) {
-    tolerated_ = rules::kToleratedGrowth * strain;
+    tolerated_ = std::fmax(repeat_strain_, rules::kToleratedGrowth * strain);  // also if strain is NaN
     return false;
   }
   now_ = std::min(2 * now_, max_);
